@@ -1,0 +1,187 @@
+"""The existence tests against cases decided by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from concio.contact.problem import ContactProblem, Laws
+from concio.lcp.existence import (
+    find_mechanism,
+    mechanism_from,
+    polish,
+    proves,
+    statically_admissible,
+    sufficient_condition,
+    verify_mechanism,
+)
+from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, running_bond, wall
+
+
+def single(f, n=((0.0, 1.0),), mu=0.5, **changes):
+    """A rigid point body (2 unknowns) with one smooth or rough pair for each normal given."""
+    n = np.array(n, float)
+    t = np.column_stack([-n[:, 1], n[:, 0]])
+    laws = Laws.coulomb(mu, len(n))
+    laws = replace(laws, **{k: np.full(len(n), float(v)) for k, v in changes.items()})
+    eye = sp.csc_array(sp.eye_array(2))
+    return ContactProblem(
+        sp.csr_array((2, 2)), np.array(f, float), sp.csr_array(n), sp.csr_array(t), np.zeros(len(n)), laws, eye,
+        np.array([0, 2]),
+    )  # fmt: skip
+
+
+def test_sufficient_condition_of_a_centred_block():
+    p = block_on_incline(0.4, 1.0, 0.0).problem(0.5, np.array([0.0, -3.0, 0.0]))
+    found = sufficient_condition(p)
+    assert found.holds
+    assert found.margin == pytest.approx(1.5, rel=1e-12)
+    assert found.normal_force == pytest.approx([1.5, 1.5])
+
+
+def test_sufficient_condition_fails_under_a_horizontal_load():
+    p = block_on_incline(0.4, 1.0, 0.0).problem(0.5, np.array([0.1, -3.0, 0.0]))
+    found = sufficient_condition(p)
+    assert not found.holds
+    assert found.margin == -np.inf
+    assert statically_admissible(p).exists
+
+
+def test_sufficient_condition_is_unbounded_between_two_walls():
+    p = single([0.1, 0.0], n=[(1.0, 0.0), (-1.0, 0.0)])
+    found = sufficient_condition(p)
+    assert found.holds
+    assert found.margin == np.inf
+    assert np.ptp(found.normal_force) == pytest.approx(0.1)
+
+
+def test_sufficient_condition_stays_below_a_cap():
+    p = single([0.1, 0.0], n=[(1.0, 0.0), (-1.0, 0.0)], cap=2.0)
+    found = sufficient_condition(p)
+    assert found.holds
+    # smallest distance from 0 and from the cap: t and t + 0.1 with t = 2 - (t + 0.1)
+    assert found.margin == pytest.approx(0.95)
+
+
+@pytest.mark.parametrize(("share", "proof"), [(0.399, False), (0.401, True)])
+def test_block_topples(share, proof):
+    p = block_on_incline(0.4, 1.0, 0.0).problem(0.9, np.array([share, -1.0, 0.0]))
+    found = find_mechanism(p)
+    assert statically_admissible(p).exists is not proof
+    assert (found is not None) is proof
+    if found is not None:
+        assert found.violation <= 1e-12
+        assert np.abs(found.velocity).max() == 1.0
+        assert found.power > 0
+
+
+@pytest.mark.parametrize(
+    ("load", "changes", "proof"),
+    [
+        ((0.49, -1.0), {}, False),
+        ((0.51, -1.0), {}, True),
+        ((0.69, -1.0), {"cohesion": 0.2}, False),
+        ((0.71, -1.0), {"cohesion": 0.2}, True),
+        ((0.0, 0.29), {"cohesion": 0.2, "tension": 0.3}, False),
+        ((0.0, 0.31), {"cohesion": 0.2, "tension": 0.3}, True),
+        ((0.0, 0.01), {"cohesion": 0.2}, True),
+        ((0.0, -0.99), {"cap": 1.0}, False),
+        ((0.0, -1.01), {"cap": 1.0}, True),
+        ((0.01, -1.0), {"mu": 0.0}, True),
+        ((0.0, -1.0), {"mu": 0.0}, False),
+        ((0.09, -1.0), {"mu": 0.0, "cohesion": 0.1}, False),
+        ((0.11, -1.0), {"mu": 0.0, "cohesion": 0.1}, True),
+        ((0.0, -1.01), {"mu": 0.0, "cap": 1.0}, True),
+    ],
+)
+def test_laws_of_one_pair(load, changes, proof):
+    p = single(load, **changes)
+    assert (find_mechanism(p) is not None) is proof
+    assert statically_admissible(p).exists is not proof
+
+
+def test_tie_bar_without_tangential_row():
+    """A tension-only bar is a smooth pair whose tangential row is zero: it holds up to its strength."""
+    p = single([0.0, -1.0], n=[(0.0, 1.0)], mu=0.0)
+    p = replace(p, C_t=sp.csr_array((1, 2)))
+    assert find_mechanism(p) is None
+    assert find_mechanism(p.with_loads(np.array([0.0, 1.0]))) is not None
+    assert find_mechanism(p.with_loads(np.array([0.5, -1.0]))) is not None
+
+
+def test_bodies_that_do_not_float():
+    p = replace(single([3.0, 5.0]), K=sp.csr_array(np.eye(2)), R=sp.csc_array((2, 0)))
+    assert sufficient_condition(p).holds
+    assert statically_admissible(p).exists
+    assert find_mechanism(p) is None
+
+
+def test_a_body_nothing_touches():
+    free = ContactProblem(
+        sp.csr_array((2, 2)), np.array([0.0, -1.0]), sp.csr_array((0, 2)), sp.csr_array((0, 2)), np.zeros(0),
+        Laws.coulomb(np.zeros(0)), sp.csc_array(sp.eye_array(2)), np.array([0, 2]),
+    )  # fmt: skip
+    found = find_mechanism(free)
+    assert found is not None
+    assert found.velocity == pytest.approx([0.0, -1.0])
+    assert not sufficient_condition(free).holds
+
+
+def test_three_dimensions_lean_to_the_safe_side():
+    """Friction resultant in any direction of the plane: held well inside the circle, mechanism outside."""
+    n, m = np.array([[0.0, 0.0, 1.0]]), 1
+    for angle in np.linspace(0, 2, 7):
+        direction = np.array([np.cos(angle), np.sin(angle)])
+        for size, proof in ((0.49, False), (0.51, True)):
+            p = ContactProblem(
+                sp.csr_array((3, 3)), np.r_[size * direction, -1.0], sp.csr_array(n),
+                sp.csr_array(np.eye(3)[:2]), np.zeros(m), Laws.coulomb(0.5, m), sp.csc_array(sp.eye_array(3)),
+                np.array([0, 3]),
+            )  # fmt: skip
+            found = find_mechanism(p)
+            assert (found is not None) is proof
+            if found is not None:
+                w = found.velocity
+                assert w[2] >= 0.5 * np.hypot(*w[:2]) - 1e-9
+
+
+@pytest.mark.parametrize(("name", "limit"), [("wall 1", 0.642859), ("wall 2", 0.579999), ("wall 3", 0.403694)])
+def test_walls_either_side_of_their_limit(name, limit):
+    a = wall(FERRIS_TIN_LOI[name])
+    below = a.problem(MU, a.load(limit * (1 - 1e-5), -1.0))
+    assert statically_admissible(below).exists
+    assert find_mechanism(below) is None
+    above = a.problem(MU, a.load(limit * (1 + 1e-5), -1.0))
+    found = find_mechanism(above)
+    assert found is not None
+    again = verify_mechanism(above, 17.0 * found.velocity)
+    assert again.violation <= 1e-9
+    assert again.power == pytest.approx(found.power, rel=1e-9)
+
+
+def test_a_false_mechanism_is_refused():
+    a = running_bond(4, 3)
+    p = a.problem(0.6, a.load(0.1, -1.0))
+    downwards = np.tile([0.0, -1.0, 0.0], a.blocks)
+    assert verify_mechanism(p, downwards).violation == pytest.approx(1.0)
+    assert not proves(p, verify_mechanism(p, downwards))
+    assert mechanism_from(p, downwards) is None
+    assert not proves(p, verify_mechanism(p, np.zeros(p.unknowns)))
+
+
+def test_a_motion_that_strains_a_body_is_refused():
+    p = replace(single([1.0, 0.0]), K=sp.csr_array(np.diag([5.0, 0.0])), R=sp.csc_array(np.array([[0.0], [1.0]])))
+    assert verify_mechanism(p, np.array([1.0, 0.5])).violation >= 0.99
+
+
+def test_polish_restores_the_active_pairs():
+    a = wall(FERRIS_TIN_LOI["wall 1"])
+    p = a.problem(MU, a.load(0.7, -1.0))
+    exact = find_mechanism(p)
+    assert exact is not None
+    rough = exact.velocity + 1e-8 * np.random.default_rng(0).standard_normal(p.unknowns)
+    assert not proves(p, verify_mechanism(p, rough))
+    assert proves(p, verify_mechanism(p, polish(p, rough)))
