@@ -28,7 +28,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import lsqr
+from scipy.sparse.linalg import splu
 
 from concio.contact.problem import Array, ContactProblem
 from concio.lcp.solution import Mechanism
@@ -190,8 +190,10 @@ def mechanism_from(problem: ContactProblem, velocity: Array) -> Mechanism | None
     if not np.abs(velocity).max(initial=0.0) > 0:
         return None
     found = verify_mechanism(problem, velocity)
-    if not proves(problem, found):
-        found = verify_mechanism(problem, polish(problem, velocity))
+    for active in (1e-9, 1e-8, 1e-7, 1e-6):
+        if proves(problem, found):
+            return found
+        found = verify_mechanism(problem, polish(problem, velocity, active))
     return found if proves(problem, found) else None
 
 
@@ -282,8 +284,13 @@ def polish(problem: ContactProblem, velocity: Array, active: float = 1e-6) -> Ar
             problem.C_t[(stuck[:, None] * s + np.arange(s)).ravel()],
         ]
     )
-    G = sp.csr_array(sp.csr_array(rows) @ R)
-    for _ in range(3):
-        alpha = alpha - lsqr(G, G @ alpha, atol=1e-15, btol=1e-15, iter_lim=20 * G.shape[1])[0]
+    G = sp.csc_array(sp.csr_array(rows) @ R)
+    if not G.shape[0]:
+        return velocity
+    r = alpha.size
+    weak = -1e-10 * sp.eye_array(G.shape[0])  # redundant rows; its error is taken out by the repetition
+    factors = splu(sp.csc_matrix(sp.block_array([[sp.eye_array(r), G.T], [G, weak]])), permc_spec="COLAMD")
+    for _ in range(5):
+        alpha = alpha - factors.solve(np.concatenate([np.zeros(r), G @ alpha]))[:r]
     polished: Array = R @ alpha
     return polished
