@@ -1,0 +1,137 @@
+"""What every iterative method keeps while it works: residuals, work, counts; and how it says what it reached.
+
+*Work* is counted in factorisations of ``K + C'C``: a factorisation is 1, a pair of triangular solves the share of
+its floating-point operations (from the column counts of the factor), so that Newton methods and first-order methods
+can be drawn on one axis, independently of the machine.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import SuperLU
+
+from concio.contact.problem import Array, ContactProblem
+from concio.lcp.certificate import CERTIFIED
+from concio.lcp.dimensionless import Dimensionless, factorise
+from concio.lcp.solution import Progress, ProgressCallback, Solution, Status, judge
+
+GOAL = 1e-11
+"""Residual at which the methods stop, a hundredth of what the certificate asks."""
+
+
+class Stopped(Exception):
+    """The progress callback asked to stop."""
+
+
+@dataclass
+class Record:
+    """The record of one run of a method.
+
+    Parameters
+    ----------
+    method : str
+    scaled : Dimensionless
+    progress : callable, optional
+    """
+
+    method: str
+    scaled: Dimensionless
+    progress: ProgressCallback | None = None
+    history: list[float] = field(default_factory=list)
+    work: list[float] = field(default_factory=list)
+    trace: list[str] = field(default_factory=list)
+    info: dict[str, Any] = field(default_factory=dict)
+    factorisations: int = 1  # the glued structure
+    best: tuple[float, Array, Array] | None = None
+    _spent: float = 1.0
+    _solve_share: float = 0.0
+
+    def factorise(self, matrix: sp.csc_array) -> SuperLU:
+        """Factorise and count it."""
+        lu = factorise(matrix)
+        self.factorisations += 1
+        self._spent += 1.0
+        if not self._solve_share:
+            columns = np.diff(lu.L.indptr).astype(float)
+            self._solve_share = float(2.0 * lu.nnz / max(2.0 * (columns**2).sum(), 2.0 * lu.nnz))
+        return lu
+
+    def solves(self, count: int = 1) -> None:
+        """Count ``count`` pairs of triangular solves."""
+        self._spent += count * self._solve_share
+
+    def note(self, u: Array, t: Array, message: str = "") -> float:
+        """Record the state after an iteration, keep it if it is the best so far, and return its residual.
+
+        Raises
+        ------
+        Stopped
+            The progress callback asked to stop.
+        """
+        residual = self.scaled.residual(u, t)
+        residual = residual if np.isfinite(residual) else np.inf
+        self.history.append(residual)
+        self.work.append(self._spent)
+        if self.best is None or residual < self.best[0]:
+            self.best = (residual, u.copy(), t.copy())
+        if self.progress and self.progress(Progress(self.method, len(self.history), residual, message)):
+            raise Stopped
+        return residual
+
+    def stalled(self, window: int, factor: float = 0.5) -> bool:
+        """Whether the best residual of the last ``window`` iterations is not below ``factor`` times that before."""
+        if len(self.history) <= 2 * window:
+            return False
+        return min(self.history[-window:]) > factor * min(self.history[:-window])
+
+
+def answer(problem: ContactProblem, record: Record, *, cancelled: bool = False) -> Solution:
+    """Judge the best state of a record; what is not certified is reported with the accuracy it reached."""
+    scaled = record.scaled
+    _, u, t = record.best if record.best is not None else (np.inf, scaled.u, scaled.t)
+    restored = scaled.restore(u, t)
+    solution = _judge(problem, record, restored, cancelled=cancelled, accuracy=None)
+    if not solution.solved and record.best is not None:
+        # rigid bodies that do not move at all: zero is the exact displacement, rounding noise is not
+        still = _judge(problem, record, (np.zeros_like(u), *restored[1:]), cancelled=cancelled, accuracy=None)
+        solution = still if still.solved else solution
+    if cancelled or solution.solved:
+        return solution
+    return _judge(problem, record, restored, cancelled=False, accuracy=solution.certificate.as_dict())
+
+
+def _judge(
+    problem: ContactProblem,
+    record: Record,
+    restored: tuple[Array, Array, Array],
+    *,
+    cancelled: bool,
+    accuracy: dict[str, float] | None,
+) -> Solution:
+    trace = list(record.trace)
+    info: dict[str, Any] = {**record.info, "history": list(record.history), "work": list(record.work)}
+    if accuracy is not None:
+        worst = accuracy["worst"]
+        entry = max((k for k in accuracy if k != "worst"), key=lambda k: accuracy[k])
+        info["accuracy"] = worst
+        trace.append(
+            f"{record.method} stopped after {len(record.history)} iterations at an accuracy of {worst:.1e} "
+            f"(worst entry: {entry.replace('_', ' ')}); {CERTIFIED:.0e} is asked of an answer."
+        )
+    solution = judge(
+        problem,
+        *restored,
+        method=record.method,
+        failure=Status.CANCELLED if cancelled else Status.GAVE_UP,
+        iterations=len(record.history),
+        factorisations=record.factorisations,
+        trace=tuple(trace),
+        info=info,
+    )
+    if solution.solved:
+        info["accuracy"] = solution.certificate.worst
+    return solution

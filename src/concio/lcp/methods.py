@@ -1,0 +1,34 @@
+"""The methods by name. A method is a module with a function ``solve(problem, *, progress=None, **options)``."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from concio.errors import MethodError
+from concio.lcp.solution import Solver
+
+METHODS: dict[str, str] = {
+    "auto": "concio.lcp.auto",
+    "interior-point": "concio.lcp.interior_point",
+    "lemke": "concio.lcp.lemke",
+    "penalty": "concio.lcp.penalty",
+    "alart-curnier": "concio.lcp.alart_curnier",
+    "simo-laursen": "concio.lcp.simo_laursen",
+    "de-saxce": "concio.lcp.de_saxce",
+    "panagiotopoulos": "concio.lcp.panagiotopoulos",
+}
+"""Name of each method and the module that holds its ``solve``."""
+
+
+def find(name: str) -> Solver:
+    """Return the solver called ``name``.
+
+    Raises
+    ------
+    MethodError
+        There is no method of that name.
+    """
+    if name not in METHODS:
+        raise MethodError(f"unknown method '{name}'", hint="one of: " + ", ".join(METHODS))  # noqa: EM102
+    solver: Solver = import_module(METHODS[name]).solve
+    return solver

@@ -1,0 +1,147 @@
+r"""Alternating normal and Tresca problems (Panagiotopoulos): Coulomb friction as a fixed point on the friction bound.
+
+*Tresca friction* has a sliding strength that does not depend on the normal force; with it the contact problem is a
+convex quadratic program. Two alternations lead from it to Coulomb friction:
+
+* ``form="alternating"``, the classical one: normal forces with friction forces held (a unilateral problem), then
+  friction forces with normal forces held (a problem of bounded friction), and again. Holding friction forces leaves a
+  floating body nothing but its normals to rest on: a block on a flat base would need friction forces that balance to
+  the last digit. It applies where K is positive definite, and converges where the bodies are held well.
+* ``form="tresca"``, the default: both forces free, the sliding strength ``c + mu t_n`` held, then updated. It keeps
+  the rigid motions and applies to floating bodies. A Tresca problem in between may have no equilibrium although the
+  Coulomb problem has one; the first strength is therefore taken from associated friction, whose forces are in
+  equilibrium, and a proximal term ``prox |u - u_before|^2 / 2`` bounds the steps; it vanishes at the fixed point.
+
+Both contract for small friction (the map has a Lipschitz constant proportional to mu and to the coupling of normal and
+tangential displacements) and oscillate beyond; the update is then relaxed, halving when the change grows. Each convex
+problem is solved by the method of multipliers with Newton steps and a line search on its energy.
+
+Dilatancy couples the normal problem to the slip: the opening ``tan(psi) |y_t|`` is held like the sliding strength.
+
+References
+----------
+P. D. Panagiotopoulos, A nonlinear programming approach to the unilateral contact- and friction-boundary value problem
+in the theory of elasticity, *Ingenieur-Archiv* 44 (1975) 421-432.
+
+Parameters of :func:`solve`
+---------------------------
+form : {"tresca", "alternating"}, default "tresca"
+augmentation : float, default 10
+    rho of the convex problems, in multiples of the typical stiffness.
+prox : float, default 1e-3
+    Proximal weight of the Tresca form, in multiples of the typical stiffness.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from concio.contact.problem import Array, ContactProblem
+from concio.errors import MethodError
+from concio.lcp.augmented import Augmented, multipliers
+from concio.lcp.de_saxce import change_stalls, isotropic
+from concio.lcp.dimensionless import Dimensionless, dimensionless
+from concio.lcp.iteration import GOAL, Record, Stopped, answer
+from concio.lcp.solution import ProgressCallback, Solution
+
+
+def solve(
+    problem: ContactProblem,
+    *,
+    progress: ProgressCallback | None = None,
+    form: str = "tresca",
+    augmentation: float = 10.0,
+    prox: float = 1e-3,
+    limit: int = 150,
+) -> Solution:
+    """Solve by alternating convex problems.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    progress : callable, optional
+    form : {"tresca", "alternating"}
+        Which alternation.
+    augmentation : float
+        rho of the convex problems in multiples of the typical stiffness, positive.
+    prox : float
+        Proximal weight of the Tresca form in multiples of the typical stiffness; ignored where K is regular.
+    limit : int
+        Alternations.
+
+    Raises
+    ------
+    MethodError
+        An option is not usable, or ``form="alternating"`` meets floating bodies.
+    """
+    if form not in ("tresca", "alternating"):
+        raise MethodError(f"unknown form '{form}'", hint="one of: tresca, alternating")  # noqa: EM102
+    if not augmentation > 0:
+        raise MethodError(f"augmentation {augmentation} is not positive", hint="try 10")  # noqa: EM102
+    if form == "alternating" and problem.rigid_motions:
+        raise MethodError(
+            f"alternating normal and friction problems need K positive definite, {problem.rigid_motions} rigid motions "  # noqa: EM102
+            "are free",
+            hint="form='tresca' keeps them, so do the methods simo-laursen and interior-point",
+        )
+    s = dimensionless(problem)
+    record = Record("panagiotopoulos", s, progress)
+    cycle = _tresca if form == "tresca" else _alternating
+    prox = prox if problem.rigid_motions else 0.0
+    rho = np.full_like(s.t, augmentation)
+    u, relax, before, outer = s.u, 1.0, np.inf, 0
+    slip = np.zeros(s.pairs)
+    changes: list[float] = []
+    try:
+        associated = Augmented(s, s.cone, isotropic(s.compliance, augmentation), s.t, s.cone.friction)
+        u, t, _ = multipliers(associated, u, record, goal=1e-3)
+        held = t
+        for outer in range(1, limit + 1):
+            u, t = cycle(s, record, u, t, held, s.dilatancy * slip, rho, prox)
+            if record.note(u, t, f"alternation {outer}") <= GOAL:
+                break
+            change = float(np.abs(t - held).max(initial=0.0))
+            if change > 0.95 * before:
+                relax = max(0.5 * relax, 1.0 / 16.0)
+            before = change
+            held = held + relax * (t - held)
+            slip = np.linalg.norm(s.opening(u)[:, 1:] + s.compliance[:, 1:] * t[:, 1:], axis=1)
+            if change_stalls(changes, change):
+                record.trace.append(f"the fixed point stopped contracting after {outer} problems.")
+                break
+    except Stopped:
+        return answer(problem, record, cancelled=True)
+    record.info.update(alternations=outer, relaxation=relax, form=form)
+    return answer(problem, record)
+
+
+def _tresca(
+    s: Dimensionless, record: Record, u: Array, t: Array, held: Array, opening: Array, rho: Array, prox: float
+) -> tuple[Array, Array]:
+    """One Tresca problem with the sliding strength of the normal forces held."""
+    cone = s.cone.tresca(s.cone.radius(held[:, 0]))
+    law = Augmented(s, cone, rho, t, np.zeros(s.pairs), shift=-opening, anchor=u, prox=prox)
+    u, t, _ = multipliers(law, u, record, goal=0.1 * GOAL)
+    return u, t
+
+
+def _alternating(
+    s: Dimensionless, record: Record, u: Array, t: Array, held: Array, opening: Array, rho: Array, prox: float
+) -> tuple[Array, Array]:
+    """One normal problem with friction held, one friction problem with the normal forces found held (prox unused)."""
+    zero = np.zeros(s.pairs)
+    normal, tangential = t.copy(), held.copy()
+    normal[:, 1:], tangential[:, 0] = 0.0, 0.0
+    frictionless = s.cone.tresca(zero)
+    law = Augmented(s, frictionless, rho, normal, zero, shift=-opening, fixed=tangential)
+    u, t, _ = multipliers(law, u, record, goal=0.1 * GOAL)
+    pressed = t.copy()
+    pressed[:, 1:] = 0.0
+    bound = replace(s.cone.tresca(s.cone.radius(t[:, 0])), lower=zero, upper=zero)
+    start = held.copy()
+    start[:, 0] = 0.0
+    law = Augmented(s, bound, rho, start, zero, fixed=pressed)
+    u, t, _ = multipliers(law, u, record, goal=0.1 * GOAL)
+    return u, t
