@@ -28,7 +28,7 @@ import numpy as np
 from concio.errors import InputError
 from concio.model.facing import Edges, FacingPairs, facing_pairs
 from concio.model.model import Array, Body
-from concio.model.near import NearMiss, Overlap, find_overlaps, find_point_touches, size_of_bodies
+from concio.model.near import MissKind, NearMiss, Overlap, find_overlaps, find_point_touches, size_of_bodies
 from concio.model.sight import visible_parts
 
 FACING_ANGLE = np.deg2rad(5.0)
@@ -234,7 +234,7 @@ def _near_misses(
         hidden[far] = ~np.isin(far, far[np.flatnonzero(np.isin(_key(pairs.edges[far]), _key(seen.edges)))])
     result = []
     for k in chosen[~hidden[chosen]]:
-        kind = "partial" if partial[k] else "sliver" if sliver[k] else "angle" if turned[k] else "gap"
+        kind: MissKind = "partial" if partial[k] else "sliver" if sliver[k] else "angle" if turned[k] else "gap"
         a, b = (bodies[q] for q in pairs.bodies[k])
         at = 0.5 * (pairs.a_lo[k] + pairs.a_hi[k])
         result.append(

@@ -67,12 +67,12 @@ class FacingPairs:
     @property
     def g_min(self) -> Array:
         """Smaller of the gaps at the two ends (p,)."""
-        return np.minimum(self.g_lo, self.g_hi)
+        return np.asarray(np.minimum(self.g_lo, self.g_hi))
 
     @property
     def g_max(self) -> Array:
         """Larger of the gaps at the two ends (p,)."""
-        return np.maximum(self.g_lo, self.g_hi)
+        return np.asarray(np.maximum(self.g_lo, self.g_hi))
 
     def chosen(self, which: Array) -> FacingPairs:
         """Return the pairs picked by a mask or by indices."""

@@ -11,7 +11,7 @@ import shapely
 
 from concio.model.model import Array, Body
 
-Kind = Literal["gap", "angle", "sliver", "partial", "corner"]
+MissKind = Literal["gap", "angle", "sliver", "partial", "corner"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +40,7 @@ class NearMiss:
         What was found, where, and what to do.
     """
 
-    kind: Kind
+    kind: MissKind
     a: str
     b: str
     bodies: tuple[int, int]
@@ -52,7 +52,7 @@ class NearMiss:
 
     @classmethod
     def of(
-        cls, kind: Kind, a: Body, b: Body, bodies: tuple[int, int], at: Array, *,
+        cls, kind: MissKind, a: Body, b: Body, bodies: tuple[int, int], at: Array, *,
         gap: float, length: float, joined: float, angle: float, within: float,
     ) -> NearMiss:  # fmt: skip
         """Return a near miss with its sentence."""
@@ -115,7 +115,7 @@ class Overlap:
 
 def size_of_bodies(bodies: Sequence[Body]) -> Array:
     """Return the root of the area of each body (n,) [m]."""
-    return np.sqrt(np.abs(shapely.area(polygons(bodies))))
+    return np.asarray(np.sqrt(np.abs(shapely.area(polygons(bodies)))))
 
 
 def polygons(bodies: Sequence[Body]) -> Array:
