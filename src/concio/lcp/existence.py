@@ -41,6 +41,10 @@ CLEARLY = 1e-9
 """A power counts as positive when it exceeds this share of the sum of |f_i v_i|."""
 
 
+NEARLY = 1e-6
+"""Residual below which the forces of the linear programme are balanced once more, to tell rounding from collapse."""
+
+
 @dataclass(frozen=True, eq=False)
 class SufficientCondition:
     """The paper's sufficient condition for the existence of an equilibrium.
@@ -161,9 +165,14 @@ def statically_admissible(problem: ContactProblem, *, around: bool = False) -> S
     result = optimise(np.r_[np.zeros(n), np.ones(2 * r)], equations, bounds, caps)
     if result.x is None:
         return StaticState(False, np.zeros(m), np.zeros((m, s)), np.inf, np.zeros(problem.unknowns))
-    t_n, t_t = programme.forces(result.x * force)
-    left = problem.R.T @ (problem.f + problem.C_n.T @ t_n + problem.C_t.T @ t_t.ravel())
-    residual = float(np.abs(left).max() / force)
+    x = result.x * force
+    for attempt in range(2):
+        t_n, t_t = programme.forces(x)
+        left = problem.R.T @ (problem.f + problem.C_n.T @ t_n + problem.C_t.T @ t_t.ravel())
+        residual = float(np.abs(left).max() / force)
+        if attempt or not 1e-12 < residual < NEARLY:
+            break
+        x = programme.balance(x, problem.f)
     velocity = problem.R @ (-result.eqlin.marginals / programme.scale)
     return StaticState(residual <= VIOLATION, t_n, t_t, residual, velocity)
 

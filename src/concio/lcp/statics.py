@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 from scipy.optimize import linprog
+from scipy.sparse.linalg import splu
 
 from concio.contact.problem import Array, ContactProblem
 
@@ -132,6 +133,30 @@ class StaticProgramme:
         t = matrix @ x[: matrix.shape[1]] + offset
         m = self.problem.pairs
         return t[:m], t[m:].reshape(m, -1)
+
+    def balance(self, x: Array, load: Array, rounds: int = 3) -> Array:
+        """Remove what rounding left unbalanced: least change of x (n,), each measured by its room within the bounds.
+
+        The affine-scaling projection: with D the distance to the nearer bound, A D z = -(A x + e0 + R' load / scale),
+        x + D z, cut at the bounds.
+        """
+        A, e0 = self.equilibrium
+        target = self.project(load) + e0
+        x = np.clip(x[: A.shape[1]], self.bounds[:, 0], self.bounds[:, 1])
+        residual = A @ x + target
+        for _ in range(rounds):
+            room = np.minimum(np.minimum(x - self.bounds[:, 0], self.bounds[:, 1] - x), np.abs(x).max(initial=1.0))
+            scaled = sp.csc_array(A @ sp.diags_array(room / (room.max(initial=0.0) or 1.0)))
+            weak = -1e-12 * sp.eye_array(A.shape[0])
+            matrix = sp.block_array([[sp.eye_array(x.size), scaled.T], [scaled, weak]])
+            z = splu(sp.csc_matrix(matrix)).solve(np.concatenate([np.zeros(x.size), -residual]))[: x.size]
+            step = room / (room.max(initial=0.0) or 1.0) * z
+            trial = np.clip(x + step, self.bounds[:, 0], self.bounds[:, 1])
+            left = A @ trial + target
+            if not np.abs(left).max() < np.abs(residual).max():
+                break
+            x, residual = trial, left
+        return x
 
 
 def optimise(

@@ -1,0 +1,90 @@
+"""Limit multipliers that can be found by hand, and the bounds that check them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from concio.lcp.limit import associated_limit, kinematic_bound, smallest_friction
+from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, wall
+
+
+@pytest.mark.parametrize(
+    ("mu", "changes", "wanted"),
+    [
+        (0.3, {}, 0.3),  # slides
+        (0.9, {}, 0.4),  # topples about the toe: (b/2) / (h/2)
+        (0.3, {"cohesion": 0.02}, 0.34),  # slides with the cohesion of two pairs
+        (0.9, {"cohesion": 0.1, "tension": 0.1}, 0.48),  # toe moment: 0.2 W + 0.4 T over 0.5
+        (0.9, {"cap": 0.8}, 0.24),  # crushes: arm of the reactions (2 x 0.8 - 1) 0.2 ... see below
+    ],
+)
+def test_one_block(mu, changes, wanted):
+    """Block 0.4 x 1.0 of weight 1 pushed at mid-height; with a cap N the toe carries N, the heel 1 - N."""
+    a = block_on_incline(0.4, 1.0, 0.0)
+    found = associated_limit(a.problem(mu, a.load(0, -1), **changes), a.load(1, 0))
+    assert found.multiplier == pytest.approx(wanted, abs=1e-12)
+    assert found.checked
+    assert found.upper == pytest.approx(wanted, abs=1e-12)
+    assert found.mechanism is not None
+    assert abs(found.mechanism.power) <= 1e-12
+
+
+def test_unbounded_and_impossible():
+    a = block_on_incline(0.4, 1.0, 0.0)
+    p = a.problem(0.5, a.load(0, -1))
+    press = associated_limit(p, a.load(0, -1))
+    assert press.multiplier == np.inf
+    assert press.checked
+    lifted = associated_limit(p.with_loads(a.load(0, 1.0)), a.load(1, 0))
+    assert np.isnan(lifted.multiplier)
+    assert not lifted.checked
+
+
+def test_negative_multiplier_when_the_dead_load_fails():
+    """At 20 degrees and mu 0.3 the block needs a push up the plane; the least push counts as a negative multiplier."""
+    angle = np.deg2rad(20)
+    a = block_on_incline(2.0, 0.1, angle)
+    down = np.array([-np.cos(angle), -np.sin(angle), 0.0])
+    found = associated_limit(a.problem(0.3, a.load(0, -1)), down)
+    assert found.multiplier == pytest.approx(0.3 * np.cos(angle) - np.sin(angle), abs=1e-12)
+    assert found.multiplier < 0
+
+
+def test_the_bounds_enclose_the_truth_even_for_poor_answers():
+    a = wall(FERRIS_TIN_LOI["wall 1"])
+    p, live = a.problem(MU, a.load(0, -1)), a.load(1, 0)
+    found = associated_limit(p, live)
+    other = a.problem(MU, a.load(0, -1)).with_loads(a.load(0, -2))
+    upper, _ = kinematic_bound(other, live, 2 * found.multiplier, found.mechanism.velocity)
+    assert upper == pytest.approx(2 * found.multiplier, rel=1e-9)
+    # any other admissible mechanism gives a larger multiplier: the first course sliding off as a whole
+    slide = np.tile([1.0, MU, 0.0], a.blocks)
+    upper, mechanism = kinematic_bound(p, live, found.multiplier, slide)
+    assert mechanism.violation <= 1e-15
+    assert upper == pytest.approx(MU)
+    assert upper > found.multiplier
+
+
+@pytest.mark.parametrize("angle", [5.0, 20.0, 35.0])
+def test_smallest_friction_of_an_incline_is_its_slope(angle):
+    slope = np.tan(np.deg2rad(angle))
+    a = block_on_incline(2.0, 0.5, np.deg2rad(angle))
+    found = smallest_friction(a.problem(1.0, a.load(0, -1)))
+    assert found.factor == pytest.approx(slope, abs=2e-9)
+    assert found.below < slope
+    assert found.programmes < 40
+
+
+def test_smallest_friction_at_its_ends():
+    a = block_on_incline(2.0, 0.5, 0.0)
+    assert smallest_friction(a.problem(0.5, a.load(0, -1))).factor == 0.0
+    assert np.isnan(smallest_friction(a.problem(0.5, a.load(0.6, -1))).factor)
+
+
+def test_smallest_friction_agrees_with_the_limit_multiplier():
+    """At the limit load of wall 1 the friction that limit was computed with is the smallest that holds."""
+    a = wall(FERRIS_TIN_LOI["wall 1"])
+    limit = associated_limit(a.problem(0.5, a.load(0, -1)), a.load(1, 0)).multiplier
+    found = smallest_friction(a.problem(MU, a.load(limit, -1)))
+    assert found.factor * MU == pytest.approx(0.5, abs=1e-7)
