@@ -30,7 +30,6 @@ line_search : bool, default True
 
 from __future__ import annotations
 
-
 import numpy as np
 import scipy.sparse as sp
 
@@ -75,12 +74,13 @@ def solve(
         raise MethodError(f"augmentation {augmentation} is not positive", hint="try 1")  # noqa: EM102
     s = dimensionless(problem)
     record = Record("alart-curnier", s, progress)
+    record.info["unknowns"] = s.f.size + s.t.size
     u, t = s.u, s.t
     try:
         record.note(u, t, "start")
         newton(s, record, u, t, augmentation=augmentation, limit=limit, line_search=line_search)
-    except Stopped:
-        return answer(problem, record, cancelled=True)
+    except Stopped as stop:
+        return answer(problem, record, cancelled=stop.cancelled)
     record.info.update(augmentation=augmentation, line_search=line_search)
     return answer(problem, record)
 
@@ -146,9 +146,7 @@ def _newton_step(
     return du, dt
 
 
-def _step_length(
-    s: Dimensionless, u: Array, t: Array, du: Array, dt: Array, rho: float, recent: list[float]
-) -> float:
+def _step_length(s: Dimensionless, u: Array, t: Array, du: Array, dt: Array, rho: float, recent: list[float]) -> float:
     """Return the step length of a non-monotone Armijo search on the residual's norm."""
 
     def norm(length: float) -> float:

@@ -8,7 +8,7 @@ Coulomb's law is a normality rule for a shifted gap:
 is associated friction: a convex minimum problem (augmented Lagrangian with Euclidean projections, Newton steps with a
 line search on its energy, no parameter to tune). Its slip gives the next shift. Associated joints
 (``tan psi = mu``) need one problem; Coulomb joints a fixed point, which contracts where slip is moderate and may
-oscillate near collapse: the shift is then under-relaxed, halving when the change grows.
+oscillate near collapse: the shift is then under-relaxed, halved when the change grows and raised again when it falls.
 
 Floating bodies are no obstacle; every joint law is supported (the cap truncates ``S``), in two and three dimensions.
 
@@ -67,6 +67,7 @@ def solve(
         raise MethodError(f"augmentation {augmentation} is not positive", hint="try 10")  # noqa: EM102
     s = dimensionless(problem)
     record = Record("de-saxce", s, progress)
+    record.info["unknowns"] = s.f.size
     law = Augmented(s, s.cone, isotropic(s.compliance, augmentation), s.t, s.cone.friction)
     lag = np.maximum(s.cone.friction - s.dilatancy, 0.0)
     u, shift, relax, before, outer = s.u, np.zeros(s.pairs), 1.0, np.inf, 0
@@ -81,13 +82,15 @@ def solve(
             change = float(np.abs(lag * slip - shift).max(initial=0.0))
             if change > 0.95 * before:
                 relax = max(0.5 * relax, 1.0 / 16.0)
+            elif change < 0.7 * before:
+                relax = min(1.5 * relax, 1.0)
             before = change
             shift = shift + relax * (lag * slip - shift)
             if change_stalls(changes, change):
                 record.trace.append(f"the fixed point stopped contracting after {outer} problems.")
                 break
-    except Stopped:
-        return answer(problem, record, cancelled=True)
+    except Stopped as stop:
+        return answer(problem, record, cancelled=stop.cancelled)
     record.info.update(convex_problems=outer, relaxation=relax)
     return answer(problem, record)
 

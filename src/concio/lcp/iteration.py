@@ -24,7 +24,17 @@ GOAL = 1e-11
 
 
 class Stopped(Exception):
-    """The progress callback asked to stop."""
+    """The run ends here: the progress callback asked for it, or a matrix was singular.
+
+    Parameters
+    ----------
+    cancelled : bool
+        Whether it was the callback.
+    """
+
+    def __init__(self, *, cancelled: bool) -> None:
+        self.cancelled = cancelled
+        super().__init__()
 
 
 @dataclass
@@ -51,8 +61,18 @@ class Record:
     _solve_share: float = 0.0
 
     def factorise(self, matrix: sp.csc_array) -> SuperLU:
-        """Factorise and count it."""
-        lu = factorise(matrix)
+        """Factorise and count it.
+
+        Raises
+        ------
+        Stopped
+            The matrix is singular, or not finite.
+        """
+        try:
+            lu = factorise(matrix)
+        except (RuntimeError, ValueError) as error:  # SuperLU raises RuntimeError for an exactly singular matrix
+            self.trace.append(f"a matrix could not be factorised ({error}).")
+            raise Stopped(cancelled=False) from error
         self.factorisations += 1
         self._spent += 1.0
         if not self._solve_share:
@@ -79,7 +99,7 @@ class Record:
         if self.best is None or residual < self.best[0]:
             self.best = (residual, u.copy(), t.copy())
         if self.progress and self.progress(Progress(self.method, len(self.history), residual, message)):
-            raise Stopped
+            raise Stopped(cancelled=True)
         return residual
 
     def stalled(self, window: int, factor: float = 0.5) -> bool:

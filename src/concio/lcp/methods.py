@@ -16,6 +16,10 @@ METHODS: dict[str, str] = {
     "simo-laursen": "concio.lcp.simo_laursen",
     "de-saxce": "concio.lcp.de_saxce",
     "panagiotopoulos": "concio.lcp.panagiotopoulos",
+    "lagrange": "concio.lcp.lagrange",
+    "uzawa": "concio.lcp.uzawa",
+    "gauss-seidel": "concio.lcp.gauss_seidel",
+    "admm": "concio.lcp.admm",
 }
 """Name of each method and the module that holds its ``solve``."""
 

@@ -13,7 +13,8 @@ convex quadratic program. Two alternations lead from it to Coulomb friction:
   equilibrium, and a proximal term ``prox |u - u_before|^2 / 2`` bounds the steps; it vanishes at the fixed point.
 
 Both contract for small friction (the map has a Lipschitz constant proportional to mu and to the coupling of normal and
-tangential displacements) and oscillate beyond; the update is then relaxed, halving when the change grows. Each convex
+tangential displacements) and oscillate beyond; the update is then relaxed, more when the change
+grows and less when it falls. Each convex
 problem is solved by the method of multipliers with Newton steps and a line search on its energy.
 
 Dilatancy couples the normal problem to the slip: the opening ``tan(psi) |y_t|`` is held like the sliding strength.
@@ -88,6 +89,7 @@ def solve(
         )
     s = dimensionless(problem)
     record = Record("panagiotopoulos", s, progress)
+    record.info["unknowns"] = s.f.size
     cycle = _tresca if form == "tresca" else _alternating
     prox = prox if problem.rigid_motions else 0.0
     rho = np.full_like(s.t, augmentation)
@@ -105,14 +107,16 @@ def solve(
             change = float(np.abs(t - held).max(initial=0.0))
             if change > 0.95 * before:
                 relax = max(0.5 * relax, 1.0 / 16.0)
+            elif change < 0.7 * before:
+                relax = min(1.5 * relax, 1.0)
             before = change
             held = held + relax * (t - held)
             slip = np.linalg.norm(s.opening(u)[:, 1:] + s.compliance[:, 1:] * t[:, 1:], axis=1)
             if change_stalls(changes, change):
                 record.trace.append(f"the fixed point stopped contracting after {outer} problems.")
                 break
-    except Stopped:
-        return answer(problem, record, cancelled=True)
+    except Stopped as stop:
+        return answer(problem, record, cancelled=stop.cancelled)
     record.info.update(alternations=outer, relaxation=relax, form=form)
     return answer(problem, record)
 

@@ -67,6 +67,7 @@ def solve(
         raise MethodError(f"penalty stiffness {stiffness} is not positive", hint="try 1e4")  # noqa: EM102
     s = dimensionless(problem)
     record = Record("penalty", s, progress)
+    record.info["unknowns"] = s.f.size + s.t.size
     u, t = s.u, s.t
     hard = s.compliance == 0.0
     steps = np.geomspace(1.0, stiffness, 1 + max(1, round(np.log10(max(stiffness, 1.0))))) if hard.any() else [1.0]
@@ -76,8 +77,8 @@ def solve(
             springs = replace(s, compliance=np.where(hard, 1.0 / r, s.compliance))
             u, t, converged = newton(springs, record, u, t, goal=GOAL, limit=limit)
             record.best = (s.residual(u, t), u, t)
-    except Stopped:
-        return answer(problem, record, cancelled=True)
+    except Stopped as stop:
+        return answer(problem, record, cancelled=stop.cancelled)
     left = np.where(hard, np.abs(t) / r, 0.0)[:, 0]
     record.info.update(stiffness=stiffness, penetration=float(left.max(initial=0.0)) * s.length)
     record.trace.append(

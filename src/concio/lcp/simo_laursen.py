@@ -70,6 +70,7 @@ def solve(
         raise MethodError(f"augmentation {augmentation} is not positive", hint="try 10")  # noqa: EM102
     s = dimensionless(problem)
     record = Record("simo-laursen", s, progress)
+    record.info["unknowns"] = s.f.size + s.t.size
     u, t, rho, before = s.u, s.t, augmentation, np.inf
     inner = 60 if updates == "nested" else 1
     try:
@@ -83,7 +84,7 @@ def solve(
             if change > 0.25 * before and rho < LARGEST:
                 rho *= 10.0
             before = change
-    except Stopped:
-        return answer(problem, record, cancelled=True)
+    except Stopped as stop:
+        return answer(problem, record, cancelled=stop.cancelled)
     record.info.update(augmentation=rho, updates=updates)
     return answer(problem, record)
