@@ -1,0 +1,165 @@
+"""From a model to its contact problem: detect interfaces, mesh, couple, load, support."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from concio.contact.loads import load_vectors
+from concio.contact.pairs import Pairs, interface_breaks, make_pairs, pair_laws
+from concio.contact.problem import ContactProblem, Laws
+from concio.contact.supports import Supported, apply_supports, moved_obstacles
+from concio.contact.ties import add_ties
+from concio.errors import GeometryError, InputError
+from concio.fem.discretisation import Discretisation, discretise
+from concio.model.detect import Detection, detect_interfaces
+from concio.model.model import Model
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """A model turned into arrays; load factors give :class:`ContactProblem` objects.
+
+    Parameters
+    ----------
+    model : Model
+    detection : Detection
+        Interfaces, and what was noticed while looking for them.
+    disc : Discretisation
+    pairs : Pairs
+    laws : Laws
+    supported : Supported
+    K : (N_all, N_all) CSR array
+        Stiffness of all bodies before supports.
+    loads : dict of (N_all,) arrays
+        Nodal forces of each load group [kN].
+    moved : dict of ((m,), (m,)) arrays
+        Change of gap and of tangential position by moved obstacles, for each group [m].
+    """
+
+    model: Model
+    detection: Detection
+    disc: Discretisation
+    pairs: Pairs
+    laws: Laws
+    supported: Supported
+    K: sp.csr_array
+    loads: Mapping[str, Array]
+    moved: Mapping[str, tuple[Array, Array]]
+
+    @property
+    def groups(self) -> tuple[str, ...]:
+        """Names of the groups that load factors scale."""
+        return tuple(dict.fromkeys([*self.loads, *self.moved, *self.supported.imposed]))
+
+    def imposed(self, factors: Mapping[str, float] | None = None) -> Array:
+        """Return the imposed part u0 (N_all,) of the displacements under load factors [m]."""
+        u0 = np.zeros(self.disc.unknowns)
+        for group, vector in self.supported.imposed.items():
+            u0 += _factor(factors, group) * vector
+        return u0
+
+    def load(self, factors: Mapping[str, float] | None = None) -> Array:
+        """Return the nodal forces (N_all,) under load factors [kN]."""
+        f = np.zeros(self.disc.unknowns)
+        for group, vector in self.loads.items():
+            f += _factor(factors, group) * vector
+        return f
+
+    def problem(self, factors: Mapping[str, float] | None = None) -> ContactProblem:
+        """Return the contact problem under load factors; a group that is not named has factor 1.
+
+        Raises
+        ------
+        InputError
+            A factor names a group that does not exist.
+        """
+        for group in factors or {}:
+            if group not in self.groups:
+                msg = f"there is no load group '{group}'"
+                raise InputError(msg, hint="groups: " + ", ".join(self.groups))
+        T = self.supported.T
+        u0 = self.imposed(factors)
+        C_n, C_t = self.pairs.C_n, self.pairs.C_t
+        gap = self.pairs.gap + C_n @ u0
+        origin = -(C_t @ u0)
+        for group, (normal, tangential) in self.moved.items():
+            gap = gap + _factor(factors, group) * normal
+            origin = origin - _factor(factors, group) * tangential
+        f = T.T @ (self.load(factors) - self.K @ u0)
+        return ContactProblem(
+            K=sp.csr_array(T.T @ self.K @ T),
+            f=f,
+            C_n=sp.csr_array(C_n @ T),
+            C_t=sp.csr_array(C_t @ T),
+            gap=gap,
+            laws=self.laws,
+            R=self.supported.R,
+            bodies=self.supported.bodies,
+            slip_origin=origin[:, None],
+        )
+
+    def displacement(self, q: Array, factors: Mapping[str, float] | None = None) -> Array:
+        """Return the displacements (N_all,) of all bodies from the free unknowns q (N,) [m]."""
+        u: Array = self.supported.T @ q + self.imposed(factors)
+        return u
+
+
+def _factor(factors: Mapping[str, float] | None, group: str) -> float:
+    return 1.0 if factors is None else float(factors.get(group, 1.0))
+
+
+def default_tolerance(model: Model) -> float:
+    """Return the distance within which edges touch: the model's, or 1e-6 of its size [m]."""
+    if model.gap_tolerance is not None:
+        return model.gap_tolerance
+    corners = np.vstack([b.outline for b in model.bodies])
+    return 1e-6 * float(np.ptp(corners, axis=0).max())
+
+
+def detect(model: Model) -> Detection:
+    """Return the interfaces of a model with the report of what was dropped or overlaps."""
+    return detect_interfaces(model.bodies, tolerance=default_tolerance(model), reach=model.gap_reach)
+
+
+def assemble(model: Model) -> Assembly:
+    """Return the arrays of a model.
+
+    Raises
+    ------
+    GeometryError
+        Bodies overlap.
+    InputError
+        Nothing holds the model, nothing touches, a load or support is not usable.
+    """
+    if not any(b.kind == "fixed" for b in model.bodies) and not model.supports:
+        msg = "nothing holds the structure: there is no fixed body and no support"
+        raise InputError(msg, hint="add a fixed body such as the ground, or a [[supports]] entry")
+    if not model.free_bodies:
+        msg = "every body is fixed: there is nothing to compute"
+        raise InputError(msg, hint="make the blocks elastic or rigid")
+    detection = detect(model)
+    if detection.overlaps:
+        first = detection.overlaps[0]
+        more = f" and {len(detection.overlaps) - 1} more" if len(detection.overlaps) > 1 else ""
+        raise GeometryError(f"{first}{more}", hint="move the blocks apart, or raise gap_tolerance")  # noqa: EM102
+    disc = discretise(model, interface_breaks(model, detection.interfaces))
+    pairs = make_pairs(disc, detection.interfaces)
+    laws = pair_laws(model, pairs)
+    pairs, laws = add_ties(disc, pairs, laws)
+    return Assembly(
+        model=model,
+        detection=detection,
+        disc=disc,
+        pairs=pairs,
+        laws=laws,
+        supported=apply_supports(disc),
+        K=disc.stiffness(),
+        loads=load_vectors(disc),
+        moved=moved_obstacles(disc, pairs),
+    )

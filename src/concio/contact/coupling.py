@@ -1,0 +1,179 @@
+r"""Coupling of two sides along a common segment: node pairs where meshes match, dual mortar where they do not.
+
+Contact is stated at the nodes j of one side, the *slave*. With dual functions :math:`\psi_j`,
+:math:`\int \psi_j N_k = \delta_{jk} w_j`, the relative displacement of pair j is
+
+.. math:: \frac{1}{w_j} \int \psi_j\,(u_b - u_a)\,ds , \qquad w_j = \int N_j\, ds ,
+
+which is the difference of two nodal values where the meshes match, and for any meshes transmits a uniform pressure
+exactly because the dual functions sum to one (Wohlmuth 2000; boundary elements cut by the end of the segment are
+treated after Cichosz and Bischoff 2011). Where a cut goes through a quadratic element its two halves count as linear.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.fem.edge_integral import edge_weights, gauss, lagrange, pieces
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True)
+class Line:
+    """Nodes of one side along the segment.
+
+    Parameters
+    ----------
+    nodes : (k,) integer array
+        Node numbers.
+    at : (k,) array
+        Increasing positions along the segment [m]; the segment is [0, length].
+    order : {1, 2}
+    """
+
+    nodes: Array
+    at: Array
+    order: int
+
+
+@dataclass(frozen=True)
+class Side:
+    """Weights with which one side's nodes enter the pairs: entries (pair, node, weight)."""
+
+    pair: Array
+    node: Array
+    weight: Array
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """Pairs along one segment.
+
+    Parameters
+    ----------
+    at : (p,) array
+        Position of each pair along the segment [m].
+    length : (p,) array
+        Tributary length of each pair [m].
+    a, b : Side or None
+        None where that side is rigid or fixed and moves as the point at ``at``.
+    """
+
+    at: Array
+    length: Array
+    a: Side | None
+    b: Side | None
+
+
+def cut(line: Line, length: float) -> Line:
+    """Return the part of a line whose elements overlap [0, length]."""
+    keep: list[int] = []
+    tolerance = 1e-9 * length
+    for nodes in pieces(line.at, line.order):
+        if line.at[nodes[-1]] > tolerance and line.at[nodes[0]] < length - tolerance:
+            keep.extend(nodes if not keep else nodes[1:])
+    index = np.array(keep, dtype=int)
+    return Line(line.nodes[index], line.at[index], line.order)
+
+
+def match(a: Line, b: Line, length: float) -> bool:
+    """True when both lines have the same nodes, and these begin and end with the segment."""
+    tolerance = 1e-7 * length
+    return bool(
+        len(a.at) == len(b.at)
+        and a.order == b.order
+        and np.abs(a.at - b.at).max() <= tolerance
+        and abs(a.at[0]) <= tolerance
+        and abs(a.at[-1] - length) <= tolerance
+    )
+
+
+def couple(a: Line | None, b: Line | None, length: float, points: int = 2) -> Coupling:
+    """Return the pairs of a segment of the given length.
+
+    Parameters
+    ----------
+    a, b : Line or None
+        Meshed sides; None for a rigid or fixed side.
+    length : float
+        Length of the segment [m].
+    points : int
+        Number of pairs where neither side is meshed: 2 carry any linear pressure; more resolve compliant or
+        crushing joints.
+    """
+    a, b = (None if line is None else cut(line, length) for line in (a, b))
+    if a is None and b is None:
+        return Coupling(np.linspace(0.0, length, points), _rule(points) * length, None, None)
+    if a is not None and b is not None and match(a, b, length):
+        weights = edge_weights(a.at, a.order, 0.0, length)
+        pair = np.arange(len(a.at))
+        return Coupling(a.at, weights, Side(pair, a.nodes, np.ones(len(pair))), Side(pair, b.nodes, np.ones(len(pair))))
+    if a is None or (b is not None and len(b.at) > len(a.at)):
+        assert b is not None
+        at, weights, own, other = _mortar(b, a, length)
+        return Coupling(at, weights, other, own)
+    at, weights, own, other = _mortar(a, b, length)
+    return Coupling(at, weights, own, other)
+
+
+def _rule(points: int) -> Array:
+    """Weights of the pairs between two rigid sides: trapezium for two, composite Simpson for odd numbers."""
+    if points == 2:
+        return np.array([0.5, 0.5])
+    weights = np.ones(points)
+    weights[1:-1:2], weights[2:-1:2] = 4.0, 2.0
+    return weights / (3.0 * (points - 1))
+
+
+def _mortar(slave: Line, master: Line | None, length: float) -> tuple[Array, Array, Side, Side | None]:
+    """Return positions, tributary lengths, and the entries of slave and master."""
+    tolerance = 1e-9 * length
+    is_cut = slave.at[0] < -tolerance or slave.at[-1] > length + tolerance
+    dual_order = 1 if is_cut else slave.order
+    k = len(slave.at)
+    weight, moment = np.zeros(k), np.zeros(k)
+    own = np.zeros((k, k))
+    other = np.zeros((k, 0 if master is None else len(master.at)))
+    marks = slave.at if master is None else np.concatenate([slave.at, master.at])
+    for nodes in pieces(slave.at, dual_order):
+        left, right = max(0.0, slave.at[nodes[0]]), min(length, slave.at[nodes[-1]])
+        if right - left <= tolerance:
+            continue
+        inner = np.unique(np.concatenate([[left, right], marks[(marks > left + tolerance) & (marks < right - tolerance)]]))
+        xs, ws = (np.concatenate(v) for v in zip(*(gauss(p, q) for p, q in zip(inner[:-1], inner[1:], strict=True)), strict=True))
+        shape = lagrange(slave.at[nodes], xs)
+        lumped = shape @ ws
+        psi = lumped[:, None] * np.linalg.solve((shape * ws) @ shape.T, shape)
+        weight[nodes] += lumped
+        moment[nodes] += psi @ (ws * xs)
+        own[nodes] += (psi * ws) @ _interpolation(slave, xs).T
+        if master is not None:
+            other[nodes] += (psi * ws) @ _interpolation(master, xs).T
+    used = weight > 1e-12 * length
+    position = np.clip(moment[used] / weight[used], 0.0, length)
+    sides = [_entries(own[used] / weight[used, None], slave.nodes)]
+    sides.append(_entries(other[used] / weight[used, None], master.nodes) if master is not None else None)  # type: ignore[arg-type]
+    first = sides[0]
+    assert first is not None
+    return position, weight[used], first, sides[1]
+
+
+def _interpolation(line: Line, x: Array) -> Array:
+    """Return the shape functions (k, n) of a line at ``x``; beyond its ends the end elements are continued."""
+    values = np.zeros((len(line.at), len(x)))
+    elements = pieces(line.at, line.order)
+    breaks = np.array([line.at[nodes[0]] for nodes in elements[1:]])
+    which = np.searchsorted(breaks, x, side="right")
+    for e, nodes in enumerate(elements):
+        at = np.flatnonzero(which == e)
+        if len(at):
+            values[np.ix_(nodes, at)] = lagrange(line.at[nodes], x[at])
+    return values
+
+
+def _entries(matrix: Array, nodes: Array) -> Side:
+    pair, column = np.nonzero(np.abs(matrix) > 1e-13)
+    return Side(pair, nodes[column], matrix[pair, column])

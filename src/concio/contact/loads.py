@@ -1,0 +1,131 @@
+"""Consistent nodal forces of the loads of a model, one vector for each load group."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from concio.errors import InputError
+from concio.fem.discretisation import FIXED, RIGID, Discretisation, rigid_rows
+from concio.fem.edge_integral import edge_weights
+from concio.model.model import Load
+
+Array = np.ndarray
+
+
+def load_vectors(disc: Discretisation) -> dict[str, Array]:
+    """Return the nodal forces (N,) of each load group [kN].
+
+    Raises
+    ------
+    InputError
+        A load names a body that does not exist, or loads nothing.
+    """
+    vectors: dict[str, Array] = {}
+    for load in disc.model.loads:
+        f = vectors.setdefault(load.group, np.zeros(disc.unknowns))
+        if not np.isfinite(load.value).all():
+            msg = f"a {load.kind} load has a value that is not finite"
+            raise InputError(msg, where=f"load group '{load.group}'")
+        chosen = _bodies(disc, load)
+        if load.kind in ("weight", "body"):
+            _volume(disc, load, chosen, f)
+        elif load.kind in ("pressure", "traction"):
+            _edges(disc, load, chosen, f)
+        elif load.kind == "point":
+            _point(disc, load, chosen, f)
+        else:
+            msg = f"unknown load kind '{load.kind}'"
+            raise InputError(msg, hint="one of weight, pressure, traction, point, body")
+    return vectors
+
+
+def _bodies(disc: Discretisation, load: Load) -> list[int]:
+    bodies = disc.model.bodies
+    if not load.bodies:
+        return [i for i, b in enumerate(bodies) if b.kind != "fixed"]
+    chosen = []
+    for word in load.bodies:
+        found = [i for i, b in enumerate(bodies) if b.kind != "fixed" and word in (b.name, b.role, b.layer)]
+        if not found:
+            msg = f"a {load.kind} load acts on '{word}', but no free body has that name, role or layer"
+            raise InputError(msg, where=f"load group '{load.group}'", hint="see the names with 'concio check'")
+        chosen.extend(found)
+    return sorted(set(chosen))
+
+
+def _volume(disc: Discretisation, load: Load, chosen: list[int], f: Array) -> None:
+    vector = np.array(load.value, dtype=float)
+    for b in chosen:
+        body = disc.model.bodies[b]
+        density = disc.model.materials[body.material].unit_weight if load.kind == "weight" else 1.0
+        if not density:
+            continue
+        at = disc.offsets[b]
+        if disc.shape_of[b] == RIGID:
+            f[at : at + 2] += density * body.area * body.thickness * vector
+        else:
+            nodal = density * disc.shapes[disc.shape_of[b]].volume_weights
+            f[at : disc.offsets[b + 1]] += np.outer(nodal, vector).ravel()
+
+
+def _edges(disc: Discretisation, load: Load, chosen: list[int], f: Array) -> None:
+    if load.edge is None:
+        msg = f"a {load.kind} load needs an edge"
+        raise InputError(msg, where=f"load group '{load.group}'", hint="give the two ends of the loaded line")
+    p, q = (np.array(end, dtype=float) for end in load.edge)
+    length = float(np.linalg.norm(q - p))
+    if length == 0:
+        msg = f"the edge of a {load.kind} load has no length"
+        raise InputError(msg, where=f"load group '{load.group}'", hint="use a point load")
+    along = (q - p) / length
+    across = np.array([-along[1], along[0]])
+    tolerance = 1e-6 * max(length, float(np.abs(disc.origins).max()))
+    tolerance = max(tolerance, disc.model.gap_tolerance or 0.0)
+    loaded = 0.0
+    for b in chosen:
+        body = disc.model.bodies[b]
+        off = np.abs((body.outline - p) @ across) <= tolerance
+        for e in np.flatnonzero(off & np.roll(off, -1)):
+            a, c = body.outline[e], body.outline[(e + 1) % len(body.outline)]
+            edge = float(np.linalg.norm(c - a))
+            direction = (c - a) / edge
+            ends = sorted((float((p - a) @ direction), float((q - a) @ direction)))
+            start, end = max(ends[0], 0.0), min(ends[1], edge)
+            if end - start <= tolerance:
+                continue
+            loaded += end - start
+            if load.kind == "pressure":
+                vector = load.value[0] * np.array([-direction[1], direction[0]])  # into the body
+            else:
+                vector = np.array(load.value, dtype=float)
+            _line_load(disc, b, int(e), (start, end), vector * body.thickness, f)
+    if loaded == 0.0:
+        msg = f"the {load.kind} load from ({p[0]:g}, {p[1]:g}) to ({q[0]:g}, {q[1]:g}) lies on no edge of a body"
+        raise InputError(msg, where=f"load group '{load.group}'", hint="give coordinates on the outline of a block")
+
+
+def _line_load(
+    disc: Discretisation, b: int, edge: int, part: tuple[float, float], vector: Array, f: Array
+) -> None:
+    """Add a uniform line load ``vector`` [kN/m] on part of an edge."""
+    at = disc.offsets[b]
+    if disc.shape_of[b] == RIGID:
+        outline = disc.model.bodies[b].outline
+        p, q = outline[edge], outline[(edge + 1) % len(outline)]
+        middle = p + (q - p) / np.linalg.norm(q - p) * (part[0] + part[1]) / 2
+        rows = rigid_rows(middle, disc.centroids[b], disc.reach[b])
+        f[at : at + 3] += rows.T @ vector * (part[1] - part[0])
+        return
+    nodes = disc.shapes[disc.shape_of[b]].edges[edge]
+    weights = edge_weights(nodes.at, nodes.order, *part)
+    np.add.at(f, at + 2 * nodes.nodes[:, None] + np.arange(2), np.outer(weights, vector))
+
+
+def _point(disc: Discretisation, load: Load, chosen: list[int], f: Array) -> None:
+    if load.at is None or len(load.bodies) != 1 or len(chosen) != 1:
+        msg = "a point load needs one body and a point"
+        raise InputError(msg, where=f"load group '{load.group}'", hint="name the block and give 'at'")
+    if disc.shape_of[chosen[0]] == FIXED:
+        return
+    dofs, rows = disc.point_operator(chosen[0], np.array(load.at, dtype=float))
+    np.add.at(f, dofs, rows.T @ np.array(load.value, dtype=float))

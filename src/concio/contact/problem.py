@@ -1,0 +1,177 @@
+r"""The discrete contact problem: plain arrays, nothing of masonry.
+
+Every body has its own unknowns; ``K`` is block diagonal, one block for each body, singular for a body that
+floats. A contact pair ``k`` joins a point of side *a* to a point of side *b*; ``n`` is the unit normal from *a* to
+*b*, ``t`` the tangent. With the shifts that cohesion and tension bring (all zero for plain Coulomb friction), the
+problem in one load step is (numbers: equations of Ercolano's paper)
+
+.. math::
+
+    K u &= f + C_n^T t_n + C_t^T t_t                                              &(12)\\
+    y_n &= x_n + C_n u + a_n t_n - \tan\psi\,|y_t| + p, \qquad
+            0 \le y_n \perp t_n + T \ge 0                                          &(5, 13)\\
+    0 &\le p \perp N - t_n \ge 0                                                   &\text{(cap)}\\
+    y_t &= C_t u - s + a_t t_t, \qquad |t_t| \le c + \mu t_n                       &(6, 14)\\
+    t_t &= -(c + \mu t_n)\, y_t/|y_t| \quad\text{where } y_t \ne 0, \qquad -t_t y_t \ge 0   &(7)
+
+Forces are nodal forces (kN), already integrated over the tributary area of the pair; ``t_n >= 0`` is compression and
+acts on side *b* along ``+n``; ``t_t`` acts on side *b* along ``+t``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+
+from concio.errors import InputError
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Laws:
+    """Joint laws of ``m`` pairs, as forces and lengths of each pair (tributary area already multiplied in).
+
+    Parameters
+    ----------
+    friction : (m,) array
+        Coulomb coefficient mu >= 0.
+    cohesion : (m,) array
+        Force c >= 0 added to the sliding strength [kN].
+    tension : (m,) array
+        Tensile strength T >= 0 of the pair [kN]; needs ``friction * tension <= cohesion``.
+    dilatancy : (m,) array
+        tan(psi) >= 0: opening for each unit of slip; ``dilatancy == friction`` is associated flow.
+    normal_compliance, tangential_compliance : (m,) array
+        a_n = 1/k_n and a_t = 1/k_t of a compliant joint [m/kN]; 0 is a hard joint.
+    cap : (m,) array
+        Largest compression N of the pair [kN]; ``inf`` where there is none.
+    """
+
+    friction: Array
+    cohesion: Array
+    tension: Array
+    dilatancy: Array
+    normal_compliance: Array
+    tangential_compliance: Array
+    cap: Array
+
+    @classmethod
+    def coulomb(cls, friction: Array | float, m: int | None = None) -> Laws:
+        """Plain Coulomb friction for ``m`` pairs."""
+        mu = np.asarray(friction, dtype=float)
+        mu = np.full(m, float(mu)) if mu.ndim == 0 and m is not None else mu.copy()
+        z = np.zeros_like(mu)
+        return cls(mu, z, z.copy(), z.copy(), z.copy(), z.copy(), np.full_like(mu, np.inf))
+
+    @property
+    def plain(self) -> bool:
+        """True where every pair is a hard Coulomb pair: no cohesion, tension, dilatancy, compliance or cap."""
+        return not (
+            self.cohesion.any()
+            or self.tension.any()
+            or self.dilatancy.any()
+            or self.normal_compliance.any()
+            or self.tangential_compliance.any()
+            or np.isfinite(self.cap).any()
+        )
+
+    def __getitem__(self, pick: Array | slice) -> Laws:
+        return Laws(*(getattr(self, name)[pick] for name in self.__dataclass_fields__))
+
+
+@dataclass(frozen=True, eq=False)
+class ContactProblem:
+    """One load step of elastic or rigid bodies in unilateral frictional contact.
+
+    Parameters
+    ----------
+    K : (N, N) CSR array
+        Stiffness, block diagonal body by body, symmetric positive semidefinite [kN/m]. Zero for rigid bodies, whose
+        unknowns are their rigid motions.
+    f : (N,) array
+        Loads [kN].
+    C_n : (m, N) CSR array
+        Normal relative displacement b - a of each pair along n.
+    C_t : (m (d-1), N) CSR array
+        Tangential relative displacement; rows ``k (d-1) ... (k+1)(d-1) - 1`` belong to pair k.
+    gap : (m,) array
+        Initial gaps x_n [m]; may be negative where a support is pushed into the structure.
+    laws : Laws
+        Joint laws of the pairs.
+    R : (N, r) CSC array
+        Rigid motions, K R = 0, the columns of each body orthonormal; bodies that do not float bring none.
+    bodies : (B+1,) integer array
+        Unknowns of body k are ``bodies[k]:bodies[k+1]``.
+    slip_origin : (m, d-1) array, optional
+        s: tangential position from which this step's slip is measured [m]; default zero.
+    """
+
+    K: sp.csr_array
+    f: Array
+    C_n: sp.csr_array
+    C_t: sp.csr_array
+    gap: Array
+    laws: Laws
+    R: sp.csc_array
+    bodies: Array
+    slip_origin: Array = field(default_factory=lambda: np.zeros((0, 0)))
+
+    def __post_init__(self) -> None:
+        m, n = self.C_n.shape
+        if self.slip_origin.shape[0] != m or self.slip_origin.ndim != 2:
+            if self.slip_origin.size:
+                msg = f"slip_origin has shape {self.slip_origin.shape}, expected ({m}, {self.dim - 1})"
+                raise InputError(msg)
+            object.__setattr__(self, "slip_origin", np.zeros((m, max(1, self.C_t.shape[0] // max(m, 1)))))
+        checks = {"K": (self.K.shape, (n, n)), "f": (self.f.shape, (n,)), "gap": (self.gap.shape, (m,))}
+        for name, (found, wanted) in checks.items():
+            if found != wanted:
+                msg = f"{name} has shape {found}, expected {wanted}"
+                raise InputError(msg)
+        for name in ("f", "gap", "slip_origin"):
+            if not np.isfinite(getattr(self, name)).all():
+                msg = f"{name} holds a value that is not finite"
+                raise InputError(msg)
+        bound = self.laws.friction * self.laws.tension - self.laws.cohesion
+        if (bound > 1e-12 * (1.0 + self.laws.cohesion)).any():
+            k = int(np.argmax(bound))
+            msg = f"pair {k}: tensile strength needs cohesion >= friction x tension"
+            raise InputError(msg, hint="lower the tensile strength or raise the cohesion")
+
+    @property
+    def pairs(self) -> int:
+        """Number m of contact pairs."""
+        return int(self.C_n.shape[0])
+
+    @property
+    def unknowns(self) -> int:
+        """Number N of displacement unknowns."""
+        return int(self.C_n.shape[1])
+
+    @property
+    def dim(self) -> int:
+        """Space dimension d, 2 or 3."""
+        m = self.C_n.shape[0]
+        return int(self.C_t.shape[0] // m) + 1 if m else 2
+
+    @property
+    def rigid_motions(self) -> int:
+        """Number r of rigid motions."""
+        return int(self.R.shape[1])
+
+    @cached_property
+    def C(self) -> sp.csr_array:
+        """C_n over C_t, shape (m d, N)."""
+        return sp.csr_array(sp.vstack([self.C_n, self.C_t]))
+
+    def with_loads(self, f: Array) -> ContactProblem:
+        """Return the same problem under other loads."""
+        return replace(self, f=np.asarray(f, dtype=float))
+
+    def sliding_strength(self, t_n: Array) -> Array:
+        """Return c + mu t_n, never below zero, shape (m,)."""
+        return np.maximum(self.laws.cohesion + self.laws.friction * t_n, 0.0)

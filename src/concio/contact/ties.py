@@ -1,0 +1,85 @@
+"""Tie rods: bars that take tension only, as pairs whose gap closes when the bar is stretched.
+
+A bar of stiffness k and prestress T0 between points a and b carries ``T = max(0, T0 + k e)`` with the elongation e. As a
+pair: C_n u = -e, compliance 1/k, initial gap -T0/k, so ``0 <= y_n = -T0/k - e + T/k _|_ T >= 0``. It has no friction.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from concio.contact.pairs import Pairs
+from concio.contact.problem import Laws
+from concio.errors import InputError
+from concio.fem.discretisation import Discretisation
+
+Array = np.ndarray
+
+
+def add_ties(disc: Discretisation, pairs: Pairs, laws: Laws) -> tuple[Pairs, Laws]:
+    """Return the pairs and laws with one more pair for each tie of the model (interface -1).
+
+    Raises
+    ------
+    InputError
+        A tie has no length, no stiffness, or an end that lies on no body.
+    """
+    ties = disc.model.ties
+    if not ties:
+        return pairs, laws
+    number = {b.name: i for i, b in enumerate(disc.model.bodies)}
+    rows: list[Array] = []
+    columns: list[Array] = []
+    values: list[Array] = []
+    normals = np.zeros((len(ties), 2))
+    ends = np.zeros((len(ties), 2), dtype=int)
+    for k, tie in enumerate(ties):
+        where = f"tie '{tie.name}'"
+        a, b = np.array(tie.at_a, dtype=float), np.array(tie.at_b, dtype=float)
+        length = float(np.linalg.norm(b - a))
+        if not length > 0:
+            raise InputError("its ends coincide", where=where, hint="give two different points")  # noqa: EM101
+        if not (0 < tie.stiffness < np.inf) or not (0 <= tie.prestress < np.inf):
+            msg = f"stiffness {tie.stiffness:g} must be positive and prestress {tie.prestress:g} not negative"
+            raise InputError(msg, where=where)
+        direction = (b - a) / length
+        normals[k] = -direction  # the force on b points back to a
+        for side, (name, point, sign) in enumerate(((tie.body_a, a, 1.0), (tie.body_b, b, -1.0))):
+            if name and name not in number:
+                msg = f"there is no body called '{name}'"
+                raise InputError(msg, where=where, hint="leave body_b empty for a fixed point")
+            ends[k, side] = number.get(name, -1)
+            if name:
+                dofs, operator = disc.point_operator(number[name], point)
+                rows.append(np.full(len(dofs), k))
+                columns.append(dofs)
+                values.append(sign * direction @ operator)  # -elongation
+    if not rows:
+        return pairs, laws
+    shape = (len(ties), disc.unknowns)
+    C_n = sp.csr_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape)
+    stiffness = np.array([t.stiffness for t in ties])
+    prestress = np.array([t.prestress for t in ties])
+    n = len(ties)
+    zero, one = np.zeros(n), np.ones(n)
+    joined = replace(
+        pairs,
+        body_a=np.concatenate([pairs.body_a, ends[:, 0]]),
+        body_b=np.concatenate([pairs.body_b, ends[:, 1]]),
+        interface=np.concatenate([pairs.interface, np.full(n, -1)]),
+        point=np.vstack([pairs.point, [(np.array(t.at_a) + np.array(t.at_b)) / 2 for t in ties]]),
+        normal=np.vstack([pairs.normal, normals]),
+        tangent=np.vstack([pairs.tangent, np.column_stack([-normals[:, 1], normals[:, 0]])]),
+        length=np.concatenate([pairs.length, zero]),
+        area=np.concatenate([pairs.area, one]),
+        gap=np.concatenate([pairs.gap, -prestress / stiffness]),
+        law=np.concatenate([pairs.law, np.full(n, -1)]),
+        C_n=sp.csr_array(sp.vstack([pairs.C_n, C_n])),
+        C_t=sp.csr_array(sp.vstack([pairs.C_t, sp.csr_array(shape)])),
+    )
+    tie_laws = Laws(zero, zero, zero, zero, 1.0 / stiffness, zero, np.full(n, np.inf))
+    names = Laws.__dataclass_fields__
+    return joined, Laws(*(np.concatenate([getattr(laws, name), getattr(tie_laws, name)]) for name in names))

@@ -1,0 +1,52 @@
+"""Exceptions of concio: one base class, and messages that say what, where and what to do."""
+
+from __future__ import annotations
+
+
+class ConcioError(Exception):
+    """Base of every exception concio raises on purpose.
+
+    Parameters
+    ----------
+    what : str
+        What was found, with the number or the word that is wrong.
+    where : str, optional
+        The place: file and key, block or joint by name.
+    hint : str, optional
+        What to do about it.
+    """
+
+    exit_code = 1
+
+    def __init__(self, what: str, *, where: str | None = None, hint: str | None = None) -> None:
+        self.what, self.where, self.hint = what, where, hint
+        text = f"{where}: {what}" if where else what
+        if hint:
+            text += f" ({hint})"
+        super().__init__(text)
+
+
+class InputError(ConcioError):
+    """The model, a file or an option is not usable as given (exit code 2)."""
+
+    exit_code = 2
+
+
+class GeometryError(InputError):
+    """A polygon, a drawing or the arrangement of blocks is not usable (exit code 2)."""
+
+
+class NoEquilibriumError(ConcioError):
+    """The loads cannot be carried: a mechanism proves it (exit code 3)."""
+
+    exit_code = 3
+
+
+class SolverError(ConcioError):
+    """The solver stopped without an answer and without a proof that there is none (exit code 4)."""
+
+    exit_code = 4
+
+
+class MethodError(InputError):
+    """The method named does not apply to this problem, or there is no method of that name (exit code 2)."""

@@ -1,0 +1,1 @@
+"""Each body meshed: stiffness, consistent loads, rigid motions, stresses. Identical bodies are computed once."""

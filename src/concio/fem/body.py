@@ -1,0 +1,119 @@
+"""One shape: everything that identical bodies share. Stiffness, loads, rigid motions and boundary nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+
+from concio.fem.elements import Elements
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True)
+class EdgeNodes:
+    """Nodes along one edge of an outline.
+
+    Parameters
+    ----------
+    nodes : (k,) integer array
+        Node numbers in the order of the outline.
+    at : (k,) array
+        Distance of each from the first vertex of the edge [m].
+    order : int
+        1: each two neighbours are an element edge; 2: each three (corner, middle, corner).
+    """
+
+    nodes: Array
+    at: Array
+    order: int
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A meshed elastic shape, placed with its first vertex at the origin.
+
+    Parameters
+    ----------
+    outline : (v, 2) array
+        Outline relative to its first vertex [m].
+    elements : Elements
+    D : (3, 3) array
+        Constitutive matrix [kN/m2].
+    thickness : float
+        [m].
+    """
+
+    outline: Array
+    elements: Elements
+    D: Array
+    thickness: float
+
+    @property
+    def unknowns(self) -> int:
+        """Number of displacement unknowns."""
+        return 2 * len(self.elements.nodes)
+
+    @cached_property
+    def K(self) -> sp.csr_array:
+        """Stiffness (2n, 2n) [kN/m], symmetric to the last bit."""
+        el = self.elements
+        weighted = sp.kron(sp.diags_array(el.weights * self.thickness), self.D, format="csr")
+        K = el.B.T @ (weighted @ el.B)
+        K = sp.csr_array((K + K.T) * 0.5)
+        K.sum_duplicates()
+        return K
+
+    @cached_property
+    def R(self) -> Array:
+        """Rigid motions (2n, 3), orthonormal: translations along x and y, rotation about the nodes' mean."""
+        return rigid_motions(self.elements.nodes)
+
+    @cached_property
+    def volume_weights(self) -> Array:
+        """Volume belonging to each node (n,): the load of a unit body force [m3]."""
+        el = self.elements
+        weights: Array = el.N.T @ (el.weights * self.thickness)
+        return weights
+
+    @cached_property
+    def edges(self) -> tuple[EdgeNodes, ...]:
+        """Boundary nodes of each edge of the outline, in order."""
+        nodes = self.elements.nodes
+        tolerance = 1e-7 * float(np.ptp(self.outline, axis=0).max())
+        found = []
+        for a, b in zip(self.outline, np.roll(self.outline, -1, axis=0), strict=True):
+            length = float(np.linalg.norm(b - a))
+            tangent = (b - a) / length
+            at = (nodes - a) @ tangent
+            off = np.abs((nodes - a) @ np.array([-tangent[1], tangent[0]]))
+            on = np.flatnonzero((off <= tolerance) & (at >= -tolerance) & (at <= length + tolerance))
+            on = on[np.argsort(at[on])]
+            found.append(EdgeNodes(on, at[on], self.elements.edge_order))
+        return tuple(found)
+
+    @cached_property
+    def stress_operator(self) -> sp.csr_array:
+        """D B (3q, 2n): stresses at the integration points from displacements."""
+        return sp.csr_array(sp.kron(sp.eye_array(len(self.elements.weights)), self.D) @ self.elements.B)
+
+    @cached_property
+    def mean_stress_operator(self) -> Array:
+        """(3, 2n): mean stress of the body from displacements."""
+        w = self.elements.weights / self.elements.weights.sum()
+        mean = sp.csr_array(sp.kron(w[None, :], np.eye(3)))
+        return np.asarray((mean @ self.stress_operator).todense())
+
+
+def rigid_motions(points: Array) -> Array:
+    """Return the orthonormal rigid motions (2n, 3) of points (n, 2), unknowns ordered (x, y) point by point."""
+    n = len(points)
+    R = np.zeros((2 * n, 3))
+    centred = points - points.mean(0)
+    R[0::2, 0] = R[1::2, 1] = 1 / np.sqrt(n)
+    R[0::2, 2], R[1::2, 2] = -centred[:, 1], centred[:, 0]
+    R[:, 2] /= np.linalg.norm(R[:, 2])
+    return R

@@ -1,0 +1,135 @@
+r"""The certificate: residuals of an answer computed from the original data, never from what a solver kept.
+
+Displacements are divided by the largest displacement ``U``, forces by the total load ``F`` (sum of the absolute nodal
+loads; where no load acts, the largest contact force). An answer is *certified* when the worst entry is at most 1e-9.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from concio.contact.problem import Array, ContactProblem
+
+CERTIFIED = 1e-9
+"""Largest worst entry of an answer that may be called solved."""
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """Relative residuals of an answer (all dimensionless, 0 is perfect).
+
+    Parameters
+    ----------
+    equilibrium : float
+        max |K u - f - C' t| / F, equation (12).
+    penetration : float
+        max of -y_n / U over pairs without a cap, equation (5).
+    cone : float
+        max of the excess of |t_t| over c + mu t_n, of -(t_n + T), and of t_n over the cap, / F, equation (6).
+    slip_direction : float
+        max over pairs of min(|y_t| / U, |t_t + (c + mu t_n) y_t / |y_t|| / F), equations (6, 7).
+    complementarity : float
+        max over pairs of min(y_n / U, (t_n + T) / F), and the same for crushing and its cap, equation (5).
+    """
+
+    equilibrium: float
+    penetration: float
+    cone: float
+    slip_direction: float
+    complementarity: float
+
+    @property
+    def worst(self) -> float:
+        """The largest of the five; ``nan`` counts as infinite."""
+        entries = (self.equilibrium, self.penetration, self.cone, self.slip_direction, self.complementarity)
+        return float(max(e if np.isfinite(e) else np.inf for e in entries))
+
+    @property
+    def certified(self) -> bool:
+        """True when the worst entry is at most :data:`CERTIFIED`."""
+        return self.worst <= CERTIFIED
+
+    def as_dict(self) -> dict[str, float]:
+        """Return the five entries and ``worst``."""
+        return {**asdict(self), "worst": self.worst}
+
+
+@dataclass(frozen=True, eq=False)
+class Kinematics:
+    """Gap, slip and crushing that follow from displacements and forces.
+
+    Parameters
+    ----------
+    gap : (m,) array
+        y_n before crushing is taken out [m]; below -0 only by an error, or where the cap is reached.
+    slip : (m, d-1) array
+        y_t [m].
+    crushing : (m,) array
+        p >= 0, plastic approach where the cap is reached [m].
+    """
+
+    gap: Array
+    slip: Array
+    crushing: Array
+
+
+def kinematics(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> Kinematics:
+    """Return gaps, slips and crushing of displacements ``u`` (N,) and forces ``t_n`` (m,), ``t_t`` (m, d-1)."""
+    law = problem.laws
+    m = problem.pairs
+    slip = (problem.C_t @ u).reshape(m, -1) - problem.slip_origin + law.tangential_compliance[:, None] * t_t
+    sliding = (law.friction > 0) | (law.cohesion > 0)
+    size = np.linalg.norm(slip, axis=1)
+    gap = problem.gap + problem.C_n @ u + law.normal_compliance * t_n - np.where(sliding, law.dilatancy * size, 0.0)
+    crushing = np.where(np.isfinite(law.cap), np.maximum(-gap, 0.0), 0.0)
+    return Kinematics(gap + crushing, slip, crushing)
+
+
+def scales(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> tuple[float, float]:
+    """Return (F, U): total load [kN] and largest displacement [m], never zero."""
+    force = float(np.abs(problem.f).sum())
+    if force == 0.0:
+        force = float(max(np.abs(t_n).max(initial=0.0), np.abs(t_t).max(initial=0.0)))
+    length = float(np.abs(u).max(initial=0.0))
+    return force or 1.0, length or 1.0
+
+
+def certify(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> Certificate:
+    """Compute the certificate of an answer from the original problem.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    u : (N,) array
+        Displacements [m].
+    t_n : (m,) array
+        Normal forces, compression positive [kN].
+    t_t : (m, d-1) array
+        Friction forces on side b along t [kN].
+    """
+    law = problem.laws
+    t_t = t_t.reshape(problem.pairs, -1)
+    if not (np.isfinite(u).all() and np.isfinite(t_n).all() and np.isfinite(t_t).all()):
+        return Certificate(*([np.inf] * 5))
+    force, length = scales(problem, u, t_n, t_t)
+    kin = kinematics(problem, u, t_n, t_t)
+    residual = problem.K @ u - problem.f - problem.C_n.T @ t_n - problem.C_t.T @ t_t.ravel()
+    strength = problem.sliding_strength(t_n)
+    shifted = t_n + law.tension
+    size_t = np.linalg.norm(t_t, axis=1)
+    excess = np.maximum.reduce([size_t - strength, -shifted, t_n - law.cap])
+    size_y = np.linalg.norm(kin.slip, axis=1)
+    direction = kin.slip / np.where(size_y > 0, size_y, 1.0)[:, None]
+    wrong_way = np.linalg.norm(t_t + strength[:, None] * direction, axis=1)
+    crush = np.minimum(kin.crushing / length, np.where(np.isfinite(law.cap), law.cap - t_n, 0.0) / force)
+    return Certificate(
+        equilibrium=float(np.abs(residual).max(initial=0.0) / force),
+        penetration=float(np.maximum(-kin.gap, 0.0).max(initial=0.0) / length),
+        cone=float(np.maximum(excess, 0.0).max(initial=0.0) / force),
+        slip_direction=float(np.minimum(size_y / length, wrong_way / force).max(initial=0.0)),
+        complementarity=float(
+            max(np.minimum(kin.gap / length, shifted / force).max(initial=0.0), crush.max(initial=0.0))
+        ),
+    )

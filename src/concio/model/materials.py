@@ -1,0 +1,133 @@
+"""Materials of bodies and laws of joints, checked when they are made."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from concio.errors import InputError
+from concio.units import quantity
+
+
+def _number(value: float | str, kind: str, name: str) -> float:
+    number = quantity(value, kind, where=name)
+    if math.isnan(number):
+        msg = f"{name} is not a number"
+        raise InputError(msg, hint="give a finite value")
+    return number
+
+
+@dataclass(frozen=True)
+class Elastic:
+    """Isotropic linear elastic material.
+
+    Parameters
+    ----------
+    E : float or str
+        Young's modulus > 0 [kN/m2], or with a unit: ``"2 GPa"``.
+    nu : float
+        Poisson's ratio, -1 < nu < 0.5.
+    unit_weight : float or str
+        Weight per volume >= 0 [kN/m3].
+
+    Raises
+    ------
+    InputError
+        A constant is not finite or out of its range.
+    """
+
+    E: float
+    nu: float = 0.2
+    unit_weight: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "E", _number(self.E, "stress", "Young's modulus E"))
+        object.__setattr__(self, "nu", _number(self.nu, "number", "Poisson's ratio nu"))
+        object.__setattr__(self, "unit_weight", _number(self.unit_weight, "unit weight", "unit_weight"))
+        if not (0 < self.E < math.inf):
+            msg = f"Young's modulus E = {self.E:g} must be positive and finite"
+            raise InputError(msg, hint="give E in kN/m2 or with a unit, for example '2 GPa'")
+        if not (-1 < self.nu < 0.5):
+            msg = f"Poisson's ratio nu = {self.nu:g} must lie between -1 and 0.5"
+            raise InputError(msg, hint="masonry lies near 0.15 to 0.25; nu = 0.5 is incompressible")
+        if not (0 <= self.unit_weight < math.inf):
+            msg = f"unit_weight = {self.unit_weight:g} must be zero or positive"
+            raise InputError(msg, hint="weight acts downwards by itself; give it as a positive number")
+
+
+@dataclass(frozen=True)
+class Rigid:
+    """Material of a body that does not deform: three unknowns in the plane.
+
+    Parameters
+    ----------
+    unit_weight : float or str
+        Weight per volume >= 0 [kN/m3].
+    """
+
+    unit_weight: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "unit_weight", _number(self.unit_weight, "unit weight", "unit_weight"))
+        if not (0 <= self.unit_weight < math.inf):
+            msg = f"unit_weight = {self.unit_weight:g} must be zero or positive"
+            raise InputError(msg, hint="weight acts downwards by itself; give it as a positive number")
+
+
+@dataclass(frozen=True)
+class JointLaw:
+    """Law of an interface between two bodies; strengths are stresses, integrated over tributary areas later.
+
+    Parameters
+    ----------
+    friction : float
+        Coulomb coefficient mu >= 0.
+    cohesion : float or str
+        Shear strength without compression c >= 0 [kN/m2].
+    tensile_strength : float or str
+        Tensile strength >= 0 [kN/m2], at most cohesion / friction.
+    dilatancy : float
+        tan(psi), 0 <= tan(psi) <= mu; opening for each unit of slip.
+    normal_stiffness, tangential_stiffness : float, str or None
+        Stiffness of a compliant joint [kN/m3]; None is a hard joint.
+    compressive_strength : float, str or None
+        Largest contact pressure [kN/m2]; None is unlimited.
+    """
+
+    friction: float
+    cohesion: float = 0.0
+    tensile_strength: float = 0.0
+    dilatancy: float = 0.0
+    normal_stiffness: float | None = None
+    tangential_stiffness: float | None = None
+    compressive_strength: float | None = None
+
+    def __post_init__(self) -> None:
+        kinds = {
+            "friction": "number",
+            "cohesion": "stress",
+            "tensile_strength": "stress",
+            "dilatancy": "number",
+            "normal_stiffness": "joint stiffness",
+            "tangential_stiffness": "joint stiffness",
+            "compressive_strength": "stress",
+        }
+        for name, kind in kinds.items():
+            value = getattr(self, name)
+            if value is None:
+                continue
+            number = _number(value, kind, name)
+            object.__setattr__(self, name, number)
+            optional = kind == "joint stiffness" or name == "compressive_strength"
+            if number < 0 or math.isinf(number) or (optional and number == 0):
+                msg = f"{name} = {number:g} must be {'positive' if optional else 'zero or positive'} and finite"
+                raise InputError(msg, hint="leave it out for a hard joint" if optional else None)
+        if self.dilatancy > self.friction:
+            msg = f"dilatancy tan(psi) = {self.dilatancy:g} exceeds friction {self.friction:g}"
+            raise InputError(msg, hint="a dilatancy above the friction would create energy")
+        if self.friction * self.tensile_strength > self.cohesion * (1 + 1e-12):
+            msg = (
+                f"tensile_strength = {self.tensile_strength:g} needs cohesion of at least "
+                f"friction x tensile_strength = {self.friction * self.tensile_strength:g}"
+            )
+            raise InputError(msg, hint="raise the cohesion or lower the tensile strength")

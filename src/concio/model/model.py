@@ -1,0 +1,323 @@
+"""The model: bodies, joints, supports and loads. Frozen dataclasses; everything else is derived from them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from concio.errors import GeometryError, InputError
+from concio.model.materials import Elastic, JointLaw, Rigid
+
+Array = np.ndarray
+Kind = Literal["elastic", "rigid", "fixed"]
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A block, a mortar film or an obstacle: a simple polygon.
+
+    Parameters
+    ----------
+    name : str
+        Unique in the model.
+    outline : (n, 2) array
+        Vertices [m]; stored counter-clockwise without the closing repetition.
+    material : str
+        Key of ``Model.materials``; ignored for fixed bodies.
+    kind : {"elastic", "rigid", "fixed"}
+        A fixed body has no unknowns: it is an obstacle (ground, wall, bearing).
+    role : str
+        "block", "mortar", "obstacle"...: chooses joint laws and colours.
+    layer : str
+        Free label, for instance the layer of a drawing.
+    thickness : float
+        Out-of-plane thickness [m].
+    grid : (xs, ys) or None
+        Mesh lines of a rectangle with sides along x and y; None lets concio mesh.
+    mesh_size : float or None
+        Target element size [m]; None takes the model's.
+    """
+
+    name: str
+    outline: Array
+    material: str = "block"
+    kind: Kind = "elastic"
+    role: str = "block"
+    layer: str = ""
+    thickness: float = 1.0
+    grid: tuple[Array, Array] | None = None
+    mesh_size: float | None = None
+
+    def __post_init__(self) -> None:
+        points = np.array(self.outline, dtype=float)
+        where = f"block '{self.name}'"
+        if points.ndim != 2 or points.shape[1] != 2:
+            msg = f"outline has shape {points.shape}, expected (n, 2)"
+            raise GeometryError(msg, where=where)
+        if not np.isfinite(points).all():
+            msg = "outline holds a coordinate that is not finite"
+            raise GeometryError(msg, where=where)
+        if len(points) > 1 and np.array_equal(points[0], points[-1]):
+            points = points[:-1]
+        if len(points) < 3:
+            msg = f"outline has {len(points)} different vertices, a polygon needs at least 3"
+            raise GeometryError(msg, where=where)
+        area = signed_area(points)
+        if abs(area) <= 1e-12 * np.ptp(points, axis=0).max() ** 2:
+            msg = "outline has no area"
+            raise GeometryError(msg, where=where)
+        if area < 0:
+            points = points[::-1].copy()
+        points.setflags(write=False)
+        object.__setattr__(self, "outline", points)
+        if not (0 < self.thickness < math.inf):
+            msg = f"thickness = {self.thickness:g} must be positive and finite"
+            raise InputError(msg, where=where)
+        if self.kind not in ("elastic", "rigid", "fixed"):
+            msg = f"kind '{self.kind}' is not one of elastic, rigid, fixed"
+            raise InputError(msg, where=where)
+
+    @property
+    def area(self) -> float:
+        """Area [m2]."""
+        return signed_area(self.outline)
+
+    @property
+    def centroid(self) -> Array:
+        """Centroid (2,) [m]."""
+        origin = self.outline[0]
+        p, q = self.outline - origin, np.roll(self.outline, -1, axis=0) - origin
+        cross = p[:, 0] * q[:, 1] - q[:, 0] * p[:, 1]
+        centroid: Array = origin + ((p + q) * cross[:, None]).sum(0) / (3 * cross.sum())
+        return centroid
+
+
+def signed_area(points: Array) -> float:
+    """Return the area of a polygon (n, 2), positive when counter-clockwise [m2]."""
+    p = points - points[0]
+    q = np.roll(p, -1, axis=0)
+    return float(0.5 * (p[:, 0] * q[:, 1] - q[:, 0] * p[:, 1]).sum())
+
+
+@dataclass(frozen=True)
+class JointRule:
+    """Chooses the law of the interfaces between two sorts of bodies.
+
+    Parameters
+    ----------
+    law : str
+        Key of ``Model.laws``.
+    between : pair of str
+        Each matches a body by name, role, layer or material; "*" matches any. Order does not matter. The last rule
+        that matches an interface wins.
+    gap : float
+        Initial opening of these interfaces, added to what the geometry shows >= 0 [m].
+    """
+
+    law: str
+    between: tuple[str, str] = ("*", "*")
+    gap: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (0 <= self.gap < math.inf):
+            msg = f"initial gap = {self.gap:g} must be zero or positive and finite"
+            raise InputError(msg, hint="a gap is an opening in m; overlaps are not gaps")
+
+    def matches(self, a: Body, b: Body) -> bool:
+        """True when the rule speaks of interfaces between ``a`` and ``b``."""
+
+        def fits(word: str, body: Body) -> bool:
+            return word == "*" or (word != "" and word in (body.name, body.role, body.layer, body.material))
+
+        p, q = self.between
+        return (fits(p, a) and fits(q, b)) or (fits(p, b) and fits(q, a))
+
+
+@dataclass(frozen=True)
+class Support:
+    """Holds unknowns of elastic or rigid bodies, with or without an imposed displacement.
+
+    Parameters
+    ----------
+    name : str
+    body : str
+        Body by name; a fixed body may be moved, which pushes or drags what touches it.
+    edge : ((x1, y1), (x2, y2)) or None
+        Segment of the outline that is held; None holds the whole body. A point is a segment of length zero.
+    directions : str
+        "x", "y" or "xy".
+    displacement : (ux, uy)
+        Imposed displacement [m].
+    rotation : float
+        Imposed rotation about the body's centroid, fixed and rigid bodies only [rad].
+    group : str
+        Load group that scales the imposed displacement.
+    """
+
+    name: str
+    body: str
+    edge: tuple[tuple[float, float], tuple[float, float]] | None = None
+    directions: str = "xy"
+    displacement: tuple[float, float] = (0.0, 0.0)
+    rotation: float = 0.0
+    group: str = "settlement"
+
+
+@dataclass(frozen=True)
+class Load:
+    """A load on the bodies it names.
+
+    Parameters
+    ----------
+    kind : {"weight", "pressure", "traction", "point", "body"}
+        weight: unit weight times area times thickness, times the vector ``value``: (0, -1) is gravity, (0.1, 0) a
+        horizontal share of a tenth. pressure: ``value[0]`` [kN/m2], positive pushes against the edge. traction:
+        vector [kN/m2] on an edge. point: vector [kN] at ``at``. body: vector per volume [kN/m3].
+    value : tuple of float
+    bodies : tuple of str
+        Names, roles or layers; empty means every body that is not fixed.
+    edge : ((x1, y1), (x2, y2)) or None
+        Segment for pressure and traction; only outline parts that lie on it are loaded.
+    at : (x, y) or None
+        Point of a point load [m].
+    group : str
+        Load group; groups are scaled by load factors.
+    """
+
+    kind: Literal["weight", "pressure", "traction", "point", "body"]
+    value: tuple[float, ...]
+    bodies: tuple[str, ...] = ()
+    edge: tuple[tuple[float, float], tuple[float, float]] | None = None
+    at: tuple[float, float] | None = None
+    group: str = "dead"
+
+
+@dataclass(frozen=True)
+class Tie:
+    """A straight bar that takes tension only, with prestress, between two bodies or a body and a fixed point.
+
+    Parameters
+    ----------
+    name : str
+    body_a, body_b : str
+        Body names; ``body_b`` may be "" for a fixed point in space.
+    at_a, at_b : (x, y)
+        Ends [m].
+    stiffness : float
+        E A / L > 0 [kN/m].
+    prestress : float
+        Tension at zero elongation >= 0 [kN].
+    """
+
+    name: str
+    body_a: str
+    at_a: tuple[float, float]
+    body_b: str
+    at_b: tuple[float, float]
+    stiffness: float
+    prestress: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A masonry structure in the plane.
+
+    Parameters
+    ----------
+    bodies : tuple of Body
+    materials : mapping of str to Elastic or Rigid
+    laws : mapping of str to JointLaw
+    rules : tuple of JointRule
+        The last rule that matches an interface gives its law.
+    supports, loads, ties : tuples
+    plane : {"stress", "strain"}
+    element : str
+        "Q4", "Q4I" (incompatible modes), "Q8", "Q9", "T3", "T6".
+    mesh_size : float or None
+        Target element size [m]; None takes a quarter of each body's longer side.
+    refinement : int
+        Every element is split ``refinement`` times more (1: as described).
+    gap_tolerance : float or None
+        Edges closer than this touch [m]; None takes 1e-6 of the size of the model.
+    gap_reach : float
+        Edges further apart than the tolerance but within this become pairs with an initial gap [m].
+    title : str
+    generator : mapping
+        How the model was made, for the record.
+    """
+
+    bodies: tuple[Body, ...]
+    materials: Mapping[str, Elastic | Rigid]
+    laws: Mapping[str, JointLaw]
+    rules: tuple[JointRule, ...] = (JointRule("joint"),)
+    supports: tuple[Support, ...] = ()
+    loads: tuple[Load, ...] = ()
+    ties: tuple[Tie, ...] = ()
+    plane: Literal["stress", "strain"] = "stress"
+    element: str = "Q4"
+    mesh_size: float | None = None
+    refinement: int = 1
+    gap_tolerance: float | None = None
+    gap_reach: float = 0.0
+    title: str = ""
+    generator: Mapping[str, object] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not self.bodies:
+            msg = "the model has no bodies"
+            raise InputError(msg, hint="describe at least one block")
+        names = [b.name for b in self.bodies]
+        if len(set(names)) != len(names):
+            twice = next(n for n in names if names.count(n) > 1)
+            msg = f"two bodies are called '{twice}'"
+            raise InputError(msg, hint="give each body a name of its own")
+        for body in self.bodies:
+            if body.kind == "fixed":
+                continue
+            if body.material not in self.materials:
+                msg = f"material '{body.material}' is not defined"
+                raise InputError(msg, where=f"block '{body.name}'", hint="known: " + ", ".join(self.materials))
+            material = self.materials[body.material]
+            if (body.kind == "rigid") != isinstance(material, Rigid):
+                msg = f"a body of kind '{body.kind}' has the material '{body.material}' ({type(material).__name__})"
+                raise InputError(msg, where=f"block '{body.name}'", hint="rigid bodies take a Rigid material")
+        for rule in self.rules:
+            if rule.law not in self.laws:
+                msg = f"joint law '{rule.law}' is not defined"
+                raise InputError(msg, hint="known: " + ", ".join(self.laws))
+
+    @property
+    def free_bodies(self) -> tuple[Body, ...]:
+        """Bodies that have unknowns."""
+        return tuple(b for b in self.bodies if b.kind != "fixed")
+
+    @property
+    def load_groups(self) -> tuple[str, ...]:
+        """Names of the load groups, in order of appearance."""
+        return tuple(dict.fromkeys([load.group for load in self.loads] + [s.group for s in self.supports]))
+
+    def body(self, name: str) -> Body:
+        """Return the body called ``name``."""
+        for body in self.bodies:
+            if body.name == name:
+                return body
+        msg = f"there is no body called '{name}'"
+        raise InputError(msg, hint="see the names with 'concio check'")
+
+    def rule_between(self, a: Body, b: Body) -> JointRule:
+        """Return the rule of an interface between two bodies: the last that matches.
+
+        Raises
+        ------
+        InputError
+            No rule matches.
+        """
+        for rule in reversed(self.rules):
+            if rule.matches(a, b):
+                return rule
+        msg = f"no joint law for the interface between '{a.name}' and '{b.name}'"
+        raise InputError(msg, hint="add a rule between '*' and '*'")
