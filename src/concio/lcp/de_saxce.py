@@ -22,8 +22,8 @@ Parameters of :func:`solve`
 ---------------------------
 augmentation : float, default 10
     rho of the convex problems, in multiples of the typical stiffness.
-limit : int, default 100
-    Convex problems.
+limit, steps : int, default 100 and 3000
+    Convex problems, and Newton steps in all.
 """
 
 from __future__ import annotations
@@ -46,6 +46,7 @@ def solve(
     progress: ProgressCallback | None = None,
     augmentation: float = 10.0,
     limit: int = 100,
+    steps: int = 3000,
 ) -> Solution:
     """Solve by the fixed point of the bipotential.
 
@@ -57,6 +58,8 @@ def solve(
         rho of the convex problems in multiples of the typical stiffness, positive.
     limit : int
         Convex problems.
+    steps : int
+        Newton steps in all.
 
     Raises
     ------
@@ -66,7 +69,7 @@ def solve(
     if not augmentation > 0:
         raise MethodError(f"augmentation {augmentation} is not positive", hint="try 10")  # noqa: EM102
     s = dimensionless(problem)
-    record = Record("de-saxce", s, progress)
+    record = Record("de-saxce", s, progress, budget=steps)
     record.info["unknowns"] = s.f.size
     law = Augmented(s, s.cone, isotropic(s.compliance, augmentation), s.t, s.cone.friction)
     lag = np.maximum(s.cone.friction - s.dilatancy, 0.0)

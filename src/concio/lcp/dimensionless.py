@@ -65,6 +65,11 @@ class Dimensionless:
         return int(self.x.shape[0])
 
     @property
+    def deforms(self) -> bool:
+        """False for rigid bodies in hard joints: displacements have no scale of their own there."""
+        return bool(self.K.nnz) or bool(self.compliance.any())
+
+    @property
     def dim(self) -> int:
         """Space dimension."""
         return int(self.x.shape[1])
@@ -93,7 +98,7 @@ class Dimensionless:
     def residual(self, u: Array, t: Array) -> float:
         """Bound on the certificate: imbalance over the load, natural map over the smaller of load and displacement."""
         load = float(np.abs(self.f).sum()) or max(float(np.abs(t).max(initial=0.0)), PROXIMAL)
-        size = max(float(np.abs(u).max(initial=0.0)), PROXIMAL)
+        size = max(float(np.abs(u).max(initial=0.0)), PROXIMAL if self.deforms else 1.0)
         imbalance = float(np.abs(self.imbalance(u, t)).max(initial=0.0))
         law = float(np.abs(self.natural_map(u, t)).max(initial=0.0))
         return max(imbalance / load, law / min(load, size, 1.0))

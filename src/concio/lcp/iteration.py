@@ -46,6 +46,8 @@ class Record:
     method : str
     scaled : Dimensionless
     progress : callable, optional
+    budget : int, optional
+        Iterations after which a run with nested loops ends.
     """
 
     method: str
@@ -57,6 +59,7 @@ class Record:
     info: dict[str, Any] = field(default_factory=dict)
     factorisations: int = 1  # the glued structure
     best: tuple[float, Array, Array] | None = None
+    budget: int | None = None
     _spent: float = 1.0
     _solve_share: float = 0.0
 
@@ -90,7 +93,7 @@ class Record:
         Raises
         ------
         Stopped
-            The progress callback asked to stop.
+            The progress callback asked to stop, or the budget of iterations is used up.
         """
         residual = self.scaled.residual(u, t)
         residual = residual if np.isfinite(residual) else np.inf
@@ -100,6 +103,9 @@ class Record:
             self.best = (residual, u.copy(), t.copy())
         if self.progress and self.progress(Progress(self.method, len(self.history), residual, message)):
             raise Stopped(cancelled=True)
+        if self.budget is not None and len(self.history) >= self.budget and residual > GOAL:
+            self.trace.append(f"the {self.budget} iterations allowed are used up.")
+            raise Stopped(cancelled=False)
         return residual
 
     def stalled(self, window: int, factor: float = 0.5) -> bool:
@@ -116,9 +122,12 @@ def answer(problem: ContactProblem, record: Record, *, cancelled: bool = False) 
     restored = scaled.restore(u, t)
     solution = _judge(problem, record, restored, cancelled=cancelled, accuracy=None)
     if not solution.solved and record.best is not None:
-        # rigid bodies that do not move at all: zero is the exact displacement, rounding noise is not
-        still = _judge(problem, record, (np.zeros_like(u), *restored[1:]), cancelled=cancelled, accuracy=None)
-        solution = still if still.solved else solution
+        # rigid bodies that do not move, bodies nothing loads: zero is the exact answer, rounding noise is not
+        nothing = np.zeros_like(u), np.zeros_like(restored[1]), np.zeros_like(restored[2])
+        for exact in ((nothing[0], *restored[1:]), (restored[0], *nothing[1:])):
+            tried = _judge(problem, record, exact, cancelled=cancelled, accuracy=None)
+            if tried.solved:
+                return tried
     if cancelled or solution.solved:
         return solution
     return _judge(problem, record, restored, cancelled=False, accuracy=solution.certificate.as_dict())

@@ -31,6 +31,8 @@ augmentation : float, default 10
     rho of the convex problems, in multiples of the typical stiffness.
 prox : float, default 1e-3
     Proximal weight of the Tresca form, in multiples of the typical stiffness.
+limit, steps : int, default 150 and 3000
+    Alternations, and Newton steps in all.
 """
 
 from __future__ import annotations
@@ -56,6 +58,7 @@ def solve(
     augmentation: float = 10.0,
     prox: float = 1e-3,
     limit: int = 150,
+    steps: int = 3000,
 ) -> Solution:
     """Solve by alternating convex problems.
 
@@ -71,6 +74,8 @@ def solve(
         Proximal weight of the Tresca form in multiples of the typical stiffness; ignored where K is regular.
     limit : int
         Alternations.
+    steps : int
+        Newton steps in all.
 
     Raises
     ------
@@ -88,7 +93,7 @@ def solve(
             hint="form='tresca' keeps them, so do the methods simo-laursen and interior-point",
         )
     s = dimensionless(problem)
-    record = Record("panagiotopoulos", s, progress)
+    record = Record("panagiotopoulos", s, progress, budget=steps)
     record.info["unknowns"] = s.f.size
     cycle = _tresca if form == "tresca" else _alternating
     prox = prox if problem.rigid_motions else 0.0
