@@ -9,7 +9,7 @@ from concio.lcp.solution import Solver
 
 METHODS: dict[str, str] = {
     "auto": "concio.lcp.auto",
-    "interior-point": "concio.lcp.interior_point",
+    "interior-point": "concio.lcp.engine",
     "lemke": "concio.lcp.lemke",
     "penalty": "concio.lcp.penalty",
     "alart-curnier": "concio.lcp.alart_curnier",

@@ -1,0 +1,196 @@
+r"""From a point close to a solution to the solution itself: states read off, imposed, solved, signs checked.
+
+With a state for every pair (open, stick, slip either way; crushed) the equations are linear,
+
+.. math::
+    \begin{bmatrix} K & -C_c^T \\ G_c & A_c \end{bmatrix} \begin{bmatrix} u \\ t_c \end{bmatrix} =
+    \begin{bmatrix} f \\ b_c \end{bmatrix},
+
+with the closed pairs c, friction of slipping pairs expressed by their normal force. A compliance ``DELTA`` added to the
+closed pairs gives a matrix of the engine's pattern, K + C'DC, factorised with the ordering already known; iterative
+refinement against the original equations takes it out again. Redundant pairs (corners) and loose bodies do no harm: their
+equations are consistent, and refinement converges to the answer nearest to where it began.
+
+If the signs of the answer agree with the states, it is exact. If not, states are updated (primal-dual active set) a few
+times; what then keeps flipping is returned as undecided, for pivoting.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.contact.problem import Array
+from concio.lcp.scaled import Scaled
+from concio.lcp.sparse_factor import SingularMatrixError
+
+DELTA = 1e-7
+"""Compliance of closed pairs in the factorised matrix, scaled units."""
+
+LOOSE = 1e-9
+"""Proximal stiffness of unknowns that nothing holds, scaled units."""
+
+EXACT = 1e-12
+"""Residual at which refinement stops, scaled units."""
+
+
+@dataclass(frozen=True, eq=False)
+class States:
+    """States of the pairs: which are closed, which slip and how, which are crushed.
+
+    Parameters
+    ----------
+    closed : (m,) boolean array
+    slip : (m,) integer array
+        +1 or -1 where a closed pair slips, 0 where it sticks or is open.
+    crushed : (m,) boolean array
+    """
+
+    closed: Array
+    slip: Array
+    crushed: Array
+
+    def key(self) -> bytes:
+        """Return bytes that identify the states."""
+        return np.packbits(self.closed).tobytes() + self.slip.astype(np.int8).tobytes() + self.crushed.tobytes()
+
+
+@dataclass(frozen=True, eq=False)
+class Finished:
+    """Outcome of the exact finish, scaled units.
+
+    Parameters
+    ----------
+    u, t_n, t_t : arrays
+        Shapes (N,), (m,), (m,).
+    states : States
+    error : float
+        Natural-map residual: largest of imbalance and of the violation of the joint laws.
+    solves : int
+        Linear systems factorised.
+    undecided : (k,) integer array
+        Pairs whose state changed in the last round; empty when exact.
+    """
+
+    u: Array
+    t_n: Array
+    t_t: Array
+    states: States
+    error: float
+    solves: int
+    undecided: Array
+
+
+def natural_residual(s: Scaled, u: Array, t_n: Array, t_t: Array) -> tuple[float, Array]:
+    """Return the largest imbalance, and for each pair the distance of its forces from the joint laws (m,)."""
+    imbalance = float(np.abs(s.imbalance(u, t_n, t_t)).max(initial=0.0))
+    slip = np.where(s.rough, s.slip(u, t_t), 0.0)
+    gap = s.normal_gap(u, t_n) - s.dilatancy * np.abs(slip)
+    law_n = np.abs(t_n - np.clip(t_n - gap, 0.0, s.cap))
+    strength = np.where(s.rough, s.cohesion + s.mu * np.maximum(t_n, 0.0), 0.0)
+    law_t = np.abs(t_t - np.clip(t_t - slip, -strength, strength))
+    return imbalance, np.maximum(law_n, law_t)
+
+
+def read_states(s: Scaled, u: Array, t_n: Array, t_t: Array) -> States:
+    """Return the states that the natural map assigns to a point."""
+    slip = np.where(s.rough, s.slip(u, t_t), 0.0)
+    gap = s.normal_gap(u, t_n) - s.dilatancy * np.abs(slip)
+    trial = t_n - gap
+    closed = trial > 0
+    strength = np.where(s.rough, s.cohesion + s.mu * np.clip(trial, 0.0, s.cap), 0.0)
+    tangential = t_t - slip
+    sliding = np.where(tangential < -strength, 1, np.where(tangential > strength, -1, 0))
+    sliding = np.where(closed & s.rough, sliding, 0)
+    return States(closed, sliding, closed & (trial > s.cap))
+
+
+def solve_states(s: Scaled, states: States, u: Array, t_n: Array, t_t: Array) -> tuple[Array, Array, Array, float]:
+    """Solve the linear equations of given states, starting refinement from (u, t_n, t_t).
+
+    Returns
+    -------
+    u, t_n, t_t : arrays
+    residual : float
+        Largest residual of the linear equations of these states.
+
+    Raises
+    ------
+    SingularMatrixError
+        The matrix of these states cannot be factorised.
+    """
+    closed, slip = states.closed, states.slip
+    hard = closed & ~states.crushed
+    stick = closed & (slip == 0) & s.rough
+    sigma = slip.astype(float)
+    drag = -sigma * s.mu  # t_t = drag t_n - sigma c where slipping
+    open_wide = s.dilatancy * sigma
+    # gap of a slipping pair: x + C_n u + a_n t_n - d sigma (C_t u - s + a_t t_t)
+    soft_n = np.where(hard, s.a_n - open_wide * s.a_t * drag + DELTA, 1.0)
+    soft_t = np.where(stick, s.a_t + DELTA, 1.0)
+    d_nn = np.where(hard, 1.0 / soft_n, 0.0)
+    d_tt = np.where(stick, 1.0 / soft_t, 0.0)
+    s.factor.factorise(np.concatenate([d_nn, -d_nn * open_wide, d_nn * drag, d_tt - d_nn * open_wide * drag]), LOOSE)
+    t_n = np.where(states.crushed, s.cap, np.where(closed, t_n, 0.0))
+    t_t = np.where(stick, t_t, drag * t_n - sigma * s.cohesion) * closed
+    best = (u, t_n, t_t, np.inf)
+    for _ in range(40):
+        r_u = -s.imbalance(u, t_n, t_t)
+        slip_now = s.slip(u, t_t)
+        r_n = np.where(hard, -(s.normal_gap(u, t_n) - open_wide * slip_now), 0.0)
+        r_t = np.where(stick, -slip_now, 0.0)
+        residual = max(float(np.abs(r).max(initial=0.0)) for r in (r_u, r_n, r_t))
+        if residual < best[3]:
+            best = (u, t_n, t_t, residual)
+        if not residual > EXACT or residual > 1e3 * best[3]:
+            break
+        n0, t0 = r_n * d_nn, r_t * d_tt
+        du = s.factor.solve(r_u + s.pull(n0, t0 + drag * n0))
+        v_t = s.C_t @ du
+        dt_n = n0 - d_nn * (s.C_n @ du - open_wide * v_t)
+        dt_t = np.where(stick, t0 - d_tt * v_t, drag * dt_n)
+        u, t_n, t_t = u + du, t_n + dt_n, t_t + dt_t
+    return best
+
+
+def finish(s: Scaled, u: Array, t_n: Array, t_t: Array, rounds: int = 12, states: States | None = None) -> Finished:
+    """Turn a point close to a solution into the solution, if its states can be settled.
+
+    Parameters
+    ----------
+    s : Scaled
+    u, t_n, t_t : arrays
+        The point, scaled, ``t_n`` shifted.
+    rounds : int
+        Largest number of active-set rounds.
+    states : States, optional
+        States to begin with; default are those the point suggests.
+    """
+    states = states or read_states(s, u, t_n, t_t)
+    seen: set[bytes] = set()
+    best: Finished | None = None
+    solves = 0
+    for _ in range(rounds):
+        seen.add(states.key())
+        try:
+            u, t_n, t_t, _ = solve_states(s, states, u, t_n, t_t)
+        except SingularMatrixError:
+            break
+        solves += 1
+        imbalance, laws = natural_residual(s, u, t_n, t_t)
+        error = max(imbalance, float(laws.max(initial=0.0)))
+        new = read_states(s, u, t_n, t_t)
+        undecided = np.flatnonzero(
+            (laws > 1e-10) & ((new.closed != states.closed) | (new.slip != states.slip) | (new.crushed != states.crushed))
+        )
+        if best is None or error < best.error:
+            best = Finished(u, t_n, t_t, states, error, solves, undecided)
+        if error < 1e-10 or new.key() in seen:
+            break
+        states = new
+    if best is None:
+        imbalance, laws = natural_residual(s, u, t_n, t_t)
+        error = max(imbalance, float(laws.max(initial=0.0)))
+        return Finished(u, t_n, t_t, states, error, solves, np.flatnonzero(laws > 1e-10))
+    return Finished(best.u, best.t_n, best.t_t, best.states, best.error, solves, best.undecided)

@@ -1,0 +1,172 @@
+r"""Sparse factorisation of matrices of one pattern, :math:`K + C^T D C + \rho I`, ordered once.
+
+All the engine's time goes into these factorisations. The pattern is the graph of the structure, so the fill-reducing
+ordering is computed once, on the graph of the nodes, and every later matrix is handed over already permuted. Measured
+on running-bond walls (``benchmarks/orderings.py``), nested dissection costs a quarter of the minimum-degree ordering.
+
+Engines, chosen by name and never by what happens to be installed: ``superlu`` (SciPy) and ``pardiso`` (extra ``fast``).
+"""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as sla
+
+from concio.errors import ConcioError, InputError
+
+Array = np.ndarray
+Engine = Literal["superlu", "pardiso"]
+
+
+class SingularMatrixError(ConcioError):
+    """A factorisation met a zero or a non-finite pivot."""
+
+
+def nested_dissection(pattern: sp.csr_array, group: int = 2) -> tuple[Array, str]:
+    """Return a fill-reducing permutation of a symmetric pattern and the name of the method.
+
+    Parameters
+    ----------
+    pattern : (N, N) CSR array
+        Symmetric pattern; values do not matter.
+    group : int
+        Consecutive unknowns that belong together (2 for the two displacements of a node) where N is a multiple.
+    """
+    n = pattern.shape[0]
+    if n % group:
+        group = 1
+    rows = np.repeat(np.arange(n), np.diff(pattern.indptr)) // group
+    graph = sp.csr_array((np.ones(pattern.nnz, dtype=np.int8), (rows, pattern.indices // group)), shape=(n // group,) * 2)
+    graph.sum_duplicates()
+    graph.setdiag(0)
+    graph.eliminate_zeros()
+    try:
+        import pymetis
+    except ImportError:
+        return np.arange(n), "minimum degree"
+    if graph.nnz == 0:
+        return np.arange(n), "natural"
+    adjacency = pymetis.CSRAdjacency(adj_starts=graph.indptr.tolist(), adjacent=graph.indices.tolist())
+    order, _ = pymetis.nested_dissection(adjacency=adjacency)
+    return (group * np.asarray(order)[:, None] + np.arange(group)).ravel(), "nested dissection"
+
+
+class PatternFactor:
+    """Factorises ``base + sum_k d_k * term_k`` for changing ``d`` without touching the pattern again.
+
+    Parameters
+    ----------
+    K : (N, N) CSR array
+    C : (p, N) CSR array
+        Rows coupled by ``D``.
+    couples : (k, 2) integer array
+        Entry ``(i, j)`` of D for each k; the matrix is K + sum_k d_k C_i' C_j + diagonal.
+    engine : {"superlu", "pardiso"}
+    """
+
+    def __init__(self, K: sp.csr_array, C: sp.csr_array, couples: Array, engine: Engine = "superlu") -> None:
+        if engine not in ("superlu", "pardiso"):
+            msg = f"unknown factorisation engine '{engine}'"
+            raise InputError(msg, hint="superlu or pardiso")
+        self.engine = engine
+        self.size = n = K.shape[0]
+        rows, columns, terms, values = _outer_terms(C, couples)
+        identity = np.arange(n)
+        K_coo = K.tocoo()
+        i = np.concatenate([K_coo.row, identity, rows])
+        j = np.concatenate([K_coo.col, identity, columns])
+        pattern = sp.csr_array((np.ones(len(i), dtype=np.int8), (i, j)), shape=(n, n))
+        pattern.sum_duplicates()
+        self.order, self.ordering = nested_dissection(pattern)
+        place = np.empty(n, dtype=np.int64)
+        place[self.order] = np.arange(n)
+        # permuted, compressed by columns (superlu) or rows (pardiso): major * n + minor
+        major, minor = (place[j], place[i]) if engine == "superlu" else (place[i], place[j])
+        keys, slot = np.unique(major * n + minor, return_inverse=True)
+        self._minor = (keys % n).astype(np.int32)
+        self._indptr = np.searchsorted(keys, np.arange(n + 1, dtype=np.int64) * n).astype(np.int32)
+        k_nnz = K_coo.nnz
+        self.nnz = len(keys)
+        self._base = np.bincount(slot[:k_nnz], weights=K_coo.data, minlength=self.nnz)
+        self._diagonal = slot[k_nnz : k_nnz + n]
+        self._terms = sp.csr_array((values, (slot[k_nnz + n :], terms)), shape=(self.nnz, len(couples)))
+        self.count = 0
+        self._lu: Any = None
+        self._pardiso: Any = None
+
+    def factorise(self, d: Array, diagonal: Array | float = 0.0) -> None:
+        """Factorise K + sum_k d_k C_i' C_j + diag(diagonal).
+
+        Raises
+        ------
+        SingularMatrixError
+            A pivot is zero or not finite.
+        """
+        data = self._base + self._terms @ d
+        if np.any(diagonal):
+            data[self._diagonal] += np.broadcast_to(diagonal, self.size)[self.order]
+        if not np.isfinite(data).all():
+            msg = "the matrix holds a value that is not finite"
+            raise SingularMatrixError(msg)
+        self.count += 1
+        shape = (self.size, self.size)
+        if self.engine == "pardiso":
+            self._factorise_pardiso(sp.csr_matrix((data, self._minor, self._indptr), shape=shape))
+            return
+        matrix = sp.csc_matrix((data, self._minor, self._indptr), shape=shape)
+        spec = "MMD_AT_PLUS_A" if self.ordering == "minimum degree" else "NATURAL"
+        try:
+            self._lu = sla.splu(
+                matrix, permc_spec=spec, diag_pivot_thresh=0.01, options={"SymmetricMode": True}
+            )
+        except RuntimeError as error:
+            raise SingularMatrixError(str(error)) from None
+        except MemoryError:
+            msg = f"not enough memory to factorise {self.size:,} unknowns"
+            raise ConcioError(msg, hint="use larger elements or rigid blocks") from None
+
+    def _factorise_pardiso(self, matrix: Any) -> None:
+        try:
+            import pypardiso
+        except ImportError:
+            msg = "the engine 'pardiso' is not installed"
+            raise InputError(msg, hint="install it with: pip install 'concio[fast]'") from None
+        first = self._pardiso is None
+        if first:
+            self._pardiso = pypardiso.PyPardisoSolver(mtype=11)
+            self._pardiso.set_iparm(2, 2 if self.ordering == "minimum degree" else 2)
+        self._matrix = matrix
+        self._pardiso.set_phase(12 if first else 22)
+        try:
+            self._pardiso._call_pardiso(matrix, np.zeros((self.size, 1)))
+        except pypardiso.PyPardisoError as error:
+            raise SingularMatrixError(str(error)) from None
+
+    def solve(self, b: Array) -> Array:
+        """Return the solution for the last matrix factorised; ``b`` is (N,) or (N, k)."""
+        permuted = np.ascontiguousarray(b[self.order])
+        if self.engine == "pardiso":
+            self._pardiso.set_phase(33)
+            x = self._pardiso._call_pardiso(self._matrix, permuted.reshape(self.size, -1)).reshape(b.shape)
+        else:
+            x = self._lu.solve(permuted)
+        result = np.empty_like(b)
+        result[self.order] = x
+        return result
+
+
+def _outer_terms(C: sp.csr_array, couples: Array) -> tuple[Array, Array, Array, Array]:
+    """Return rows, columns, term numbers and values of the products C_i' C_j, for every couple (i, j)."""
+    C = sp.csr_array(C)
+    counts = np.diff(C.indptr)
+    first, second = couples[:, 0], couples[:, 1]
+    n_i, n_j = counts[first], counts[second]
+    size = n_i * n_j
+    term = np.repeat(np.arange(len(couples)), size)
+    within = np.arange(size.sum()) - np.repeat(np.cumsum(size) - size, size)
+    at_i = C.indptr[first][term] + within // np.maximum(n_j[term], 1)
+    at_j = C.indptr[second][term] + within % np.maximum(n_j[term], 1)
+    return C.indices[at_i], C.indices[at_j], term, C.data[at_i] * C.data[at_j]
