@@ -101,6 +101,12 @@ class Shape:
         return sp.csr_array(sp.kron(sp.eye_array(len(self.elements.weights)), self.D) @ self.elements.B)
 
     @cached_property
+    def projection(self) -> Array:
+        """(n, n): inverse of the mass matrix of the interpolation, for least-squares fits at the nodes."""
+        el = self.elements
+        return np.linalg.inv((el.N.T @ (sp.diags_array(el.weights) @ el.N)).toarray())
+
+    @cached_property
     def mean_stress_operator(self) -> Array:
         """(3, 2n): mean stress of the body from displacements."""
         w = self.elements.weights / self.elements.weights.sum()

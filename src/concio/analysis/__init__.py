@@ -1,0 +1,1 @@
+"""One load step, load paths, limit loads: immutable results that carry their own proof."""

@@ -1,0 +1,150 @@
+"""Contact results as a table of pairs, and resultants joint by joint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.contact.pairs import Pairs
+
+Array = np.ndarray
+
+STATE_NAMES = ("open", "stick", "slip", "slip")
+"""Name of each pair state code; the two slip codes differ by direction."""
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """State of every contact pair, m in all.
+
+    Parameters
+    ----------
+    pairs : Pairs
+        Geometry: points, frames, areas, bodies.
+    normal_force : (m,) array
+        t_n, compression positive [kN].
+    friction_force : (m,) array
+        t_t on side b along the tangent [kN].
+    gap, slip : (m,) arrays
+        y_n and y_t [m].
+    state : (m,) integer array
+        0 open, 1 stick, 2 slip along +t, 3 slip along -t.
+    """
+
+    pairs: Pairs
+    normal_force: Array
+    friction_force: Array
+    gap: Array
+    slip: Array
+    state: Array
+
+    def __len__(self) -> int:
+        return len(self.normal_force)
+
+    @property
+    def point(self) -> Array:
+        """Positions (m, 2) [m]."""
+        return self.pairs.point
+
+    @property
+    def pressure(self) -> Array:
+        """Contact pressure t_n over tributary area (m,), compression positive [kN/m2]."""
+        pressure: Array = self.normal_force / self.pairs.area
+        return pressure
+
+    @property
+    def shear(self) -> Array:
+        """Friction stress t_t over tributary area (m,) [kN/m2]."""
+        shear: Array = self.friction_force / self.pairs.area
+        return shear
+
+    @property
+    def force_on_b(self) -> Array:
+        """Force on side b of each pair (m, 2) [kN]."""
+        force: Array = self.normal_force[:, None] * self.pairs.normal + self.friction_force[:, None] * self.pairs.tangent
+        return force
+
+    def count(self, name: str) -> int:
+        """Return how many pairs are in the state called "open", "stick" or "slip"."""
+        return int(sum((self.state == code).sum() for code, word in enumerate(STATE_NAMES) if word == name))
+
+
+@dataclass(frozen=True, eq=False)
+class JointResultants:
+    """Resultants of each interface, on side b, about the middle of the interface; j interfaces.
+
+    Parameters
+    ----------
+    body_a, body_b : (j,) integer arrays
+    middle : (j, 2) array
+        [m].
+    normal, tangent : (j, 2) arrays
+    length : (j,) array
+        [m].
+    N, V : (j,) arrays
+        Normal force (compression positive) and shear force along t [kN].
+    eccentricity : (j,) array
+        Distance of the resultant from the middle along t [m]; nan where N is zero.
+    open_share : (j,) array
+        Share of the length whose pairs are open.
+    slipping : (j,) boolean array
+        True where every closed pair slips.
+    """
+
+    body_a: Array
+    body_b: Array
+    middle: Array
+    normal: Array
+    tangent: Array
+    length: Array
+    N: Array
+    V: Array
+    eccentricity: Array
+    open_share: Array
+    slipping: Array
+
+
+def joint_resultants(contacts: Contacts) -> JointResultants:
+    """Sum contact forces interface by interface; ties are left out."""
+    pairs = contacts.pairs
+    at = pairs.interface
+    inside = at >= 0
+    number = int(at.max(initial=-1)) + 1
+    index = at[inside]
+
+    def total(values: Array) -> Array:
+        return np.bincount(index, weights=values[inside], minlength=number)
+
+    length = total(pairs.length)
+    safe = np.where(length > 0, length, 1.0)
+    first = np.zeros(number, dtype=int)
+    first[index[::-1]] = np.flatnonzero(inside)[::-1]
+    tangent = pairs.tangent[first]
+    low, high = np.full(number, np.inf), np.full(number, -np.inf)
+    along = (pairs.point * pairs.tangent).sum(1)
+    np.minimum.at(low, index, along[inside])
+    np.maximum.at(high, index, along[inside])
+    centre = (low + high) / 2
+    normal_part = (pairs.point[first] * pairs.normal[first]).sum(1)
+    middle = centre[:, None] * tangent + normal_part[:, None] * pairs.normal[first]
+    N, V = total(contacts.normal_force), total(contacts.friction_force)
+    arm = np.zeros(len(pairs))
+    arm[inside] = along[inside] - centre[index]
+    moment = total(contacts.normal_force * arm)
+    scale = float(np.abs(N).max(initial=0.0))
+    loaded = np.abs(N) > 1e-12 * scale
+    closed = contacts.state != 0
+    return JointResultants(
+        body_a=pairs.body_a[first],
+        body_b=pairs.body_b[first],
+        middle=middle,
+        normal=pairs.normal[first],
+        tangent=tangent,
+        length=length,
+        N=N,
+        V=V,
+        eccentricity=np.where(loaded, moment / np.where(loaded, N, 1.0), np.nan),
+        open_share=total(pairs.length * ~closed) / safe,
+        slipping=(total((contacts.state == 1).astype(float)) == 0) & (total(closed.astype(float)) > 0),
+    )

@@ -1,0 +1,222 @@
+"""The result of one load step: an immutable value with named parts, and the numbers people ask for first."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from concio.analysis.contacts import Contacts, JointResultants, joint_resultants
+from concio.analysis.stress import Stress
+from concio.contact.assembly import Assembly
+from concio.errors import InputError
+from concio.fem.discretisation import FIXED, RIGID, rigid_rows
+from concio.lcp.certificate import Certificate
+from concio.lcp.solution import Mechanism, Solution, Status, pair_states
+from concio.model.model import Model
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """Answer of one load step, with what it was computed from.
+
+    Parameters
+    ----------
+    assembly : Assembly
+        The discretised model.
+    factors : mapping of str to float
+        Load factors of this step; groups not named have 1.
+    solution : Solution
+        What the solver found, judged against the original equations.
+    seconds : mapping
+        ``total``, ``assemble``, ``solve`` [s].
+    """
+
+    assembly: Assembly
+    factors: Mapping[str, float]
+    solution: Solution
+    seconds: Mapping[str, float]
+
+    @property
+    def model(self) -> Model:
+        """The model that was solved."""
+        return self.assembly.model
+
+    @property
+    def status(self) -> Status:
+        """Outcome; its value is a sentence."""
+        return self.solution.status
+
+    @property
+    def solved(self) -> bool:
+        """True for a certified equilibrium."""
+        return self.solution.solved
+
+    @property
+    def certificate(self) -> Certificate:
+        """Residuals of the answer, computed from the original equations."""
+        return self.solution.certificate
+
+    @property
+    def method(self) -> str:
+        """Name of the method that produced the answer."""
+        return self.solution.method
+
+    @property
+    def mechanism(self) -> Mechanism | None:
+        """The proof that there is no equilibrium, where that is the outcome."""
+        return self.solution.mechanism
+
+    @cached_property
+    def displacement(self) -> Array:
+        """Displacements of all unknowns (N_all,), body after body, (x, y) node by node [m]."""
+        return self.assembly.displacement(self.solution.displacement, self.factors)
+
+    @cached_property
+    def mechanism_velocity(self) -> Array | None:
+        """Velocity of the mechanism on all unknowns (N_all,), largest entry 1; None where there is none."""
+        if self.mechanism is None:
+            return None
+        velocity: Array = self.assembly.supported.T @ self.mechanism.velocity
+        return velocity
+
+    @cached_property
+    def contacts(self) -> Contacts:
+        """State of every contact pair."""
+        s = self.solution
+        state = pair_states(self.assembly.problem(self.factors), s)
+        return Contacts(
+            self.assembly.pairs, s.normal_force, s.friction_force[:, 0], s.gap, s.slip[:, 0], state
+        )
+
+    @cached_property
+    def joints(self) -> JointResultants:
+        """Resultants of each interface."""
+        return joint_resultants(self.contacts)
+
+    @cached_property
+    def stress(self) -> Stress:
+        """Stresses of the bodies, tension positive."""
+        return Stress(self.assembly.disc, self.displacement)
+
+    def body_index(self, body: int | str) -> int:
+        """Return the number of a body given by number or name."""
+        if isinstance(body, str):
+            for i, b in enumerate(self.model.bodies):
+                if b.name == body:
+                    return i
+            msg = f"there is no body called '{body}'"
+            raise InputError(msg, hint="see the names with 'concio check'")
+        return body
+
+    def nodes(self, body: int | str) -> Array:
+        """Return node coordinates (n, 2) of a body; outline vertices of a rigid or fixed one [m]."""
+        return self.assembly.disc.nodes(self.body_index(body))
+
+    def node_displacement(self, body: int | str, u: Array | None = None) -> Array:
+        """Return the displacements (n, 2) of :meth:`nodes` [m]; ``u`` (N_all,) may be given, such as a mechanism."""
+        b = self.body_index(body)
+        disc = self.assembly.disc
+        u = self.displacement if u is None else u
+        own = u[disc.offsets[b] : disc.offsets[b + 1]]
+        if disc.shape_of[b] == FIXED:
+            return self._obstacle_displacement(b)
+        if disc.shape_of[b] == RIGID:
+            return np.array([rigid_rows(x, disc.centroids[b], disc.reach[b]) @ own for x in disc.nodes(b)])
+        return own.reshape(-1, 2)
+
+    def _obstacle_displacement(self, b: int) -> Array:
+        nodes = self.assembly.disc.nodes(b)
+        total = np.zeros_like(nodes)
+        arm = nodes - self.assembly.disc.centroids[b]
+        for s in self.model.supports:
+            if s.body == self.model.bodies[b].name:
+                factor = self.factors.get(s.group, 1.0)
+                turn = s.rotation * np.column_stack([-arm[:, 1], arm[:, 0]])
+                total = total + factor * (np.array(s.displacement) + turn)
+        return total
+
+    @cached_property
+    def max_settlement(self) -> float:
+        """Largest downward displacement of any point of a free body [m]; zero if everything rises."""
+        lowest = 0.0
+        disc = self.assembly.disc
+        elastic = np.concatenate([np.repeat(disc.shape_of >= 0, np.diff(disc.offsets)), np.zeros(1, dtype=bool)])[:-1]
+        if elastic.any():
+            lowest = min(lowest, float(self.displacement[elastic].reshape(-1, 2)[:, 1].min()))
+        for b in np.flatnonzero(disc.shape_of == RIGID):
+            lowest = min(lowest, float(self.node_displacement(int(b))[:, 1].min()))
+        return -lowest
+
+    @cached_property
+    def reactions(self) -> dict[str, tuple[float, float]]:
+        """Force of each fixed body and each support on the structure, (x, y) [kN]."""
+        pairs, disc = self.assembly.pairs, self.assembly.disc
+        force = self.contacts.force_on_b
+        found: dict[str, tuple[float, float]] = {}
+        for b in np.flatnonzero(disc.shape_of == FIXED):
+            total = force[pairs.body_a == b].sum(0) - force[pairs.body_b == b].sum(0)
+            found[self.model.bodies[b].name] = (float(total[0]), float(total[1]))
+        held = [s for s in self.model.supports if self.model.body(s.body).kind != "fixed"]
+        if held:
+            s = self.solution
+            rest = self.assembly.K @ self.displacement - self.assembly.load(self.factors)
+            rest -= pairs.C_n.T @ s.normal_force + pairs.C_t.T @ s.friction_force[:, 0]
+            for support in held:
+                b = self.body_index(support.body)
+                own = rest[disc.offsets[b] : disc.offsets[b + 1]]
+                own = own[:2] if disc.shape_of[b] == RIGID else own.reshape(-1, 2).sum(0)
+                found[support.name] = (float(own[0]), float(own[1]))
+        return found
+
+    @property
+    def total_load(self) -> tuple[float, float]:
+        """Resultant of the loads (x, y) [kN]."""
+        f = self.assembly.load(self.factors)
+        disc = self.assembly.disc
+        total = np.zeros(2)
+        for b, s in enumerate(disc.shape_of):
+            own = f[disc.offsets[b] : disc.offsets[b + 1]]
+            if s == RIGID:
+                total += own[:2]
+            elif s != FIXED:
+                total += own.reshape(-1, 2).sum(0)
+        return float(total[0]), float(total[1])
+
+    def summary(self) -> dict[str, Any]:
+        """Return the numbers of ``--json``: plain types, kN and m."""
+        contacts = self.contacts if self.solved else None
+        data: dict[str, Any] = {
+            "status": self.status.name.lower(),
+            "sentence": self.status.value,
+            "method": self.method,
+            "title": self.model.title,
+            "bodies": len(self.model.free_bodies),
+            "contacts": len(self.assembly.pairs),
+            "interfaces": len(self.assembly.detection.interfaces),
+            "unknowns": self.assembly.disc.unknowns,
+            "certificate": {k: _finite(v) for k, v in self.certificate.as_dict().items()},
+            "iterations": self.solution.iterations,
+            "factorisations": self.solution.factorisations,
+            "seconds": {k: round(v, 6) for k, v in self.seconds.items()},
+            "load_factors": {g: float(self.factors.get(g, 1.0)) for g in self.assembly.groups},
+            "total_load": list(self.total_load),
+            "trace": list(self.solution.trace),
+            "units": {"force": "kN", "length": "m", "stress": "kN/m2"},
+        }
+        if contacts is not None:
+            data["max_settlement"] = self.max_settlement
+            data["reactions"] = {name: list(force) for name, force in self.reactions.items()}
+            data["pairs"] = {name: contacts.count(name) for name in ("open", "stick", "slip")}
+        if self.mechanism is not None:
+            data["mechanism"] = {"power": self.mechanism.power, "violation": self.mechanism.violation}
+        return data
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

@@ -1,0 +1,72 @@
+"""One load step of a model: assemble, solve, judge."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from typing import Any, Literal
+
+from concio.analysis.result import Result
+from concio.contact.assembly import Assembly, assemble
+from concio.errors import NoEquilibriumError, SolverError
+from concio.lcp.methods import find
+from concio.lcp.solution import ProgressCallback, Status
+from concio.model.model import Model
+
+
+def solve(
+    model: Model | Assembly,
+    method: str = "auto",
+    *,
+    factors: Mapping[str, float] | None = None,
+    on_failure: Literal["raise", "return"] = "raise",
+    progress: ProgressCallback | None = None,
+    **options: Any,
+) -> Result:
+    """Solve one load step.
+
+    Parameters
+    ----------
+    model : Model or Assembly
+        An assembly saves meshing again.
+    method : str
+        Name of a method, see :data:`concio.lcp.methods.METHODS`.
+    factors : mapping of str to float, optional
+        Factors of load groups; groups not named have 1.
+    on_failure : {"raise", "return"}
+        Whether an outcome other than a certified equilibrium raises or is returned as it is.
+    progress : callable, optional
+        Called with :class:`concio.lcp.solution.Progress` as the solver works; true stops it.
+    **options
+        Options of the method.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    InputError
+        The model cannot be used as it is.
+    NoEquilibriumError
+        A mechanism proves that the loads cannot be carried.
+    SolverError
+        The solver stopped without an answer.
+    """
+    solver = find(method)
+    begin = time.perf_counter()
+    assembly = model if isinstance(model, Assembly) else assemble(model)
+    problem = assembly.problem(factors)
+    assembled = time.perf_counter()
+    solution = solver(problem, progress=progress, **options)
+    end = time.perf_counter()
+    seconds = {"total": end - begin, "assemble": assembled - begin, "solve": end - assembled}
+    result = Result(assembly, dict(factors or {}), solution, seconds)
+    if solution.solved or on_failure == "return":
+        return result
+    detail = "; ".join(solution.trace)
+    if solution.status is Status.NO_EQUILIBRIUM:
+        raise NoEquilibriumError(
+            solution.status.value, hint="solve with on_failure='return' and look at result.mechanism"
+        )
+    raise SolverError(f"{solution.status.value} Tried: {detail}", hint="see result.certificate with on_failure='return'")  # noqa: EM102
