@@ -1,0 +1,293 @@
+r"""Load paths followed exactly, event by event.
+
+Between two changes of contact state the response of elastic bodies with Coulomb joints is linear in the load
+parameter. The path is therefore a polygon, and it is followed from corner to corner: solve the rate problem
+(:mod:`concio.lcp.path_rates`), find the parameter at which the next pair opens, closes, slips, sticks or crushes,
+go there, and begin again. Slip is measured from where a pair last stuck (rate form of friction), so that the path is
+the limit of incremental analyses as their steps shrink.
+
+Control is by the load parameter, which ends at the limit point, or by a functional of the displacements (the motion
+of a control point), which passes it and follows the falling branch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+
+from concio.contact.problem import Array
+from concio.lcp.path_equations import PathEquations, Scaled
+from concio.lcp.path_rates import Rates, Values, find_direction, grips, values
+from concio.lcp.path_state import CLOSED, CRUSHED, OPEN, STICK, LinearPath, PathState, energy_of_step
+from concio.lcp.solution import Progress, ProgressCallback
+
+
+class Outcome(Enum):
+    """How a path ended; the value is the sentence a user reads."""
+
+    REACHED = "The end asked for was reached."
+    LIMIT = "The load cannot be increased further: no state continues the path under growing load."
+    MECHANISM = "A mechanism has formed: the structure moves on without change of load and without further events."
+    LOST = "No state was found that continues the path: none of the critical pairs' states gives consistent rates."
+    TOO_MANY = "There were more events than allowed."
+    CANCELLED = "Stopped on request."
+
+
+@dataclass(frozen=True)
+class Event:
+    """A change of state of one pair.
+
+    Parameters
+    ----------
+    parameter : float
+        Load parameter.
+    control : float
+        Displacement of the control point, or the parameter where there is none.
+    pair : int
+    kind : str
+        "opens", "closes", "slips", "sticks", "crushes" or "recovers".
+    direction : int
+        Of the slip, +1 or -1; else 0.
+    step : int
+        Index of the state of the path at which it happens.
+    """
+
+    parameter: float
+    control: float
+    pair: int
+    kind: str
+    direction: int
+    step: int
+
+
+@dataclass(frozen=True, eq=False)
+class EventPath:
+    """An exact path: its corners and its events.
+
+    Parameters
+    ----------
+    states : tuple of PathState
+        Start, every corner, end.
+    events : tuple of Event
+    outcome : Outcome
+    direction : (N,) array
+        Last rate of the displacements, scaled to largest entry 1: the mechanism where the path ended in one.
+    factorisations : int
+    """
+
+    states: tuple[PathState, ...]
+    events: tuple[Event, ...]
+    outcome: Outcome
+    direction: Array
+    factorisations: int
+
+    @property
+    def peak(self) -> float:
+        """Largest load parameter met."""
+        return max(state.parameter for state in self.states)
+
+    @property
+    def end(self) -> PathState:
+        """Last state."""
+        return self.states[-1]
+
+    def at(self, parameter: float) -> PathState:
+        """Return the state at a value of the parameter on the first branch that meets it, by exact interpolation."""
+        for a, b in zip(self.states, self.states[1:], strict=False):
+            low, high = sorted((a.parameter, b.parameter))
+            if low <= parameter <= high and high > low:
+                share = (parameter - a.parameter) / (b.parameter - a.parameter)
+                names = ("displacement", "normal_force", "friction_force", "slip", "offset")
+                mixed = {name: (1 - share) * getattr(a, name) + share * getattr(b, name) for name in names}
+                return replace(b, parameter=parameter, **mixed)
+        msg = f"the path does not meet the parameter {parameter:g}"
+        raise ValueError(msg)
+
+
+def follow(
+    path: LinearPath,
+    start: PathState,
+    *,
+    until: float,
+    control: Array | None = None,
+    max_events: int = 20_000,
+    progress: ProgressCallback | None = None,
+    stop: Callable[[PathState], bool] | None = None,
+) -> EventPath:
+    """Follow a path from a state in equilibrium.
+
+    Parameters
+    ----------
+    path : LinearPath
+    start : PathState
+        State at ``start.parameter``; at rest without forces where the path begins with the first load.
+    until : float
+        Load parameter to reach, or with ``control`` the value of ``control @ u`` to reach [m].
+    control : (N,) array, optional
+        Functional of the displacements that grows (or falls) steadily instead of the load.
+    max_events : int
+        Corners after which to stop.
+    progress : callable, optional
+    stop : callable, optional
+        Asked at every corner; true ends the path there with outcome REACHED.
+    """
+    return _Follower(path, start, until, control).run(max_events, progress, stop)
+
+
+class _Follower:
+    def __init__(self, path: LinearPath, start: PathState, until: float, control: Array | None) -> None:
+        self.path, self.state = path, start
+        self.scaled = Scaled.of(path)
+        functional = None if control is None else np.asarray(control, dtype=float)
+        spare = path.problem.laws.cohesion - path.problem.laws.friction * path.problem.laws.tension
+        rough = (path.problem.laws.friction > 0) | (path.problem.laws.cohesion > 0)
+        contact, sliding = start.contact.astype(np.int8), start.sliding.astype(np.int8)
+        sliding = np.where(~rough | ((contact == OPEN) & (spare <= 0)), 1, sliding).astype(np.int8)
+        self.control = functional
+        self.unit = 1.0 if functional is None else self.scaled.length
+        self.equations = PathEquations(self.scaled, contact, sliding, functional)
+        self.slip, self.offset = start.slip / self.scaled.length, start.offset / self.scaled.length
+        self.x = np.concatenate(
+            [
+                start.displacement / self.scaled.length,
+                start.normal_force / self.scaled.force,
+                start.friction_force / self.scaled.force,
+                [start.parameter],
+            ]
+        )
+        self.until = until / self.unit
+        self.sense = 1.0 if self.until >= self.given() else -1.0
+
+    def given(self) -> float:
+        """Return the present value of what is controlled."""
+        return float(self.x[-1] if self.control is None else self.control @ self.x[: self.equations.n])
+
+    def run(
+        self, max_events: int, progress: ProgressCallback | None, stop: Callable[[PathState], bool] | None
+    ) -> EventPath:
+        states, events = [self.state], list[Event]()
+        direction: Array | None = None
+        self.reset()
+        for corner in range(max_events):
+            self.settle()
+            v = values(self.equations, self.x, self.slip, self.offset)
+            old = (self.equations.contact.copy(), self.equations.sliding.copy(), grips(self.equations))
+            found, runaway = find_direction(self.equations, v, direction, self.sense)
+            if found is None:
+                outcome = Outcome.LIMIT if self.control is None else Outcome.LOST
+                return self.finish(states, events, outcome, direction if runaway is None else runaway)
+            events.extend(self.name_events(old, len(states) - 1))
+            direction = found.direction
+            left = (self.until - self.given()) * self.sense
+            length = self.distance(v, found)
+            reached = left <= length
+            if not np.isfinite(min(left, length)):
+                return self.finish(states, events, Outcome.MECHANISM, direction)
+            self.advance(found, min(left, length))
+            states.append(self.record())
+            if reached or (stop is not None and stop(states[-1])):
+                return self.finish(states, events, Outcome.REACHED, direction)
+            note = Progress("event-path", corner, 0.0, f"parameter {self.x[-1]:.6g}, {len(events)} events")
+            if progress is not None and progress(note):
+                return self.finish(states, events, Outcome.CANCELLED, direction)
+        return self.finish(states, events, Outcome.TOO_MANY, direction)
+
+    def reset(self) -> None:
+        """Solve the equations of the start states, so that the start lies exactly on them."""
+        x, residual = self.equations.solve(self.right_hand_side())
+        size = float(np.abs(self.x).max(initial=0.0))
+        if residual < 1e-10 and np.abs(x - self.x).max() <= 1e-6 * size:
+            self.x = x
+
+    def right_hand_side(self) -> Array:
+        return self.equations.right_hand_side(self.slip, self.offset, self.given())
+
+    def settle(self) -> None:
+        """Let slip and offset follow what has slipped or been crushed."""
+        self.slip, self.offset = self.moved()
+
+    def moved(self) -> tuple[Array, Array]:
+        """Return slip and offset at the present point, scaled: dilatancy lifts wherever a pair slips, open or not."""
+        e = self.equations
+        opening, position = e.positions(self.x)
+        moving = e.sliding != STICK
+        offset = self.offset - np.where(moving, e.data["psi"] * np.abs(position - self.slip), 0.0)
+        exact = (e.contact == CRUSHED) | ((e.contact == CLOSED) & moving & (e.data["psi"] > 0))
+        return np.where(moving, position, self.slip), np.where(exact, -opening, offset)
+
+    def distance(self, v: Values, r: Rates) -> float:
+        """Return how far the control can go until a pair meets the next bound of its state."""
+        e, still = self.equations, r.still
+        grip = grips(e)
+        ways = [
+            (v.gap, r.opening, e.contact == OPEN),
+            (v.force, r.force, e.contact == CLOSED),
+            (v.room, -r.force, e.contact == CLOSED),
+            (v.plus, r.plus, (e.sliding == STICK) & grip),
+            (v.minus, r.minus, (e.sliding == STICK) & grip),
+        ]
+        best = np.inf
+        for value, rate, mask in ways:
+            use = mask & (rate < -still) & np.isfinite(value)
+            if use.any():
+                best = min(best, float((np.maximum(value[use], 0.0) / -rate[use]).min()))
+        return best
+
+    def advance(self, r: Rates, length: float) -> None:
+        """Go along the direction and put the point back on the exact equations."""
+        self.x = self.x + length * r.direction
+        x, residual = self.equations.solve(self.right_hand_side())
+        size = float(np.abs(self.x).max())
+        if residual < 1e-10 and np.abs(x - self.x).max() <= 1e-6 * size:
+            self.x = x
+
+    def record(self) -> PathState:
+        e, force, length = self.equations, self.scaled.force, self.scaled.length
+        n, m = e.n, e.m
+        slip, offset = self.moved()
+        after = PathState(
+            parameter=float(self.x[-1]),
+            displacement=self.x[:n] * length,
+            normal_force=self.x[n : n + m] * force,
+            friction_force=self.x[n + m : -1] * force,
+            contact=e.contact.copy(),
+            sliding=e.sliding.copy(),
+            slip=slip * length,
+            offset=offset * length,
+        )
+        work, dissipation = energy_of_step(self.path, self.state, after)
+        after = replace(after, work=self.state.work + work, dissipation=self.state.dissipation + dissipation)
+        self.state = after
+        return after
+
+    def name_events(self, old: tuple[Array, Array, Array], step: int) -> list[Event]:
+        e = self.equations
+        contact, sliding, grip = old
+        now = grips(e)
+        given = self.given() * self.unit
+        found = []
+        for k in np.flatnonzero((contact != e.contact) | (sliding != e.sliding)):
+            if contact[k] != e.contact[k]:
+                kind = {
+                    (CLOSED, OPEN): "opens",
+                    (OPEN, CLOSED): "closes",
+                    (CLOSED, CRUSHED): "crushes",
+                    (CRUSHED, CLOSED): "recovers",
+                }.get((int(contact[k]), int(e.contact[k])), "changes")
+                found.append(Event(float(self.x[-1]), given, int(k), kind, 0, step))
+            side = int(e.sliding[k]) if now[k] else 0
+            before = int(sliding[k]) if grip[k] else 0
+            if side != before and now[k]:
+                kind = "slips" if side != STICK else "sticks"
+                if not (kind == "sticks" and contact[k] != e.contact[k]):
+                    found.append(Event(float(self.x[-1]), given, int(k), kind, side, step))
+        return found
+
+    def finish(self, states: list[PathState], events: list[Event], outcome: Outcome, last: Array | None) -> EventPath:
+        n = self.equations.n
+        direction = np.zeros(n) if last is None else last[:n]
+        top = float(np.abs(direction).max(initial=0.0)) or 1.0
+        return EventPath(tuple(states), tuple(events), outcome, direction / top, self.equations.factorisations)
