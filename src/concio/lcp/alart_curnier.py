@@ -10,9 +10,11 @@ their diagonal (exactly singular otherwise where a pair sticks, and on corners w
 sparse matrix of the structure of ``K + C'C`` for each step, the residual exact, so the shift costs digits of speed and
 none of accuracy.
 
-Globalisation: Armijo line search on the norm of the residual, non-monotone over the last five steps; a proximal term
-that vanishes with the residual keeps bodies nothing holds. Without it the method diverges on walls of a few hundred
-floating blocks; with it, it may still stall at a point where the norm has a local minimum, and says so.
+Globalisation: Armijo line search on the norm of the residual, non-monotone over the last five steps; where it has to
+take short steps the shift (a proximal term on the forces) and a proximal term on the displacements are raised, as
+Levenberg and Marquardt do, and lowered again as soon as full steps work; no step moves a body further than ten times
+what the glued structure moves. The method may still stall at a point where
+the norm has a local minimum, and says so.
 
 References
 ----------
@@ -42,6 +44,13 @@ from concio.lcp.iteration import GOAL, Record, Stopped, answer
 from concio.lcp.solution import ProgressCallback, Solution
 
 SHIFT = 1e-7
+"""Least damping: relative shift of the contact rows."""
+
+SHORT, SLOW = 0.2, 0.9
+"""A shorter step, or a residual that falls by less, raises the damping tenfold; other steps lower it."""
+
+REACH = 10.0
+"""Longest displacement in one step, in multiples of the largest of the glued structure (bodies nothing holds fly)."""
 
 
 def solve(
@@ -103,18 +112,20 @@ def newton(
     """
     recent: list[float] = []
     residual = s.residual(u, t)
-    best = [residual]
+    best, damping = [residual], SHIFT
     for _ in range(limit):
         if residual <= goal:
             return u, t, True
         if len(best) > 60 and min(best[-40:]) > 0.9 * min(best[:-40]):
             return u, t, False
-        du, dt = _newton_step(s, record, u, t, augmentation, residual)
+        du, dt = _newton_step(s, record, u, t, augmentation, residual, damping)
         if not np.isfinite(du).all():
             record.trace.append("a Newton matrix was singular.")
             return u, t, False
         length = _step_length(s, u, t, du, dt, augmentation, recent) if line_search else 1.0
         u, t = u + length * du, t + length * dt
+        slow = length < SHORT or (len(recent) > 1 and recent[-1] > SLOW * recent[-2])
+        damping = min(max(10.0 * damping, 1e-3), 1.0) if slow and line_search else max(0.1 * damping, SHIFT)
         residual = s.residual(u, t)
         best.append(residual)
         record.note(u, t, f"Newton step {length:.3g}")
@@ -128,17 +139,21 @@ def _law_residual(s: Dimensionless, u: Array, t: Array, rho: float) -> tuple[Arr
 
 
 def _newton_step(
-    s: Dimensionless, record: Record, u: Array, t: Array, rho: float, residual: float
+    s: Dimensionless, record: Record, u: Array, t: Array, rho: float, residual: float, damping: float
 ) -> tuple[Array, Array]:
     """Return the Newton direction (du, dt)."""
     w, law = _law_residual(s, u, t, rho)
     jacobian = return_map_derivative(s.cone, w, s.dilatancy)
     d = s.dim
     diagonal = (1.0 - rho * s.compliance)[:, None, :]
-    local = np.linalg.inv((1.0 + SHIFT) * np.eye(d) - jacobian * diagonal)
+    local = np.linalg.inv((1.0 + damping) * np.eye(d) - jacobian * diagonal)
     blocks = rho * local @ jacobian
     kick = -rho * (local @ law[:, :, None])[:, :, 0]
-    matrix = s.K + s.C.T @ block_diagonal(blocks) @ s.C + proximal(residual) * sp.eye_array(u.size)
+    matrix = (
+        s.K
+        + s.C.T @ block_diagonal(blocks) @ s.C
+        + max(proximal(residual), 0.1 * (damping - SHIFT)) * sp.eye_array(u.size)
+    )
     lu = record.factorise(sp.csc_array(matrix))
     du = lu.solve(-s.imbalance(u, t) + s.pull(kick))
     record.solves()
@@ -155,7 +170,9 @@ def _step_length(s: Dimensionless, u: Array, t: Array, du: Array, dt: Array, rho
 
     recent.append(norm(0.0))
     bound = max(recent[-5:])
-    trials = [0.5**k for k in range(9)]
+    reach = REACH * max(1.0, float(np.abs(s.u).max(initial=0.0)))
+    first = min(1.0, reach / max(float(np.abs(du).max(initial=0.0)), 1e-300))
+    trials = [first * 0.5**k for k in range(9)]
     best, best_length = np.inf, trials[-1]
     for length in trials:
         value = norm(length)

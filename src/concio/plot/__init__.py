@@ -1,0 +1,1 @@
+"""Figures: every function takes ``ax=``, returns it, and never shows it."""

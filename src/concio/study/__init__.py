@@ -1,0 +1,1 @@
+"""Studies over many runs: tables that compare methods, forms and parameters."""
