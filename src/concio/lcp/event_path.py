@@ -20,7 +20,7 @@ import numpy as np
 
 from concio.contact.problem import Array
 from concio.lcp.path_equations import PathEquations, Scaled
-from concio.lcp.path_rates import Rates, Values, find_direction, grips, values
+from concio.lcp.path_rates import Rates, Values, find_direction, grips, rates, values, wrong
 from concio.lcp.path_state import CLOSED, CRUSHED, OPEN, STICK, LinearPath, PathState, energy_of_step
 from concio.lcp.solution import Progress, ProgressCallback
 
@@ -146,9 +146,15 @@ class _Follower:
         rough = (path.problem.laws.friction > 0) | (path.problem.laws.cohesion > 0)
         contact, sliding = start.contact.astype(np.int8), start.sliding.astype(np.int8)
         sliding = np.where(~rough | ((contact == OPEN) & (spare <= 0)), 1, sliding).astype(np.int8)
-        self.control = functional
+        self.by_load = functional is None
         self.unit = 1.0 if functional is None else self.scaled.length
-        self.equations = PathEquations(self.scaled, contact, sliding, functional)
+        self.control = np.zeros(path.problem.unknowns + 2 * path.problem.pairs + 1)
+        if functional is None:
+            self.control[-1] = 1.0
+        else:
+            self.control[: functional.size] = functional
+        self.equations = PathEquations(self.scaled, contact, sliding, self.control)
+        self.driven = False  # a pair's slip or opening stands in for the control
         self.slip, self.offset = start.slip / self.scaled.length, start.offset / self.scaled.length
         self.x = np.concatenate(
             [
@@ -163,7 +169,7 @@ class _Follower:
 
     def given(self) -> float:
         """Return the present value of what is controlled."""
-        return float(self.x[-1] if self.control is None else self.control @ self.x[: self.equations.n])
+        return float(self.control @ self.x)
 
     def run(
         self, max_events: int, progress: ProgressCallback | None, stop: Callable[[PathState], bool] | None
@@ -175,13 +181,14 @@ class _Follower:
             self.settle()
             v = values(self.equations, self.x, self.slip, self.offset)
             old = (self.equations.contact.copy(), self.equations.sliding.copy(), grips(self.equations))
-            found, runaway = find_direction(self.equations, v, direction, self.sense)
+            found, runaway = self.direction(v, direction)
             if found is None:
-                outcome = Outcome.LIMIT if self.control is None else Outcome.LOST
+                outcome = Outcome.LIMIT if self.by_load else Outcome.LOST
                 return self.finish(states, events, outcome, direction if runaway is None else runaway)
             events.extend(self.name_events(old, len(states) - 1))
             direction = found.direction
-            left = (self.until - self.given()) * self.sense
+            rate = float(self.control @ direction) * self.sense
+            left = (self.until - self.given()) * self.sense / rate if rate > found.still else np.inf
             length = self.distance(v, found)
             reached = left <= length
             if not np.isfinite(min(left, length)):
@@ -203,7 +210,7 @@ class _Follower:
             self.x = x
 
     def right_hand_side(self) -> Array:
-        return self.equations.right_hand_side(self.slip, self.offset, self.given())
+        return self.equations.right_hand_side(self.slip, self.offset, float(self.equations.control @ self.x))
 
     def settle(self) -> None:
         """Let slip and offset follow what has slipped or been crushed."""
@@ -217,6 +224,45 @@ class _Follower:
         offset = self.offset - np.where(moving, e.data["psi"] * np.abs(position - self.slip), 0.0)
         exact = (e.contact == CRUSHED) | ((e.contact == CLOSED) & moving & (e.data["psi"] > 0))
         return np.where(moving, position, self.slip), np.where(exact, -opening, offset)
+
+    def direction(self, v: Values, known: Array | None) -> tuple[Rates | None, Array | None]:
+        """Find the way on: under the control; failing that, past a snap-back, driven by a pair that wants to move.
+
+        Under displacement control the structure may snap back: no state continues the path while the control point
+        advances, but one does while load and control point retreat and a pair slips or opens on. That pair's motion
+        is then prescribed until the control point advances again.
+        """
+        if self.driven and known is not None and float(self.control @ known) * self.sense > 0:
+            self.equations.set_control(self.control)
+            self.driven, known = False, None
+        sense = 1.0 if self.driven else self.sense
+        found, runaway = find_direction(self.equations, v, known, sense)
+        if found is not None or self.by_load or known is None:
+            return found, runaway
+        driver = self.equations.control
+        for row in self.drivers(v, known):
+            self.equations.set_control(row)
+            found, _ = find_direction(self.equations, v)
+            if found is not None:
+                self.driven = True
+                return found, None
+        self.equations.set_control(driver)
+        return None, runaway
+
+    def drivers(self, v: Values, known: Array) -> list[Array]:
+        """Return the motions (size,) that the pairs at their bounds would begin, the most urgent first."""
+        e = self.equations
+        rows = []
+        for _, k, contact, sliding in sorted(wrong(e, v, rates(e, known)), reverse=True):
+            side = sliding if sliding != STICK else -int(e.sliding[k])
+            if contact != OPEN:
+                rows += [side * e.slip_of(k), e.opening_of(k), -side * e.slip_of(k)]
+            else:
+                rows += [e.opening_of(k), e.slip_of(k), -e.slip_of(k)]
+        slipping = np.flatnonzero((e.sliding != STICK) & (e.contact == CLOSED) & grips(e))
+        speed = e.sliding[slipping] * e.positions(known, rate=True)[1][slipping]
+        rows.extend(e.sliding[k] * e.slip_of(int(k)) for k in slipping[np.argsort(-speed)][:5])
+        return rows
 
     def distance(self, v: Values, r: Rates) -> float:
         """Return how far the control can go until a pair meets the next bound of its state."""

@@ -103,11 +103,11 @@ class PathEquations:
     scaled : Scaled
     contact, sliding : (m,) integer arrays
         States; changed only through :meth:`set_state`.
-    control : (N,) array or None
-        Functional of the displacements that is prescribed; None prescribes tau.
+    control : (size,) array
+        Functional of the scaled unknowns that is prescribed; changed only through :meth:`set_control`.
     """
 
-    def __init__(self, scaled: Scaled, contact: Array, sliding: Array, control: Array | None = None) -> None:
+    def __init__(self, scaled: Scaled, contact: Array, sliding: Array, control: Array) -> None:
         problem = scaled.path.problem
         self.scaled, self.data = scaled, scaled.arrays
         self.n, self.m = problem.unknowns, problem.pairs
@@ -170,11 +170,6 @@ class PathEquations:
         sigma = self.sliding.astype(float)
         keep_n, keep_t = sp.diags_array(closed.astype(float)), sp.diags_array(stick.astype(float))
         tilt = np.where(closed, d["psi"] * sigma, 0.0)
-        last = np.zeros(self.size)
-        if self.control is None:
-            last[-1] = 1.0
-        else:
-            last[:n] = self.control
         column_n = np.where(closed, d["x_rate"], 0.0) - tilt * d["t_rate"]
         column_t = np.where(stick, d["t_rate"], 0.0)
         blocks = [
@@ -193,7 +188,7 @@ class PathEquations:
             ],
         ]
         top = sp.csr_array(sp.block_array(blocks, format="csr"))
-        return sp.csr_array(sp.vstack([top, sp.csr_array(last[None])], format="csr"))
+        return sp.csr_array(sp.vstack([top, sp.csr_array(self.control[None])], format="csr"))
 
     def factorise(self) -> None:
         """Factorise the matrix of the present states."""
@@ -215,19 +210,26 @@ class PathEquations:
             return
         self.contact[k], self.sliding[k] = contact, sliding
         for row, entries in ((self.n + k, self.normal_row(k)), (self.n + self.m + k, self.tangential_row(k))):
-            span = slice(self.base.indptr[row], self.base.indptr[row + 1])
-            old = np.zeros(self.size)
-            old[self.base.indices[span]] = self.base.data[span]
             new = np.zeros(self.size)
             np.add.at(new, entries[0], entries[1])
-            if np.array_equal(old, new):
-                self.changed.pop(row, None)
-            else:
-                delta = new - old
-                used = np.flatnonzero(delta)
-                self.changed[row] = (used, delta[used])
+            self._replace(row, new)
         if len(self.columns) > UPDATES or len(self.changed) > UPDATES:
             self.factorise()
+
+    def set_control(self, control: Array) -> None:
+        """Prescribe another functional (size,) of the scaled unknowns."""
+        self.control = control
+        self._replace(self.size - 1, control)
+
+    def _replace(self, row: int, new: Array) -> None:
+        span = slice(self.base.indptr[row], self.base.indptr[row + 1])
+        old = np.zeros(self.size)
+        old[self.base.indices[span]] = self.base.data[span]
+        delta = new - old
+        used = np.flatnonzero(delta)
+        self.changed.pop(row, None)
+        if used.size:
+            self.changed[row] = (used, delta[used])
 
     def multiply(self, x: Array) -> Array:
         """Return the true matrix times x, shape (size,) or (size, k)."""
@@ -286,10 +288,26 @@ class PathEquations:
             x = x + self._approximate(r)
         return best, smallest
 
+    def slip_of(self, k: int) -> Array:
+        """Return the plastic slip of pair k as a functional of the unknowns, (size,)."""
+        row = np.zeros(self.size)
+        columns, entries = self._row(self.C_t, k)
+        row[columns] = entries
+        row[self.n + self.m + k], row[-1] = self.data["a_t"][k], self.data["t_rate"][k]
+        return row
+
+    def opening_of(self, k: int) -> Array:
+        """Return the opening of pair k as a functional of the unknowns, (size,)."""
+        row = np.zeros(self.size)
+        columns, entries = self._row(self.C_n, k)
+        row[columns] = entries
+        row[self.n + k], row[-1] = self.data["a_n"][k], self.data["x_rate"][k]
+        return row
+
     # -- right-hand sides and values ------------------------------------------------------------------------------
 
     def right_hand_side(self, slip: Array, offset: Array, given: float) -> Array:
-        """Return the right-hand side for scaled slip s and offset o (m,) and the control value.
+        """Return the right-hand side for scaled slip s and offset o (m,) and the value of the control.
 
         ``offset`` of a slipping dilatant pair is that at the beginning of its slip, ``slip`` likewise.
         """
