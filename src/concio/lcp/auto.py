@@ -12,7 +12,7 @@ from typing import Any
 
 from concio.contact.problem import ContactProblem
 from concio.lcp import methods
-from concio.lcp.engine import Cancelled, Run
+from concio.lcp.engine import STARTS, Cancelled, Run
 from concio.lcp.existence import find_mechanism
 from concio.lcp.scaled import scale
 from concio.lcp.solution import ProgressCallback, Solution, Status, failed
@@ -40,7 +40,7 @@ def solve(
     """
     run = Run(scale(problem, engine), progress)
     try:
-        found = run.plain()
+        found = run.plain(STARTS[0])
         if found is not None:
             return run.solution(found)
         mechanism = find_mechanism(problem)
@@ -56,7 +56,9 @@ def solve(
                 trace=tuple(run.trace),
             )
         run.trace.append("no mechanism: statically admissible forces exist")
-        found = run.homotopy()
+        for start in STARTS[1:]:
+            found = found or run.plain(start)
+        found = found or run.homotopy()
         if found is not None:
             return run.solution(found)
         if problem.pairs <= PIVOTING:

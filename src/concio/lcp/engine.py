@@ -9,12 +9,18 @@ import numpy as np
 from concio.contact.problem import ContactProblem
 from concio.lcp.exact_finish import Finished, finish
 from concio.lcp.homotopy import walk
-from concio.lcp.interior_point import InteriorPoint
+from concio.lcp.interior_point import START, InteriorPoint, Iterate
 from concio.lcp.scaled import Scaled, scale
 from concio.lcp.solution import Progress, ProgressCallback, Solution, Status, judge
 from concio.lcp.sparse_factor import Engine
 
 NAME = "interior-point"
+
+TARGETS = (1e-6, 1e-8, 1e-10)
+"""Relative residuals at which the exact finish is tried."""
+
+STARTS = (10.0, 100.0, 1000.0)
+"""Sizes of the starting points that are tried in turn; jammed structures want the larger."""
 
 
 class Cancelled(Exception):
@@ -27,7 +33,6 @@ def solve(
     progress: ProgressCallback | None = None,
     engine: Engine = "superlu",
     homotopy: bool = True,
-    target: float = 1e-7,
     **options: Any,
 ) -> Solution:
     """Solve one load step.
@@ -40,8 +45,6 @@ def solve(
         Sparse factorisation.
     homotopy : bool
         Walk from associated flow where the plain iteration fails.
-    target : float
-        Residual at which the interior point hands over to the exact finish, scaled units.
 
     Returns
     -------
@@ -49,9 +52,11 @@ def solve(
         SOLVED with its certificate, or GAVE_UP; this method proves no collapse.
     """
     scaled = scale(problem, engine)
-    run = Run(scaled, progress, target)
+    run = Run(scaled, progress)
     try:
-        found = run.plain()
+        found = None
+        for start in STARTS:
+            found = found or run.plain(start)
         if found is None and homotopy and scaled.rough.any():
             found = run.homotopy()
     except Cancelled:
@@ -66,11 +71,10 @@ class Run:
     ----------
     scaled : Scaled
     progress : callable or None
-    target : float
     """
 
-    def __init__(self, scaled: Scaled, progress: ProgressCallback | None = None, target: float = 1e-7) -> None:
-        self.scaled, self.progress, self.target = scaled, progress, target
+    def __init__(self, scaled: Scaled, progress: ProgressCallback | None = None) -> None:
+        self.scaled, self.progress = scaled, progress
         self.engine = InteriorPoint(scaled)
         self.iterations = 0
         self.trace: list[str] = []
@@ -88,30 +92,41 @@ class Run:
 
         return report
 
-    def plain(self, most: int = 80) -> Finished | None:
-        """Plain iteration from the standard start; return the exact answer or None."""
-        z = self.engine.start()
-        outcome = self.engine.run(z, target=self.target, most=most, watch=self.watch("interior point"))
-        self.iterations += outcome.iterations
-        self.trace.append(
-            f"interior point: {outcome.iterations} iterations, residual {outcome.residual:.1e}"
-            + ("" if outcome.converged else ", not converged")
-        )
-        return self.finish(z.u, z.t_n, z.t_t) if outcome.converged else None
+    def plain(self, start: float = START, most: int = 80) -> Finished | None:
+        """Iterate from the standard start of a size; return the exact answer or None."""
+        z = self.engine.start(start)
+        return self.close_in(z, f"interior point from {start:g}", 0.0, most)
+
+    def close_in(self, z: Iterate, stage: str, theta: float = 0.0, most: int = 80) -> Finished | None:
+        """Iterate to ever smaller targets and try the exact finish at each, until it succeeds or no progress is made."""
+        found = None
+        for target in TARGETS:
+            outcome = self.engine.run(z, theta=theta, target=target, most=most, watch=self.watch(stage))
+            self.iterations += outcome.iterations
+            close = outcome.converged or outcome.residual < 1e-5
+            self.trace.append(
+                f"{stage}: {outcome.iterations} iterations, residual {outcome.residual:.1e}"
+                + ("" if outcome.converged else ", stopped")
+            )
+            if close:
+                found = self.finish(z.u, z.t_n, z.t_t, rounds=3 if outcome.converged else 12)
+            if found is not None or not outcome.converged:
+                break
+        return found
 
     def homotopy(self) -> Finished | None:
         """Walk from associated flow; return the exact answer or None."""
-        z, path = walk(self.engine, target=self.target, watch=self.watch("dilatancy homotopy"))
+        z, path = walk(self.engine, watch=self.watch("dilatancy homotopy"))
         self.iterations += path.iterations
         self.trace.append(
             f"dilatancy homotopy: {path.iterations} iterations, "
             + (f"stopped at theta = {path.theta:.3g}" if path.theta > 0 else "reached Coulomb friction")
         )
-        return self.finish(z.u, z.t_n, z.t_t) if path.converged else None
+        return self.close_in(z, "interior point from there") if path.theta == 0 else None
 
-    def finish(self, u: np.ndarray, t_n: np.ndarray, t_t: np.ndarray) -> Finished | None:
+    def finish(self, u: np.ndarray, t_n: np.ndarray, t_t: np.ndarray, rounds: int = 12) -> Finished | None:
         """Exact finish of a point; return it if exact, None (and keep the best) if not."""
-        found = finish(self.scaled, u, t_n, t_t)
+        found = finish(self.scaled, u, t_n, t_t, rounds)
         exact = found.error <= 1e-9
         self.trace.append(
             f"exact finish: {found.solves} linear solves, residual {found.error:.1e}"

@@ -2,7 +2,7 @@ r"""Dilatancy homotopy: from associated flow, which is convex, to Coulomb fricti
 
 With the dilatancy :math:`d + \theta(\mu - d)` the problem at theta = 1 is a convex programme, solvable whenever forces
 within the cones balance the loads. The walk keeps a point near the central path at the product ``LEVEL`` and lowers
-theta in steps that grow while they succeed; at theta = 0 the interior point goes down to a solution. A turning point in
+theta in steps that grow while they succeed; from theta = 0 the interior point goes down to a solution. A turning point in
 theta (the path bends back) stops the walk; the caller then tries another path.
 """
 
@@ -27,13 +27,10 @@ class Walk:
     ----------
     theta : float
         Smallest theta reached; 0 is the problem itself.
-    converged : bool
-        The last interior-point run at theta = 0 converged.
     iterations : int
     """
 
     theta: float
-    converged: bool
     iterations: int
 
 
@@ -41,7 +38,6 @@ def walk(
     engine: InteriorPoint,
     *,
     level: float = LEVEL,
-    target: float = 1e-7,
     most: int = 300,
     watch: Callable[[int, float], bool | None] | None = None,
 ) -> tuple[Iterate, Walk]:
@@ -52,8 +48,6 @@ def walk(
     engine : InteriorPoint
     level : float
         Product at which the walk stays.
-    target : float
-        Residual and product to reach at theta = 0.
     most : int
         Largest number of iterations in all.
     watch : callable, optional
@@ -63,7 +57,7 @@ def walk(
     outcome = engine.run(z, theta=1.0, level=level, most=80, watch=watch)
     total = outcome.iterations
     if not outcome.converged:
-        return z, Walk(1.0, False, total)
+        return z, Walk(1.0, total)
     theta, stride = 1.0, 0.2
     while theta > 0 and total < most:
         new = max(0.0, theta - stride)
@@ -77,11 +71,8 @@ def walk(
         else:
             stride /= 2.5
             if stride < 2e-4:
-                return z, Walk(theta, False, total)
-    if theta > 0:
-        return z, Walk(theta, False, total)
-    outcome = engine.run(z, theta=0.0, target=target, most=60, watch=watch)
-    return z, Walk(0.0, outcome.converged, total + outcome.iterations)
+                return z, Walk(theta, total)
+    return z, Walk(theta, total)
 
 
 def recentre(z: Iterate, level: float) -> None:

@@ -75,9 +75,9 @@ class Outcome:
         Residual and complementarity below the target.
     iterations : int
     residual : float
-        Largest residual of the linear equations, scaled units.
+        Largest residual, forces relative to the largest force and lengths to the largest displacement.
     complementarity : float
-        Mean product.
+        Mean product over both.
     """
 
     converged: bool
@@ -154,11 +154,11 @@ class InteriorPoint:
         Parameters
         ----------
         z : Iterate
-            Changed in place.
+            Changed in place; where the run does not converge, the best point met is put back.
         theta : float
             Share of associated flow.
         target : float
-            Residual and mean product to reach.
+            Relative residual and mean product to reach.
         most : int
             Largest number of iterations.
         level : float
@@ -168,21 +168,34 @@ class InteriorPoint:
         """
         s, r, c = self.problem, self.rough, self.capped
         dilatancy, mu = self.dilatancy(theta), s.mu
-        step, short, best = 1.0, 0, np.inf
-        residual = gap = np.inf
+        step, short = 1.0, 0
+        best, kept, since = np.inf, z.copy(), 0
         for iteration in range(most + 1):
             r_u, r_n, r_t, r_p, r_m, r_q = self.residuals(z, theta)
-            residual = max(float(np.abs(v).max(initial=0.0)) for v in (r_u, r_n, r_t, r_p, r_m, r_q))
+            force = max(1.0, float(z.t_n.max(initial=0.0)), float(np.abs(z.t_t).max(initial=0.0)))
+            length = max(1.0, float(np.abs(z.u).max(initial=0.0)))
+            residual = max(
+                *(float(np.abs(v).max(initial=0.0)) / force for v in (r_u, r_p, r_m, r_q)),
+                *(float(np.abs(v).max(initial=0.0)) / length for v in (r_n, r_t)),
+            )
             gap = self.gap(z)
-            if not np.isfinite(residual + gap):
+            typical = max(1.0, float(z.t_n.mean())) * max(1.0, float((z.y_n + z.y_p + z.y_m).mean()))
+            relative = gap / typical
+            merit = max(residual, relative)
+            if not np.isfinite(merit):
                 break
-            if max(residual, gap) < target or (level and gap < level and residual < level):
-                return Outcome(True, iteration, residual, gap)
-            if watch is not None and watch(iteration, max(residual, gap)):
+            if merit < 0.9 * best:
+                best, since = merit, 0
+                for f in fields(z):
+                    setattr(kept, f.name, getattr(z, f.name))
+            else:
+                since += 1
+            if merit < target or (level and gap < level and residual < level):
+                return Outcome(True, iteration, residual, relative)
+            if watch is not None and watch(iteration, merit):
                 break
             short = short + 1 if step < 0.02 else 0
-            best = min(best, residual)
-            if iteration == most or short >= 8 or gap < 1e-4 * target or residual > 1e8 * max(best, target):
+            if iteration == most or short >= 8 or since >= 25 or (best < 1e-4 and (merit > 1e2 * best or since >= 6)):
                 break
             big_p, big_q = np.where(r, z.y_p / z.s_p, 0.0), np.where(r, z.y_m / z.s_m, 0.0)  # P, Q
             crush = np.where(c, z.p / z.q, 0.0)
@@ -230,7 +243,7 @@ class InteriorPoint:
             predicted = self.gap(_moved(z, d, step))
             centring = min(1.0, max((predicted / gap) ** 3, 1e-4)) if step > 0.05 else 0.5
             tau = centring * gap
-            tau = max(tau, 0.3 * level, 0.03 * target)
+            tau = max(tau, 0.3 * level, 0.03 * target * typical)
             d = direction(
                 tau - z.t_n * z.y_n - step * d.t_n * d.y_n,
                 tau - z.s_p * z.y_p - step * d.s_p * d.y_p,
@@ -241,7 +254,9 @@ class InteriorPoint:
             moved = _moved(z, d, step)
             for f in fields(z):
                 setattr(z, f.name, getattr(moved, f.name))
-        return Outcome(False, iteration, residual, gap)
+        for f in fields(z):
+            setattr(z, f.name, getattr(kept, f.name))
+        return Outcome(False, iteration, best, self.gap(z))
 
 
 def _longest(z: Iterate, d: Iterate, share: float) -> float:
