@@ -49,6 +49,9 @@ SHIFT = 1e-7
 SHORT, SLOW = 0.2, 0.9
 """A shorter step, or a residual that falls by less, raises the damping tenfold; other steps lower it."""
 
+HOLD = 0.01
+"""Proximal weight on displacements for a damping of 1."""
+
 REACH = 10.0
 """Longest displacement in one step, in multiples of the largest of the glued structure (bodies nothing holds fly)."""
 
@@ -152,7 +155,7 @@ def _newton_step(
     matrix = (
         s.K
         + s.C.T @ block_diagonal(blocks) @ s.C
-        + max(proximal(residual), 0.1 * (damping - SHIFT)) * sp.eye_array(u.size)
+        + max(proximal(residual), HOLD * (damping - SHIFT)) * sp.eye_array(u.size)
     )
     lu = record.factorise(sp.csc_array(matrix))
     du = lu.solve(-s.imbalance(u, t) + s.pull(kick))

@@ -26,6 +26,12 @@ from concio.lcp.dimensionless import Dimensionless
 from concio.lcp.friction_cone import Cone, return_map, return_map_derivative
 from concio.lcp.iteration import Record
 
+LARGEST = 1e3
+"""Augmentation beyond which multipliers are not helped by more, in multiples of the typical stiffness."""
+
+ROUNDING = 1e-8
+"""Imbalance over the load below which steps that no longer help are rounding at work."""
+
 
 @dataclass(frozen=True, eq=False)
 class Augmented:
@@ -138,11 +144,13 @@ def equilibrium(law: Augmented, u: Array, record: Record, *, goal: float, limit:
     """
     s = law.scaled
     load = float(np.abs(s.f).sum()) or 1.0
+    sizes: list[float] = []
     for _ in range(limit):
         rest = law.imbalance(u)
         size = float(np.abs(rest).max(initial=0.0)) / load
-        if size <= goal:
+        if size <= goal or (size < ROUNDING and len(sizes) > 2 and size > 0.5 * min(sizes[-3:])):
             return u, True
+        sizes.append(size)
         lu = record.factorise(law.tangent(u) + proximal(size) * sp.eye_array(u.size, format="csc"))
         step = -lu.solve(rest)
         record.solves()
@@ -183,7 +191,7 @@ def multipliers(
         u, _ = equilibrium(law, u, record, goal=0.1 * goal, limit=50)
         t = law.forces(u) - law.fixed
         change = float((np.abs(t - law.lam) / law.rho).max(initial=0.0))
-        law = replace(law, lam=t, rho=law.rho * (10.0 if change > 0.25 * before and law.rho.max() < 1e4 else 1.0))
+        law = replace(law, lam=t, rho=law.rho * (10.0 if change > 0.25 * before and law.rho.max() < LARGEST else 1.0))
         if change <= goal:
             break
         before = change

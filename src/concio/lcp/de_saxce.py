@@ -39,6 +39,9 @@ from concio.lcp.dimensionless import dimensionless
 from concio.lcp.iteration import GOAL, Record, Stopped, answer
 from concio.lcp.solution import ProgressCallback, Solution
 
+LOOSE = 1e-4
+"""Accuracy of the first convex problem: as the fixed point settles, the problems are solved more exactly."""
+
 
 def solve(
     problem: ContactProblem,
@@ -74,10 +77,11 @@ def solve(
     law = Augmented(s, s.cone, isotropic(s.compliance, augmentation), s.t, s.cone.friction)
     lag = np.maximum(s.cone.friction - s.dilatancy, 0.0)
     u, shift, relax, before, outer = s.u, np.zeros(s.pairs), 1.0, np.inf, 0
+    least = GOAL if (lag == 0.0).all() else LOOSE
     changes: list[float] = []
     try:
         for outer in range(1, limit + 1):
-            u, t, law = multipliers(replace(law, shift=shift), u, record, goal=0.1 * GOAL)
+            u, t, law = multipliers(replace(law, shift=shift), u, record, goal=inexact(before, least))
             law = replace(law, rho=isotropic(s.compliance, augmentation))
             if record.note(u, t, f"convex problem {outer}") <= GOAL:
                 break
@@ -105,7 +109,12 @@ def isotropic(compliance: np.ndarray, augmentation: float) -> np.ndarray:
     return rho
 
 
+def inexact(change: float, least: float) -> float:
+    """Accuracy of the next convex problem: a hundredth of the last change of the fixed point, at most ``least``."""
+    return max(0.1 * GOAL, min(least, 0.01 * change))
+
+
 def change_stalls(changes: list[float], change: float, window: int = 20) -> bool:
     """Append the change of a fixed point and tell whether the last ``window`` of them made no progress."""
     changes.append(change)
-    return len(changes) > 2 * window and min(changes[-window:]) > 0.7 * min(changes[:-window])
+    return len(changes) > 2 * window and min(changes[-window:]) > 0.9 * min(changes[:-window])

@@ -148,7 +148,7 @@ def _judge(
         entry = max((k for k in accuracy if k != "worst"), key=lambda k: accuracy[k])
         info["accuracy"] = worst
         trace.append(
-            f"{record.method} stopped after {len(record.history)} iterations at an accuracy of {worst:.1e} "
+            f"stopped after {len(record.history)} iterations at an accuracy of {worst:.1e} "
             f"(worst entry: {entry.replace('_', ' ')}); {CERTIFIED:.0e} is asked of an answer."
         )
     solution = judge(

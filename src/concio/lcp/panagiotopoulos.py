@@ -44,7 +44,7 @@ import numpy as np
 from concio.contact.problem import Array, ContactProblem
 from concio.errors import MethodError
 from concio.lcp.augmented import Augmented, multipliers
-from concio.lcp.de_saxce import change_stalls, isotropic
+from concio.lcp.de_saxce import LOOSE, change_stalls, inexact, isotropic
 from concio.lcp.dimensionless import Dimensionless, dimensionless
 from concio.lcp.iteration import GOAL, Record, Stopped, answer
 from concio.lcp.solution import ProgressCallback, Solution
@@ -106,7 +106,7 @@ def solve(
         u, t, _ = multipliers(associated, u, record, goal=1e-3)
         held = t
         for outer in range(1, limit + 1):
-            u, t = cycle(s, record, u, t, held, s.dilatancy * slip, rho, prox)
+            u, t = cycle(s, record, u, t, held, s.dilatancy * slip, rho, prox, inexact(before, LOOSE))
             if record.note(u, t, f"alternation {outer}") <= GOAL:
                 break
             change = float(np.abs(t - held).max(initial=0.0))
@@ -127,17 +127,33 @@ def solve(
 
 
 def _tresca(
-    s: Dimensionless, record: Record, u: Array, t: Array, held: Array, opening: Array, rho: Array, prox: float
+    s: Dimensionless,
+    record: Record,
+    u: Array,
+    t: Array,
+    held: Array,
+    opening: Array,
+    rho: Array,
+    prox: float,
+    goal: float,
 ) -> tuple[Array, Array]:
     """One Tresca problem with the sliding strength of the normal forces held."""
     cone = s.cone.tresca(s.cone.radius(held[:, 0]))
     law = Augmented(s, cone, rho, t, np.zeros(s.pairs), shift=-opening, anchor=u, prox=prox)
-    u, t, _ = multipliers(law, u, record, goal=0.1 * GOAL)
+    u, t, _ = multipliers(law, u, record, goal=goal)
     return u, t
 
 
 def _alternating(
-    s: Dimensionless, record: Record, u: Array, t: Array, held: Array, opening: Array, rho: Array, prox: float
+    s: Dimensionless,
+    record: Record,
+    u: Array,
+    t: Array,
+    held: Array,
+    opening: Array,
+    rho: Array,
+    prox: float,
+    goal: float,
 ) -> tuple[Array, Array]:
     """One normal problem with friction held, one friction problem with the normal forces found held (prox unused)."""
     zero = np.zeros(s.pairs)
@@ -145,12 +161,12 @@ def _alternating(
     normal[:, 1:], tangential[:, 0] = 0.0, 0.0
     frictionless = s.cone.tresca(zero)
     law = Augmented(s, frictionless, rho, normal, zero, shift=-opening, fixed=tangential)
-    u, t, _ = multipliers(law, u, record, goal=0.1 * GOAL)
+    u, t, _ = multipliers(law, u, record, goal=goal)
     pressed = t.copy()
     pressed[:, 1:] = 0.0
     bound = replace(s.cone.tresca(s.cone.radius(t[:, 0])), lower=zero, upper=zero)
     start = held.copy()
     start[:, 0] = 0.0
     law = Augmented(s, bound, rho, start, zero, fixed=pressed)
-    u, t, _ = multipliers(law, u, record, goal=0.1 * GOAL)
+    u, t, _ = multipliers(law, u, record, goal=goal)
     return u, t

@@ -69,13 +69,12 @@ def plot_convergence(table: Table, ax: Axes | None = None) -> Axes:
         work = np.asarray(row.work, dtype=float) if counted else np.arange(1.0, best.size + 1.0)
         colour = COLOURS[k % len(COLOURS)]
         label = row.method if counted else f"{row.method} (by iterations)"
-        ax.plot(work, best, color=colour, linestyle=DASHES[(k + 2 * (k // len(COLOURS))) % len(DASHES)], lw=1.4, label=label)
+        dash = DASHES[(k + 2 * (k // len(COLOURS))) % len(DASHES)]
+        ax.plot(work, best, color=colour, linestyle=dash, lw=1.4, label=label)
         solved = row.outcome == "solved"
         ax.plot(work[-1:], best[-1:], color=colour, marker="o" if solved else "x", ms=6, mew=1.6, ls="none")
     ax.axhline(CERTIFIED, color="0.5", lw=0.8)
-    ax.annotate(
-        "certified", (0.005, CERTIFIED), xycoords=("axes fraction", "data"), ha="left", va="bottom", fontsize=8
-    )
+    ax.annotate("certified", (0.005, CERTIFIED), xycoords=("axes fraction", "data"), ha="left", va="bottom", fontsize=8)
     ax.set(xscale="log", yscale="log", xlabel="work [factorisations of K + C'C]", ylabel="residual [-]")
     ax.set_title(table.title, loc="left", fontsize=10)
     if drawn:
