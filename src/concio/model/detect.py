@@ -24,6 +24,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from concio.errors import InputError
 from concio.model.facing import Edges, FacingPairs, facing_pairs
@@ -173,18 +176,15 @@ def _continues(pairs: FacingPairs, long: Array, short: Array, tolerance: float, 
     if not short.any():
         return result
     key = pairs.bodies[:, 0] * (pairs.bodies.max() + 1) + pairs.bodies[:, 1]
-    order = np.argsort(key, kind="stable")
-    sorted_key = key[order]
-    for value in np.unique(key[short]):
-        members = order[np.searchsorted(sorted_key, value) : np.searchsorted(sorted_key, value, side="right")]
-        members = members[long[members] | short[members]]
-        ends = np.stack([pairs.a_lo[members], pairs.a_hi[members]], 1)  # (k, 2, 2)
-        apart = np.hypot(*(ends[:, None, :, None] - ends[None, :, None, :]).transpose(4, 0, 1, 2, 3)).min((2, 3))
-        linked = apart <= 2 * tolerance
-        while not np.array_equal(linked, more := (linked.astype(int) @ linked.astype(int)) > 0):
-            linked = more
-        total = linked.astype(float) @ (pairs.hi - pairs.lo)[members]
-        result[members] = short[members] & (total >= thin[members])
+    members = np.flatnonzero((long | short) & np.isin(key, np.unique(key[short])))
+    count = len(members)
+    ends = np.concatenate([pairs.a_lo[members], pairs.a_hi[members]])
+    near = cKDTree(ends).query_pairs(2 * tolerance, output_type="ndarray") % count
+    near = near[key[members[near[:, 0]]] == key[members[near[:, 1]]]]
+    graph = sp.coo_array((np.ones(len(near)), (near[:, 0], near[:, 1])), shape=(count, count))
+    _, chain = connected_components(graph, directed=False)
+    total = np.bincount(chain, (pairs.hi - pairs.lo)[members])
+    result[members] = short[members] & (total[chain] >= thin[members])
     return result
 
 
