@@ -102,10 +102,11 @@ def make_pairs(disc: Discretisation, interfaces: Sequence[Interface]) -> Pairs:
     rules: dict[tuple[str, ...], tuple[int, float]] = {}
     parts: dict[str, list[Array]] = {k: [] for k in ("a", "b", "i", "p", "n", "l", "area", "g", "law")}
     triplets: list[tuple[Array, Array, Array, Array]] = []  # row, column, C_n, C_t
+    by_name = _by_name(model)
     total = 0
     for number, face in enumerate(interfaces):
         body_a, body_b = model.bodies[face.a], model.bodies[face.b]
-        key = (body_a.name, body_b.name) if _by_name(model) else _sort(body_a) + _sort(body_b)
+        key = (body_a.name, body_b.name) if by_name else _sort(body_a) + _sort(body_b)
         if key not in rules:
             rule = model.rule_between(body_a, body_b)
             rules[key] = (law_number[rule.law], rule.gap)

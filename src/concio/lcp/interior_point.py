@@ -190,7 +190,7 @@ class InteriorPoint:
                     setattr(kept, f.name, getattr(z, f.name))
             else:
                 since += 1
-            if merit < target or (level and gap < level and residual < level):
+            if merit < target or (level and gap < level and residual < 1e-6):
                 return Outcome(True, iteration, residual, relative)
             if watch is not None and watch(iteration, merit):
                 break
@@ -211,8 +211,12 @@ class InteriorPoint:
                 break
 
             def direction(
-                rc_n: Array, rc_p: Array, rc_m: Array, rc_q: Array,
-                P: Array = big_p, Q: Array = big_q,
+                rc_n: Array,
+                rc_p: Array,
+                rc_m: Array,
+                rc_q: Array,
+                P: Array = big_p,
+                Q: Array = big_q,
                 D: tuple[Array, ...] = (d_nn, d_nt, d_tn, d_tt),
                 rest: tuple[Array, ...] = (r_u, r_n, r_t, r_p, r_m, r_q),
             ) -> Iterate:
@@ -231,11 +235,16 @@ class InteriorPoint:
                 ds_p, ds_m = mu * dt_n + dt_t + r_p, mu * dt_n - dt_t + r_m
                 dq = np.where(c, r_q - dt_n, 0.0)
                 return Iterate(
-                    u=du, t_n=dt_n, t_t=dt_t,
+                    u=du,
+                    t_n=dt_n,
+                    t_t=dt_t,
                     y_n=(rc_n - z.y_n * dt_n) / z.t_n,
-                    s_p=np.where(r, ds_p, 0.0), y_p=np.where(r, (rc_p - z.y_p * ds_p) / z.s_p, 0.0),
-                    s_m=np.where(r, ds_m, 0.0), y_m=np.where(r, (rc_m - z.y_m * ds_m) / z.s_m, 0.0),
-                    q=dq, p=np.where(c, (rc_q - z.p * dq) / z.q, 0.0),
+                    s_p=np.where(r, ds_p, 0.0),
+                    y_p=np.where(r, (rc_p - z.y_p * ds_p) / z.s_p, 0.0),
+                    s_m=np.where(r, ds_m, 0.0),
+                    y_m=np.where(r, (rc_m - z.y_m * ds_m) / z.s_m, 0.0),
+                    q=dq,
+                    p=np.where(c, (rc_q - z.p * dq) / z.q, 0.0),
                 )
 
             d = direction(-z.t_n * z.y_n, -z.s_p * z.y_p, -z.s_m * z.y_m, -z.q * z.p)
