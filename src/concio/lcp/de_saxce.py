@@ -22,7 +22,7 @@ Parameters of :func:`solve`
 ---------------------------
 augmentation : float, default 10
     rho of the convex problems, in multiples of the typical stiffness.
-limit, steps : int, default 100 and 3000
+limit, steps : int, default 300 and 3000
     Convex problems, and Newton steps in all.
 """
 
@@ -48,7 +48,7 @@ def solve(
     *,
     progress: ProgressCallback | None = None,
     augmentation: float = 10.0,
-    limit: int = 100,
+    limit: int = 300,
     steps: int = 3000,
 ) -> Solution:
     """Solve by the fixed point of the bipotential.
