@@ -18,9 +18,16 @@ if TYPE_CHECKING:
     from concio.contact.assembly import Assembly, assemble
     from concio.errors import ConcioError, GeometryError, InputError, MethodError, NoEquilibriumError, SolverError
     from concio.lcp.solution import Status
+    from concio.model.arches import arch
+    from concio.model.columns import buttress, column
+    from concio.model.drawing import model_from_dxf
+    from concio.model.file import load, loads
+    from concio.model.file_write import dumps, save
     from concio.model.materials import Elastic, JointLaw, Rigid
     from concio.model.model import Body, JointRule, Load, Model, Support, Tie
     from concio.model.panel import running_bond_panel
+    from concio.model.rubble import rubble
+    from concio.model.walls import wall, wall_of_courses
 
 __version__ = "0.1.0"
 
@@ -37,13 +44,54 @@ _HOMES = {
         "SolverError",
     ),
     "concio.lcp.solution": ("Status",),
+    "concio.model.arches": ("arch",),
+    "concio.model.columns": ("buttress", "column"),
+    "concio.model.drawing": ("model_from_dxf",),
+    "concio.model.file": ("load", "loads"),
+    "concio.model.file_write": ("dumps", "save"),
     "concio.model.materials": ("Elastic", "JointLaw", "Rigid"),
     "concio.model.model": ("Body", "JointRule", "Load", "Model", "Support", "Tie"),
     "concio.model.panel": ("running_bond_panel",),
+    "concio.model.rubble": ("rubble",),
+    "concio.model.walls": ("wall", "wall_of_courses"),
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
 
-__all__ = [*_HOME, "__version__"]
+__all__ = [
+    "Assembly",
+    "Body",
+    "ConcioError",
+    "Elastic",
+    "GeometryError",
+    "InputError",
+    "JointLaw",
+    "JointRule",
+    "Load",
+    "MethodError",
+    "Model",
+    "NoEquilibriumError",
+    "Result",
+    "Rigid",
+    "SolverError",
+    "Status",
+    "Support",
+    "Tie",
+    "__version__",
+    "arch",
+    "assemble",
+    "buttress",
+    "column",
+    "dumps",
+    "load",
+    "loads",
+    "model_from_dxf",
+    "rubble",
+    "running_bond_panel",
+    "save",
+    "solve",
+    "wall",
+    "wall_of_courses",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -1,0 +1,80 @@
+"""What ``concio run`` prints: a result in a few lines, every number with its unit."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from concio.analysis.result import Result
+
+MOST_REACTIONS = 12
+"""More supports than this are not listed one by one."""
+
+
+def result_lines(result: Result) -> list[str]:
+    """Return the result as lines of text, kN and m."""
+    s, seconds = result.solution, result.seconds
+    assembly = result.assembly
+    lines = [
+        result.model.title or "model without a title",
+        f"  {len(result.model.free_bodies):,} bodies, {len(assembly.detection.interfaces):,} joints, "
+        f"{len(assembly.pairs):,} contact pairs, {assembly.disc.unknowns:,} displacements",
+        result.status.value,
+        f"  {s.method}: {s.iterations} iterations, {seconds['solve']:.2f} s; assembled in {seconds['assemble']:.2f} s",
+    ]
+    certificate = result.certificate.as_dict()
+    if result.solved:
+        parts = ", ".join(f"{k.replace('_', ' ')} {v:.0e}" for k, v in certificate.items() if k != "worst")
+        lines += [
+            f"  certificate  worst {certificate['worst']:.1e} ({parts})",
+            f"  pairs        {_states(result)}",
+            f"  settlement   {1e3 * result.max_settlement:.4g} mm at most",
+            f"  loads        {force(result.total_load)} in all",
+        ]
+        reactions = list(result.reactions.items())
+        shown = reactions[:MOST_REACTIONS]
+        width = max((len(name) for name, _ in shown), default=0)
+        for k, (name, value) in enumerate(shown):
+            lines.append(f"  {'reactions' if k == 0 else '':<12} {name:<{width}}  {force(value)}")
+        if len(reactions) > len(shown):
+            lines.append(f"  {'':<12} ... and {len(reactions) - len(shown)} more")
+    elif result.mechanism is not None:
+        moving = ", ".join(f"'{name}' ({speed:.2g})" for name, speed in moving_bodies(result)[:5])
+        lines += [
+            f"  mechanism    the loads do {result.mechanism.power:.4g} kN m of work on each metre of it; no joint resists",
+            f"  moves most   {moving}",
+        ]
+    else:
+        lines += [f"  tried        {line}" for line in s.trace]
+        if np.isfinite(certificate["worst"]):
+            lines.append(f"  certificate  worst {certificate['worst']:.1e}: not an equilibrium")
+    return lines
+
+
+def force(value: tuple[float, float]) -> str:
+    """Return a force as text."""
+    return f"{_clean(value[0]):+.4f} kN along x, {_clean(value[1]):+.4f} kN along y"
+
+
+def moving_bodies(result: Result) -> list[tuple[str, float]]:
+    """Return the names of the bodies by their largest velocity in the mechanism, fastest first."""
+    velocity = result.mechanism_velocity
+    if velocity is None:
+        return []
+    speeds = []
+    for b, body in enumerate(result.model.bodies):
+        if body.kind != "fixed":
+            motion = result.node_displacement(b, velocity)
+            speeds.append((body.name, float(np.linalg.norm(motion, axis=1).max())))
+    return sorted(speeds, key=lambda entry: -entry[1])
+
+
+def _states(result: Result) -> str:
+    words = {"open": "open", "stick": "sticking", "slip": "slipping"}
+    return ", ".join(f"{result.contacts.count(name):,} {word}" for name, word in words.items())
+
+
+def _clean(value: float) -> float:
+    return 0.0 if abs(value) < 5e-5 else value

@@ -1,0 +1,43 @@
+"""``concio new panel``: a commented model file to start from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from concio.cli.outcome import guarded, say
+from concio.cli.output import replaced_file
+
+Kind = Literal["panel", "wall", "arch", "column", "blocks"]
+
+
+@guarded
+def new(
+    kind: Annotated[Kind, typer.Argument(help="What to start from.", show_default=False)],
+    file: Annotated[
+        Path | None, typer.Argument(help="File to write; by default KIND.toml.", show_default=False)
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+) -> int:
+    """Write a commented model file to start from.
+
+    Example: concio new arch bridge.toml
+    """
+    from importlib.resources import files
+
+    from concio.errors import InputError
+
+    target = file if file is not None else Path(f"{kind}.toml")
+    if target.exists() and not force:
+        msg = "there is a file of that name already"
+        raise InputError(msg, where=str(target), hint="give another name, or --force to replace it")
+    if not target.absolute().parent.is_dir():
+        msg = f"there is no directory '{target.parent}'"
+        raise InputError(msg, where=str(target), hint="make it first")
+    text = files("concio.model").joinpath("templates", f"{kind}.toml").read_text(encoding="utf-8")
+    with replaced_file(target) as fresh:
+        fresh.write_text(text, encoding="utf-8")
+    say(f"Wrote {target}. Edit it, then: concio check {target}")
+    return 0

@@ -1,0 +1,104 @@
+"""How a command ends: exit code, message on standard error, one JSON object on standard output where asked for."""
+
+from __future__ import annotations
+
+import errno
+import functools
+import json as json_text
+import os
+import sys
+from collections.abc import Callable, Mapping
+from typing import Any, NoReturn, ParamSpec
+
+import typer
+
+P = ParamSpec("P")
+
+INTERRUPTED = 130
+INTERNAL = 1
+DEBUG = "CONCIO_DEBUG"
+"""Environment variable that makes commands show tracebacks."""
+
+
+def guarded(command: Callable[P, int]) -> Callable[P, None]:
+    """Return a command that ends with an exit code and a message for a person, whatever happens in it.
+
+    Parameters
+    ----------
+    command : callable
+        Returns its exit code; an argument called ``json`` says whether failures are printed as JSON too.
+    """
+
+    @functools.wraps(command)
+    def run(*args: P.args, **kwargs: P.kwargs) -> None:
+        as_json = bool(kwargs.get("json"))
+        try:
+            code = command(*args, **kwargs)
+            sys.stdout.flush()
+        except KeyboardInterrupt:
+            fail({"kind": "Interrupted", "what": "stopped on request; nothing was written"}, INTERRUPTED, as_json)
+        except BrokenPipeError:  # the reader of our output has gone
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            code = 0
+        except (typer.Exit, typer.Abort):
+            raise
+        except Exception as error:
+            if os.environ.get(DEBUG):
+                raise
+            fail(*_told(error), as_json)
+        raise typer.Exit(code)
+
+    run.__annotations__ = {**command.__annotations__, "return": None}
+    return run
+
+
+def _told(error: Exception) -> tuple[dict[str, Any], int]:
+    """Return what to say about an exception, and the exit code."""
+    from concio.errors import ConcioError
+
+    if isinstance(error, ConcioError):
+        told = {"kind": type(error).__name__, "what": error.what, "where": error.where, "hint": error.hint}
+        return told, error.exit_code
+    if isinstance(error, MemoryError):
+        hint = "use fewer elements per block, or a machine with more memory"
+        return {"kind": "MemoryError", "what": "the model does not fit into memory", "hint": hint}, 4
+    if isinstance(error, OSError):
+        reason = "the disk is full" if error.errno == errno.ENOSPC else error.strerror or str(error)
+        where = str(error.filename) if error.filename else None
+        hint = "nothing was left half written"
+        return {"kind": "OutputError", "what": f"cannot write: {reason}", "where": where, "hint": hint}, 2
+    where = None
+    if error.__traceback__ is not None:
+        frame = error.__traceback__
+        while frame.tb_next is not None:
+            frame = frame.tb_next
+        where = f"{frame.tb_frame.f_code.co_filename}, line {frame.tb_lineno}"
+    what = f"this is a fault of concio: {type(error).__name__}: {error}"
+    return {"kind": "InternalError", "what": what, "where": where, "hint": f"{DEBUG}=1 shows the traceback"}, INTERNAL
+
+
+def fail(told: Mapping[str, Any], code: int, as_json: bool) -> NoReturn:
+    """Write a message to standard error, and to standard output as JSON where asked for; leave with ``code``."""
+    text = f"{told['where']}: {told['what']}" if told.get("where") else told["what"]
+    sys.stderr.write(f"Error: {text}\n")
+    if told.get("hint"):
+        sys.stderr.write(f"  -> {told['hint']}\n")
+    if as_json:
+        print_json({"status": "error", "exit_code": code, **{k: v for k, v in told.items() if v is not None}})
+    raise typer.Exit(code)
+
+
+def print_json(data: Mapping[str, Any]) -> None:
+    """Print one JSON object on standard output."""
+    sys.stdout.write(json_text.dumps(data, allow_nan=False, ensure_ascii=False) + "\n")
+    sys.stdout.flush()
+
+
+def say(text: str = "") -> None:
+    """Print a line on standard output."""
+    sys.stdout.write(text + "\n")
+
+
+def note(text: str) -> None:
+    """Print a line on standard error."""
+    sys.stderr.write(text + "\n")

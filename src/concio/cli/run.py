@@ -1,0 +1,98 @@
+"""``concio run FILE``: solve one load step."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from concio.cli.outcome import guarded, print_json, say
+from concio.cli.output import check_target, replaced_directory
+from concio.cli.progress import progress_bar
+
+File = Annotated[Path, typer.Argument(help="Model file (TOML).", show_default=False)]
+Out = Annotated[Path | None, typer.Option("--out", "-o", help="Directory for figures, report and numbers.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing; the exit code tells.")]
+Force = Annotated[bool, typer.Option("--force", help="Replace what --out holds, even if it is not a result.")]
+Factors = Annotated[
+    list[str] | None, typer.Option("--factor", "-f", help="Factor of a load group: live=1.5 (repeatable).")
+]
+
+
+@guarded
+def run(
+    file: File,
+    out: Out = None,
+    method: Annotated[str, typer.Option("--method", "-m", help="Solver by name.")] = "auto",
+    factor: Factors = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    force: Force = False,
+    figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw figures into --out.")] = True,
+) -> int:
+    """Solve one load step and say what was found.
+
+    Example: concio run panel.toml --out result
+    """
+    import concio
+    from concio.cli.lines import result_lines
+
+    if out is not None:
+        check_target(out, force=force)
+    model = concio.load(file)
+    with progress_bar(shown=not (json or quiet)) as progress:
+        result = concio.solve(model, method=method, factors=factors_of(factor), on_failure="return", progress=progress)
+    written: list[Path] = []
+    if out is not None:
+        from concio.io.result_dir import write_result
+
+        with replaced_directory(out) as fresh:
+            written = [out / p.relative_to(fresh) for p in write_result(result, fresh, figures=figures)]
+    if json:
+        print_json(result.summary())
+    elif not quiet:
+        for line in result_lines(result):
+            say(line)
+        for line in where_written(written):
+            say(line)
+    return result.status.exit_code
+
+
+def factors_of(texts: list[str] | None) -> dict[str, float]:
+    """Return load factors from texts such as ``live=1.5``.
+
+    Raises
+    ------
+    InputError
+        A text is not of that form.
+    """
+    from concio.errors import InputError
+    from concio.units import quantity
+
+    factors = {}
+    for text in texts or ():
+        group, sign, value = text.partition("=")
+        if not sign or not group.strip():
+            msg = f"'{text}' is not a factor of a load group"
+            raise InputError(msg, where="--factor", hint="write for example --factor live=1.5")
+        factors[group.strip()] = quantity(value, "number", where=f"--factor {group.strip()}")
+    return factors
+
+
+def where_written(paths: list[Path]) -> list[str]:
+    """Return lines that say which files were written: the report first, figures in one line."""
+    if not paths:
+        return []
+    lines = []
+    reports = [p for p in paths if p.suffix == ".html"]
+    figures = [p for p in paths if p.suffix in (".png", ".svg", ".pdf")]
+    others = [p for p in paths if p not in reports and p not in figures]
+    lines += [f"  report       {p}" for p in reports]
+    if figures:
+        names = ", ".join(dict.fromkeys(p.stem for p in figures))
+        lines.append(f"  figures      {figures[0].parent}: {names}")
+    if others:
+        lines.append(f"  numbers      {', '.join(str(p) for p in others)}")
+    return lines

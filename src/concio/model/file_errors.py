@@ -1,0 +1,158 @@
+"""From what is wrong in a model file to one message: file, key, what is wrong, what to do."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any, get_args
+
+from pydantic import BaseModel, ValidationError
+
+from concio.errors import InputError
+
+Location = tuple[int | str, ...]
+
+PLAIN = {
+    "string_type": "must be a text in quotation marks",
+    "int_type": "must be a whole number",
+    "bool_type": "must be true or false",
+    "list_type": "must be a list in brackets",
+    "tuple_type": "must be a list in brackets",
+    "model_type": "must be a table of keys",
+    "dict_type": "must be a table of keys",
+    "string_too_short": "must not be empty",
+}
+"""What to say for pydantic's commonest complaints."""
+
+
+@contextmanager
+def placed(place: str, *, own: str = "") -> Iterator[None]:
+    """Put ``place`` in front of where an InputError says it was found; ``own`` is a first word to be left out."""
+    try:
+        yield
+    except InputError as error:
+        where = error.where or ""
+        if own and (where == own or where.startswith(f"{own}, ")):
+            where = where[len(own) + 2 :]
+        raise type(error)(error.what, where=f"{place}, {where}" if where else place, hint=error.hint) from None
+
+
+def closest(word: str, known: Sequence[str]) -> str:
+    """Return a hint that names the key that was probably meant, or the known ones."""
+    near = difflib.get_close_matches(word, known, n=1, cutoff=0.6)
+    return f"did you mean '{near[0]}'?" if near else "known: " + ", ".join(known)
+
+
+def key_path(data: Any, location: Location) -> str:
+    """Return a place in a file as a reader finds it: ``[panel.block], E`` or ``[[blocks]] 3 'b3', outline``."""
+    tables: list[str] = []
+    rest: list[str] = []
+    here = data
+    for part in location:
+        if isinstance(part, int):
+            label = f"{part + 1}"
+            here = here[part] if isinstance(here, list) and part < len(here) else None
+            if isinstance(here, dict) and isinstance(here.get("name"), str):
+                label += f" '{here['name']}'"
+            rest.append(label)
+            continue
+        here = here.get(part) if isinstance(here, dict) else None
+        is_list = isinstance(here, list) and bool(here) and isinstance(here[0], dict)
+        if not rest and isinstance(here, dict):
+            tables.append(part)
+        elif not rest and is_list:
+            rest.append(f"[[{'.'.join([*tables, part])}]]")
+            tables = []
+        else:
+            rest.append(part)
+    words = [f"[{'.'.join(tables)}]"] if tables else []
+    if rest and rest[0].startswith("[["):
+        rest = [" ".join(rest[:2]), *rest[2:]]
+    return ", ".join(words + rest)
+
+
+def first_fault(error: ValidationError, data: Any, root: type[BaseModel], where: str) -> InputError:
+    """Return the first complaint of pydantic as a message for a person."""
+    fault = _most_telling(error.errors(include_url=False))
+    location: Location = tuple(part for part in fault["loc"] if not is_tag(part))
+    kind = fault["type"]
+    hint: str | None = None
+    if kind == "extra_forbidden":
+        key = str(location[-1])
+        what, hint = f"unknown key '{key}'", closest(key, known_keys(root, location[:-1]))
+        location = location[:-1]
+    elif kind == "missing":
+        absent = location[-1]
+        what = f"value {absent + 1} is missing" if isinstance(absent, int) else f"'{absent}' is missing"
+        location = location[:-1]
+    elif kind == "concio":
+        what, hint = fault["ctx"]["what"], fault["ctx"]["hint"] or None
+    elif kind == "literal_error":
+        what = f"{fault['input']!r} is not one of {fault['ctx']['expected'].replace(' or ', ', ')}"
+    elif kind in ("too_short", "too_long", "missing_argument"):
+        what = f"{fault['ctx']['actual_length']} values where {_expected(fault['ctx'])} are needed"
+    else:
+        said = fault["msg"].removeprefix("Value error, ")
+        what = PLAIN.get(kind, said[:1].lower() + said[1:])
+        if kind in PLAIN:
+            what = f"{_short(fault['input'])} {what}"
+    place = key_path(data, location)
+    return InputError(what, where=f"{where}, {place}" if place else where, hint=hint)
+
+
+def is_tag(part: int | str) -> bool:
+    """Return whether a part of a location is the name of a branch of a union, such as ``<table>``."""
+    return isinstance(part, str) and part.startswith("<")
+
+
+def _expected(context: dict[str, Any]) -> str:
+    return str(context.get("min_length", context.get("max_length", "others")))
+
+
+def _short(value: Any) -> str:
+    text = {True: "true", False: "false"}[value] if isinstance(value, bool) else repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _most_telling(faults: Sequence[Any]) -> Any:
+    """Return the fault to speak of: an unknown key before the one that its misspelling leaves missing."""
+    first = faults[0]
+    if first["type"] == "missing":
+        table = first["loc"][:-1]
+        return next((f for f in faults if f["type"] == "extra_forbidden" and f["loc"][:-1] == table), first)
+    return first
+
+
+def known_keys(root: type[BaseModel], location: Location) -> list[str]:
+    """Return the keys of the table at a place of the schema."""
+    table: Any = root
+    for part in location:
+        if isinstance(table, type) and issubclass(table, BaseModel):
+            if part not in table.model_fields:
+                return []
+            table = table.model_fields[str(part)].annotation
+        table = next(_models_in(table), table)
+    return list(table.model_fields) if isinstance(table, type) and issubclass(table, BaseModel) else []
+
+
+def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _models_in(part)
+
+
+def check_finite(data: Any, where: str, location: Location = (), root: Any = None) -> None:
+    """Raise where a number of a file is NaN or infinite, whatever key it stands under."""
+    root = data if root is None else root
+    if isinstance(data, dict):
+        for key, value in data.items():
+            check_finite(value, where, (*location, key), root)
+    elif isinstance(data, list):
+        for i, value in enumerate(data):
+            check_finite(value, where, (*location, i), root)
+    elif isinstance(data, float) and not math.isfinite(data):
+        msg = "the value is not a number (NaN)" if math.isnan(data) else "the value is not finite"
+        raise InputError(msg, where=f"{where}, {key_path(root, location)}", hint="give a finite value")
