@@ -144,7 +144,7 @@ def wrong(equations: PathEquations, v: Values, r: Rates) -> list[tuple[float, in
 
 
 def find_direction(
-    equations: PathEquations, v: Values, first: Array | None = None, sense: float = 1.0
+    equations: PathEquations, v: Values, first: Array | None = None, sense: float = 1.0, *, vertex: bool = True
 ) -> tuple[Rates | None, Array | None]:
     """Return consistent rates for a control that changes at the rate ``sense`` (+1 or -1).
 
@@ -157,6 +157,9 @@ def find_direction(
         Distances from the bounds at the point.
     first : (size,) array, optional
         Direction of the present states, where it is known already.
+    sense : float
+    vertex : bool
+        Whether Lemke's method is tried where flipping does not settle.
 
     Returns
     -------
@@ -194,10 +197,23 @@ def find_direction(
         for _, k, contact, sliding in bad:
             equations.set_state(k, contact, sliding)
     restore(equations, *start)
-    found = by_lemke(equations, v, sense)
+    found = by_lemke(equations, v, sense) if vertex else None
     if found is None:
         restore(equations, *start)
     return found, runaway
+
+
+def admissible(equations: PathEquations, v: Values, contact: Array, sliding: Array) -> tuple[Array, Array]:
+    """Return the states (m,) wished for wherever the present point allows them, the present states elsewhere."""
+    d, now = equations.data, equations.contact
+    free, shut, full = v.force <= v.force_zero, v.gap <= v.gap_zero, v.room <= v.force_zero
+    allowed = np.select([contact == OPEN, contact == CRUSHED], [free, full], shut | (now == CRUSHED))
+    contact = np.where(allowed, contact, now).astype(np.int8)
+    touch = np.select([sliding > 0, sliding < 0], [v.plus <= v.force_zero, v.minus <= v.force_zero], True)
+    sliding = np.where(touch, sliding, equations.sliding)
+    spare = d["c"] - d["mu"] * d["T"] > 1e-12 * (1.0 + d["c"])
+    grip = np.where(contact == OPEN, spare, (d["mu"] > 0) | (d["c"] > 0))
+    return contact, np.where(grip, sliding, 1).astype(np.int8)
 
 
 def restore(equations: PathEquations, contact: Array, sliding: Array) -> None:
