@@ -10,8 +10,9 @@ CSV has a header; an outline is a text of vertices separated by semicolons, in m
     name,outline,material,kind,role,layer,thickness
     b1,0 0; 0.4 0; 0.4 0.2; 0 0.2,block,elastic,block,,1.0
 
-``name`` and ``outline`` must be there; the others have the defaults of :class:`concio.model.model.Body`. JSON may hold
-``mesh_size`` too, and another ``unit`` of its coordinates (thickness and mesh size are always in m).
+``name`` and ``outline`` must be there; the others, where they are left out or their cell is empty, have the defaults
+of :class:`concio.model.model.Body`. JSON may hold ``mesh_size`` too, and another ``unit`` of its coordinates (thickness
+and mesh size are always in m).
 """
 
 from __future__ import annotations
@@ -162,7 +163,8 @@ def _csv_rows(text: str, where: str) -> Iterable[tuple[str, Mapping[str, Any]]]:
         if None in row or None in row.values():
             msg = f"{len(header)} values were expected"
             raise InputError(msg, where=place, hint="outlines use spaces and semicolons, not commas")
-        yield place, {k: v for k, v in row.items() if v != "" or k in ("name", "outline")}
+        kept = ("name", "outline", "material") if row.get("kind") == "fixed" else ("name", "outline")
+        yield place, {k: v for k, v in row.items() if v != "" or k in kept}
 
 
 def _body(row: Mapping[str, Any], factor: float, where: str) -> Body:

@@ -1,0 +1,249 @@
+"""Generated walls, arches, columns and rubble: geometry known in closed form, names, and bad arguments."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from concio.errors import GeometryError, InputError
+from concio.model.arches import arch
+from concio.model.bonds import Course, bond_courses, head_joints, without_short_pieces
+from concio.model.columns import buttress, column
+from concio.model.detect import default_tolerance, detect_interfaces
+from concio.model.generators import GENERATORS, arguments_of, generate
+from concio.model.materials import Elastic, JointLaw, Rigid
+from concio.model.rubble import rubble
+from concio.model.wall_panels import Panel
+from concio.model.walls import wall, wall_of_courses
+
+
+def detected(model):
+    return detect_interfaces(model.bodies, tolerance=default_tolerance(model.bodies))
+
+
+def free_area(model):
+    return sum(b.area for b in model.free_bodies)
+
+
+@pytest.mark.parametrize("bond", ["running", "stack", "english", "flemish", [(1,), (0.25, 1)]])
+def test_every_bond_fills_the_wall_exactly(bond):
+    model = wall(length=2.125, height=1.0, bond=bond)
+    assert free_area(model) == pytest.approx(2.125, rel=1e-12)
+    found = detected(model)
+    assert not found.report()
+    heads = sum(f.length for f in found.interfaces if abs(f.normal[0]) > 0.5)
+    beds = sum(f.length for f in found.interfaces if abs(f.normal[1]) > 0.5)
+    assert beds == pytest.approx(8 * 2.125)  # 7 bed joints and the ground
+    assert heads == pytest.approx(0.125 * (len(model.free_bodies) - 8))
+
+
+@pytest.mark.parametrize(("bond", "lap"), [("running", 0.5), ("english", 0.25), ("flemish", 0.25)])
+def test_head_joints_lap(bond, lap):
+    length = 10.0 if bond != "flemish" else 1.5 * 6 + 1
+    first, second = (head_joints(c, length)[1:-1] for c in bond_courses(bond))
+    apart = np.abs(first[:, None] - second[None, :])
+    assert apart.min() == pytest.approx(lap)
+    # mirror-symmetric where the length fits the bond
+    for lines in (first, second):
+        np.testing.assert_allclose(lines, (length - lines)[::-1], atol=1e-12)
+
+
+def test_stack_bond_has_its_joints_in_line():
+    (course,) = bond_courses("stack")
+    np.testing.assert_allclose(head_joints(course, 4), range(5))
+
+
+def test_english_bond_shows_headers_and_closers():
+    lines = head_joints(bond_courses("english")[1], 4)
+    np.testing.assert_allclose(np.diff(lines), [0.5, 0.25, 0.5, 0.5, 0.5, 0.5, 0.5, 0.25, 0.5])
+
+
+def test_short_pieces_are_joined_or_shared():
+    np.testing.assert_allclose(without_short_pieces([0, 1, 2, 2.1]), [0, 1, 1.55, 2.1])
+    np.testing.assert_allclose(without_short_pieces([0, 0.1, 0.6, 1.6]), [0, 0.6, 1.6])
+
+
+def test_names_and_layers_tell_course_and_sort():
+    model = wall(length=1.0, height=0.25, block_size=(0.25, 0.125))
+    names = [b.name for b in model.bodies]
+    assert names[:3] == ["ground", "c01-b01", "c01-b02"]
+    assert model.body("c02-b01").layer == "half"
+    assert model.body("c02-b02").layer == "whole"
+
+
+def test_opening_and_lintel_leave_the_right_area():
+    door = {"x": 0.5, "y": 0, "width": 0.9, "height": 2.0, "lintel": 0.25, "bearing": 0.25}
+    model = wall(length=3, height=3, openings=[door], lintel=Elastic(E="30 GPa", unit_weight=25))
+    assert free_area(model) == pytest.approx(9 - 1.8)
+    beam = model.body("lintel1")
+    np.testing.assert_allclose([beam.outline.min(0), beam.outline.max(0)], [[0.25, 2], [1.65, 2.25]])
+    assert beam.material == "lintel"
+    assert not detected(model).report()
+
+
+def test_opening_off_the_bed_joints_notches_blocks():
+    model = wall(length=2, height=1, openings=[{"x": 0.6, "y": 0.3125, "width": 0.5, "height": 0.375}])
+    assert free_area(model) == pytest.approx(2 - 0.5 * 0.375)
+    assert any(len(b.outline) == 6 for b in model.bodies)
+    assert not detected(model).report()
+    with pytest.raises(GeometryError, match=r"course 3: .*strip thinner than"):
+        wall(length=2, height=1, openings=[{"x": 0.6, "y": 0.255, "width": 0.5, "height": 0.375}])
+
+
+def test_several_panels_have_bonds_and_names_of_their_own():
+    model = wall(panels=[Panel(1, 1), {"length": 1, "height": 0.5, "at": (1, 0), "bond": "stack"}])
+    assert {b.name[:3] for b in model.free_bodies} == {"p1-", "p2-"}
+    assert free_area(model) == pytest.approx(1.5)
+    assert not detected(model).report()
+    with pytest.raises(InputError, match="panels 1 and 2 overlap"):
+        wall(panels=[Panel(1, 1), Panel(1, 1, (0.5, 0))])
+
+
+def test_loads_materials_and_base_law():
+    model = wall(
+        length=1, height=0.5, block=Rigid(), unit_weight="22 kN/m3", horizontal=0.1, top_pressure="50 kPa",
+        friction=JointLaw(0.7, cohesion=5), base_friction=0.4, thickness="30 cm",
+    )  # fmt: skip
+    assert {b.kind for b in model.free_bodies} == {"rigid"}
+    assert model.materials["block"].unit_weight == 22
+    assert [(l.kind, l.value, l.group) for l in model.loads] == [
+        ("weight", (0.0, -1.0), "dead"),
+        ("weight", (0.1, 0.0), "live"),
+        ("pressure", (50.0,), "top"),
+    ]
+    ground, first, second = (model.body(n) for n in ("ground", "c01-b01", "c01-b02"))
+    assert model.laws[model.rule_between(ground, first).law].friction == 0.4
+    assert model.laws[model.rule_between(first, second).law] == JointLaw(0.7, cohesion=5)
+    assert first.thickness == pytest.approx(0.3)
+
+
+def test_wall_of_courses_leaves_openings():
+    model = wall_of_courses([[1, 1, 1], [0.5, -1, 1.5]], block_size=(0.4, 0.2))
+    assert [b.name for b in model.free_bodies][3:] == ["c02-b01", "c02-b03"]
+    assert free_area(model) == pytest.approx(0.08 * 5)
+
+
+@pytest.mark.parametrize("voussoirs", [7, 12])
+@pytest.mark.parametrize("edges", ["curved", "straight"])
+def test_semicircular_arch_is_a_half_ring(voussoirs, edges):
+    model = arch(span=2, ring=0.3, voussoirs=voussoirs, edges=edges, chord_tolerance=1e-6)
+    exact = np.pi / 2 * (1.3**2 - 1)
+    chord = np.sin(np.pi / voussoirs) / (np.pi / voussoirs)
+    assert free_area(model) == pytest.approx(exact * (1 if edges == "curved" else chord), rel=1e-5)
+    found = detected(model)
+    assert len(found.interfaces) == voussoirs + 1
+    assert [f.length for f in found.interfaces] == pytest.approx([0.3] * (voussoirs + 1))
+    assert not found.report()
+    keys = [b.layer for b in model.free_bodies].count("keystone")
+    assert keys == voussoirs % 2
+
+
+def test_segmental_arch_has_the_radius_of_its_rise():
+    s, r = 3.0, 0.5
+    radius = (s * s / 4 + r * r) / (2 * r)
+    model = arch(span=s, ring=0.25, voussoirs=9, shape="segmental", rise=r)
+    points = np.concatenate([b.outline for b in model.free_bodies])
+    distance = np.hypot(points[:, 0], points[:, 1] - (r - radius))
+    assert distance.min() == pytest.approx(radius)
+    assert distance.max() == pytest.approx(radius + 0.25)
+    assert len(detected(model).interfaces) == 10
+
+
+@pytest.mark.parametrize("voussoirs", [10, 11])
+def test_pointed_arch_meets_on_its_axis(voussoirs):
+    model = arch(span=2, ring=0.3, voussoirs=voussoirs, shape="pointed")
+    points = np.concatenate([b.outline for b in model.free_bodies])
+    crown = points[np.abs(points[:, 0]) < 1e-9]
+    # equilateral: both centres on the other springing, radius = span
+    assert crown[:, 1].min() == pytest.approx(np.sqrt(3))
+    assert crown[:, 1].max() == pytest.approx(np.sqrt(2.3**2 - 1))
+    assert len(detected(model).interfaces) == voussoirs + 1
+    mirrored = {tuple(p) for p in np.round(points * [-1, 1], 9)}
+    assert mirrored == {tuple(p) for p in np.round(points, 9)}
+
+
+def test_flat_arch_joints_point_to_one_centre():
+    model = arch(span=1.2, ring=0.3, voussoirs=5, shape="flat", skew=60)
+    found = detected(model)
+    assert len(found.interfaces) == 6
+    centre = np.array([0, -0.6 * np.tan(np.deg2rad(60))])
+    for f in found.interfaces:
+        assert abs(np.dot(f.normal, f.start - centre)) < 1e-12
+    assert not found.report()
+
+
+def test_crown_load_acts_on_the_extrados():
+    load = arch(span=2, ring=0.2, voussoirs=9, crown_load=3, load_at=0.5).loads[-1]
+    assert (load.value, load.bodies, load.group) == ((0.0, -3.0), ("v05",), "live")
+    # the crown lies in the middle of the keystone's extrados, at most a chord's rise below the arc
+    assert load.at == pytest.approx((0.0, 1.2), abs=2e-4)
+
+
+def test_column_and_buttress():
+    model = column(width=0.4, height=2, blocks=5, top_force=10, eccentricity=0.1)
+    assert len(detected(model).interfaces) == 5
+    assert model.loads[-1].at == (0.1, 2.0)
+    model = buttress(base=1.5, top=0.5, height=3, courses=10, block_length=0.5, thrust=5)
+    assert free_area(model) == pytest.approx(3.0)
+    assert not detected(model).report()
+    assert model.loads[-1].bodies == ("c10-b01",)
+
+
+def test_rubble_is_repeatable_fills_the_wall_and_has_no_slivers():
+    one, again, other = (rubble(length=3, height=2, stone=0.3, seed=s) for s in (4, 4, 5))
+    assert all(np.array_equal(p.outline, q.outline) for p, q in zip(one.bodies, again.bodies, strict=True))
+    assert not np.array_equal(one.bodies[1].outline, other.bodies[1].outline)
+    assert free_area(one) == pytest.approx(6)
+    found = detected(one)
+    assert not found.overlaps
+    assert {m.kind for m in found.near_misses} <= {"corner"}
+    inner = [f.length for f in found.interfaces if one.bodies[f.a].kind != "fixed"]
+    assert min(inner) > 0.01 * 0.3
+    assert np.median(inner) > 0.2 * 0.3
+
+
+@pytest.mark.parametrize(
+    ("kind", "arguments", "message"),
+    [
+        ("wall", {"height": 1}, "length is missing"),
+        ("wall", {"length": -1, "height": 1}, "length = -1 must be positive"),
+        ("wall", {"length": 1, "height": 1, "bond": "dutch"}, "bond 'dutch' is not known"),
+        ("wall", {"length": 1, "height": 1, "lap": 1.0}, "lap = 1"),
+        ("wall", {"length": 1, "height": 1, "colour": "red"}, "unknown key 'colour'"),
+        ("wall", {"length": 1, "height": 1, "ground": False}, "nothing holds the wall"),
+        (
+            "wall",
+            {"length": 1, "height": 1, "openings": [{"x": 0.5, "y": 0, "width": 1, "height": 1}]},
+            "leaves the wall",
+        ),
+        ("wall", {"length": 1, "height": 1, "openings": [{"x": 0.5}]}, "y is missing"),
+        ("wall", {"length": 1e6, "height": 1e6}, "too many blocks"),
+        ("wall", {"length": 1, "height": 1, "block": "wood"}, "is not a material"),
+        ("wall", {"length": 1, "height": 1, "unit_weight": 0, "horizontal": 0.1}, "unit_weight is zero"),
+        ("wall", {"length": "3 kN", "height": 1}, "is not a length"),
+        ("arch", {"span": 2, "ring": 0.2}, "'voussoirs' is missing"),
+        ("arch", {"span": 2, "ring": 0.2, "voussoirs": 1}, "voussoirs = 1 must be at least 2"),
+        ("arch", {"span": 2, "ring": 0.2, "voussoirs": 9, "shape": "segmental"}, "rise is missing"),
+        ("arch", {"span": 2, "ring": 0.2, "voussoirs": 9, "shape": "segmental", "rise": 1.5}, "rises at most 1 m"),
+        ("arch", {"span": 2, "ring": 0.2, "voussoirs": 9, "shape": "pointed", "rise": 0.5}, "rises more than 1 m"),
+        ("arch", {"span": 2, "ring": 0.2, "voussoirs": 9, "shape": "round"}, "'round' is not one of"),
+        ("column", {"width": 1, "height": 2, "blocks": 2.5}, "must be a whole number"),
+        ("column", {"width": 1, "height": 2, "blocks": 2, "top_force": 1, "eccentricity": 0.6}, "outside the column"),
+        ("buttress", {"base": 1, "top": 2, "height": 2, "courses": 2}, "wider than base"),
+        ("rubble", {"length": 1, "height": 1, "stone": 0}, "stone = 0 must be positive"),
+        ("castle", {}, "no generator 'castle'"),
+    ],
+)
+def test_bad_arguments_are_named(kind, arguments, message):
+    with pytest.raises(InputError, match=message):
+        generate(kind, arguments)
+
+
+def test_common_options_are_known_to_all_generators():
+    for kind in GENERATORS:
+        assert {"friction", "block", "thickness"} <= set(arguments_of(kind))
+
+
+def test_a_course_needs_positive_lengths():
+    with pytest.raises(InputError, match="must be positive"):
+        Course((1, -1))

@@ -1,0 +1,116 @@
+"""Meshes of polygons: conforming, counter-clockwise, exact in area, faithful to the boundary, well shaped."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from concio.errors import GeometryError, InputError
+from concio.fem.polygon_mesh import mesh_polygon, mesh_quality
+from concio.model.model import signed_area
+from concio.model.polygon_check import check_polygon, polygon_faults
+from meshes import assert_good_mesh
+
+
+def sector(inner, outer, start, stop, chords):
+    angle = np.linspace(start, stop, chords + 1)
+    ring = np.stack([np.cos(angle), np.sin(angle)], 1)
+    return np.concatenate([outer * ring, inner * ring[::-1]])
+
+
+TRAPEZIUM = np.array([(0, 0), (1, 0), (0.8, 0.6), (0.1, 0.5)])
+HEXAGON = np.stack([np.cos(np.arange(6) * np.pi / 3), np.sin(np.arange(6) * np.pi / 3)], 1)
+L_SHAPE = np.array([(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)])
+
+
+def test_quadrilateral_gets_quads_with_breaks_as_nodes():
+    breaks = [np.array([0.31]), np.zeros(0), np.array([0.2]), np.zeros(0)]
+    points, cells = mesh_polygon(TRAPEZIUM, 0.2, breaks)
+    assert cells.shape[1] == 4
+    assert_good_mesh(TRAPEZIUM, points, cells)
+    b = TRAPEZIUM[2] + 0.2 * (TRAPEZIUM[3] - TRAPEZIUM[2]) / np.hypot(*(TRAPEZIUM[3] - TRAPEZIUM[2]))
+    for wanted in ((0.31, 0.0), b):
+        assert np.hypot(*(points - wanted).T).min() < 1e-12
+    assert mesh_quality(points, cells).smallest_angle > 50
+
+
+def test_opposite_breaks_share_one_line():
+    breaks = [np.array([0.5]), np.zeros(0), np.array([0.48]), np.zeros(0)]
+    square = np.array([(0, 0), (1, 0), (1, 1), (0, 1.0)])
+    points, cells = mesh_polygon(square, 1.0, breaks)
+    assert len(cells) == 2  # one line from 0.5 below to 0.52 above, not two
+    assert_good_mesh(square, points, cells)
+
+
+def test_voussoir_with_curved_edges_is_mapped():
+    outline = sector(1.0, 1.3, 0.4, 0.7, 5)
+    points, cells = mesh_polygon(outline, 0.1)
+    assert cells.shape[1] == 4
+    assert_good_mesh(outline, points, cells)
+    assert mesh_quality(points, cells).smallest_angle > 80
+
+
+@pytest.mark.parametrize(
+    ("outline", "least"), [(HEXAGON, 30), (L_SHAPE, 30), (np.array([(0, 0), (1, 0), (0, 0.6)]), 25)]
+)
+def test_triangles_elsewhere_keep_the_boundary(outline, least):
+    breaks = [np.array([0.123])] + [np.zeros(0)] * (len(outline) - 1)
+    points, cells = mesh_polygon(outline, 0.25, breaks)
+    assert cells.shape[1] == 3
+    assert_good_mesh(outline, points, cells)
+    first = outline[0] + 0.123 * (outline[1] - outline[0]) / np.hypot(*(outline[1] - outline[0]))
+    assert np.hypot(*(points - first).T).min() < 1e-12
+    assert mesh_quality(*mesh_polygon(outline, 0.25)).smallest_angle > least
+
+
+def test_finer_size_gives_more_and_smaller_cells():
+    coarse, fine = (mesh_polygon(HEXAGON, h) for h in (0.5, 0.1))
+    assert len(fine[1]) > 15 * len(coarse[1])
+    x = fine[0][fine[1]]
+    assert np.hypot(*(x - np.roll(x, 1, axis=1)).transpose(2, 0, 1)).max() < 0.2
+
+
+def test_comb_with_thin_teeth():
+    teeth = 12
+    top = [(k / teeth + s, 1.0 if s else 0.2) for k in range(teeth) for s in (0.0, 0.01)]
+    outline = np.array([(0, 0), *top[1:], (1, 0.2), (1, 0)][::-1])
+    outline = outline if signed_area(outline) > 0 else outline[::-1]
+    check_polygon(outline)
+    points, cells = mesh_polygon(outline, 0.2)
+    assert_good_mesh(outline, points, cells)
+
+
+def test_crossed_outlines_are_refused():
+    with pytest.raises(GeometryError, match="triangles"):
+        mesh_polygon(np.array([(0, 0), (2, 0), (2, 1), (0.5, -1), (0, 1.0)]), 0.3)
+    with pytest.raises(GeometryError, match="coincide"):
+        mesh_polygon(np.array([(0, 0), (1, 0), (1, 0), (0, 1.0)]), 0.3)
+    with pytest.raises(InputError, match="mesh size"):
+        mesh_polygon(HEXAGON, 0.0)
+    with pytest.raises(InputError, match="2 lists of break points for 6 edges"):
+        mesh_polygon(HEXAGON, 0.1, [np.zeros(0)] * 2)
+
+
+@pytest.mark.parametrize(
+    ("outline", "kinds", "place"),
+    [
+        ([(0, 0), (1, 1), (1, 0), (0, 1)], {"crossing"}, (0.5, 0.5)),
+        ([(0, 0), (1, 0), (1, 0), (1, 1)], {"double vertex"}, (1, 0)),
+        ([(0, 0), (1, 0)], {"too few"}, None),
+        ([(0, 0), (2, 0), (1, 0), (1, 1)], {"spike", "touching"}, (2, 0)),
+        ([(0, 0), (1, 0), (1, 1), (0.5, 0), (0, 1)], {"touching"}, (0.5, 0)),
+        ([(0, 0), (1, np.nan), (1, 1)], {"not finite"}, None),
+    ],
+)
+def test_faults_of_an_outline_are_named_with_their_place(outline, kinds, place):
+    faults = polygon_faults(np.array(outline, dtype=float))
+    assert {f.kind for f in faults} == kinds
+    if place is not None:
+        np.testing.assert_allclose(faults[0].at, place)
+        with pytest.raises(GeometryError, match=r"block 'c01-b02'.*\(%g, %g\) m" % place):  # noqa: UP031
+            check_polygon(np.array(outline, dtype=float), "c01-b02")
+
+
+def test_a_sound_outline_has_no_faults():
+    assert polygon_faults(L_SHAPE) == ()
+    assert polygon_faults(np.concatenate([L_SHAPE, L_SHAPE[:1]])) == ()
