@@ -1,0 +1,44 @@
+"""Tables as CSV: a heading of names with units, numbers that read back to the last bit."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from concio.post.tables import UNITS
+
+Array = np.ndarray
+
+
+def write_csv(table: Mapping[str, Array], path: Path) -> Path:
+    """Write a table.
+
+    Parameters
+    ----------
+    table : mapping of str to (n,) array
+        Columns; those named in :data:`concio.post.tables.UNITS` get their unit in the heading.
+    path : Path
+
+    Returns
+    -------
+    Path
+        ``path``.
+    """
+    heading = [f"{name} [{UNITS[name]}]" if name in UNITS else name for name in table]
+    columns = [_texts(column) for column in table.values()]
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(heading)
+        writer.writerows(zip(*columns, strict=True))
+    return path
+
+
+def _texts(column: Array) -> list[str]:
+    if column.dtype.kind == "f":
+        return ["" if np.isnan(v) else repr(v) for v in column.tolist()]
+    if column.dtype.kind == "b":
+        return ["yes" if v else "no" for v in column.tolist()]
+    return [str(v) for v in column.tolist()]

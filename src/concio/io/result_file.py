@@ -1,0 +1,155 @@
+"""A result as two files, ``result.json`` and ``result.npz``, that reload to the same object years later.
+
+The files hold the model, the discretisation, the contact pairs, the solution with its certificate and the name of the
+engine: everything :class:`concio.analysis.result.Result` is made of, as numbers. Reading them meshes nothing and solves
+nothing, so a later concio with another mesher or another solver shows the same answer. Only the stiffness is formed
+again, from the stored strain operators.
+"""
+
+from __future__ import annotations
+
+import json
+import platform
+import zipfile
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy
+
+import concio
+from concio.analysis.result import Result
+from concio.contact.assembly import Assembly
+from concio.contact.pairs import Pairs
+from concio.contact.problem import Laws
+from concio.contact.supports import Supported
+from concio.errors import InputError
+from concio.fem.body import Shape
+from concio.fem.discretisation import Discretisation
+from concio.fem.elements import Elements
+from concio.io.codec import Decoder, Encoder
+from concio.lcp.certificate import Certificate, Kinematics
+from concio.lcp.solution import Mechanism, Solution, Status
+from concio.model.detect import Detection, Interface
+from concio.model.materials import Elastic, JointLaw, Rigid
+from concio.model.model import Body, JointRule, Load, Model, Support, Tie
+from concio.model.near import NearMiss, Overlap
+
+FORMAT = "concio result"
+VERSION = 1
+"""Version of the format; raised when a file of the new version could not be read by an older concio."""
+
+CLASSES: dict[str, type] = {
+    cls.__name__: cls
+    for cls in (
+        Assembly, Body, Certificate, Detection, Discretisation, Elastic, Elements, Interface, JointLaw, JointRule,
+        Kinematics, Laws, Load, Mechanism, Model, NearMiss, Overlap, Pairs, Result, Rigid, Shape, Solution, Status,
+        Support, Supported, Tie,
+    )
+}  # fmt: skip
+"""Classes that may appear in a file, by the names they have there. A renamed class keeps its name here."""
+
+LEFT_OUT = {"Assembly": ("K",)}
+
+
+def save_result(result: Result, directory: Path) -> list[Path]:
+    """Write ``result.json`` and ``result.npz`` into an existing directory.
+
+    Parameters
+    ----------
+    result : Result
+    directory : Path
+
+    Returns
+    -------
+    list of Path
+        The two files.
+    """
+    encoder = Encoder(CLASSES, LEFT_OUT)
+    stored = Result(result.assembly, result.factors, _storable(result.solution), result.seconds)
+    tree = {
+        "format": FORMAT,
+        "format_version": VERSION,
+        "concio": concio.__version__,
+        "written": datetime.now(UTC).isoformat(timespec="seconds"),
+        "engine": {
+            "method": result.method,
+            "python": platform.python_version(),
+            "numpy": np.__version__,
+            "scipy": scipy.__version__,
+        },
+        "certificate": result.summary()["certificate"],
+        "result": encoder.encode(stored),
+    }
+    text, arrays = directory / "result.json", directory / "result.npz"
+    text.write_text(json.dumps(tree, allow_nan=False, separators=(",", ":")) + "\n", encoding="utf-8")
+    with arrays.open("wb") as file:
+        np.savez_compressed(file, **encoder.arrays)  # type: ignore[arg-type]
+    return [text, arrays]
+
+
+def load_result(directory: Path | str) -> Result:
+    """Return the result that :func:`save_result` or :func:`concio.io.write_result` left in a directory.
+
+    Parameters
+    ----------
+    directory : Path or str
+
+    Raises
+    ------
+    InputError
+        There is no result, it is damaged, or a newer concio wrote it in a format this one does not know.
+    """
+    directory = Path(directory)
+    text, arrays = directory / "result.json", directory / "result.npz"
+    for path in (text, arrays):
+        if not path.is_file():
+            msg = "there is no such file"
+            raise InputError(msg, where=str(path), hint="give the directory that 'concio run --out' wrote")
+    try:
+        tree = json.loads(text.read_text(encoding="utf-8"))
+    except ValueError as error:
+        msg = "the file is damaged: it is not JSON"
+        raise InputError(msg, where=str(text), hint="write the result again") from error
+    if not isinstance(tree, dict) or tree.get("format") != FORMAT:
+        msg = "this is not a result of concio"
+        raise InputError(msg, where=str(text), hint="give the directory that 'concio run --out' wrote")
+    if tree.get("format_version", 0) > VERSION:
+        msg = f"format version {tree['format_version']} is newer than {VERSION}, the newest this concio reads"
+        raise InputError(msg, where=str(text), hint=f"install concio {tree.get('concio', '')} or later")
+    try:
+        with np.load(arrays, allow_pickle=False) as file:
+            found = {name: file[name] for name in file.files}
+    except (ValueError, OSError, zipfile.BadZipFile) as error:
+        msg = "the file is damaged"
+        raise InputError(msg, where=str(arrays), hint="write the result again") from error
+    result = Decoder(CLASSES, found, {"Assembly": _add_stiffness}, str(text)).decode(tree["result"])
+    if not isinstance(result, Result):
+        msg = f"the file holds a {type(result).__name__}, not a result"
+        raise InputError(msg, where=str(text))
+    return result
+
+
+def _add_stiffness(fields: dict[str, Any]) -> None:
+    fields["K"] = fields["disc"].stiffness()
+
+
+def _storable(solution: Solution) -> Solution:
+    """Return the solution with what a method says of itself reduced to numbers, texts, lists and arrays."""
+    from dataclasses import replace
+
+    return replace(solution, info=_plain(solution.info))
+
+
+def _plain(value: Any) -> Any:
+    if value is None or isinstance(value, bool | int | float | str | np.generic):
+        return value
+    if isinstance(value, np.ndarray):
+        return value if value.dtype.kind in "biuf" else value.astype(str).tolist()
+    if isinstance(value, Mapping):
+        return {str(k): _plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return type(value)(_plain(v) for v in value) if type(value) in (list, tuple) else [_plain(v) for v in value]
+    return str(value)

@@ -1,0 +1,189 @@
+"""Figures of the deformed shape with joint states, of slip and opening, and of mechanisms."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from concio.errors import InputError
+from concio.plot import style
+from concio.post.joint_lines import JointLines, joint_lines
+from concio.post.outlines import display_scale, outlines
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from concio.analysis.result import Result
+
+Array = np.ndarray
+
+
+def plot_deformed(result: Result, ax: Axes | None = None, *, scale: float | None = None) -> Axes:
+    """Draw the deformed shape; joints are told apart as open, sticking, slipping.
+
+    Parameters
+    ----------
+    result : Result
+    ax : Axes, optional
+        Where to draw; default a new figure.
+    scale : float, optional
+        Factor of the displacements; default a round one that shows the largest as a twentieth of the model.
+
+    Returns
+    -------
+    Axes
+    """
+    shown = outlines(result)
+    largest = float(np.hypot(*shown.displacement.T).max())
+    scale = display_scale(largest, shown.size) if scale is None else scale
+    box = style.box_of(shown.points, shown.points + scale * shown.displacement)
+    ax = style.axes_for(box, ax)
+    style.ghost(ax, shown)
+    style.draw_bodies(ax, result.model, shown, scale)
+    state = result.contacts.state
+    pieces = joint_lines(result, shown)
+    _draw_states(ax, pieces, state, scale)
+    style.dress(
+        ax, box, "Deformed shape and state of the joints",
+        f"displacements x {scale:g}; largest {style.number(largest, 'm')}",
+    )  # fmt: skip
+    handles: list[Any] = [style.handle(style.STICK), style.handle(style.SLIP)]
+    handles.append(style.patch(style.FILL_OPEN, "open", style.OPEN.colour))
+    style.legend(ax, handles)
+    return ax
+
+
+def plot_slip(result: Result, ax: Axes | None = None) -> Axes:
+    """Draw how far joints have opened (orange) and slipped (purple): the thicker, the further.
+
+    Parameters
+    ----------
+    result : Result
+    ax : Axes, optional
+        Where to draw; default a new figure.
+
+    Returns
+    -------
+    Axes
+    """
+    shown = outlines(result)
+    pieces = joint_lines(result, shown)
+    contacts = result.contacts
+    gap, slip = np.maximum(contacts.gap[pieces.pair], 0.0), np.abs(contacts.slip[pieces.pair])
+    opened = contacts.state[pieces.pair] == 0
+    box = style.box_of(shown.points)
+    ax = style.axes_for(box, ax)
+    style.draw_bodies(ax, result.model, shown)
+    widest = max(float(gap[opened].max(initial=0.0)), float(slip[~opened].max(initial=0.0)))
+    lines = pieces.ends
+    for look, keep, value in ((style.OPEN, opened & (gap > 0), gap), (style.SLIP, ~opened & (slip > 0), slip)):
+        width = 0.4 + 7.0 * value[keep] / (widest or 1.0)
+        style.draw_lines(ax, lines[keep], style.Line(look.colour, "-", 1, look.word), width=width, zorder=3, alpha=0.95)
+    largest_gap = style.number(float(gap[opened].max(initial=0.0)), "m")
+    largest_slip = style.number(float(slip[~opened].max(initial=0.0)), "m")
+    style.dress(
+        ax, box, "Opening and slip of the joints",
+        f"largest opening {largest_gap}, largest slip {largest_slip}; widest line {style.number(widest, 'm')}",
+    )  # fmt: skip
+    style.legend(
+        ax,
+        [
+            style.handle(style.Line(style.OPEN.colour, "-", 4, ""), "opening"),
+            style.handle(style.Line(style.SLIP.colour, "-", 4, ""), "slip of a closed joint"),
+        ],
+    )
+    return ax
+
+
+def plot_mechanism(result: Result, ax: Axes | None = None, *, share: float = 0.08) -> Axes:
+    """Draw the motion that proves that there is no equilibrium.
+
+    Parameters
+    ----------
+    result : Result
+        With status NO_EQUILIBRIUM.
+    ax : Axes, optional
+        Where to draw; default a new figure.
+    share : float
+        Size of the largest motion as a share of the model.
+
+    Raises
+    ------
+    InputError
+        The result has no mechanism.
+
+    Returns
+    -------
+    Axes
+    """
+    from matplotlib.collections import PolyCollection
+
+    velocity = result.mechanism_velocity
+    if velocity is None or result.mechanism is None:
+        msg = f"there is no mechanism to draw: the outcome is '{result.status.name.lower()}'"
+        raise InputError(msg, hint="draw result.plot.deformed() instead")
+    shown = outlines(result, velocity)
+    speed = np.hypot(*shown.displacement.T)
+    scale = share * shown.size / float(speed.max())
+    box = style.box_of(shown.points, shown.points + scale * shown.displacement)
+    ax = style.axes_for(box, ax)
+    style.ghost(ax, shown)
+    fastest = np.array([speed[a:b].max() for a, b in zip(shown.starts[:-1], shown.starts[1:], strict=True)])
+    moving = fastest > 1e-6 * fastest.max()
+    face = [style.body_colour(b) if m else "#FFFFFF" for b, m in zip(result.model.bodies, moving, strict=True)]
+    pieces = joint_lines(result, shown)
+    gaps, slides = separation(result, pieces)
+    largest = float(speed.max())
+    opens, slips = gaps > 1e-6 * largest, (np.abs(gaps) <= 1e-6 * largest) & (slides > 1e-6 * largest)
+    style.draw_bodies(ax, result.model, shown, scale, face=face)
+    ax.add_collection(
+        PolyCollection(list(pieces.openings(scale)[opens]), facecolors=style.FILL_OPEN, edgecolors="none", zorder=2)
+    )
+    style.draw_lines(ax, pieces.side("middle", scale)[slips], style.SLIP, zorder=3)
+    centre = result.assembly.disc.centroids
+    from concio.post.motion import body_motions
+
+    motion = body_motions(result, velocity)[:, :2]
+    arrows = moving & (np.hypot(*motion.T) > 0.02 * largest) if moving.sum() <= 400 else np.zeros(len(moving), bool)
+    ax.quiver(
+        *(centre + scale * motion)[arrows].T, *(scale * motion)[arrows].T, color=style.INK, angles="xy",
+        scale_units="xy", scale=1.0, width=0.0022, headwidth=4, headlength=5, zorder=5, clip_on=False,
+    )  # fmt: skip
+    power = style.number(result.mechanism.power, "kN m/s")
+    style.dress(
+        ax, box, "Collapse mechanism: no equilibrium is possible",
+        f"{int(moving.sum())} of {len(result.model.free_bodies)} bodies move (bodies at rest are white); "
+        f"power of the loads less what the joints absorb: {power} at a largest velocity of 1 m/s",
+    )  # fmt: skip
+    style.legend(
+        ax, [style.patch(style.FILL_OPEN, "opens"), style.handle(style.SLIP, "slips"), style.patch("#FFFFFF", "at rest")]
+    )
+    return ax
+
+
+def separation(result: Result, pieces: JointLines) -> tuple[Array, Array]:
+    """Return opening and sliding (k,) of the middle of each piece, from the motion of its two sides [m]."""
+    relative = (pieces.moved_b - pieces.moved_a).mean(axis=1)
+    pairs = result.assembly.pairs
+    normal, tangent = pairs.normal[pieces.pair], pairs.tangent[pieces.pair]
+    return (relative * normal).sum(1), np.abs((relative * tangent).sum(1))
+
+
+def _draw_states(ax: Axes, pieces: JointLines, state: Array, scale: float) -> None:
+    from matplotlib.collections import PolyCollection
+
+    code = state[pieces.pair]
+    opened = code == 0
+    many = len(code) > 4 * style.LARGE
+    ax.add_collection(
+        PolyCollection(list(pieces.openings(scale)[opened]), facecolors=style.FILL_OPEN, edgecolors="none", zorder=2,
+                       rasterized=many)
+    )  # fmt: skip
+    thin = 0.35 if many else 1.0
+    for side in ("a", "b"):
+        line = style.Line(style.OPEN.colour, style.OPEN.dash, 1.2, "")
+        style.draw_lines(ax, pieces.side(side, scale)[opened], line, width=1.2 * thin, zorder=2.5)
+    middle = pieces.side("middle", scale)
+    style.draw_lines(ax, middle[code == 1], style.STICK, width=style.STICK.width * thin, zorder=3)
+    style.draw_lines(ax, middle[code > 1], style.SLIP, width=style.SLIP.width * thin, zorder=3.1)

@@ -1,0 +1,199 @@
+"""Figures of contact pressure, contact forces, force chains and thrust lines."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from concio.errors import InputError
+from concio.plot import style
+from concio.post.force_lines import force_chains
+from concio.post.joint_lines import joint_lines
+from concio.post.outlines import outlines
+from concio.post.pressure import pressure_diagrams
+from concio.post.thrust import thrust_lines
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from concio.analysis.result import Result
+
+Array = np.ndarray
+
+
+def plot_pressure(result: Result, ax: Axes | None = None, *, scale: float | None = None) -> Axes:
+    """Draw contact pressure as a diagram standing on each joint.
+
+    Parameters
+    ----------
+    result : Result
+    ax : Axes, optional
+        Where to draw; default a new figure.
+    scale : float, optional
+        Length that shows 1 kN/m2 [m].
+
+    Returns
+    -------
+    Axes
+    """
+    from matplotlib.collections import PolyCollection
+
+    shown = outlines(result)
+    pieces = joint_lines(result, shown)
+    contacts = result.contacts
+    pressure = contacts.pressure[pieces.pair]
+    largest = float(pressure.max(initial=0.0))
+    typical = float(np.sqrt(np.median([b.area for b in result.model.free_bodies if b.role != "mortar"] or [1.0])))
+    scale = (0.8 * typical / largest if largest > 0 else 1.0) if scale is None else scale
+    box = style.box_of(shown.points)
+    ax = style.axes_for(box, ax)
+    style.draw_bodies(ax, result.model, shown)
+    diagrams = pressure_diagrams(result, pieces, scale)
+    ax.add_collection(
+        PolyCollection(diagrams, facecolors=style.COMPRESSION.colour, alpha=0.42, edgecolors="none", zorder=3)
+    )
+    ax.add_collection(
+        PolyCollection(diagrams, facecolors="none", edgecolors=style.COMPRESSION.colour, linewidths=0.8, zorder=3.1)
+    )
+    opened = contacts.state[pieces.pair] == 0
+    style.draw_lines(ax, pieces.ends[opened], style.OPEN, zorder=4)
+    style.dress(ax, box, "Contact pressure along the joints", f"largest {style.number(largest, 'kN/m2')}")
+    if largest > 0:
+        bar = style.round_value(0.16 * float((box[1] - box[0])[0]) / scale)
+        style.scale_bar(ax, box, bar * scale, style.number(bar, "kN/m2"), style.COMPRESSION)
+    handles = [style.patch("#94BFDC", "pressure", style.COMPRESSION.colour), style.handle(style.OPEN, "open joint")]
+    style.legend(ax, handles)
+    return ax
+
+
+def plot_forces(result: Result, ax: Axes | None = None, *, chains: bool = True, reactions: bool = True) -> Axes:
+    """Draw contact forces as lines along which they act, and as chains from joint to joint through the blocks.
+
+    Parameters
+    ----------
+    result : Result
+    ax : Axes, optional
+        Where to draw; default a new figure.
+    chains : bool
+        True joins the resultants of the joints with the centres of the blocks, the thicker the larger the force;
+        False draws the force of every contact pair in its own direction.
+    reactions : bool
+        Write the forces of fixed bodies and supports on the structure.
+
+    Returns
+    -------
+    Axes
+    """
+    shown = outlines(result)
+    box = style.box_of(shown.points)
+    ax = style.axes_for(box, ax)
+    style.draw_bodies(ax, result.model, shown)
+    handles: list[Any] = []
+    if chains:
+        found = force_chains(result)
+        largest = float(found.force.max(initial=0.0))
+        _chain_lines(ax, found.lines, found.force, largest)
+        title, note = "Force chains", f"line width in proportion to the force of the joint; largest {style.number(largest, 'kN')}"
+        handles.append(style.handle(style.Line(style.COMPRESSION.colour, "-", 5, ""), "force between blocks"))
+    else:
+        force = result.contacts.force_on_b
+        keep = result.assembly.pairs.interface >= 0
+        size = np.hypot(*force.T)
+        largest = float(size[keep].max(initial=0.0))
+        keep &= size > 1e-3 * largest
+        typical = float(np.sqrt(np.median([b.area for b in result.model.free_bodies])))
+        scale = typical / (largest or 1.0)
+        half = 0.5 * scale * force[keep]
+        point = result.contacts.point[keep]
+        lines = np.stack([point - half, point + half], axis=1)
+        style.draw_lines(ax, lines, style.COMPRESSION, width=0.6 + 1.8 * size[keep] / (largest or 1.0), zorder=3)
+        bar = style.round_value(0.16 * float((box[1] - box[0])[0]) / scale)
+        style.scale_bar(ax, box, bar * scale, style.number(bar, "kN"), style.COMPRESSION)
+        title, note = "Contact forces", f"each contact pair; largest {style.number(largest, 'kN')}"
+        handles.append(style.handle(style.COMPRESSION, "contact force, along its line of action"))
+    if reactions:
+        _reactions(ax, result, box)
+    style.dress(ax, box, title, note)
+    style.legend(ax, handles)
+    return ax
+
+
+def plot_thrust(result: Result, ax: Axes | None = None) -> Axes:
+    """Draw the line of thrust through the resultants of the joints, with hinges where it reaches an edge.
+
+    Parameters
+    ----------
+    result : Result
+    ax : Axes, optional
+        Where to draw; default a new figure.
+
+    Raises
+    ------
+    InputError
+        The bodies do not stand in a row, so that there is no line of thrust.
+
+    Returns
+    -------
+    Axes
+    """
+    lines = thrust_lines(result)
+    if not lines:
+        msg = "there is no line of thrust: no bodies stand in a row, each pressed by two others"
+        raise InputError(msg, hint="draw result.plot.forces() instead")
+    from matplotlib.lines import Line2D
+
+    shown = outlines(result)
+    box = style.box_of(shown.points)
+    ax = style.axes_for(box, ax)
+    style.draw_bodies(ax, result.model, shown)
+    hinges = 0
+    for line in lines:
+        ax.plot(*line.points.T, color=style.THRUST.colour, lw=style.THRUST.width, zorder=4)
+        at_edge = line.points[line.ratio > 0.98]
+        hinges += len(at_edge)
+        ax.plot(*at_edge.T, "o", mfc="white", mec=style.OPEN.colour, mew=1.8, ms=7, zorder=5)
+    largest = max(float(line.force.max()) for line in lines)
+    nearest = max(float(line.ratio.max()) for line in lines)
+    style.dress(
+        ax, box, "Line of thrust",
+        f"largest force {style.number(largest, 'kN')}; it comes within {max(0.0, 50 * (1 - nearest)):.2g} % "
+        "of a joint's length of its edge",
+    )  # fmt: skip
+    handles = [style.handle(style.THRUST)]
+    if hinges:
+        handles.append(Line2D([], [], ls="none", marker="o", mfc="white", mec=style.OPEN.colour, mew=1.8, ms=7, label="hinge"))
+    style.legend(ax, handles)
+    return ax
+
+
+def _chain_lines(ax: Axes, lines: Array, force: Array, largest: float) -> None:
+    if not largest > 0:
+        return
+    share = force / largest
+    order = np.argsort(share)
+    thin = 0.5 if len(force) > 4 * style.LARGE else 1.0
+    style.draw_lines(
+        ax, lines[order], style.COMPRESSION, width=thin * 7.0 * share[order], zorder=3, alpha=0.8, capstyle="round"
+    )
+
+
+def _reactions(ax: Axes, result: Result, box: Array) -> None:
+    for name, (fx, fy) in result.reactions.items():
+        body = next((b for b in result.model.bodies if b.name == name), None)
+        if body is None:
+            support = next(s for s in result.model.supports if s.name == name)
+            body = result.model.body(support.body)
+        if not np.hypot(fx, fy) > 0 or len(result.reactions) > 12:
+            continue
+        ax.annotate(
+            f"{name}\n{style.number(fx)}, {style.number(fy)} kN", body.centroid, ha="center", va="center", fontsize=7.5,
+            color=style.LOAD.colour, zorder=6, rotation=90 if _upright(body.outline) else 0,
+            bbox={"boxstyle": "round,pad=0.25", "fc": "white", "ec": style.LOAD.colour, "lw": 0.8},
+            annotation_clip=False,
+        )  # fmt: skip
+
+
+def _upright(outline: Array) -> bool:
+    span = np.ptp(outline, axis=0)
+    return bool(span[1] > 1.6 * span[0])

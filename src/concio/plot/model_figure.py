@@ -1,0 +1,156 @@
+"""Figure of a model: bodies with their names, obstacles, supports, loads and ties."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from concio.plot import style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from concio.analysis.result import Result
+    from concio.model.model import Load, Model
+
+Array = np.ndarray
+
+NAMED = 150
+"""Up to this many bodies get their names written."""
+
+
+def plot_model(model: Model, ax: Axes | None = None, *, names: bool | None = None) -> Axes:
+    """Draw a model as it is described, before meshing.
+
+    Parameters
+    ----------
+    model : Model
+    ax : Axes, optional
+        Where to draw; default a new figure.
+    names : bool, optional
+        Write the names of the bodies; default for up to 150 bodies.
+
+    Returns
+    -------
+    Axes
+    """
+    from matplotlib.collections import PolyCollection
+
+    box = style.box_of(*[b.outline for b in model.bodies], margin=0.08)
+    size = float((box[1] - box[0]).max())
+    ax = style.axes_for(box, ax)
+    fixed = [b for b in model.bodies if b.kind == "fixed"]
+    free = [b for b in model.bodies if b.kind != "fixed"]
+    many = len(free) > style.LARGE
+    ax.add_collection(
+        PolyCollection([b.outline for b in free], facecolors=[style.body_colour(b) for b in free],
+                       edgecolors=style.EDGE, linewidths=0.2 if many else 0.7, rasterized=many, zorder=1)
+    )  # fmt: skip
+    ax.add_collection(
+        PolyCollection([b.outline for b in fixed], facecolors=style.OBSTACLE, edgecolors=style.HATCH, hatch="/////",
+                       linewidths=0.8, zorder=0.9)
+    )  # fmt: skip
+    if names if names is not None else len(model.bodies) <= NAMED:
+        _names(ax, model, box)
+    kinds = {("rigid" if b.kind == "rigid" else b.role) for b in free}
+    handles: list[Any] = []
+    if kinds - {"mortar", "rigid"}:
+        handles.append(style.patch(style.BLOCK, "block"))
+    if "rigid" in kinds:
+        handles.append(style.patch(style.RIGID, "rigid block"))
+    if "mortar" in kinds:
+        handles.append(style.patch(style.FILM, "mortar"))
+    if fixed:
+        handles.append(style.patch(style.OBSTACLE, "fixed", style.HATCH, "/////"))
+    for support in model.supports:
+        _support(ax, model, support, size)
+    if model.supports:
+        from matplotlib.lines import Line2D
+
+        handles.append(Line2D([], [], color=style.INK, marker="^", ls="none", ms=6, label="support"))
+    for tie in model.ties:
+        ax.plot(*zip(tie.at_a, tie.at_b, strict=True), color=style.TENSION.colour, ls="-.", lw=1.4, marker="o", ms=3)
+    if model.ties:
+        handles.append(style.handle(style.Line(style.TENSION.colour, "-.", 1.4, "tie rod")))
+    if _loads(ax, model, size):
+        handles.append(style.handle(style.LOAD, "load"))
+    count = f"{len(free)} bodies" + (f", {len(fixed)} fixed" if fixed else "")
+    style.dress(ax, box, model.title or "model", f"{count}; plane {model.plane}, element {model.element}")
+    style.legend(ax, handles, 6)
+    return ax
+
+
+def plot_result_model(result: Result, ax: Axes | None = None, *, names: bool | None = None) -> Axes:
+    """Draw the model of a result; see :func:`plot_model`."""
+    return plot_model(result.model, ax, names=names)
+
+
+def _names(ax: Axes, model: Model, box: Array) -> None:
+    points_per_metre = 72 * 9.0 / float((box[1] - box[0])[0])
+    for body in model.bodies:
+        span = np.ptp(body.outline, axis=0)
+        upright = span[1] > 1.6 * span[0]
+        room, width = (span[1], span[0]) if upright else (span[0], span[1])
+        font = min(7.5, 0.85 * width * points_per_metre, 1.6 * room * points_per_metre / max(len(body.name), 1))
+        if font >= 2.0:
+            ax.annotate(
+                body.name, body.centroid, ha="center", va="center", fontsize=font, color="#5A5348", zorder=4,
+                rotation=90 if upright else 0,
+                bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none"} if body.kind == "fixed" else None,
+            )  # fmt: skip
+
+
+def _support(ax: Axes, model: Model, support: Any, size: float) -> None:
+    body = model.body(support.body)
+    ends = np.array(support.edge if support.edge is not None else [body.centroid, body.centroid], dtype=float)
+    points = np.linspace(ends[0], ends[1], 3 if np.ptp(ends, axis=0).max() > 0.05 * size else 1)
+    marker = {"xy": "^", "y": "o", "x": ">"}[support.directions if support.directions in ("x", "y") else "xy"]
+    ax.plot(*points.T, marker=marker, ls="none", color=style.INK, ms=6, zorder=6)
+    move = np.array(support.displacement)
+    if move.any():
+        start = points.mean(0)
+        ax.annotate(
+            f"{style.number(float(np.hypot(*move)), 'm')}", start + 0.08 * size * move / np.hypot(*move), start,
+            arrowprops={"arrowstyle": "<-", "color": style.INK, "lw": 1.2}, fontsize=8, ha="center", zorder=6,
+        )  # fmt: skip
+
+
+def _loads(ax: Axes, model: Model, size: float) -> bool:
+    """Draw edge and point loads as arrows; own weight is told in words. True where there was anything to draw."""
+    drawn = False
+    for load in model.loads:
+        arrows = _arrows(load)
+        if arrows is None:
+            continue
+        tips, direction, word = arrows
+        length = 0.05 * size
+        tails = tips - length * direction
+        ax.quiver(
+            *tails.T, *(length * direction).T, color=style.LOAD.colour, angles="xy", scale_units="xy", scale=1,
+            width=0.0022, headwidth=4, headlength=5, zorder=5, clip_on=False,
+        )  # fmt: skip
+        place = tails.mean(0) - 0.25 * length * direction.mean(0)
+        ax.annotate(word, place, ha="center", va="center", fontsize=8, color=style.LOAD.colour, annotation_clip=False)
+        drawn = True
+    return drawn
+
+
+def _arrows(load: Load) -> tuple[Array, Array, str] | None:
+    value = np.array(load.value, dtype=float)
+    size = float(np.hypot(*value)) if len(value) > 1 else abs(float(value[0]))
+    if not size > 0:
+        return None
+    if load.kind == "point" and load.at is not None:
+        return np.array([load.at]), (value / size)[None, :], style.number(size, "kN")
+    if load.kind in ("pressure", "traction") and load.edge is not None:
+        a, b = np.array(load.edge, dtype=float)
+        along = (b - a) / max(float(np.hypot(*(b - a))), 1e-300)
+        if load.kind == "traction":
+            direction = value / size
+        else:
+            inward = np.array([along[1], -along[0]])
+            direction = np.sign(value[0]) * (inward if inward[1] < 0 or (inward[1] == 0 and inward[0] < 0) else -inward)
+        tips = np.linspace(a, b, 13)
+        return tips, np.tile(direction, (13, 1)), style.number(size, "kN/m2")
+    return None

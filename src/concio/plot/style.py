@@ -1,0 +1,208 @@
+"""One look for all figures: what each colour, dash and hatch means, axes, legends and scale bars.
+
+Colours are those of Okabe and Ito, told apart by the colour-blind; every meaning is carried a second time by dash,
+width or hatch, so that a grey copy reads as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from concio.post.outlines import Outlines
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from concio.model.model import Model
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True)
+class Line:
+    """Look of one meaning: colour, dash, width in points, and the word in the legend."""
+
+    colour: str
+    dash: Any
+    width: float
+    word: str
+
+
+COMPRESSION = Line("#0072B2", "-", 1.8, "compression")
+TENSION = Line("#D55E00", (0, (3, 1.6)), 1.6, "tension")
+STICK = Line("#3A3A3A", "-", 1.0, "closed, sticks")
+SLIP = Line("#CC79A7", (0, (2.2, 0.9)), 2.4, "closed, slips")
+OPEN = Line("#E69F00", (0, (0.8, 1.2)), 2.0, "open")
+LOAD = Line("#009E73", "-", 1.4, "load")
+THRUST = Line("#0072B2", "-", 2.0, "thrust line")
+STATES = (OPEN, STICK, SLIP, SLIP)
+"""Look of each pair state code."""
+
+BLOCK, FILM, RIGID, OBSTACLE = "#F3EEE4", "#DDD5C6", "#E4E4E4", "#FFFFFF"
+EDGE, GHOST, HATCH, INK = "#8C8375", "#B8B2A8", "#9A9A9A", "#222222"
+FILL_OPEN = "#FBDFA6"
+SEQUENTIAL = "cividis"
+"""Colour map of quantities without a sign; it grows lighter steadily, also in grey."""
+
+LARGE = 3000
+"""Above this number of bodies lines are thin and vector files hold the drawing as an image."""
+
+
+def axes_for(box: Array, ax: Axes | None) -> Axes:
+    """Return ``ax``, or the axes of a new figure whose shape suits ``box`` = ((x0, y0), (x1, y1)) [m]."""
+    if ax is not None:
+        return ax
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    width, height = np.maximum(box[1] - box[0], 1e-9)
+    tall = float(np.clip(9.2 * height / width, 1.6, 9.0))
+    wide = float(np.clip(tall * width / height, 4.2, 9.2))
+    figure = Figure(figsize=(wide + 0.9, tall + 1.5), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes: Axes = figure.add_subplot()
+    return axes
+
+
+def box_of(*points: Array, margin: float = 0.04) -> Array:
+    """Return the box ((x0, y0), (x1, y1)) around points with a margin of its longer side."""
+    everything = np.vstack([p.reshape(-1, 2) for p in points if p.size])
+    low, high = everything.min(0), everything.max(0)
+    pad = margin * float((high - low).max())
+    return np.array([low - pad, high + pad])
+
+
+def dress(ax: Axes, box: Array, title: str, note: str = "") -> None:
+    """Set limits, equal scales, labels with units, and the title with a note under it."""
+    ax.set_xlim(box[0, 0], box[1, 0])
+    ax.set_ylim(box[0, 1], box[1, 1])
+    ax.set_aspect("equal")
+    ax.set_xlabel("x [m]", fontsize=8, color=INK)
+    ax.set_ylabel("y [m]", fontsize=8, color=INK)
+    ax.tick_params(labelsize=7.5, colors="#555555", length=3, width=0.6)
+    for spine in ax.spines.values():
+        spine.set_visible(False)
+    ax.set_title(title, loc="left", fontsize=11, color=INK, pad=22 if note else 8, fontweight="bold")
+    if note:
+        ax.annotate(
+            note, (0, 1), (0, 8), xycoords="axes fraction", textcoords="offset points", fontsize=8.5, color="#555555"
+        )
+
+
+def legend(ax: Axes, handles: Sequence[Any], columns: int = 4) -> None:
+    """Put a legend without frame under the axes."""
+    if handles:
+        ax.legend(
+            handles=list(handles), loc="upper center", bbox_to_anchor=(0.5, -0.02), bbox_transform=_below(ax),
+            ncols=min(columns, len(handles)), frameon=False, fontsize=8.5, handlelength=2.6, borderaxespad=0.0,
+        )  # fmt: skip
+
+
+def _below(ax: Axes) -> Any:
+    from matplotlib.transforms import ScaledTranslation
+
+    return ax.transAxes + ScaledTranslation(0, -0.42, ax.figure.dpi_scale_trans)
+
+
+def handle(line: Line, word: str | None = None) -> Any:
+    """Return the legend entry of a meaning."""
+    from matplotlib.lines import Line2D
+
+    return Line2D([], [], color=line.colour, linestyle=line.dash, linewidth=line.width, label=word or line.word)
+
+
+def patch(colour: str, word: str, edge: str = EDGE, hatch: str | None = None) -> Any:
+    """Return the legend entry of an area."""
+    from matplotlib.patches import Patch
+
+    return Patch(facecolor=colour, edgecolor=edge, hatch=hatch, label=word, linewidth=0.8)
+
+
+def draw_lines(ax: Axes, lines: Array, look: Line, *, width: float | Array | None = None, **options: Any) -> None:
+    """Draw line pieces (k, 2, 2) with the look of one meaning."""
+    from matplotlib.collections import LineCollection
+
+    if not len(lines):
+        return
+    options.setdefault("capstyle", "butt")
+    ax.add_collection(
+        LineCollection(
+            list(lines), colors=look.colour, linestyles=[look.dash], linewidths=look.width if width is None else width,
+            rasterized=len(lines) > 4 * LARGE, **options,
+        )
+    )  # fmt: skip
+
+
+def draw_bodies(
+    ax: Axes, model: Model, shown: Outlines, scale: float = 0.0, *, face: Sequence[Any] | None = None, edge: str = EDGE
+) -> None:
+    """Fill the bodies, obstacles hatched; ``face`` gives colours body by body in place of those of the materials."""
+    from matplotlib.collections import PolyCollection
+
+    polygons = shown.moved(scale)
+    fixed = np.array([b.kind == "fixed" for b in model.bodies])
+    free = np.flatnonzero(~fixed)
+    colours = [body_colour(model.bodies[b]) for b in free] if face is None else [face[b] for b in free]
+    many = len(free) > LARGE
+    width = 0.2 if many else 0.6
+    ax.add_collection(
+        PolyCollection([polygons[b] for b in free], facecolors=colours, edgecolors=edge, linewidths=width, zorder=1,
+                       rasterized=many)
+    )  # fmt: skip
+    ax.add_collection(
+        PolyCollection([polygons[b] for b in np.flatnonzero(fixed)], facecolors=OBSTACLE, edgecolors=HATCH,
+                       hatch="/////", linewidths=0.8, zorder=0.9)
+    )  # fmt: skip
+
+
+def body_colour(body: Any) -> str:
+    """Return the fill of a body: block, mortar film, rigid block or obstacle."""
+    if body.kind == "fixed":
+        return OBSTACLE
+    if body.kind == "rigid":
+        return RIGID
+    return FILM if body.role == "mortar" else BLOCK
+
+
+def ghost(ax: Axes, shown: Outlines) -> None:
+    """Draw where the bodies were, thin and grey."""
+    from matplotlib.collections import LineCollection
+
+    if len(shown.starts) <= LARGE:
+        ax.add_collection(LineCollection(shown.moved(0.0), colors=GHOST, linewidths=0.5, linestyles=":", zorder=0.8))
+
+
+def scale_bar(ax: Axes, box: Array, length: float, word: str, line: Line) -> None:
+    """Draw a bar of ``length`` [m] with its meaning in the lower right corner, and make room for it."""
+    low, high = box
+    room = 0.085 * float((high - low).max())
+    y = low[1] - 0.4 * room
+    x = high[0] - 0.02 * (high[0] - low[0])
+    draw_lines(ax, np.array([[[x - length, y], [x, y]]]), line, zorder=5, clip_on=False)
+    ax.annotate(
+        word, (x - length, y), (-5, 0), textcoords="offset points", ha="right", va="center", fontsize=8.5, color=INK,
+        annotation_clip=False,
+    )  # fmt: skip
+    ax.set_ylim(bottom=low[1] - room)
+
+
+def round_value(value: float) -> float:
+    """Return the largest of 1, 2, 5 times a power of ten that is not above ``value``."""
+    if not (value > 0 and np.isfinite(value)):
+        return 1.0
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(power * max(step for step in (1.0, 2.0, 5.0) if step <= value / power * (1 + 1e-12)))
+
+
+def number(value: float, unit: str = "") -> str:
+    """Return a number with three digits and its unit; lengths below a centimetre in mm."""
+    if unit == "m" and 0 < abs(value) < 0.01:
+        value, unit = 1e3 * value, "mm"
+    text = f"{value:.3g}" if 1e-4 <= abs(value) < 1e5 or value == 0 else f"{value:.2e}"
+    if "e" in text and 1e3 <= abs(value) < 1e5:
+        text = f"{value:.0f}"
+    return f"{text} {unit}".strip()

@@ -1,0 +1,1 @@
+"""What figures, reports and files show, computed from results; no drawing here."""

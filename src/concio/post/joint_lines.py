@@ -1,0 +1,81 @@
+"""Joints as drawn: the piece of joint that belongs to each contact pair, on both sides, where it has moved to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from concio.post.outlines import Outlines
+
+if TYPE_CHECKING:
+    from concio.analysis.result import Result
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class JointLines:
+    """Pieces of joints, k in all; ties are left out.
+
+    Parameters
+    ----------
+    pair : (k,) integer array
+        The contact pair of each piece.
+    ends : (k, 2, 2) array
+        Start and end of each piece as it was drawn [m].
+    moved_a, moved_b : (k, 2, 2) arrays
+        Displacements of these ends on side a and on side b [m].
+    """
+
+    pair: Array
+    ends: Array
+    moved_a: Array
+    moved_b: Array
+
+    def side(self, name: str, scale: float = 1.0) -> Array:
+        """Return the pieces (k, 2, 2) on side "a", "b" or in the "middle" with displacements times ``scale`` [m]."""
+        motion = {"a": self.moved_a, "b": self.moved_b, "middle": (self.moved_a + self.moved_b) / 2}[name]
+        lines: Array = self.ends + scale * motion
+        return lines
+
+    def openings(self, scale: float = 1.0) -> Array:
+        """Return the quadrilaterals (k, 4, 2) between the two sides [m]."""
+        return np.concatenate([self.side("a", scale), self.side("b", scale)[:, ::-1]], axis=1)
+
+
+def joint_lines(result: Result, shown: Outlines) -> JointLines:
+    """Return the pieces of all joints, moved with the outlines ``shown``.
+
+    Each interface is cut into as many pieces as it has pairs, each as long as the pair's tributary length.
+    """
+    pairs = result.assembly.pairs
+    faces = result.assembly.detection.interfaces
+    pair = np.flatnonzero(pairs.interface >= 0)
+    if not len(pair):
+        empty = np.zeros((0, 2, 2))
+        return JointLines(pair, empty, empty, empty)
+    along = (pairs.point[pair] * pairs.tangent[pair]).sum(1)
+    pair = pair[np.lexsort((along, pairs.interface[pair]))]
+    face = pairs.interface[pair]
+    first = np.concatenate([[True], face[1:] != face[:-1]])
+    length = pairs.length[pair]
+    total = np.cumsum(length)
+    begin = (total - length)[first]
+    offset = begin[np.cumsum(first) - 1]
+    low, high = total - length - offset, total - offset
+    start = np.array([f.start for f in faces])[face]
+    tangent = pairs.tangent[pair]
+    stop = np.array([float(np.linalg.norm(f.end - f.start)) for f in faces])[face]
+    low, high = np.minimum(low, stop), np.minimum(high, stop)
+    ends = start[:, None] + np.stack([low, high], axis=1)[:, :, None] * tangent[:, None]
+    moved = []
+    for side in ("a", "b"):
+        base = np.array([shown.vertices[getattr(f, side)][getattr(f, f"edge_{side}")] for f in faces])
+        corner = np.array([result.model.bodies[getattr(f, side)].outline[getattr(f, f"edge_{side}")] for f in faces])
+        edge_end = np.array([shown.vertices[getattr(f, side)][getattr(f, f"edge_{side}") + 1] for f in faces])
+        away = np.abs(((ends - corner[face][:, None]) * tangent[:, None]).sum(-1))
+        arc = np.minimum(base[face][:, None] + away, edge_end[face][:, None])
+        moved.append(shown.at(arc.ravel()).reshape(-1, 2, 2))
+    return JointLines(pair, ends, moved[0], moved[1])

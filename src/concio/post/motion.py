@@ -1,0 +1,53 @@
+"""Motion of each body: the mean displacement of its centroid and its mean rotation."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from concio.fem.discretisation import FIXED, RIGID
+
+if TYPE_CHECKING:
+    from concio.analysis.result import Result
+
+Array = np.ndarray
+
+
+def body_motions(result: Result, u: Array | None = None) -> Array:
+    """Return (u_x, u_y, rotation) of each body (B, 3) [m, m, rad].
+
+    A deformed body has the rigid motion that fits its nodes best (least squares over the nodes, about the centroid). A
+    fixed body has the movement imposed on it, and none when ``u`` is given.
+
+    Parameters
+    ----------
+    result : Result
+    u : (N_all,) array, optional
+        Other displacements than the result's, such as a mechanism.
+    """
+    disc = result.assembly.disc
+    own = result.displacement if u is None else u
+    motion = np.zeros((len(disc.shape_of), 3))
+    rigid = np.flatnonzero(disc.shape_of == RIGID)
+    motion[rigid] = own[disc.offsets[rigid][:, None] + np.arange(3)]
+    motion[rigid, 2] /= disc.reach[rigid]
+    for s, shape in enumerate(disc.shapes):
+        bodies = np.flatnonzero(disc.shape_of == s)
+        if not len(bodies):
+            continue
+        arm = shape.elements.nodes - (disc.centroids[bodies[0]] - disc.origins[bodies[0]])
+        n = len(arm)
+        modes = np.zeros((2 * n, 3))
+        modes[0::2, 0] = modes[1::2, 1] = 1.0
+        modes[0::2, 2], modes[1::2, 2] = -arm[:, 1], arm[:, 0]
+        nodal = own[disc.offsets[bodies][:, None] + np.arange(2 * n)]
+        motion[bodies] = nodal @ np.linalg.pinv(modes).T
+    if u is None:
+        for b in np.flatnonzero(disc.shape_of == FIXED):
+            name = result.model.bodies[b].name
+            for support in result.model.supports:
+                if support.body == name:
+                    factor = result.factors.get(support.group, 1.0)
+                    motion[b] += factor * np.array([*support.displacement, support.rotation])
+    return motion

@@ -1,0 +1,122 @@
+"""Tables of a result: columns by name, ready for ``pandas.DataFrame(table)`` and for CSV, with no need of pandas."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from concio.analysis.contacts import STATE_NAMES
+
+if TYPE_CHECKING:
+    from concio.analysis.result import Result
+
+Array = np.ndarray
+Table = dict[str, Array]
+
+UNITS: dict[str, str] = {
+    **dict.fromkeys(("x", "y", "u_x", "u_y", "length", "gap", "slip", "eccentricity", "thickness"), "m"),
+    **dict.fromkeys(("n_x", "n_y", "open_share", "friction_used"), "-"),
+    **dict.fromkeys(("normal_force", "friction_force", "shear_force", "force_x", "force_y"), "kN"),
+    **dict.fromkeys(("s_x", "s_y", "t_xy", "s_1", "s_2", "pressure", "shear"), "kN/m2"),
+    **dict.fromkeys(("angle", "rotation"), "rad"),
+    "area": "m2",
+}
+"""Unit of each column that has one; stresses are tension positive, pressure and normal forces compression positive."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tables:
+    """Tables of one result. Each is a dict of arrays of one length.
+
+    Parameters
+    ----------
+    result : Result
+    """
+
+    result: Result
+
+    def bodies(self) -> Table:
+        """Return one row a body: name, kind, centroid, mean displacement and rotation, mean and principal stresses."""
+        from concio.post.motion import body_motions
+
+        model, stress = self.result.model, self.result.stress
+        s1, s2, angle = stress.principal
+        centre = self.result.assembly.disc.centroids
+        motion = body_motions(self.result)
+        return {
+            "body": np.array([b.name for b in model.bodies]),
+            "kind": np.array([b.kind for b in model.bodies]),
+            "role": np.array([b.role for b in model.bodies]),
+            "x": centre[:, 0],
+            "y": centre[:, 1],
+            "u_x": motion[:, 0],
+            "u_y": motion[:, 1],
+            "rotation": motion[:, 2],
+            "s_x": stress.mean[:, 0],
+            "s_y": stress.mean[:, 1],
+            "t_xy": stress.mean[:, 2],
+            "s_1": s1,
+            "s_2": s2,
+            "angle": angle,
+        }
+
+    def joints(self) -> Table:
+        """Return one row an interface: its bodies, resultants on side b, where they act, what is open or slips."""
+        j = self.result.joints
+        return {
+            **self._names(j.body_a, j.body_b),
+            "x": j.middle[:, 0],
+            "y": j.middle[:, 1],
+            "n_x": j.normal[:, 0],
+            "n_y": j.normal[:, 1],
+            "length": j.length,
+            "normal_force": j.N,
+            "shear_force": j.V,
+            "eccentricity": j.eccentricity,
+            "open_share": j.open_share,
+            "slipping": j.slipping,
+        }
+
+    def contacts(self) -> Table:
+        """Return one row a contact pair: place, frame, law, state, forces, tractions, gap and slip."""
+        c = self.result.contacts
+        p = c.pairs
+        laws = np.array([*p.law_names, "tie"])
+        return {
+            **self._names(p.body_a, p.body_b),
+            "interface": p.interface,
+            "law": laws[p.law],
+            "x": p.point[:, 0],
+            "y": p.point[:, 1],
+            "n_x": p.normal[:, 0],
+            "n_y": p.normal[:, 1],
+            "area": p.area,
+            "state": np.array(STATE_NAMES)[c.state],
+            "normal_force": c.normal_force,
+            "friction_force": c.friction_force,
+            "pressure": c.pressure,
+            "shear": c.shear,
+            "gap": c.gap,
+            "slip": c.slip,
+        }
+
+    def reactions(self) -> Table:
+        """Return one row a fixed body or support: its force on the structure."""
+        found = self.result.reactions
+        force = np.array(list(found.values()), dtype=float).reshape(-1, 2)
+        return {"support": np.array(list(found), dtype=str), "force_x": force[:, 0], "force_y": force[:, 1]}
+
+    def all(self) -> dict[str, Table]:
+        """Return the four tables by name."""
+        return {
+            "bodies": self.bodies(),
+            "joints": self.joints(),
+            "contacts": self.contacts(),
+            "reactions": self.reactions(),
+        }
+
+    def _names(self, a: Array, b: Array) -> Table:
+        names = np.array([*(body.name for body in self.result.model.bodies), ""])  # -1: the free end of a tie
+        return {"body_a": names[a], "body_b": names[b]}
