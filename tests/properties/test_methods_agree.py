@@ -20,7 +20,7 @@ from concio.lcp.solution import Solution
 from contact_problems import wall
 
 QUICK: dict[str, dict[str, int]] = {
-    "lagrange": {"limit": 60},
+    "lagrange": {"limit": 100},
     "alart-curnier": {"limit": 80},
     "simo-laursen": {"limit": 150},
     "de-saxce": {"steps": 300},
