@@ -43,7 +43,7 @@ def result_lines(result: Result) -> list[str]:
     elif result.mechanism is not None:
         moving = ", ".join(f"'{name}' ({speed:.2g})" for name, speed in moving_bodies(result)[:5])
         lines += [
-            f"  mechanism    the loads do {result.mechanism.power:.4g} kN m of work on each metre of it; no joint resists",
+            f"  mechanism    the loads do {result.mechanism.power:.4g} kN m of work on each metre of it",
             f"  moves most   {moving}",
         ]
     else:

@@ -6,7 +6,7 @@ import sys
 
 import typer
 
-from concio.cli import compare, new, run, schema, view
+from concio.cli import check, compare, new, run, schema, view
 
 app = typer.Typer(
     name="concio",
@@ -39,6 +39,7 @@ def _common(
 
 
 app.command("new")(new.new)
+app.command("check")(check.check)
 app.command("run")(run.run)
 app.command("compare")(compare.compare)
 app.command("view")(view.view)

@@ -1,0 +1,92 @@
+"""``concio check FILE``: what was read, what is wrong, where."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from concio.cli.outcome import guarded, print_json, say
+from concio.cli.output import replaced_file
+from concio.cli.run import File, Json
+
+if TYPE_CHECKING:
+    from concio.model.detect import Detection
+    from concio.model.model import Model
+
+
+@guarded
+def check(
+    file: File,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Picture of the model to write: .png, .svg or .pdf.")
+    ] = None,
+    every: Annotated[bool, typer.Option("--all", help="List every finding and every body.")] = False,
+    json: Json = False,
+) -> int:
+    """Say what a model file holds and what is wrong with it, without solving.
+
+    Example: concio check wall.toml --out wall.png
+    """
+    import concio
+    from concio.cli.check_lines import check_facts, check_lines, resultants
+    from concio.contact.assembly import assemble, detect
+    from concio.errors import ConcioError
+
+    if out is not None:
+        _check_picture(out)
+    model = concio.load(file)
+    detection = detect(model)
+    fault: ConcioError | None = None
+    facts: dict[str, Any] = {}
+    try:
+        assembly = assemble(model)
+        facts = {
+            "pairs": len(assembly.pairs),
+            "unknowns": assembly.disc.unknowns,
+            "total_load": resultants(assembly),
+        }
+    except ConcioError as error:
+        fault = error
+    if out is not None:
+        _draw(model, detection, out)
+    if not json:
+        for line in check_lines(model, detection, facts, every=every):
+            say(line)
+        if out is not None:
+            say(f"picture      {out}")
+    if fault is not None:
+        raise fault
+    if json:
+        print_json({"status": "ok", **check_facts(model, detection), **facts})
+    return 0
+
+
+def _check_picture(out: Path) -> None:
+    from concio.errors import InputError
+
+    if out.suffix not in (".png", ".svg", ".pdf"):
+        msg = f"a picture ends in .png, .svg or .pdf, not in '{out.suffix}'"
+        raise InputError(msg, where="--out", hint=f"write for example --out {out.stem}.png")
+    if not out.absolute().parent.is_dir():
+        msg = f"there is no directory '{out.parent}'"
+        raise InputError(msg, where=str(out), hint="make it first")
+
+
+def _draw(model: Model, detection: Detection, out: Path) -> None:
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    from matplotlib import pyplot as plt
+
+    from concio.plot.model_figure import plot_model
+
+    axes = plot_model(model)
+    for things, mark, word in ((detection.overlaps, "X", "overlap"), (detection.near_misses, "o", "near miss")):
+        if things:
+            x, y = zip(*(t.at for t in things), strict=True)
+            axes.plot(x, y, mark, mec="#c1272d", mfc="none", ms=9, label=word, ls="")
+    with replaced_file(out) as fresh:
+        plt.savefig(fresh, dpi=150)
+    plt.close("all")

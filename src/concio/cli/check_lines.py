@@ -1,0 +1,136 @@
+"""What ``concio check`` prints: the parts of a model, and everything that was noticed about its geometry."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from concio.contact.assembly import Assembly
+from concio.fem.discretisation import RIGID
+from concio.model.detect import Detection
+from concio.model.materials import Elastic, JointLaw, Rigid
+from concio.model.model import Model
+
+MOST_LINES = 20
+"""More findings than this are counted, unless all are asked for."""
+
+
+def check_facts(model: Model, detection: Detection) -> dict[str, Any]:
+    """Return what a model holds as plain types."""
+    return {
+        "title": model.title,
+        "bodies": len(model.free_bodies),
+        "fixed_bodies": len(model.bodies) - len(model.free_bodies),
+        "interfaces": len(detection.interfaces),
+        "near_misses": [m.sentence for m in detection.near_misses],
+        "overlaps": [o.sentence for o in detection.overlaps],
+        "drawing_faults": [str(fault) for fault in _drawing_faults(model)],
+    }
+
+
+def check_lines(model: Model, detection: Detection, facts: Mapping[str, Any], *, every: bool) -> list[str]:
+    """Return what a model holds as lines of text: sizes, parts, loads, and every finding of interface detection."""
+    width, height = np.ptp(np.vstack([body.outline for body in model.bodies]), axis=0)
+    lines = [
+        model.title or "model without a title",
+        f"size         {width:.4g} x {height:.4g} m, plane {model.plane}, elements {model.element}",
+        *_bodies(model, float(max(width, height)), every=every),
+    ]
+    lines += [f"material     {name}: {_material(material)}" for name, material in model.materials.items()]
+    lines += [f"joint law    {name}: {_law(law)}" for name, law in model.laws.items()]
+    lines += _interfaces(model, detection)
+    if facts:
+        lines.append(f"contact      {facts['pairs']:,} pairs, {facts['unknowns']:,} displacements")
+    for group in model.load_groups:
+        kinds = Counter(load.kind for load in model.loads if load.group == group)
+        words = [f"{n} {kind}" for kind, n in kinds.items()]
+        moved = sum(s.group == group for s in model.supports)
+        words += [f"{moved} support{'s' if moved > 1 else ''}"] if moved else []
+        total = facts.get("total_load", {}).get(group)
+        force = f", {total[0]:+.4g} kN along x and {total[1]:+.4g} kN along y in all" if total else ""
+        lines.append(f"load group   {group}: {', '.join(words)}{force}")
+    if not model.loads and not any(any(s.displacement) or s.rotation for s in model.supports):
+        lines.append("attention    there are no loads and nothing is moved: everything stays as it is")
+    for tie in model.ties:
+        lines.append(f"tie          {tie.name}: {tie.body_a} to {tie.body_b or 'a fixed point'}")
+    findings = [f"overlap      {o.sentence}" for o in detection.overlaps]
+    findings += [f"attention    {fault}" for fault in _drawing_faults(model)]
+    findings += [f"near miss    {m.sentence}" for m in detection.near_misses]
+    shown = findings if every else findings[:MOST_LINES]
+    lines += shown
+    if len(findings) > len(shown):
+        lines.append(f"             ... and {len(findings) - len(shown)} more (--all lists them)")
+    if not findings:
+        lines.append("geometry     no overlaps and no near misses")
+    return lines
+
+
+def _bodies(model: Model, size: float, *, every: bool) -> list[str]:
+    sorts = Counter((b.kind, b.role, "" if b.kind == "fixed" else b.material) for b in model.bodies)
+    lines = []
+    for (kind, role, material), number in sorts.items():
+        of = f" of '{material}'" if material else ""
+        lines.append(f"bodies       {number:,} {kind}, role '{role}'{of}")
+    if every or len(model.bodies) <= MOST_LINES:
+        for body in model.bodies:
+            x, y = np.round(body.centroid / size, 9) * size + 0.0
+            lines.append(
+                f"  '{body.name}': {len(body.outline)} vertices, area {body.area:.4g} m2, centroid ({x:.4g}, {y:.4g}) m"
+            )
+    return lines
+
+
+def _interfaces(model: Model, detection: Detection) -> list[str]:
+    number: Counter[str] = Counter()
+    length: dict[str, float] = defaultdict(float)
+    apart: Counter[str] = Counter()
+    for interface in detection.interfaces:
+        rule = model.rule_between(model.bodies[interface.a], model.bodies[interface.b])
+        number[rule.law] += 1
+        length[rule.law] += interface.length
+        apart[rule.law] += bool(rule.gap or interface.gap.max() > 0)
+    lines = []
+    for law, count in number.items():
+        text = f"joints       {count:,} with law '{law}', {length[law]:.4g} m in all"
+        lines.append(text + (f", {apart[law]:,} of them open at first" if apart[law] else ""))
+    return lines or ["joints       none: no two bodies touch"]
+
+
+def _material(material: Elastic | Rigid) -> str:
+    weight = f"unit weight {material.unit_weight:g} kN/m3"
+    if isinstance(material, Rigid):
+        return f"rigid, {weight}"
+    return f"E = {material.E:g} kN/m2, nu = {material.nu:g}, {weight}"
+
+
+def _law(law: JointLaw) -> str:
+    words = [f"friction {law.friction:g}"]
+    for name, unit in (
+        ("cohesion", "kN/m2"), ("tensile_strength", "kN/m2"), ("dilatancy", ""), ("normal_stiffness", "kN/m3"),
+        ("tangential_stiffness", "kN/m3"), ("compressive_strength", "kN/m2"),
+    ):  # fmt: skip
+        value = getattr(law, name)
+        if value:
+            words.append(f"{name.replace('_', ' ')} {value:g} {unit}".strip())
+    return ", ".join(words)
+
+
+def _drawing_faults(model: Model) -> tuple[object, ...]:
+    faults = model.generator.get("faults", ())
+    return tuple(faults) if isinstance(faults, tuple | list) else ()
+
+
+def resultants(assembly: Assembly) -> dict[str, list[float]]:
+    """Return the resultant (x, y) of each load group [kN]."""
+    disc = assembly.disc
+    found = {}
+    for group, f in assembly.loads.items():
+        total = np.zeros(2)
+        for b, free in enumerate(np.diff(disc.offsets)):
+            own = f[disc.offsets[b] : disc.offsets[b + 1]]
+            total += own[:2] if disc.shape_of[b] == RIGID else own.reshape(-1, 2).sum(0) if free else 0.0
+        found[group] = total.tolist()
+    return found
