@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +17,10 @@ from concio.fem.discretisation import FIXED, RIGID, rigid_rows
 from concio.lcp.certificate import Certificate
 from concio.lcp.solution import Mechanism, Solution, Status, pair_states
 from concio.model.model import Model
+
+if TYPE_CHECKING:
+    from concio.plot.accessor import Plots
+    from concio.post.tables import Tables
 
 Array = np.ndarray
 
@@ -90,9 +94,7 @@ class Result:
         """State of every contact pair."""
         s = self.solution
         state = pair_states(self.assembly.problem(self.factors), s)
-        return Contacts(
-            self.assembly.pairs, s.normal_force, s.friction_force[:, 0], s.gap, s.slip[:, 0], state
-        )
+        return Contacts(self.assembly.pairs, s.normal_force, s.friction_force[:, 0], s.gap, s.slip[:, 0], state)
 
     @cached_property
     def joints(self) -> JointResultants:
@@ -187,6 +189,25 @@ class Result:
             elif s != FIXED:
                 total += own.reshape(-1, 2).sum(0)
         return float(total[0]), float(total[1])
+
+    @property
+    def plot(self) -> Plots:
+        """Figures by name: ``result.plot.deformed()``; matplotlib is loaded here."""
+        from concio.plot.accessor import Plots
+
+        return Plots(self)
+
+    @property
+    def tables(self) -> Tables:
+        """Tables by name, as dicts of arrays: ``pandas.DataFrame(result.tables.joints())``."""
+        from concio.post.tables import Tables
+
+        return Tables(self)
+
+    def _repr_html_(self) -> str:
+        from concio.report.notebook import notebook_html
+
+        return notebook_html(self)
 
     def summary(self) -> dict[str, Any]:
         """Return the numbers of ``--json``: plain types, kN and m."""

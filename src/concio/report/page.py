@@ -1,0 +1,202 @@
+"""The report as one self-contained HTML file: nothing is fetched, so it opens offline and can be mailed."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import concio
+from concio.errors import InputError
+from concio.plot.figures import TITLES, suitable_figures
+from concio.plot.style import number
+from concio.report.html_parts import figure_html, table_html
+from concio.report.view_data import view_data
+from concio.report.wording import certificate_sentence, checks, verdict
+
+if TYPE_CHECKING:
+    from concio.analysis.result import Result
+
+ROWS = 250
+"""Longest table; of longer ones the rows that matter most are shown."""
+
+
+def write_report(
+    results: Result | Sequence[Result], path: Path | str, *, labels: Sequence[str] | None = None, figures: bool = True
+) -> Path:
+    """Write the report of a result, or of a load path.
+
+    Parameters
+    ----------
+    results : Result or sequence of Result
+        Steps of a load path share one assembly; tables, figures and verdict are those of the last.
+    path : Path or str
+    labels : sequence of str, optional
+        What the steps are called; default their load factors.
+    figures : bool
+        Whether to draw figures into it; the interactive view is always there.
+
+    Returns
+    -------
+    Path
+        ``path``.
+    """
+    path = Path(path)
+    path.write_text(report_html(results, labels=labels, figures=figures), encoding="utf-8")
+    return path
+
+
+def report_html(
+    results: Result | Sequence[Result], *, labels: Sequence[str] | None = None, figures: bool = True
+) -> str:
+    """Return the report as a text; see :func:`write_report`.
+
+    Raises
+    ------
+    InputError
+        There is no step, or the steps do not belong to one assembly.
+    """
+    steps = list(results) if isinstance(results, Sequence) else [results]
+    if not steps:
+        msg = "there is no result to report"
+        raise InputError(msg, hint="give at least one step")
+    if any(len(s.assembly.pairs) != len(steps[0].assembly.pairs) for s in steps):
+        msg = "the steps belong to different models"
+        raise InputError(msg, hint="write one report for each model")
+    labels = [_label(s, i) for i, s in enumerate(steps)] if labels is None else list(labels)
+    last = steps[-1]
+    data = json.dumps(view_data(steps, labels), allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
+    parts = {
+        "TITLE": escape(last.model.title or "Result"),
+        "STYLE": _resource("report.css"),
+        "SCRIPT": _resource("view.js"),
+        "VERDICT": _verdict(last),
+        "MODEL": _model(last),
+        "FIGURES": _figures(last) if figures else "",
+        "TABLES": _tables(last),
+        "TRIED": _tried(last),
+        "DATA": data,
+        "VERSION": escape(concio.__version__),
+    }
+    page = _resource("report.html")
+    head, *pieces = page.split("{{")
+    for piece in pieces:
+        name, rest = piece.split("}}", 1)
+        head += parts[name] + rest
+    return head
+
+
+def _resource(name: str) -> str:
+    return (files("concio.report") / name).read_text(encoding="utf-8")
+
+
+def _label(result: Result, index: int) -> str:
+    factors = ", ".join(f"{g} = {number(v)}" for g, v in result.factors.items())
+    return factors or f"step {index + 1}"
+
+
+def _verdict(result: Result) -> str:
+    v = verdict(result)
+    steps = "".join(f"<li>{escape(s)}</li>" for s in v.next_steps)
+    text = (
+        f'<div class="verdict {v.tone}"><h2>{escape(v.headline)}</h2><p>{escape(v.meaning)}</p>'
+        f"<p class=cert>{escape(certificate_sentence(result))}</p></div>"
+    )
+    if result.solved:
+        rows = "".join(
+            f"<tr><td>{escape(c.what)}</td><td class=n>{c.value:.1e}</td><td>{'holds' if c.holds else 'fails'}</td></tr>"
+            for c in checks(result)
+        )
+        text += (
+            "<details><summary>The certificate, equation by equation</summary><div class=scroll><table><thead><tr>"
+            f"<th>checked</th><th>error</th><th></th></tr></thead><tbody>{rows}</tbody></table></div></details>"
+        )
+    return text + f"<h3>What to do next</h3><ul>{steps}</ul>"
+
+
+def _model(result: Result) -> str:
+    model = result.model
+    fixed = len(model.bodies) - len(model.free_bodies)
+    rows = [
+        ("bodies", f"{len(model.free_bodies)}, and {fixed} fixed"),
+        ("joints", f"{len(result.assembly.detection.interfaces)} with {len(result.assembly.pairs)} contact pairs"),
+        ("unknowns", f"{result.assembly.disc.unknowns:,}"),
+        ("elements", f"{model.element}, plane {model.plane}"),
+    ]
+    for name, material in model.materials.items():
+        if any(b.material == name and b.kind != "fixed" for b in model.bodies):
+            rows.append((f"material {name}", _values(material)))
+    rows += [(f"joint {name}", _values(law)) for name, law in model.laws.items()]
+    x, y = result.total_load
+    rows.append(("total load", f"{number(x)} kN along x, {number(y)} kN along y"))
+    if result.factors:
+        rows.append(("load factors", ", ".join(f"{g} = {number(v)}" for g, v in result.factors.items())))
+    if result.solved:
+        contacts = result.contacts
+        rows.append(("largest settlement", number(result.max_settlement, "m")))
+        rows.append(("contact pairs", ", ".join(f"{contacts.count(s)} {s}" for s in ("open", "stick", "slip"))))
+    seconds = result.seconds.get("total", float("nan"))
+    rows.append(("solved by", f"{result.method}, {result.solution.iterations} iterations, {seconds:.2g} s"))
+    cells = "".join(f"<tr><th>{escape(k)}</th><td>{escape(v)}</td></tr>" for k, v in rows)
+    return f'<div class=scroll><table class="facts"><tbody>{cells}</tbody></table></div>'
+
+
+_UNIT = {
+    "E": "kN/m2", "unit_weight": "kN/m3", "cohesion": "kN/m2", "tensile_strength": "kN/m2",
+    "normal_stiffness": "kN/m3", "tangential_stiffness": "kN/m3", "compressive_strength": "kN/m2",
+}  # fmt: skip
+
+
+def _values(thing: object) -> str:
+    """Return the constants of a material or a law that are not zero."""
+    texts = []
+    for name in thing.__dataclass_fields__:  # type: ignore[attr-defined]
+        value = getattr(thing, name)
+        if value or name in ("friction", "nu"):
+            texts.append(f"{name.replace('_', ' ')} {number(value, _UNIT.get(name, ''))}")
+    return ", ".join(texts) or "rigid"
+
+
+def _figures(result: Result) -> str:
+    drawn = [figure_html(draw(), name, TITLES[name]) for name, draw in suitable_figures(result).items()]
+    return "".join(drawn)
+
+
+def _tables(result: Result) -> str:
+    if not result.solved:
+        return ""
+    tables = result.tables
+    joints, bodies, reactions = tables.joints(), tables.bodies(), tables.reactions()
+    force = np.hypot(joints["normal_force"], joints["shear_force"])
+    strongest = np.argsort(-force, kind="stable")
+    text = f"<h2>Reactions</h2>{table_html(reactions, ('support', 'force_x', 'force_y'))}"
+    text += "<p class=note>Forces on the structure.</p>"
+    columns: tuple[str, ...] = (
+        "body_a", "body_b", "length", "normal_force", "shear_force", "eccentricity", "open_share", "slipping"
+    )  # fmt: skip
+    text += "<h2>Joints</h2>" + _note(len(force), "the largest forces")
+    text += table_html(joints, columns, rows=strongest[:ROWS])
+    text += "<p class=note>Normal force: compression positive. Eccentricity: from the middle of the joint.</p>"
+    moved = np.hypot(bodies["u_x"], bodies["u_y"])
+    free = np.flatnonzero(bodies["kind"] != "fixed")
+    order = free[np.argsort(np.nan_to_num(bodies["s_2"][free]), kind="stable")] if len(free) > ROWS else free
+    if not np.isfinite(bodies["s_2"]).any():
+        order = free[np.argsort(-moved[free], kind="stable")]
+    columns = ("body", "role", "u_x", "u_y", "rotation", "s_1", "s_2")
+    text += "<h2>Blocks</h2>" + _note(len(free), "the largest compression")
+    text += table_html(bodies, columns, rows=order[:ROWS])
+    return text + "<p class=note>Mean motion and mean principal stresses; tension positive.</p>"
+
+
+def _note(count: int, what: str) -> str:
+    return "" if count <= ROWS else f"<p class=note>The {ROWS} with {what}, of {count:,}; the CSV tables hold all.</p>"
+
+
+def _tried(result: Result) -> str:
+    lines = "".join(f"<li>{escape(line)}</li>" for line in result.solution.trace)
+    return f"<details><summary>What the solver did</summary><ol>{lines}</ol></details>" if lines else ""

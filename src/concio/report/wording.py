@@ -1,0 +1,131 @@
+"""What each outcome means, what to do next, and what the certificate says, in words for an engineer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from concio.lcp.certificate import CERTIFIED
+from concio.lcp.solution import Status
+
+if TYPE_CHECKING:
+    from concio.analysis.result import Result
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """An outcome in words.
+
+    Parameters
+    ----------
+    tone : {"good", "bad", "unsure"}
+    headline : str
+    meaning : str
+    next_steps : tuple of str
+    """
+
+    tone: str
+    headline: str
+    meaning: str
+    next_steps: tuple[str, ...]
+
+
+VERDICTS: dict[Status, Verdict] = {
+    Status.SOLVED: Verdict(
+        "good",
+        "The loads are carried.",
+        "A state of equilibrium was found in which every joint obeys its law: nothing pulls on an open joint, nothing "
+        "overlaps, and friction is nowhere exceeded. The residuals below were computed from the original equations, "
+        "not from what the solver believed.",
+        (
+            "Look where joints are open or slip: these are the places that give way first.",
+            "This says that the structure stands under these loads, not how far it is from collapse; "
+            "'concio limit' gives the margin.",
+            "With Coulomb friction more than one equilibrium may exist, and the history of loading chooses among them; "
+            "'concio path' follows it.",
+        ),
+    ),
+    Status.NO_EQUILIBRIUM: Verdict(
+        "bad",
+        "The loads cannot be carried.",
+        "No set of joint forces whatsoever balances these loads within the strength of the joints. The proof is a "
+        "motion of the blocks in which no joint overlaps and the loads do more work than the joints can absorb: the "
+        "mechanism drawn below. There are therefore no stresses and no displacements to report.",
+        (
+            "Look at the mechanism: the blocks that move lack a support, a tie, friction or weight on top.",
+            "Check that supports, side walls and joints are where you meant them ('concio check'); a block that "
+            "touches nothing falls.",
+            "'concio limit' tells what share of the load can be carried.",
+        ),
+    ),
+    Status.UNDECIDED: Verdict(
+        "unsure",
+        "It is not known whether the loads are carried.",
+        "Forces that balance the loads within the strength of the joints exist, so a collapse cannot be proven. But no "
+        "state was found in which sliding also obeys Coulomb's law, and none was shown to be impossible. This happens "
+        "near collapse, and where blocks jam. Nothing below is an answer.",
+        (
+            "Do not rely on this structure under these loads: treat it as one that may slide.",
+            "Follow the loads from zero with 'concio path': the path shows where equilibrium is lost.",
+            "Solve with another method, for example --method lemke, or with a slightly smaller load.",
+        ),
+    ),
+    Status.GAVE_UP: Verdict(
+        "unsure",
+        "The solver stopped without an answer.",
+        "It neither found an equilibrium that passes the check nor a proof that there is none. Nothing below is an "
+        "answer, and nothing follows from it about the structure.",
+        (
+            "Look at what was tried, at the end of this report.",
+            "Solve with another method, for example --method lemke or --method interior-point.",
+            "Look for stiffnesses or sizes that differ by many powers of ten: a wrong unit is the usual reason.",
+        ),
+    ),
+    Status.CANCELLED: Verdict(
+        "unsure",
+        "The calculation was stopped on request.",
+        "It had not ended. Nothing below is an answer.",
+        ("Run it again, and let it end.",),
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Check:
+    """One line of the certificate: what was checked, its residual, and whether it holds."""
+
+    what: str
+    value: float
+    holds: bool
+
+
+def verdict(result: Result) -> Verdict:
+    """Return the outcome of a result in words."""
+    return VERDICTS[result.status]
+
+
+def checks(result: Result) -> list[Check]:
+    """Return the certificate line by line: relative residuals, 0 is perfect."""
+    c = result.certificate
+    lines = (
+        ("Forces balance on every block (share of the total load)", c.equilibrium),
+        ("No two blocks overlap (share of the largest displacement)", c.penetration),
+        ("Friction and strength are nowhere exceeded (share of the total load)", c.cone),
+        ("Sliding joints are held back by full friction (relative)", c.slip_direction),
+        ("Open joints carry no force (relative)", c.complementarity),
+    )
+    return [Check(what, value, value <= CERTIFIED) for what, value in lines]
+
+
+def certificate_sentence(result: Result) -> str:
+    """Return the certificate in one sentence."""
+    worst = result.certificate.worst
+    if result.solved:
+        return f"Certified: the largest error in any equation is {worst:.1e} (relative; {CERTIFIED:.0e} is allowed)."
+    if result.mechanism is not None and result.status is Status.NO_EQUILIBRIUM:
+        m = result.mechanism
+        return (
+            f"Proven: the mechanism gains a power of {m.power:.4g} kN m/s at a largest velocity of 1 m/s and violates "
+            f"the joints by no more than {m.violation:.1e} (relative)."
+        )
+    return "Not certified: there is no answer whose equations hold."
