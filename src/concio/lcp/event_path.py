@@ -21,7 +21,19 @@ import numpy as np
 from concio.contact.problem import Array
 from concio.lcp.methods import find
 from concio.lcp.path_equations import PathEquations, Scaled
-from concio.lcp.path_rates import Rates, Values, admissible, find_direction, grips, rates, restore, values, wrong
+from concio.lcp.path_rates import (
+    LARGEST_VERTEX,
+    Rates,
+    Values,
+    admissible,
+    find_direction,
+    grips,
+    rates,
+    restore,
+    values,
+    vertex_size,
+    wrong,
+)
 from concio.lcp.path_state import (
     CLOSED,
     CRUSHED,
@@ -37,6 +49,10 @@ from concio.lcp.solution import Progress, ProgressCallback
 
 ON_EQUATIONS = 1e-15
 """Residual of the equations of the present states, relative to their largest term, that needs no correction."""
+
+
+DUST = 1e-16
+"""Scaled displacements below this are rounding of zero and are recorded as zero."""
 
 
 class Outcome(Enum):
@@ -197,6 +213,7 @@ class _Follower:
             old = (self.equations.contact.copy(), self.equations.sliding.copy(), grips(self.equations))
             found, runaway = self.direction(v, direction)
             if found is None:
+                events.extend(self.last_events(v, direction, old, len(states) - 1))
                 outcome = Outcome.LIMIT if self.by_load else Outcome.LOST
                 return self.finish(states, events, outcome, direction if runaway is None else runaway)
             events.extend(self.name_events(old, len(states) - 1))
@@ -253,12 +270,9 @@ class _Follower:
             self.equations.set_control(self.control)
             self.driven, known = False, None
         sense = 1.0 if self.driven else self.sense
-        found, runaway = find_direction(self.equations, v, known, sense, vertex=False)
-        if found is not None:
-            return found, None
-        if not self.driven and (found := self.after_small_step(v, sense)) is not None:
-            return found, None
         found, runaway = find_direction(self.equations, v, known, sense)
+        if found is None and not self.driven and vertex_size(self.equations, v) > LARGEST_VERTEX:
+            found = self.after_small_step(v, sense)
         if found is not None or self.by_load or known is None:
             return found, runaway
         driver = self.equations.control
@@ -283,7 +297,7 @@ class _Follower:
         before = (e.contact.copy(), e.sliding.copy())
         for share in (1e-3, 1e-5):
             parameter = self.state.parameter + share * unit * sense
-            solution = find("auto")(step_problem(self.path, self.state, parameter))
+            solution = find("interior-point")(step_problem(self.path, self.state, parameter))
             if not solution.solved:
                 continue
             u, t_n, t_t = solution.displacement, solution.normal_force, solution.friction_force
@@ -339,7 +353,7 @@ class _Follower:
         slip, offset = self.moved()
         after = PathState(
             parameter=float(self.x[-1]),
-            displacement=self.x[:n] * length,
+            displacement=np.where(np.abs(self.x[:n]) < DUST, 0.0, self.x[:n]) * length,
             normal_force=self.x[n : n + m] * force,
             friction_force=self.x[n + m : -1] * force,
             contact=e.contact.copy(),
@@ -351,6 +365,16 @@ class _Follower:
         after = replace(after, work=self.state.work + work, dissipation=self.state.dissipation + dissipation)
         self.state = after
         return after
+
+    def last_events(
+        self, v: Values, direction: Array | None, old: tuple[Array, Array, Array], step: int
+    ) -> list[Event]:
+        """Name what the pairs at their bounds were about to do where the path ends."""
+        if direction is None:
+            return []
+        for _, k, contact, sliding in wrong(self.equations, v, rates(self.equations, direction)):
+            self.equations.set_state(k, contact, sliding)
+        return self.name_events(old, step)
 
     def name_events(self, old: tuple[Array, Array, Array], step: int) -> list[Event]:
         e = self.equations

@@ -127,13 +127,13 @@ class PathEquations:
         if self.contact[k] != CLOSED:
             return np.array([n + k]), np.ones(1)
         rows, values = self._row(self.C_n, k)
-        columns, entries = [rows, [n + k, self.size - 1]], [values, [d["a_n"][k], d["x_rate"][k]]]
+        columns, entries = [rows, np.array([n + k, self.size - 1])], [values, np.array([d["a_n"][k], d["x_rate"][k]])]
         sigma = self.sliding[k]
         if d["psi"][k] > 0 and sigma != STICK:
             rows, values = self._row(self.C_t, k)
             factor = -d["psi"][k] * sigma
-            columns += [rows, [n + m + k, self.size - 1]]
-            entries += [factor * values, [factor * d["a_t"][k], factor * d["t_rate"][k]]]
+            columns += [rows, np.array([n + m + k, self.size - 1])]
+            entries += [factor * values, factor * np.array([d["a_t"][k], d["t_rate"][k]])]
         return np.concatenate(columns), np.concatenate(entries)
 
     def tangential_row(self, k: int) -> tuple[Array, Array]:

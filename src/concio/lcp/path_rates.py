@@ -35,7 +35,7 @@ ROUNDS_ALL, ROUNDS_ONE = 6, 60
 TRUE = 1e-7
 """Residual up to which the equations of a set of states count as solvable."""
 
-LARGEST_VERTEX = 1200
+LARGEST_VERTEX = 400
 """Largest dense complementarity problem tried at a vertex."""
 
 
@@ -222,22 +222,32 @@ def restore(equations: PathEquations, contact: Array, sliding: Array) -> None:
         equations.set_state(int(k), int(contact[k]), int(sliding[k]))
 
 
-def by_lemke(equations: PathEquations, v: Values, sense: float) -> Rates | None:
-    """Solve the complementarity problem of the critical pairs and set their states; None where it has no solution."""
-    d, n, m = equations.data, equations.n, equations.m
+def critical(equations: PathEquations, v: Values) -> tuple[Array, Array, Array, Array]:
+    """Return where (m,) pairs are at their bounds: touching without force, at the cap, at +, at - sliding strength."""
+    d = equations.data
     grip = (d["mu"] > 0) | (d["c"] > 0)
     normal = (v.gap <= v.gap_zero) & (v.force <= v.force_zero) & (equations.contact != CRUSHED)
     cap = (v.room <= v.force_zero) & (equations.contact != OPEN)
-    touching = normal | (equations.contact != OPEN) | grips(equations)
-    plus = touching & grip & (v.plus <= v.force_zero)
-    minus = touching & grip & (v.minus <= v.force_zero)
-    for k in np.flatnonzero(normal | cap | plus | minus):
-        stuck = STICK if plus[k] or minus[k] else int(equations.sliding[k])
-        equations.set_state(int(k), CLOSED if normal[k] or cap[k] else int(equations.contact[k]), stuck)
+    touching = grip & (normal | (equations.contact != OPEN) | grips(equations))
+    return normal, cap, touching & (v.plus <= v.force_zero), touching & (v.minus <= v.force_zero)
+
+
+def vertex_size(equations: PathEquations, v: Values) -> int:
+    """Return the number of complementary pairs of variables at a point."""
+    return int(sum(mask.sum() for mask in critical(equations, v)))
+
+
+def by_lemke(equations: PathEquations, v: Values, sense: float) -> Rates | None:
+    """Solve the complementarity problem of the critical pairs and set their states; None where it has no solution."""
+    d, n, m = equations.data, equations.n, equations.m
+    normal, cap, plus, minus = critical(equations, v)
     sets = [np.flatnonzero(mask) for mask in (normal, cap, plus, minus)]
     size = sum(s.size for s in sets)
     if size > LARGEST_VERTEX:
         return None
+    for k in np.flatnonzero(normal | cap | plus | minus):
+        stuck = STICK if plus[k] or minus[k] else int(equations.sliding[k])
+        equations.set_state(int(k), CLOSED if normal[k] or cap[k] else int(equations.contact[k]), stuck)
     equations.factorise()
     base = (equations.contact.copy(), equations.sliding.copy())
     unit = np.zeros(equations.size)

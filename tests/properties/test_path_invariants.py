@@ -1,0 +1,56 @@
+"""What every load path must obey: energy, dissipation, the joint laws, and the associated bound."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from concio.lcp.event_path import Outcome
+from concio.lcp.limit import associated_limit
+from path_helpers import energy_error, least_dissipation, weight_then, worst_certificate
+from rigid_walls import running_bond
+
+sizes = st.tuples(st.floats(0.5, 2.0), st.floats(0.3, 1.0))
+walls = st.builds(running_bond, st.integers(1, 3), st.integers(1, 4), sizes)
+
+
+@settings(max_examples=25, deadline=None)
+@given(walls, st.floats(0.2, 0.9), st.sampled_from([1.0, -1.0]), st.floats(0.5, 4.0))
+def test_pushover_of_small_walls(assembly, mu, side, ratio):
+    push = assembly.load(side, 0)
+    control = np.abs(push) * np.sign(push) / np.abs(push).sum()
+    path, found = weight_then(assembly, mu, push, ratio=ratio, until=0.01, control=control)
+    bound = associated_limit(path.problem, push).multiplier
+    assert found.outcome in (Outcome.REACHED, Outcome.LOST, Outcome.MECHANISM)
+    assert found.peak <= bound * (1 + 1e-9)
+    assert worst_certificate(path, found) <= 1e-9
+    assert energy_error(path, found) <= 1e-9
+    assert least_dissipation(found) >= -1e-10
+
+
+@settings(max_examples=10, deadline=None)
+@given(walls, st.floats(0.3, 0.8))
+def test_mirror_image(assembly, mu):
+    """Pushed from the other side the wall does the same; walls of running bond are symmetric."""
+    ends = []
+    for side in (1.0, -1.0):
+        push = assembly.load(side, 0)
+        control = push / np.abs(push).sum()
+        ends.append(weight_then(assembly, mu, push, until=0.002, control=control)[1])
+    a, b = (f.at(0.5 * min(f.peak for f in ends)) for f in ends)
+    assert np.abs(a.displacement.reshape(-1, 3)[:, 1]).sum() == np.abs(b.displacement.reshape(-1, 3)[:, 1]).sum() or (
+        abs(np.abs(a.displacement).sum() - np.abs(b.displacement).sum()) <= 1e-9 * np.abs(a.displacement).sum()
+    )
+    assert abs(ends[0].peak - ends[1].peak) <= 1e-9
+
+
+@settings(max_examples=10, deadline=None)
+@given(walls, st.floats(0.3, 0.8), st.floats(1e-6, 1e-2))
+def test_stiffness_of_the_joints_scales_displacements_only(assembly, mu, compliance):
+    """Without gaps, rigid blocks on joints ten times softer move ten times as much at the same load."""
+    push = assembly.load(1, 0)
+    one, two = (weight_then(assembly, mu, push, compliance=c)[1] for c in (compliance, 10 * compliance))
+    assert abs(one.peak - two.peak) <= 1e-9
+    a, b = one.at(0.5 * one.peak), two.at(0.5 * one.peak)
+    assert np.abs(10 * a.displacement - b.displacement).max() <= 1e-9 * np.abs(b.displacement).max()

@@ -1,0 +1,52 @@
+"""Load paths of the Ferris and Tin-Loi walls to collapse, against the limit multipliers.
+
+Rigid blocks on compliant joints (a_t = 2 a_n; the multipliers do not depend on the size of the compliance), own weight,
+then a horizontal share of it, controlled by the work-conjugate displacement. Associated dilatancy must end at the limit
+multiplier, found by a linear programme that knows nothing of paths; Coulomb friction at or below it.
+Walls: M. C. Ferris and F. Tin-Loi, Int. J. Mech. Sci. 43 (2001) 209-224.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from concio.lcp.event_path import Outcome
+from concio.lcp.limit import associated_limit
+from path_helpers import energy_error, least_dissipation, weight_then, worst_certificate
+from rigid_walls import FERRIS_TIN_LOI, MU, wall
+
+WALLS = sorted(FERRIS_TIN_LOI)
+
+
+def pushover(name, compliance=1e-4, **laws):
+    a = wall(FERRIS_TIN_LOI[name])
+    push = a.load(1, 0)
+    return weight_then(a, MU, push, compliance=compliance, until=0.1, control=push / push.sum(), **laws)
+
+
+@pytest.mark.parametrize("name", WALLS)
+def test_associated_path_ends_at_the_limit_multiplier(name):
+    path, found = pushover(name, dilatancy=MU)
+    limit = associated_limit(path.problem, path.load_rate).multiplier
+    assert found.outcome is Outcome.REACHED
+    assert found.peak == pytest.approx(limit, rel=1e-9)
+    assert found.end.parameter == pytest.approx(limit, rel=1e-9)
+    assert worst_certificate(path, found) <= 1e-9
+    assert energy_error(path, found) <= 1e-9
+
+
+@pytest.mark.parametrize("name", WALLS)
+def test_coulomb_path_stays_below_and_is_repeatable(name):
+    path, found = pushover(name)
+    limit = associated_limit(path.problem, path.load_rate).multiplier
+    assert found.outcome is Outcome.REACHED
+    assert found.peak < limit - 1e-3
+    assert worst_certificate(path, found) <= 1e-9
+    assert energy_error(path, found) <= 1e-9
+    assert least_dissipation(found) >= -1e-12
+    again = pushover(name, compliance=1e-5)[1]
+    assert again.peak == pytest.approx(found.peak, rel=1e-9)
+    still = np.abs(found.direction.reshape(-1, 3)).max(axis=1) < 1e-9
+    assert still.any()  # the lowest course or corner stays, the rest moves
+    assert not still.all()
