@@ -23,7 +23,12 @@ PIVOTING = 800
 
 
 def solve(
-    problem: ContactProblem, *, progress: ProgressCallback | None = None, engine: Engine = "superlu", **options: Any
+    problem: ContactProblem,
+    *,
+    progress: ProgressCallback | None = None,
+    engine: Engine = "superlu",
+    pivoting: bool = True,
+    **options: Any,
 ) -> Solution:
     """Solve one load step by whatever it takes.
 
@@ -32,6 +37,8 @@ def solve(
     problem : ContactProblem
     progress : callable, optional
     engine : {"superlu", "pardiso"}
+    pivoting : bool
+        Try Lemke's method last, where there are at most ``PIVOTING`` pairs.
 
     Returns
     -------
@@ -61,7 +68,7 @@ def solve(
         found = found or run.homotopy()
         if found is not None:
             return run.solution(found)
-        if problem.pairs <= PIVOTING:
+        if pivoting and problem.pairs <= PIVOTING:
             answer = methods.find("lemke")(problem, progress=progress)
             if answer.solved:
                 return replace(answer, trace=(*run.trace, *answer.trace))

@@ -39,7 +39,9 @@ def nested_dissection(pattern: sp.csr_array, group: int = 2) -> tuple[Array, str
     if n % group:
         group = 1
     rows = np.repeat(np.arange(n), np.diff(pattern.indptr)) // group
-    graph = sp.csr_array((np.ones(pattern.nnz, dtype=np.int8), (rows, pattern.indices // group)), shape=(n // group,) * 2)
+    graph = sp.csr_array(
+        (np.ones(pattern.nnz, dtype=np.int8), (rows, pattern.indices // group)), shape=(n // group,) * 2
+    )
     graph.sum_duplicates()
     graph.setdiag(0)
     graph.eliminate_zeros()
@@ -119,9 +121,7 @@ class PatternFactor:
         matrix = sp.csc_matrix((data, self._minor, self._indptr), shape=shape)
         spec = "MMD_AT_PLUS_A" if self.ordering == "minimum degree" else "NATURAL"
         try:
-            self._lu = sla.splu(
-                matrix, permc_spec=spec, diag_pivot_thresh=0.01, options={"SymmetricMode": True}
-            )
+            self._lu = sla.splu(matrix, permc_spec=spec, diag_pivot_thresh=0.01, options={"SymmetricMode": True})
         except RuntimeError as error:
             raise SingularMatrixError(str(error)) from None
         except MemoryError:
@@ -136,8 +136,9 @@ class PatternFactor:
             raise InputError(msg, hint="install it with: pip install 'concio[fast]'") from None
         first = self._pardiso is None
         if first:
-            self._pardiso = pypardiso.PyPardisoSolver(mtype=11)
-            self._pardiso.set_iparm(2, 2 if self.ordering == "minimum degree" else 2)
+            self._pardiso = pypardiso.PyPardisoSolver(mtype=1)  # structurally symmetric
+            for position, value in ((1, 1), (2, 2), (8, 0), (10, 13), (11, 0), (13, 0), (24, 1)):
+                self._pardiso.set_iparm(position, value)
         self._matrix = matrix
         self._pardiso.set_phase(12 if first else 22)
         try:
