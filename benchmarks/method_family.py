@@ -78,12 +78,14 @@ PROBLEMS: dict[str, Callable[[], ContactProblem]] = {
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("problems", nargs="*", default=list(PROBLEMS), choices=[*PROBLEMS, []], metavar="problem")
+    parser.add_argument("problems", nargs="*", metavar="problem", help="default all: " + ", ".join(PROBLEMS))
     parser.add_argument("--methods", help="comma-separated; default all")
     parser.add_argument("--limit", type=float, default=60.0, help="seconds allowed to each method")
     parser.add_argument("--figures", type=Path, help="directory for figures of residual against work")
     wanted = parser.parse_args()
-    for name in wanted.problems:
+    for name in wanted.problems or PROBLEMS:
+        if name not in PROBLEMS:
+            parser.error(f"there is no problem {name}")
         problem = PROBLEMS[name]()
         methods = wanted.methods.split(",") if wanted.methods else _suitable(problem)
         table = compare(problem, methods, time_limit=wanted.limit, title=name)

@@ -83,14 +83,14 @@ def solve(
         for outer in range(1, limit + 1):
             u, t, law = multipliers(replace(law, shift=shift), u, record, goal=inexact(before, least))
             law = replace(law, rho=isotropic(s.compliance, augmentation))
-            if record.note(u, t, f"convex problem {outer}") <= GOAL:
+            if record.note(u, t, f"convex problem {outer}") <= 10.0 * GOAL:
                 break
             slip = np.linalg.norm(s.opening(u)[:, 1:] + s.compliance[:, 1:] * t[:, 1:], axis=1)
             change = float(np.abs(lag * slip - shift).max(initial=0.0))
             if change > 0.95 * before:
                 relax = max(0.5 * relax, 1.0 / 16.0)
-            elif change < 0.7 * before:
-                relax = min(1.5 * relax, 1.0)
+            elif change < before:
+                relax = min(1.1 * relax, 1.0)
             before = change
             shift = shift + relax * (lag * slip - shift)
             if change_stalls(changes, change):

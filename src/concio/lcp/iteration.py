@@ -128,6 +128,8 @@ def answer(problem: ContactProblem, record: Record, *, cancelled: bool = False) 
             tried = _judge(problem, record, exact, cancelled=cancelled, accuracy=None)
             if tried.solved:
                 return tried
+            if not scaled.deforms and tried.certificate.worst < solution.certificate.worst:
+                solution, restored = tried, exact
     if cancelled or solution.solved:
         return solution
     return _judge(problem, record, restored, cancelled=False, accuracy=solution.certificate.as_dict())

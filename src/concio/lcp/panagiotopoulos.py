@@ -107,13 +107,13 @@ def solve(
         held = t
         for outer in range(1, limit + 1):
             u, t = cycle(s, record, u, t, held, s.dilatancy * slip, rho, prox, inexact(before, LOOSE))
-            if record.note(u, t, f"alternation {outer}") <= GOAL:
+            if record.note(u, t, f"alternation {outer}") <= 10.0 * GOAL:
                 break
             change = float(np.abs(t - held).max(initial=0.0))
             if change > 0.95 * before:
                 relax = max(0.5 * relax, 1.0 / 16.0)
-            elif change < 0.7 * before:
-                relax = min(1.5 * relax, 1.0)
+            elif change < before:
+                relax = min(1.1 * relax, 1.0)
             before = change
             held = held + relax * (t - held)
             slip = np.linalg.norm(s.opening(u)[:, 1:] + s.compliance[:, 1:] * t[:, 1:], axis=1)
