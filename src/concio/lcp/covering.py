@@ -1,0 +1,96 @@
+r"""Where a path starts: states of the pairs, and a cover that makes them right at z0 = 1.
+
+The states are solved for as they stand (one sparse factorisation). Every slack that comes out negative is then covered:
+a closed pair by a prestress, an open one by a gap, a slipping one by a slip that earlier steps would have left. The
+covers are chosen so that u and the contact forces do not change along the first piece: only the slacks do.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from concio.contact.problem import Array
+from concio.lcp.pair_rows import SIGN, Cover, Normal, PairSystem, Tangential
+from concio.lcp.solution import PairState
+from concio.lcp.state_solution import state_solution
+
+USED = 1e-10
+"""Distance from the sliding strength, relative to the largest normal force, at which friction counts as used up."""
+
+BASE = 0.01
+"""Least cover of a pair, in units of the typical pair force."""
+
+
+def cold_states(system: PairSystem) -> tuple[Array, Array]:
+    """Return the glued states: all closed, all sticking but those without friction."""
+    normal = np.full(system.m, Normal.CLOSED)
+    return normal, np.where(system.frictionless, Tangential.PLUS, Tangential.STICK)
+
+
+def named_states(system: PairSystem, states: Array, start: tuple[Array, Array, Array] | None) -> tuple[Array, Array]:
+    """Return normal and tangential states from :class:`~concio.lcp.solution.PairState` codes and an answer near them."""
+    states = np.asarray(states)
+    problem, law = system.problem, system.problem.laws
+    slip = np.zeros(system.m)
+    normal = np.where(states == PairState.OPEN, Normal.OPEN, Normal.CLOSED)
+    if start is not None:
+        u, t_n, t_t = start
+        slip = problem.C_t @ u - problem.slip_origin[:, 0] + law.tangential_compliance * np.ravel(t_t)
+        capped = np.isfinite(law.cap) & (t_n >= (1.0 - 1e-9) * law.cap)
+        normal = np.where(capped, Normal.CRUSHED, normal)
+        # friction used up without slip: the force says which way the pair would slide
+        used = np.abs(np.ravel(t_t)) >= problem.sliding_strength(t_n) - USED * np.abs(t_n).max(initial=0.0)
+        idle = (states == PairState.STICK) & used
+        states = np.where(idle, np.where(np.ravel(t_t) <= 0, PairState.SLIP_PLUS, PairState.SLIP_MINUS), states)
+    side = np.where(slip < 0, Tangential.MINUS, Tangential.PLUS)
+    side = np.where(states == PairState.SLIP_MINUS, Tangential.MINUS, side)
+    side = np.where(states == PairState.SLIP_PLUS, Tangential.PLUS, side)
+    sticks = (states == PairState.STICK) & ~system.frictionless
+    sticks |= (states == PairState.OPEN) & ~system.weak & (start is None)
+    return normal, np.where(sticks, Tangential.STICK, side)
+
+
+def cover_states(
+    system: PairSystem, normal: Array, tangential: Array, *, base: float = BASE, seed: int = 0, swelling: float = 0.0
+) -> tuple[Array, Array]:
+    """Set the cover of ``system`` for these states, and return them (open pairs turned to the side they slide to).
+
+    Raises
+    ------
+    SingularBasisError
+        The states leave a body loose.
+    """
+    m = system.m
+    system.cover = Cover.none(m)
+    v = state_solution(system, normal, tangential, swelling=swelling)
+    y_t = system.slacks(v, SIGN[tangential])["y_t"]
+    loose = (normal == Normal.OPEN) & system.weak & ~system.frictionless
+    side = np.where(y_t < 0, Tangential.MINUS, Tangential.PLUS)
+    tangential = np.where(loose, side, tangential)
+    value = system.slacks(v, SIGN[tangential])
+    least = base * np.random.default_rng(seed).uniform(0.5, 1.5, m)
+    closed, open_ = normal == Normal.CLOSED, normal == Normal.OPEN
+    sign = SIGN[tangential]
+    stick = tangential == Tangential.STICK
+    slides = ~stick & ~system.frictionless & ~(open_ & system.weak & (system.dilatancy == 0.0))
+    t = v[system.n : -1].reshape(-1, 2)
+    p, r, mu = t[:, 0], t[:, 1], system.mu
+    rough = closed & stick & (mu > 0)
+    # prestress P: |r| <= c' + mu (p + P), with room to spare
+    lean = np.where(mu > 0, (np.abs(r) - system.cohesion) / np.where(mu > 0, mu, 1.0) - p, 0.0)
+    need = np.where(rough, np.maximum(lean, -p), -p)
+    P = np.where(closed, least + np.maximum(need, 0.0), 0.0)
+    Q = np.where(closed & ~stick & ~system.frictionless, -sign * mu * P, 0.0)  # slipping: the row does not change
+    bound = stick & ~rough & ~system.frictionless  # strength that does not grow with p, or open and sticking
+    c = np.where(bound, least + np.maximum(np.abs(r) - system.cohesion - mu * p, 0.0), 0.0)
+    h = np.where(slides, sign * (least + np.maximum(-sign * y_t, 0.0)), 0.0)
+    over = np.where(np.isfinite(system.cap), p - np.where(np.isfinite(system.cap), system.cap, 0.0), -np.inf)
+    X = np.where(closed & np.isfinite(system.cap), P + least + np.maximum(over, 0.0), 0.0)
+    slope = sign * system.dilatancy * h
+    g = np.where(open_, slope + least + np.maximum(-value["y_n"], 0.0), slope)
+    g = np.where(normal == Normal.CRUSHED, slope - least - np.maximum(value["y_n"], 0.0), g)
+    g = np.where(closed, g - swelling, g)
+    system.cover = replace(system.cover, P=P, Q=Q, g=g, h=h, c=c, X=X)
+    return normal, tangential
