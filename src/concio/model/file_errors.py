@@ -6,7 +6,7 @@ import difflib
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
@@ -129,12 +129,16 @@ def known_keys(root: type[BaseModel], location: Location) -> list[str]:
     """Return the keys of the table at a place of the schema."""
     table: Any = root
     for part in location:
-        if isinstance(table, type) and issubclass(table, BaseModel):
-            if part not in table.model_fields:
-                return []
-            table = table.model_fields[str(part)].annotation
-        table = next(_models_in(table), table)
-    return list(table.model_fields) if isinstance(table, type) and issubclass(table, BaseModel) else []
+        if isinstance(part, int):  # an entry of a list
+            continue
+        if get_origin(table) is dict:  # a name of the file's own
+            table = get_args(table)[1]
+        elif table is not None:
+            member = table.model_fields.get(part)
+            table = None if member is None else member.annotation
+        if get_origin(table) is not dict:
+            table = next(_models_in(table), None)
+    return [] if table is None or get_origin(table) is dict else list(table.model_fields)
 
 
 def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:

@@ -1,0 +1,113 @@
+"""Rooms import only from earlier rooms, and ``import concio`` loads nothing heavy."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import concio
+
+ROOT = Path(concio.__file__).parent
+LEVEL = {
+    "__version__": 0, "errors": 0, "units": 0, "model": 1, "fem": 2, "contact": 3, "lcp": 4, "analysis": 5, "post": 6,
+    "plot": 7, "report": 7, "io": 7, "study": 7, "cli": 8,
+}  # fmt: skip
+"""Rooms by the order in which things flow; those of one level may use each other, for a report holds plots."""
+MODULES = sorted(ROOT.rglob("*.py"))
+
+
+def room_of(module: str) -> str:
+    """Return the room of a module such as ``concio.fem.mesh``, or of a name of the package such as ``concio.solve``."""
+    word = module.removeprefix("concio.").partition(".")[0]
+    return room_of(concio._HOME[word]) if word in concio._HOME else word
+
+
+def imports(path: Path, *, lazy: bool) -> Iterator[str]:
+    """Yield the modules of concio that a file imports; with ``lazy`` also those inside functions."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    parents = {child: node for node in ast.walk(tree) for child in ast.iter_child_nodes(node)}
+
+    def inside(node: ast.AST) -> tuple[bool, bool]:
+        function = typing = False
+        while node in parents:
+            node = parents[node]
+            function |= isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+            typing |= isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)
+        return function, typing
+
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names if alias.name != "concio"]
+            if len(names) < len(node.names):  # names that are taken from the package count as what they are
+                names += [
+                    f"concio.{a.attr}"
+                    for a in ast.walk(tree)
+                    if isinstance(a, ast.Attribute) and isinstance(a.value, ast.Name) and a.value.id == "concio"
+                ]
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative import"
+            own = [f"concio.{alias.name}" for alias in node.names]
+            names = own if node.module == "concio" else [node.module or ""]
+        else:
+            continue
+        function, typing = inside(node)
+        if not typing and (lazy or not function):
+            yield from (name for name in names if name.startswith("concio."))
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_rooms_import_only_from_earlier_rooms(path: Path) -> None:
+    own = path.relative_to(ROOT).parts[0].removesuffix(".py")
+    if own == "__init__":
+        assert not list(imports(path, lazy=False)), "the package itself imports nothing"
+        return
+    assert own in LEVEL, f"there is no room '{own}' in the architecture"
+    for module in imports(path, lazy=False):
+        assert LEVEL[room_of(module)] <= LEVEL[own], f"{own} imports {module}"
+
+
+@pytest.mark.parametrize("path", [p for p in MODULES if p.relative_to(ROOT).parts[0] == "lcp"], ids=lambda p: p.name)
+def test_solvers_know_nothing_of_masonry(path: Path) -> None:
+    allowed = ("concio.contact.problem", "concio.errors", "concio.lcp")
+    for module in imports(path, lazy=True):
+        assert module.startswith(allowed), f"{path.name} imports {module}"
+
+
+def loaded_after(code: str) -> set[str]:
+    """Return the names of the modules that are loaded after ``code`` in a fresh interpreter."""
+    run = subprocess.run(
+        [sys.executable, "-c", f"{code}\nimport sys; print(*sys.modules)"], capture_output=True, text=True, check=True
+    )
+    return set(run.stdout.split())
+
+
+HEAVY = {"matplotlib", "vtk", "vtkmodules", "typer", "rich", "numpy", "scipy", "skfem", "pydantic", "ezdxf", "shapely"}
+
+
+def test_importing_concio_loads_nothing_heavy() -> None:
+    assert not loaded_after("import concio") & HEAVY
+    assert not {m for m in loaded_after("import concio") if m.startswith("concio.")}
+
+
+def test_the_command_line_starts_without_the_numerics() -> None:
+    assert not loaded_after("import concio.cli.main") & (HEAVY - {"typer", "rich"})
+
+
+def test_solving_loads_neither_figures_nor_the_command_line() -> None:
+    code = "import concio\nconcio.solve(concio.running_bond_panel(courses=1, blocks=1, top_pressure=1.0)).summary()"
+    assert not loaded_after(code) & {"matplotlib", "vtk", "vtkmodules", "typer", "ezdxf"}
+
+
+def test_every_public_name_has_a_home() -> None:
+    for name in concio.__all__:
+        assert getattr(concio, name) is not None
+    homes = {name for names in concio._HOMES.values() for name in names}
+    assert homes | {"__version__"} == set(concio.__all__)
+    assert set(dir(concio)) >= homes
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        _ = concio.nothing
