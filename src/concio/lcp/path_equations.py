@@ -6,7 +6,7 @@ Unknowns X = (u, t_n, t_t, tau), all scaled to order one; one row for each:
 equilibrium           K u - C_n' t_n - C_t' t_t - tau f' = f
 open / crushed        t_n = -T / t_n = N
 closed                C_n u + a_n t_n + tau x_n' - tan(psi) sigma (C_t u + a_t t_t + tau x_t') = ...
-stick                 C_t u + a_t t_t + tau x_t' = s
+stick                 C_t u - x_t + a_t t_t + tau x_t' = s
 slip sigma            t_t + sigma mu t_n = -sigma c
 control               tau = given, or c'u = given
 ====================  ==========================================================
@@ -88,6 +88,7 @@ class Scaled:
             "a_n": law.normal_compliance * soft,
             "a_t": law.tangential_compliance * soft,
             "x": problem.gap / self.length,
+            "x_t": problem.slip_origin[:, 0] / self.length,
             "x_rate": self.path.gap_rate / self.length,
             "t_rate": self.path.tangent_rate / self.length,
             "f": problem.f / self.force,
@@ -322,6 +323,7 @@ class PathEquations:
         b = np.zeros(self.size)
         b[:n] = d["f"]
         sigma = self.sliding.astype(float)
+        slip = slip + d["x_t"]
         closed = -(d["x"] + offset) - d["psi"] * sigma * slip
         b[n : n + m] = np.select([self.contact == OPEN, self.contact == CRUSHED], [-d["T"], d["N"]], closed)
         b[n + m : -1] = np.where(self.sliding == STICK, slip, -sigma * d["c"])
@@ -329,9 +331,9 @@ class PathEquations:
         return b
 
     def positions(self, x: Array, *, rate: bool = False) -> tuple[Array, Array]:
-        """Return x_n + C_n u + a_n t_n and C_t u + a_t t_t + tau x_t', scaled, of an answer or of a rate."""
+        """Return x_n + C_n u + a_n t_n and C_t u - x_t + a_t t_t + tau x_t', scaled, of an answer or of a rate."""
         d, n, m = self.data, self.n, self.m
         u, t_n, t_t, tau = x[:n], x[n : n + m], x[n + m : -1], x[-1]
         opening = self.C_n @ u + d["a_n"] * t_n + tau * d["x_rate"]
         slip = self.C_t @ u + d["a_t"] * t_t + tau * d["t_rate"]
-        return (opening if rate else opening + d["x"]), slip
+        return (opening, slip) if rate else (opening + d["x"], slip - d["x_t"])

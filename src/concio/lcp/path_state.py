@@ -3,7 +3,7 @@ r"""A linear load path of a contact problem, and the state of the structure at o
 Along the path, with parameter tau,
 
 .. math:: f(\tau) = f + \tau \dot f, \qquad x_n(\tau) = x_n + \tau \dot x_n, \qquad
-          y_t = C_t u + \tau \dot x_t + a_t t_t - s,
+          y_t = C_t u - x_t + \tau \dot x_t + a_t t_t - s,
 
 so that loads grow and obstacles move (settlement). Friction is in rate form: the slip s of a pair is what it has
 slipped up to now, it changes only while the pair slips, and friction opposes its rate. The crushing of a pair whose
@@ -63,11 +63,12 @@ class LinearPath:
             object.__setattr__(self, name, value)
 
     def at(self, parameter: float) -> ContactProblem:
-        """Return the problem with the loads and gaps at a value of the parameter, slip measured from s = 0."""
+        """Return the problem with the loads and obstacles at a value of the parameter, slip measured from s = 0."""
         return replace(
             self.problem,
             f=self.problem.f + parameter * self.load_rate,
             gap=self.problem.gap + parameter * self.gap_rate,
+            slip_origin=self.problem.slip_origin - parameter * self.tangent_rate[:, None],
         )
 
 
@@ -119,11 +120,12 @@ def elastic_energy(problem: ContactProblem, state: PathState) -> float:
 
 
 def plastic_position(path: LinearPath, state: PathState) -> tuple[Array, Array]:
-    """Return x_n + C_n u + a_n t_n and C_t u + tau x_t' + a_t t_t: openings and slips less the elastic part [m]."""
+    """Return x_n + C_n u + a_n t_n and C_t u - x_t + tau x_t' + a_t t_t: what opened and slipped for good [m]."""
     problem, law = path.problem, path.problem.laws
     u, tau = state.displacement, state.parameter
     opening = problem.gap + tau * path.gap_rate + problem.C_n @ u + law.normal_compliance * state.normal_force
-    slip = problem.C_t @ u + tau * path.tangent_rate + law.tangential_compliance * state.friction_force
+    slip = problem.C_t @ u - problem.slip_origin[:, 0] + tau * path.tangent_rate
+    slip = slip + law.tangential_compliance * state.friction_force
     return opening, slip
 
 
@@ -157,8 +159,8 @@ def step_problem(path: LinearPath, before: PathState, parameter: float) -> Conta
     """
     problem = path.at(parameter)
     _, position = plastic_position(path, before)
-    origin = position - parameter * path.tangent_rate
-    return replace(problem, gap=problem.gap + before.offset, slip_origin=origin[:, None])
+    origin = problem.slip_origin + position[:, None]
+    return replace(problem, gap=problem.gap + before.offset, slip_origin=origin)
 
 
 def certify_step(path: LinearPath, before: PathState, after: PathState) -> Certificate:
@@ -197,7 +199,7 @@ def state_of(
     zero = np.zeros(problem.pairs)
     state = PathState(parameter, u, t_n, t_t, contact, zero.astype(np.int8), zero, zero)
     opening, position = plastic_position(path, state)
-    start = plastic_position(path, before)[1] if before is not None else problem.slip_origin[:, 0]
+    start = plastic_position(path, before)[1] if before is not None else zero
     used = np.abs(t_t) >= problem.sliding_strength(t_n) - tolerance * force
     moved = np.abs(position - start) > tolerance * length
     sliding = np.where(used & moved, np.where(t_t > 0, -1, 1), STICK).astype(np.int8)

@@ -1,0 +1,113 @@
+"""Load paths in steps: one Coulomb problem for each step, slip measured from the last converged state (10, 11).
+
+The step is halved where the solver finds no certified answer or where more than ``CHANGES`` of the pairs change state,
+and doubled again after an easy step, never beyond the one asked for.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.contact.problem import Array
+from concio.lcp.event_path import Event, Outcome
+from concio.lcp.path_state import CLOSED, CRUSHED, OPEN, STICK, LinearPath, PathState, state_of, step_problem
+from concio.lcp.solution import Progress, ProgressCallback, Solver, Status
+
+CHANGES = 0.1
+"""Share of the pairs that may change state in one step before it is halved."""
+
+SMALLEST = 2.0**-12
+"""Smallest step, as a share of the step asked for."""
+
+
+@dataclass(frozen=True, eq=False)
+class StepPath:
+    """States, events, outcome and last direction of a path, whichever way it was followed.
+
+    Parameters
+    ----------
+    states : tuple of PathState
+    events : tuple of Event
+    outcome : Outcome
+    direction : (N,) array
+    """
+
+    states: tuple[PathState, ...]
+    events: tuple[Event, ...]
+    outcome: Outcome
+    direction: Array
+
+
+def follow_in_steps(
+    path: LinearPath,
+    start: PathState,
+    *,
+    until: float,
+    steps: int,
+    solver: Solver,
+    refine: bool = True,
+    progress: ProgressCallback | None = None,
+) -> StepPath:
+    """Follow a path in load steps.
+
+    Parameters
+    ----------
+    path : LinearPath
+    start : PathState
+    until : float
+        Load parameter to reach.
+    steps : int
+        Steps of equal size to begin with.
+    solver : Solver
+    refine : bool
+        Whether steps are halved at many changes of state (a failed step always is).
+    progress : callable, optional
+    """
+    states, events = [start], list[Event]()
+    whole = (until - start.parameter) / steps
+    size, outcome = whole, Outcome.REACHED
+    while abs(until - states[-1].parameter) > 1e-12 * max(1.0, abs(until)):
+        before = states[-1]
+        left = until - before.parameter
+        size = np.sign(whole) * min(abs(size), abs(left))
+        parameter = until if abs(size) >= abs(left) * (1 - 1e-12) else before.parameter + size
+        solution = solver(step_problem(path, before, parameter))
+        smallest = abs(size) <= SMALLEST * abs(whole)
+        if not solution.solved:
+            if not smallest:
+                size *= 0.5
+                continue
+            outcome = Outcome.LIMIT if solution.status is Status.NO_EQUILIBRIUM else Outcome.LOST
+            break
+        after = state_of(
+            path, parameter, solution.displacement, solution.normal_force, solution.friction_force, before=before
+        )
+        changed = np.flatnonzero((before.contact != after.contact) | (before.sliding != after.sliding))
+        if refine and len(states) > 1 and changed.size > max(1.0, CHANGES * path.problem.pairs) and not smallest:
+            size *= 0.5
+            continue
+        events += [event for k in changed for event in _named(before, after, int(k), len(states))]
+        states.append(after)
+        if abs(size) < abs(whole):
+            size *= 2.0
+        if progress is not None and progress(Progress("steps", len(states), solution.certificate.worst)):
+            outcome = Outcome.CANCELLED
+            break
+    last = states[-1].displacement - states[-2].displacement if len(states) > 1 else np.zeros(path.problem.unknowns)
+    return StepPath(tuple(states), tuple(events), outcome, last / (float(np.abs(last).max(initial=0.0)) or 1.0))
+
+
+def _named(before: PathState, after: PathState, k: int, step: int) -> list[Event]:
+    found = []
+    was, now = int(before.contact[k]), int(after.contact[k])
+    kinds = {(CLOSED, OPEN): "opens", (OPEN, CLOSED): "closes", (CLOSED, CRUSHED): "crushes"}
+    if was != now:
+        kind = kinds.get((was, now), "recovers" if was == CRUSHED else "changes")
+        found.append(Event(after.parameter, after.parameter, k, kind, 0, step))
+    side = int(after.sliding[k])
+    if now != OPEN and side != int(before.sliding[k]):
+        kind = "sticks" if side == STICK else "slips"
+        found.append(Event(after.parameter, after.parameter, k, kind, side, step))
+    return found
