@@ -62,7 +62,9 @@ class Contacts:
     @property
     def force_on_b(self) -> Array:
         """Force on side b of each pair (m, 2) [kN]."""
-        force: Array = self.normal_force[:, None] * self.pairs.normal + self.friction_force[:, None] * self.pairs.tangent
+        force: Array = (
+            self.normal_force[:, None] * self.pairs.normal + self.friction_force[:, None] * self.pairs.tangent
+        )
         return force
 
     def count(self, name: str) -> int:

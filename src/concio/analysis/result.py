@@ -151,8 +151,8 @@ class Result:
         elastic = np.concatenate([np.repeat(disc.shape_of >= 0, np.diff(disc.offsets)), np.zeros(1, dtype=bool)])[:-1]
         if elastic.any():
             lowest = min(lowest, float(self.displacement[elastic].reshape(-1, 2)[:, 1].min()))
-        for b in np.flatnonzero(disc.shape_of == RIGID):
-            lowest = min(lowest, float(self.node_displacement(int(b))[:, 1].min()))
+        for b in np.flatnonzero(disc.shape_of == RIGID).tolist():
+            lowest = min(lowest, float(self.node_displacement(b)[:, 1].min()))
         return -lowest
 
     @cached_property
@@ -164,16 +164,11 @@ class Result:
         for b in np.flatnonzero(disc.shape_of == FIXED):
             total = force[pairs.body_a == b].sum(0) - force[pairs.body_b == b].sum(0)
             found[self.model.bodies[b].name] = (float(total[0]), float(total[1]))
-        held = [s for s in self.model.supports if self.model.body(s.body).kind != "fixed"]
-        if held:
+        if self.assembly.supported.held:
             s = self.solution
             rest = self.assembly.K @ self.displacement - self.assembly.load(self.factors)
             rest -= pairs.C_n.T @ s.normal_force + pairs.C_t.T @ s.friction_force[:, 0]
-            for support in held:
-                b = self.body_index(support.body)
-                own = rest[disc.offsets[b] : disc.offsets[b + 1]]
-                own = own[:2] if disc.shape_of[b] == RIGID else own.reshape(-1, 2).sum(0)
-                found[support.name] = (float(own[0]), float(own[1]))
+            found.update(self.assembly.supported.reactions(disc, rest))
         return found
 
     @property

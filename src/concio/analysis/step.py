@@ -69,4 +69,5 @@ def solve(
         raise NoEquilibriumError(
             solution.status.value, hint="solve with on_failure='return' and look at result.mechanism"
         )
-    raise SolverError(f"{solution.status.value} Tried: {detail}", hint="see result.certificate with on_failure='return'")  # noqa: EM102
+    msg = f"{solution.status.value} Tried: {detail}"
+    raise SolverError(msg, hint="see result.certificate with on_failure='return'")

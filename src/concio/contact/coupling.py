@@ -8,11 +8,16 @@ Contact is stated at the nodes j of one side, the *slave*. With dual functions :
 which is the difference of two nodal values where the meshes match, and for any meshes transmits a uniform pressure
 exactly because the dual functions sum to one (Wohlmuth 2000; boundary elements cut by the end of the segment are
 treated after Cichosz and Bischoff 2011). Where a cut goes through a quadratic element its two halves count as linear.
+
+A pair stands at :math:`\frac{1}{w_j} \int \psi_j\, s\, ds`, the node itself, and there a rigid side is read. Where the
+segment ends inside an element that point may lie beyond its end: the gap is then continued linearly, and only so do
+the two sides receive forces of the same moment.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -80,7 +85,7 @@ def cut(line: Line, length: float) -> Line:
 
 
 def match(a: Line, b: Line, length: float) -> bool:
-    """True when both lines have the same nodes, and these begin and end with the segment."""
+    """Return whether both lines have the same nodes, and these begin and end with the segment."""
     tolerance = 1e-7 * length
     return bool(
         len(a.at) == len(b.at)
@@ -142,8 +147,10 @@ def _mortar(slave: Line, master: Line | None, length: float) -> tuple[Array, Arr
         left, right = max(0.0, slave.at[nodes[0]]), min(length, slave.at[nodes[-1]])
         if right - left <= tolerance:
             continue
-        inner = np.unique(np.concatenate([[left, right], marks[(marks > left + tolerance) & (marks < right - tolerance)]]))
-        xs, ws = (np.concatenate(v) for v in zip(*(gauss(p, q) for p, q in zip(inner[:-1], inner[1:], strict=True)), strict=True))
+        inner = np.unique(
+            np.concatenate([[left, right], marks[(marks > left + tolerance) & (marks < right - tolerance)]])
+        )
+        xs, ws = (np.concatenate(v) for v in zip(*(gauss(p, q) for p, q in pairwise(inner)), strict=True))
         shape = lagrange(slave.at[nodes], xs)
         lumped = shape @ ws
         psi = lumped[:, None] * np.linalg.solve((shape * ws) @ shape.T, shape)
@@ -153,7 +160,7 @@ def _mortar(slave: Line, master: Line | None, length: float) -> tuple[Array, Arr
         if master is not None:
             other[nodes] += (psi * ws) @ _interpolation(master, xs).T
     used = weight > 1e-12 * length
-    position = np.clip(moment[used] / weight[used], 0.0, length)
+    position = moment[used] / weight[used]
     sides = [_entries(own[used] / weight[used, None], slave.nodes)]
     sides.append(_entries(other[used] / weight[used, None], master.nodes) if master is not None else None)  # type: ignore[arg-type]
     first = sides[0]

@@ -79,8 +79,7 @@ def _edges(disc: Discretisation, load: Load, chosen: list[int], f: Array) -> Non
         raise InputError(msg, where=f"load group '{load.group}'", hint="use a point load")
     along = (q - p) / length
     across = np.array([-along[1], along[0]])
-    tolerance = 1e-6 * max(length, float(np.abs(disc.origins).max()))
-    tolerance = max(tolerance, disc.model.gap_tolerance or 0.0)
+    tolerance = max(1e-6 * disc.size, disc.model.gap_tolerance or 0.0)
     loaded = 0.0
     for b in chosen:
         body = disc.model.bodies[b]
@@ -104,9 +103,7 @@ def _edges(disc: Discretisation, load: Load, chosen: list[int], f: Array) -> Non
         raise InputError(msg, where=f"load group '{load.group}'", hint="give coordinates on the outline of a block")
 
 
-def _line_load(
-    disc: Discretisation, b: int, edge: int, part: tuple[float, float], vector: Array, f: Array
-) -> None:
+def _line_load(disc: Discretisation, b: int, edge: int, part: tuple[float, float], vector: Array, f: Array) -> None:
     """Add a uniform line load ``vector`` [kN/m] on part of an edge."""
     at = disc.offsets[b]
     if disc.shape_of[b] == RIGID:

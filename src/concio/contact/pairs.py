@@ -17,8 +17,9 @@ from concio.contact.coupling import Coupling, Line, Side, couple
 from concio.contact.problem import Laws
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, Discretisation
+from concio.fem.mesh import merged
 from concio.model.detect import Interface
-from concio.model.model import Model
+from concio.model.model import Body, Model
 
 Array = np.ndarray
 
@@ -84,7 +85,13 @@ def interface_breaks(model: Model, interfaces: Sequence[Interface]) -> Mapping[i
                 at = float((end - p) @ tangent)
                 if 1e-6 * length < at < (1 - 1e-6) * length:
                     found[edge].append(at)
-    return {b: [np.unique(np.array(v)) for v in found] for b, found in marks.items()}
+    return {b: [_distinct(v, model.bodies[b]) for v in found] for b, found in marks.items()}
+
+
+def _distinct(marks: list[float], body: Body) -> Array:
+    """Return marks in order, those nearer than a millionth of the body's size taken as one [m]."""
+    tolerance = 1e-6 * float(np.ptp(body.outline, axis=0).max())
+    return merged(np.array(marks), tolerance) if marks else np.zeros(0)
 
 
 def make_pairs(disc: Discretisation, interfaces: Sequence[Interface]) -> Pairs:
@@ -103,6 +110,7 @@ def make_pairs(disc: Discretisation, interfaces: Sequence[Interface]) -> Pairs:
     parts: dict[str, list[Array]] = {k: [] for k in ("a", "b", "i", "p", "n", "l", "area", "g", "law")}
     triplets: list[tuple[Array, Array, Array, Array]] = []  # row, column, C_n, C_t
     by_name = _by_name(model)
+    unit = 1e-9 * float(np.median(disc.reach))
     total = 0
     for number, face in enumerate(interfaces):
         body_a, body_b = model.bodies[face.a], model.bodies[face.b]
@@ -116,9 +124,9 @@ def make_pairs(disc: Discretisation, interfaces: Sequence[Interface]) -> Pairs:
         along = along / length
         joint = model.laws[law_names[law]]
         points = 9 if joint.compressive_strength is not None else 5 if joint.normal_stiffness is not None else 2
-        line_a, key_a = _line(disc, face.a, face.edge_a, face.start, along)
-        line_b, key_b = _line(disc, face.b, face.edge_b, face.start, along)
-        where = (key_a, key_b, round(length * 1e9), points)
+        line_a, key_a = _line(disc, face.a, face.edge_a, face.start, along, unit)
+        line_b, key_b = _line(disc, face.b, face.edge_b, face.start, along, unit)
+        where = (key_a, key_b, round(length / unit), points)
         if where not in templates:
             templates[where] = couple(line_a, line_b, length, points)
         coupling = templates[where]
@@ -172,7 +180,8 @@ def pair_laws(model: Model, pairs: Pairs) -> Laws:
 
     def table(name: str, missing: float = 0.0) -> Array:
         values = [getattr(law, name) for law in laws]
-        return np.array([missing if v is None else float(v) for v in values])[pairs.law]
+        found: Array = np.array([missing if v is None else float(v) for v in values])[pairs.law]
+        return found
 
     area = pairs.area
 
@@ -200,8 +209,10 @@ def _sort(body: object) -> tuple[str, ...]:
     return tuple(getattr(body, k) for k in ("role", "layer", "material"))
 
 
-def _line(disc: Discretisation, b: int, edge: int, start: Array, along: Array) -> tuple[Line | None, tuple[int, ...]]:
-    """Return the nodes of one side in positions along the segment, and a key that identical sides share."""
+def _line(
+    disc: Discretisation, b: int, edge: int, start: Array, along: Array, unit: float
+) -> tuple[Line | None, tuple[int, ...]]:
+    """Return the nodes of one side in positions along the segment, and a key that sides equal to ``unit`` share."""
     s = int(disc.shape_of[b])
     if s < 0:
         return None, (s,)
@@ -213,7 +224,7 @@ def _line(disc: Discretisation, b: int, edge: int, start: Array, along: Array) -
     forwards = float(direction @ along) > 0
     at = first + nodes.at if forwards else (first - nodes.at)[::-1]
     order = nodes.nodes if forwards else nodes.nodes[::-1]
-    return Line(order, at, nodes.order), (s, edge, round(first * 1e9), int(forwards))
+    return Line(order, at, nodes.order), (s, edge, round(first / unit), int(forwards))
 
 
 def _side_rows(

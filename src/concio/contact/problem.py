@@ -174,4 +174,5 @@ class ContactProblem:
 
     def sliding_strength(self, t_n: Array) -> Array:
         """Return c + mu t_n, never below zero, shape (m,)."""
-        return np.maximum(self.laws.cohesion + self.laws.friction * t_n, 0.0)
+        strength: Array = np.maximum(self.laws.cohesion + self.laws.friction * t_n, 0.0)
+        return strength

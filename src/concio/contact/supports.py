@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,11 +10,33 @@ import scipy.sparse as sp
 
 from concio.contact.pairs import Pairs
 from concio.errors import InputError
-
 from concio.fem.discretisation import FIXED, RIGID, Discretisation, rigid_rows
 from concio.model.model import Support
 
 Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Condition:
+    """One displacement component of one point that a support holds.
+
+    Parameters
+    ----------
+    support : int
+        Number of the support in the model.
+    axis : {0, 1}
+        Along x or y.
+    unknowns, coefficients : (k,) arrays
+        The component is ``coefficients @ u_body[unknowns]``.
+    value : float
+        Imposed value [m].
+    """
+
+    support: int
+    axis: int
+    unknowns: Array
+    coefficients: Array
+    value: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,12 +53,42 @@ class Supported:
         Imposed displacements u0 of each group [m].
     R : (N, r) CSC array
         Rigid motions left free, orthonormal body by body.
+    held : dict of body number to tuple of Condition
     """
 
     T: sp.csr_array
     bodies: Array
     imposed: dict[str, Array]
     R: sp.csc_array
+    held: dict[int, tuple[Condition, ...]]
+
+    def reactions(self, disc: Discretisation, rest: Array) -> dict[str, tuple[float, float]]:
+        """Return the force (x, y) of each support on the structure [kN].
+
+        Parameters
+        ----------
+        disc : Discretisation
+        rest : (N_all,) array
+            What the supports must balance: K u - f - C' t [kN].
+
+        Notes
+        -----
+        Where several supports hold the same unknown, the force is shared among them by least norm.
+        """
+        total = np.zeros((len(disc.model.supports), 2))
+        for b, conditions in self.held.items():
+            own = rest[disc.offsets[b] : disc.offsets[b + 1]]
+            if disc.shape_of[b] == RIGID:
+                A = _matrix(conditions, len(own))
+                forces, *_ = np.linalg.lstsq(A.T, own, rcond=None)
+            else:
+                at = np.array([c.unknowns[0] for c in conditions])
+                forces = own[at] / np.bincount(at)[at]
+            for condition, force in zip(conditions, forces, strict=True):
+                total[condition.support, condition.axis] += force
+        supports = disc.model.supports
+        named = {c.support for conditions in self.held.values() for c in conditions}
+        return {supports[i].name: (float(total[i, 0]), float(total[i, 1])) for i in sorted(named)}
 
 
 def apply_supports(disc: Discretisation) -> Supported:
@@ -44,105 +97,112 @@ def apply_supports(disc: Discretisation) -> Supported:
     Raises
     ------
     InputError
-        A support names no body, holds no node, or contradicts another.
+        A support names no body, holds no node, or contradicts another; two have one name.
     """
-    held: dict[int, list[tuple[Array, Array, float, str]]] = {}
-    number = {b.name: i for i, b in enumerate(disc.model.bodies)}
-    for support in disc.model.supports:
+    model = disc.model
+    held: dict[int, list[Condition]] = {}
+    number = {b.name: i for i, b in enumerate(model.bodies)}
+    names = {b.name for b in model.bodies if b.kind == "fixed"}
+    for i, support in enumerate(model.supports):
+        where = f"support '{support.name}'"
         if support.body not in number:
             msg = f"holds '{support.body}', but no body has that name"
-            raise InputError(msg, where=f"support '{support.name}'", hint="see the names with 'concio check'")
+            raise InputError(msg, where=where, hint="see the names with 'concio check'")
+        if not np.isfinite([*support.displacement, support.rotation]).all():
+            msg = "an imposed displacement is not finite"
+            raise InputError(msg, where=where)
         b = number[support.body]
-        if disc.shape_of[b] != FIXED:
-            held.setdefault(b, []).extend(_conditions(disc, b, support))
-    count = len(disc.model.bodies)
-    rows, columns, values, sizes = [], [], [], np.zeros(count, dtype=np.int64)
+        if disc.shape_of[b] == FIXED:
+            continue
+        if support.name in names:
+            msg = "another support or fixed body has the same name"
+            raise InputError(msg, where=where, hint="reactions are reported by name: give it one of its own")
+        names.add(support.name)
+        held.setdefault(b, []).extend(_conditions(disc, b, i))
+    rows, columns, values = [], [], []
+    sizes = np.zeros(len(model.bodies), dtype=np.int64)
     motions: list[tuple[int, Array]] = []
     imposed: dict[str, Array] = {}
     at = 0
-    for b in range(count):
+    for b in range(len(model.bodies)):
         first, last = int(disc.offsets[b]), int(disc.offsets[b + 1])
         n = last - first
         if n == 0:
             continue
         R = np.eye(3) if disc.shape_of[b] == RIGID else disc.shapes[disc.shape_of[b]].R
         if b not in held:
-            rows.append(np.arange(first, last))
-            columns.append(np.arange(at, at + n))
-            values.append(np.ones(n))
-            motions.append((at, R))
-            sizes[b] = n
+            row, column, value, free = np.arange(n), np.arange(n), np.ones(n), R
         else:
-            basis, particular = _solve_conditions(held[b], n, disc.model.bodies[b].name)
-            r, c = np.nonzero(basis)
-            rows.append(first + r)
-            columns.append(at + c)
-            values.append(basis[r, c])
-            sizes[b] = basis.shape[1]
-            left = R - basis @ (basis.T @ R)
-            _, s, vt = np.linalg.svd(left, full_matrices=True)
-            rank = int((s > 1e-9).sum())
-            if rank < R.shape[1]:
-                free, _ = np.linalg.qr(basis.T @ (R @ vt[rank:].T))
-                motions.append((at, free))
-            for group, u0 in particular.items():
+            row, column, value, free = _left_free(held[b], R, disc.shape_of[b] == RIGID)
+            for group, u0 in _particular(held[b], n, disc, b).items():
                 imposed.setdefault(group, np.zeros(disc.unknowns))[first:last] += u0
+        rows.append(first + row)
+        columns.append(at + column)
+        values.append(value)
+        if free.shape[1]:
+            motions.append((at, free))
+        sizes[b] = free.shape[0]
         at += int(sizes[b])
     T = sp.csr_array((_cat(values), (_cat(rows), _cat(columns))), shape=(disc.unknowns, at))
-    return Supported(T, np.concatenate([[0], np.cumsum(sizes)]), imposed, _motions(motions, at))
+    done = {b: tuple(conditions) for b, conditions in held.items()}
+    return Supported(T, np.concatenate([[0], np.cumsum(sizes)]), imposed, _motions(motions, at), done)
 
 
 def moved_obstacles(disc: Discretisation, pairs: Pairs) -> dict[str, tuple[Array, Array]]:
     """Return for each group the change (m,) of the normal and tangential relative displacement by moved obstacles."""
     moved: dict[str, tuple[Array, Array]] = {}
     number = {b.name: i for i, b in enumerate(disc.model.bodies)}
+    ties = np.flatnonzero(pairs.interface < 0)
+    ends = [pairs.point.copy(), pairs.point.copy()]  # where each pair is fastened to a and to b
+    for k, tie in zip(ties, disc.model.ties, strict=True):
+        ends[0][k], ends[1][k] = tie.at_a, tie.at_b
+    rough = np.ones(len(pairs))
+    rough[ties] = 0.0
     for support in disc.model.supports:
         b = number[support.body]
         if disc.shape_of[b] != FIXED:
             continue
-        arm = pairs.point - disc.centroids[b]
-        motion = np.array(support.displacement) + support.rotation * np.column_stack([-arm[:, 1], arm[:, 0]])
-        sign = (pairs.body_b == b).astype(float) - (pairs.body_a == b)
         normal, tangential = moved.setdefault(support.group, (np.zeros(len(pairs)), np.zeros(len(pairs))))
-        normal += sign * (motion * pairs.normal).sum(1)
-        tangential += sign * (motion * pairs.tangent).sum(1)
+        for side, sign, points in ((pairs.body_a, -1.0, ends[0]), (pairs.body_b, 1.0, ends[1])):
+            arm = points - disc.centroids[b]
+            motion = np.array(support.displacement) + support.rotation * np.column_stack([-arm[:, 1], arm[:, 0]])
+            touched = sign * (side == b)
+            normal += touched * (motion * pairs.normal).sum(1)
+            tangential += touched * rough * (motion * pairs.tangent).sum(1)
     return moved
 
 
-def _conditions(disc: Discretisation, b: int, support: Support) -> list[tuple[Array, Array, float, str]]:
-    """Return conditions (unknowns of the body, coefficients, value, group)."""
+def _conditions(disc: Discretisation, b: int, number: int) -> list[Condition]:
+    """Return what one support holds of body b."""
+    support = disc.model.supports[number]
     where = f"support '{support.name}'"
     axes = [i for i, axis in enumerate("xy") if axis in support.directions]
     if not axes or set(support.directions) - set("xy"):
         msg = f"directions '{support.directions}' are not 'x', 'y' or 'xy'"
         raise InputError(msg, where=where)
-    if not np.isfinite([*support.displacement, support.rotation]).all():
-        msg = "an imposed displacement is not finite"
-        raise InputError(msg, where=where)
     points = disc.nodes(b)
+    chosen = np.arange(len(points))
     if support.edge is not None:
         p, q = (np.array(end, dtype=float) for end in support.edge)
         size = float(np.ptp(disc.model.bodies[b].outline, axis=0).max())
-        points_on = _near(points, p, q, 1e-6 * size)
         if disc.shape_of[b] == RIGID:
             points = np.unique(np.vstack([p, q]), axis=0)
-        elif not len(points_on):
+            chosen = np.arange(len(points))
+        else:
+            chosen = _near(points, p, q, 1e-6 * size)
+        if not len(chosen):
             msg = f"no node of '{support.body}' lies on ({p[0]:g}, {p[1]:g}) - ({q[0]:g}, {q[1]:g})"
             raise InputError(msg, where=where, hint="give a segment on the outline of the block")
-    elif disc.shape_of[b] != RIGID:
-        points_on = np.arange(len(points))
-    conditions: list[tuple[Array, Array, float, str]] = []
-    centroid = disc.centroids[b]
-    if disc.shape_of[b] == RIGID:
-        for x in points:
-            rows = rigid_rows(x, centroid, disc.reach[b])
-            motion = _moved(support, x, centroid)
-            conditions += [(np.arange(3), rows[i], float(motion[i]), support.group) for i in axes]
-    else:
-        for k in points_on:
-            motion = _moved(support, points[k], centroid)
-            conditions += [(np.array([2 * k + i]), np.ones(1), float(motion[i]), support.group) for i in axes]
-    return conditions
+    found = []
+    for k in chosen:
+        motion = _moved(support, points[k], disc.centroids[b])
+        for axis in axes:
+            if disc.shape_of[b] == RIGID:
+                row = rigid_rows(points[k], disc.centroids[b], disc.reach[b])[axis]
+                found.append(Condition(number, axis, np.arange(3), row, float(motion[axis])))
+            else:
+                found.append(Condition(number, axis, np.array([2 * k + axis]), np.ones(1), float(motion[axis])))
+    return found
 
 
 def _moved(support: Support, point: Array, centroid: Array) -> Array:
@@ -157,33 +217,56 @@ def _near(points: Array, p: Array, q: Array, tolerance: float) -> Array:
     return np.flatnonzero(np.linalg.norm(points - p - share[:, None] * along, axis=1) <= tolerance)
 
 
-def _solve_conditions(
-    conditions: list[tuple[Array, Array, float, str]], n: int, name: str
-) -> tuple[Array, dict[str, Array]]:
-    """Return an orthonormal basis (n, k) of what stays free and a particular solution (n,) of each group."""
-    groups = dict.fromkeys(group for *_, group in conditions)
+def _matrix(conditions: Sequence[Condition], n: int) -> Array:
     A = np.zeros((len(conditions), n))
-    values = {group: np.zeros(len(conditions)) for group in groups}
-    for i, (dofs, coefficients, value, group) in enumerate(conditions):
-        A[i, dofs] = coefficients
-        values[group][i] = value
-    single = (np.count_nonzero(A, axis=1) == 1).all()
-    if single:
-        fixed = np.unique(np.nonzero(A)[1])
-        basis = np.delete(np.eye(n), fixed, axis=1)
-    else:
-        _, s, vt = np.linalg.svd(A)
-        rank = int((s > 1e-9 * s.max()).sum())
-        basis = vt[rank:].T
-    particular = {}
-    for group, value in values.items():
-        u0, *_ = np.linalg.lstsq(A, value, rcond=None)
-        if np.abs(A @ u0 - value).max() > 1e-9 * max(np.abs(value).max(), 1e-300):
-            msg = f"supports impose contradictory displacements on '{name}'"
+    for i, c in enumerate(conditions):
+        A[i, c.unknowns] = c.coefficients
+    return A
+
+
+def _left_free(conditions: list[Condition], R: Array, rigid: bool) -> tuple[Array, Array, Array, Array]:
+    """Return rows, columns, values of an orthonormal basis (n, k) of what stays free, and its rigid motions (k, r)."""
+    n = len(R)
+    if rigid:
+        _, s, vt = np.linalg.svd(_matrix(conditions, n), full_matrices=True)
+        basis = vt[int((s > 1e-9 * s.max()).sum()) :].T
+        row, column = np.nonzero(basis)
+        return row, column, basis[row, column], np.eye(basis.shape[1])
+    fixed = np.unique([c.unknowns[0] for c in conditions])
+    free = np.delete(np.arange(n), fixed)
+    _, s, vt = np.linalg.svd(np.linalg.qr(R[fixed], mode="r"), full_matrices=True)
+    left = vt[int((s > 1e-9).sum()) :].T
+    motions = np.linalg.qr(R[free] @ left)[0] if left.shape[1] else np.zeros((len(free), 0))
+    return free, np.arange(len(free)), np.ones(len(free)), motions
+
+
+def _particular(conditions: list[Condition], n: int, disc: Discretisation, b: int) -> dict[str, Array]:
+    """Return displacements (n,) of body b that satisfy the conditions, for each group that moves it.
+
+    Raises
+    ------
+    InputError
+        Two conditions contradict each other.
+    """
+    group = np.array([disc.model.supports[c.support].group for c in conditions])
+    value = np.array([c.value for c in conditions])
+    found = {}
+    for name in dict.fromkeys(group[value != 0].tolist()):
+        wanted = np.where(group == name, value, 0.0)
+        if disc.shape_of[b] == RIGID:
+            A = _matrix(conditions, n)
+            u0, *_ = np.linalg.lstsq(A, wanted, rcond=None)
+            error = np.abs(A @ u0 - wanted).max()
+        else:
+            at = np.array([c.unknowns[0] for c in conditions])
+            u0 = np.zeros(n)
+            u0[at] = wanted
+            error = np.abs(u0[at] - wanted).max()
+        if error > 1e-9 * np.abs(wanted).max():
+            msg = f"supports impose contradictory displacements on '{disc.model.bodies[b].name}'"
             raise InputError(msg, hint="a node can be moved only one way")
-        if u0.any():
-            particular[group] = u0
-    return basis, particular
+        found[str(name)] = u0
+    return found
 
 
 def _motions(blocks: list[tuple[int, Array]], n: int) -> sp.csc_array:
@@ -202,5 +285,3 @@ def _motions(blocks: list[tuple[int, Array]], n: int) -> sp.csc_array:
 
 def _cat(parts: list[Array]) -> Array:
     return np.concatenate(parts) if parts else np.zeros(0, dtype=int)
-
-

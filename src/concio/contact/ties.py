@@ -1,7 +1,7 @@
 """Tie rods: bars that take tension only, as pairs whose gap closes when the bar is stretched.
 
-A bar of stiffness k and prestress T0 between points a and b carries ``T = max(0, T0 + k e)`` with the elongation e. As a
-pair: C_n u = -e, compliance 1/k, initial gap -T0/k, so ``0 <= y_n = -T0/k - e + T/k _|_ T >= 0``. It has no friction.
+A bar of stiffness k and prestress T0 between points a and b carries ``T = max(0, T0 + k e)`` with the elongation e. As
+a pair: C_n u = -e, compliance 1/k, initial gap -T0/k, so ``0 <= y_n = -T0/k - e + T/k _|_ T >= 0``. It has no friction.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import scipy.sparse as sp
 from concio.contact.pairs import Pairs
 from concio.contact.problem import Laws
 from concio.errors import InputError
-from concio.fem.discretisation import Discretisation
+from concio.fem.discretisation import FIXED, Discretisation
 
 Array = np.ndarray
 
@@ -57,8 +57,9 @@ def add_ties(disc: Discretisation, pairs: Pairs, laws: Laws) -> tuple[Pairs, Law
                 rows.append(np.full(len(dofs), k))
                 columns.append(dofs)
                 values.append(sign * direction @ operator)  # -elongation
-    if not rows:
-        return pairs, laws
+        if all(e < 0 or disc.shape_of[e] == FIXED for e in ends[k]):
+            msg = "neither end is fastened to a block that can move"
+            raise InputError(msg, where=where, hint="name a block at one end at least")
     shape = (len(ties), disc.unknowns)
     C_n = sp.csr_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape)
     stiffness = np.array([t.stiffness for t in ties])

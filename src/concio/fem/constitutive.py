@@ -26,11 +26,11 @@ def constitutive_matrix(material: Elastic, plane: Literal["stress", "strain"]) -
         The plane is neither stress nor strain.
     """
     E, nu = material.E, material.nu
-    if plane == "strain":
-        E, nu = E / (1 - nu**2), nu / (1 - nu)
-    elif plane != "stress":
+    if plane not in ("stress", "strain"):
         msg = f"plane '{plane}' is neither 'stress' nor 'strain'"
         raise InputError(msg)
+    if plane == "strain":
+        E, nu = E / (1 - nu**2), nu / (1 - nu)
     return E / (1 - nu**2) * np.array([[1.0, nu, 0.0], [nu, 1.0, 0.0], [0.0, 0.0, (1 - nu) / 2]])
 
 

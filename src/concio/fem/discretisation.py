@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -59,6 +60,12 @@ class Discretisation:
     def unknowns(self) -> int:
         """Number of unknowns before supports are applied."""
         return int(self.offsets[-1])
+
+    @cached_property
+    def size(self) -> float:
+        """Longer side of the box around all bodies [m]; it does not depend on where the origin is."""
+        corners = np.array([(b.outline.min(0), b.outline.max(0)) for b in self.model.bodies])
+        return float((corners[:, 1].max(0) - corners[:, 0].min(0)).max())
 
     def nodes(self, b: int) -> Array:
         """Node coordinates (n, 2) of an elastic body; outline vertices of any other [m]."""
@@ -201,9 +208,11 @@ def _key(body: Body, size: float, cuts: list[Array]) -> tuple[object, ...]:
         return np.round(values / unit).astype(np.int64).tobytes()
 
     origin = body.outline[0]
-    grid = None if body.grid is None else tuple(rounded(np.asarray(g) - o) for g, o in zip(body.grid, origin, strict=True))
+    grid = (
+        None if body.grid is None else tuple(rounded(np.asarray(g) - o) for g, o in zip(body.grid, origin, strict=True))
+    )
     pieces = tuple(rounded(c) for c in cuts) if body.grid is None else ()
-    return (rounded(body.outline - origin), body.material, body.thickness, grid, size, pieces)
+    return (rounded(body.outline - origin), body.material, body.thickness, grid, round(size / unit), pieces)
 
 
 def _shape(model: Model, body: Body, size: float, cuts: list[Array]) -> Shape:

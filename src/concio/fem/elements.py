@@ -1,8 +1,8 @@
 r"""Element families, as operators at the integration points of one body.
 
 scikit-fem supplies shape functions and quadrature. What leaves this module is, for one meshed body with ``n`` nodes and
-``q`` integration points, the strain operator ``B`` (3q x 2n), the interpolation ``N`` (q x n) and the weights ``w`` (area
-belonging to each point). Stiffness, loads and stresses follow from these three alone:
+``q`` integration points, the strain operator ``B`` (3q x 2n), the interpolation ``N`` (q x n) and the weights ``w``
+(area belonging to each point). Stiffness, loads and stresses follow from these three alone:
 
 .. math:: K = B^T (D \otimes w h) B, \qquad \sigma = D B u, \qquad f = N^T w h\, b .
 
@@ -39,9 +39,10 @@ FAMILIES: dict[str, Family] = {
     "Q8": Family(skfem.ElementQuadS2, 4, 5, 2),
     "Q9": Family(skfem.ElementQuad2, 4, 5, 2),
     "T3": Family(skfem.ElementTriP1, 3, 1, 1),
-    "T6": Family(skfem.ElementTriP2, 3, 2, 2),
+    "T6": Family(skfem.ElementTriP2, 3, 4, 2),
 }
-"""Element families by name."""
+"""Element families by name. Quadrature integrates the stiffness of parallelograms and triangles exactly, with at least
+as many points as an element has nodes, so that stresses can be fitted at the nodes of any mesh."""
 
 
 def family(name: str) -> Family:

@@ -15,7 +15,7 @@ Array = np.ndarray
 
 
 def is_rectangle(outline: Array) -> bool:
-    """True for four vertices with sides along x and y."""
+    """Return whether an outline has four vertices and sides along x and y."""
     if len(outline) != 4:
         return False
     sides = np.roll(outline, -1, axis=0) - outline

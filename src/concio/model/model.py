@@ -128,7 +128,7 @@ class JointRule:
             raise InputError(msg, hint="a gap is an opening in m; overlaps are not gaps")
 
     def matches(self, a: Body, b: Body) -> bool:
-        """True when the rule speaks of interfaces between ``a`` and ``b``."""
+        """Return whether the rule speaks of interfaces between ``a`` and ``b``."""
 
         def fits(word: str, body: Body) -> bool:
             return word == "*" or (word != "" and word in (body.name, body.role, body.layer, body.material))

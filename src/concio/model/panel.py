@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Literal
+from itertools import pairwise
+from typing import Literal, TypeVar
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from concio.model.spacing import subdivided
 from concio.units import quantity
 
 Array = np.ndarray
+T = TypeVar("T")
 Base = Literal["full", "bearings", "none"]
 
 LARGEST_BLOCKS = 2_000_000
@@ -143,9 +145,9 @@ def running_bond_panel(
     bodies += _obstacles(base, side_walls, width, top, length, depth)
     law = friction if isinstance(friction, JointLaw) else JointLaw(friction=friction)
     laws, rules = {"joint": law}, [JointRule("joint")]
-    for role, value, opening in (("side wall", wall_friction, gap), ("base", base_friction, 0.0)):
-        if value is not None or opening:
-            laws[role] = law if value is None else replace(law, friction=value)
+    for role, coefficient, opening in (("side wall", wall_friction, gap), ("base", base_friction, 0.0)):
+        if coefficient is not None or opening:
+            laws[role] = law if coefficient is None else replace(law, friction=coefficient)
             rules.append(JointRule(role, (role, "*"), opening))
     loads = []
     if block.unit_weight or (t_m and mortar.unit_weight):
@@ -157,6 +159,7 @@ def running_bond_panel(
         raise InputError(msg, where=where, hint="give unit_weight")
     if pressure:
         loads.append(Load("pressure", (pressure,), edge=((0.0, top), (width, top)), group="top"))
+    films = f"mortar {t_m:g} m" if t_m else "dry"
     return Model(
         bodies=tuple(bodies),
         materials={"block": block, "mortar": mortar} if t_m else {"block": block},
@@ -166,12 +169,12 @@ def running_bond_panel(
         plane=plane,
         element=element,
         refinement=refine,
-        title=f"running-bond panel, {n_c} courses of {n_b} blocks, {'mortar ' + format(t_m, 'g') + ' m' if t_m else 'dry'}",
+        title=f"running-bond panel, {n_c} courses of {n_b} blocks, {films}",
         generator={"kind": "panel", "courses": n_c, "blocks": n_b, "width": width, "height": top, "base": base},
     )
 
 
-def _two(value: Sequence[object], name: str) -> tuple[object, object]:
+def _two(value: Sequence[T], name: str) -> tuple[T, T]:
     try:
         first, second = value
     except (TypeError, ValueError):
@@ -220,23 +223,27 @@ def _bodies(
     width = blocks * (length + joint) - joint
     patterns = [_course_edges(True, blocks, length, joint), _course_edges(False, blocks, length, joint)]
     marks = [x for edges in patterns for pair in edges for x in pair]
-    centres = [
-        np.array([(p[1] + q[0]) / 2 for p, q in zip(edges[:-1], edges[1:], strict=True)]) for edges in patterns
-    ]
+    centres = [np.array([(p[1] + q[0]) / 2 for p, q in pairwise(edges)]) for edges in patterns]
     cuts = np.unique(np.concatenate(centres)) if bed_mortar == "cut" else np.zeros(0)
     unit = 1e-9 * length
-    lines = np.unique(np.round(np.concatenate([marks, cuts]) / unit)) * unit
-    lines = subdivided(lines, length / elements[0])
+    places = np.sort(np.concatenate([marks, cuts]))
+    places = places[np.concatenate([[True], np.diff(places) > unit])]
+    lines = subdivided(places, length / elements[0])
 
     def between(a: float, b: float) -> Array:
         picked: Array = lines[(lines >= a - unit) & (lines <= b + unit)]
         return picked
+
+    def snapped(x: float) -> float:
+        """Return the one value that stands for all computed values of a place."""
+        return float(places[np.argmin(np.abs(places - x))])
 
     kind: Literal["elastic", "rigid"] = "rigid" if isinstance(block, Rigid) else "elastic"
     bodies: list[Body] = []
     digits = (len(str(courses)), len(str(blocks + 1)))
 
     def add(name: str, a: float, b: float, ys: Array, material: str) -> None:
+        a, b = snapped(a), snapped(b)
         grid = (between(a, b), ys) if material == "mortar" or kind == "elastic" else None
         outline = _rectangle(a, b, ys[0], ys[-1])
         body_kind = kind if material == "block" else "elastic"
@@ -254,7 +261,7 @@ def _bodies(
         y = float(ys[-1])
         if joint and c + 1 < courses:
             ends = np.concatenate([[0.0], cuts, [width]])
-            for k, (a, b) in enumerate(zip(ends[:-1], ends[1:], strict=True)):
+            for k, (a, b) in enumerate(pairwise(ends)):
                 name = f"bed{c + 1:0{digits[0]}d}" + (f"-{k + 1}" if len(cuts) else "")
                 add(name, float(a), float(b), np.array([y, y + joint]), "mortar")
             y += joint
