@@ -4,6 +4,7 @@
 |---|---|
 | summary.json | the numbers people ask for first |
 | result.json, result.npz | the whole result; :func:`concio.io.load_result` gives the same object back |
+| model.toml | the model, to read and to run again |
 | bodies.csv, joints.csv, contacts.csv, reactions.csv | tables with units |
 | figures/ | every figure that suits the outcome, PNG and SVG |
 | report.html | one file to open, to mail, to keep |
@@ -23,6 +24,7 @@ from typing import TYPE_CHECKING
 from concio.errors import ConcioError, InputError
 from concio.io.csv_table import write_csv
 from concio.io.result_file import save_result
+from concio.model.file_write import dumps
 from concio.post.tables import Tables
 
 if TYPE_CHECKING:
@@ -75,7 +77,9 @@ def _write_all(result: Result, place: Path, figures: bool, report: bool) -> list
     summary = place / "summary.json"
     text = json.dumps(result.summary(), indent=2, ensure_ascii=False, allow_nan=False)
     summary.write_text(text + "\n", encoding="utf-8")
-    written = [summary, *save_result(result, place)]
+    model = place / "model.toml"
+    model.write_text(dumps(result.model), encoding="utf-8")
+    written = [summary, model, *save_result(result, place)]
     tables = Tables(result).all() if result.solved else {"bodies": Tables(result).bodies()}
     written += [write_csv(table, place / f"{name}.csv") for name, table in tables.items()]
     if figures:

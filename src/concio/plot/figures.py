@@ -50,7 +50,7 @@ def suitable_figures(result: Result) -> dict[str, Callable[[], Axes]]:
     found["slip"] = plots.slip
     from concio.post.thrust import thrust_lines
 
-    if thrust_lines(result):
+    if 2 * sum(len(line.points) for line in thrust_lines(result)) > len(result.model.free_bodies):
         found["thrust"] = plots.thrust
     return found
 

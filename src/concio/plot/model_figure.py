@@ -37,7 +37,9 @@ def plot_model(model: Model, ax: Axes | None = None, *, names: bool | None = Non
     """
     from matplotlib.collections import PolyCollection
 
-    box = style.box_of(*[b.outline for b in model.bodies], margin=0.08)
+    box = style.box_of(*[b.outline for b in model.bodies])
+    if any(load.edge is not None or load.at is not None for load in model.loads):
+        box = box + np.array([[-1.0], [1.0]]) * 0.05 * float((box[1] - box[0]).max())
     size = float((box[1] - box[0]).max())
     ax = style.axes_for(box, ax)
     fixed = [b for b in model.bodies if b.kind == "fixed"]

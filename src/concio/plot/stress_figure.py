@@ -50,7 +50,8 @@ def plot_principal(
     ax = style.axes_for(box, ax)
     largest = found.largest
     typical = float(np.median(found.size[found.size >= np.median(found.size)])) if len(found.size) else 1.0
-    scale = (0.95 * typical / largest if largest > 0 else 1.0) if scale is None else scale
+    longest = typical * (1.25 if of == "bodies" else 1.8)
+    scale = (longest / largest if largest > 0 else 1.0) if scale is None else scale
     style.draw_bodies(ax, result.model, shown, face=_shades(result) if shade else None)
     lines, value = found.arms(scale)
     size = np.abs(value) / (largest or 1.0)

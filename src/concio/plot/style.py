@@ -48,6 +48,11 @@ FILL_OPEN = "#FBDFA6"
 SEQUENTIAL = "cividis"
 """Colour map of quantities without a sign; it grows lighter steadily, also in grey."""
 
+WIDEST, NARROWEST, TALLEST = 9.2, 4.6, 8.4
+"""Sizes of the drawing in a figure of its own [inch]."""
+MARGINS = (0.66, 0.3, 0.66, 0.86)
+"""Room left, right, above and below the drawing for labels, title and legend [inch]."""
+
 LARGE = 3000
 """Above this number of bodies lines are thin and vector files hold the drawing as an image."""
 
@@ -60,19 +65,22 @@ def axes_for(box: Array, ax: Axes | None) -> Axes:
     from matplotlib.figure import Figure
 
     width, height = np.maximum(box[1] - box[0], 1e-9)
-    tall = float(np.clip(9.2 * height / width, 1.6, 9.0))
-    wide = float(np.clip(tall * width / height, 4.2, 9.2))
-    figure = Figure(figsize=(wide + 0.9, tall + 1.5), layout="constrained")
+    wide = float(np.clip(TALLEST * width / height, NARROWEST, WIDEST))
+    tall = float(np.clip(wide * height / width, 0.9, TALLEST))
+    left, right, top, bottom = MARGINS
+    size = (wide + left + right, tall + top + bottom)
+    figure = Figure(figsize=size)
     FigureCanvasAgg(figure)
-    axes: Axes = figure.add_subplot()
+    axes: Axes = figure.add_axes((left / size[0], bottom / size[1], wide / size[0], tall / size[1]))
     return axes
 
 
 def box_of(*points: Array, margin: float = 0.04) -> Array:
-    """Return the box ((x0, y0), (x1, y1)) around points with a margin of its longer side."""
+    """Return the box ((x0, y0), (x1, y1)) around points, with a margin as a share of its longer side."""
     everything = np.vstack([p.reshape(-1, 2) for p in points if p.size])
     low, high = everything.min(0), everything.max(0)
-    pad = margin * float((high - low).max())
+    span = high - low
+    pad = np.minimum(margin * float(span.max()), np.maximum(2 * margin * span, 0.01 * float(span.max())))
     return np.array([low - pad, high + pad])
 
 
@@ -96,16 +104,17 @@ def dress(ax: Axes, box: Array, title: str, note: str = "") -> None:
 def legend(ax: Axes, handles: Sequence[Any], columns: int = 4) -> None:
     """Put a legend without frame under the axes."""
     if handles:
+        room = ax.get_window_extent().width / ax.figure.dpi
         ax.legend(
-            handles=list(handles), loc="upper center", bbox_to_anchor=(0.5, -0.02), bbox_transform=_below(ax),
-            ncols=min(columns, len(handles)), frameon=False, fontsize=8.5, handlelength=2.6, borderaxespad=0.0,
+            handles=list(handles), loc="upper center", bbox_to_anchor=(0.5, 0.0), bbox_transform=_below(ax),
+            ncols=max(1, min(columns, len(handles), int(room / 1.35))), frameon=False, fontsize=8.5, handlelength=2.6, borderaxespad=0.0,
         )  # fmt: skip
 
 
 def _below(ax: Axes) -> Any:
     from matplotlib.transforms import ScaledTranslation
 
-    return ax.transAxes + ScaledTranslation(0, -0.42, ax.figure.dpi_scale_trans)
+    return ax.transAxes + ScaledTranslation(0, -0.5, ax.figure.dpi_scale_trans)
 
 
 def handle(line: Line, word: str | None = None) -> Any:
@@ -177,17 +186,19 @@ def ghost(ax: Axes, shown: Outlines) -> None:
 
 
 def scale_bar(ax: Axes, box: Array, length: float, word: str, line: Line) -> None:
-    """Draw a bar of ``length`` [m] with its meaning in the lower right corner, and make room for it."""
-    low, high = box
-    room = 0.085 * float((high - low).max())
-    y = low[1] - 0.4 * room
-    x = high[0] - 0.02 * (high[0] - low[0])
-    draw_lines(ax, np.array([[[x - length, y], [x, y]]]), line, zorder=5, clip_on=False)
+    """Draw a bar of ``length`` [m] with its meaning under the right end of the drawing."""
+    from matplotlib.transforms import ScaledTranslation
+
+    place = ax.get_xaxis_transform() + ScaledTranslation(0, -0.36, ax.figure.dpi_scale_trans)
+    stop = box[1, 0] - 0.02 * (box[1, 0] - box[0, 0])
+    start = stop - length
+    ax.plot([start, stop], [0, 0], color=line.colour, lw=2.2, transform=place, clip_on=False, solid_capstyle="butt")
+    ax.plot([start, start, np.nan, stop, stop], [-0.008, 0.008, np.nan, -0.008, 0.008], color=line.colour, lw=1.2,
+            transform=place, clip_on=False)  # fmt: skip
     ax.annotate(
-        word, (x - length, y), (-5, 0), textcoords="offset points", ha="right", va="center", fontsize=8.5, color=INK,
-        annotation_clip=False,
+        word, (start, 0), (-6, 0), xycoords=place, textcoords="offset points", ha="right", va="center", fontsize=8.5,
+        color=INK, annotation_clip=False,
     )  # fmt: skip
-    ax.set_ylim(bottom=low[1] - room)
 
 
 def round_value(value: float) -> float:
@@ -202,7 +213,11 @@ def number(value: float, unit: str = "") -> str:
     """Return a number with three digits and its unit; lengths below a centimetre in mm."""
     if unit == "m" and 0 < abs(value) < 0.01:
         value, unit = 1e3 * value, "mm"
-    text = f"{value:.3g}" if 1e-4 <= abs(value) < 1e5 or value == 0 else f"{value:.2e}"
-    if "e" in text and 1e3 <= abs(value) < 1e5:
-        text = f"{value:.0f}"
+    size = abs(value)
+    if 1e4 <= size < 1e9:
+        text = f"{float(f'{value:.4g}'):,.0f}"
+    elif size >= 1e-4 or size == 0:
+        text = f"{value:.0f}" if 1e3 <= size < 1e4 else f"{value:.3g}"
+    else:
+        text = f"{value:.2e}"
     return f"{text} {unit}".strip()

@@ -1,0 +1,150 @@
+"""Results for ParaView: the bodies with displacements and stresses, the contact pairs with forces, gaps and states.
+
+Stresses are tension positive, normal forces and pressures compression positive, all in kN and m. Displacements of the
+bodies are point data, so that "Warp By Vector" shows the deformed shape.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from concio.errors import InputError
+from concio.fem.constitutive import principal
+from concio.io.vtu import POLYGON, QUAD, TRIANGLE, VERTEX, Grid, write_pvd, write_vtu
+
+if TYPE_CHECKING:
+    from concio.analysis.result import Result
+
+Array = np.ndarray
+
+
+def bodies_grid(result: Result) -> Grid:
+    """Return all bodies as elements; rigid and fixed ones are one polygon each.
+
+    Point data: ``displacement`` [m], ``stress`` (s_x, s_y, t_xy) at nodes [kN/m2], ``velocity`` of a mechanism. Cell
+    data: ``body`` (number), ``kind`` (0 elastic, 1 rigid, 2 fixed), mean ``element_stress``, ``s_1``, ``s_2`` of each
+    element, ``body_s_1``, ``body_s_2`` of each body; nan where a body has no stress.
+    """
+    disc, model = result.assembly.disc, result.model
+    solved, velocity = result.solved, result.mechanism_velocity
+    points, moved, stress, speed = [], [], [], []
+    cells, sizes, types, owner, means = [], [], [], [], []
+    total = 0
+    for b, s in enumerate(disc.shape_of):
+        nodes = disc.nodes(b)
+        points.append(nodes)
+        moved.append(result.node_displacement(b) if solved else np.zeros_like(nodes))
+        if velocity is not None:
+            still = model.bodies[b].kind == "fixed"
+            speed.append(np.zeros_like(nodes) if still else result.node_displacement(b, velocity))
+        if s >= 0:
+            el = disc.shapes[s].elements
+            k = el.cells.shape[1]
+            cells.append((el.cells + total).ravel())
+            sizes.append(np.full(len(el.cells), k))
+            types.append(np.full(len(el.cells), QUAD if k == 4 else TRIANGLE))
+            nodal, mean = np.full((len(nodes), 3), np.nan), np.full((len(el.cells), 3), np.nan)
+            if solved:
+                nodal, mean = result.stress.at_nodes(b), _element_means(result, b)
+            stress.append(nodal)
+            means.append(mean)
+        else:
+            cells.append(np.arange(total, total + len(nodes)))
+            sizes.append(np.array([len(nodes)]))
+            types.append(np.array([POLYGON]))
+            stress.append(np.full((len(nodes), 3), np.nan))
+            means.append(np.full((1, 3), np.nan))
+        owner.append(np.full(len(types[-1]), b))
+        total += len(nodes)
+    body = np.concatenate(owner)
+    element = np.vstack(means)
+    s1, s2, _ = principal(element)
+    kinds = {"elastic": 0, "rigid": 1, "fixed": 2}
+    kind = np.array([kinds[b.kind] for b in model.bodies], dtype=np.int32)
+    cell_data: dict[str, Array] = {
+        "body": body.astype(np.int32), "kind": kind[body], "element_stress": element, "s_1": s1, "s_2": s2
+    }  # fmt: skip
+    if solved:
+        mean1, mean2, _ = result.stress.principal
+        cell_data |= {"body_s_1": mean1[body], "body_s_2": mean2[body]}
+    point_data: dict[str, Array] = {"displacement": np.vstack(moved), "stress": np.vstack(stress)}
+    if velocity is not None:
+        point_data["velocity"] = np.vstack(speed)
+    return Grid(
+        np.vstack(points), np.concatenate(cells), np.cumsum(np.concatenate(sizes)), np.concatenate(types), point_data,
+        cell_data,
+    )  # fmt: skip
+
+
+def contacts_grid(result: Result) -> Grid:
+    """Return the contact pairs as points with all their numbers.
+
+    Point data: ``state`` (0 open, 1 stick, 2 and 3 slip), ``normal_force``, ``friction_force`` and ``force`` on side b
+    [kN], ``pressure``, ``shear`` [kN/m2], ``gap``, ``slip``, ``normal``, ``body_a``, ``body_b``, ``interface``. Without
+    a solution the geometry alone.
+    """
+    pairs = result.assembly.pairs
+    m = len(pairs)
+    data: dict[str, Array] = {
+        "normal": pairs.normal, "area": pairs.area, "interface": pairs.interface.astype(np.int32),
+        "body_a": pairs.body_a.astype(np.int32), "body_b": pairs.body_b.astype(np.int32),
+    }  # fmt: skip
+    if result.solved:
+        c = result.contacts
+        data |= {
+            "state": c.state.astype(np.int32), "normal_force": c.normal_force, "friction_force": c.friction_force,
+            "force": c.force_on_b, "pressure": c.pressure, "shear": c.shear, "gap": c.gap, "slip": c.slip,
+        }  # fmt: skip
+    return Grid(pairs.point, np.arange(m), np.arange(1, m + 1), np.full(m, VERTEX), data)
+
+
+def write_paraview(
+    results: Result | Sequence[Result], directory: Path | str, *, times: Sequence[float] | None = None
+) -> list[Path]:
+    """Write ``bodies.pvd`` and ``contacts.pvd`` with a pair of VTU files for each step.
+
+    Parameters
+    ----------
+    results : Result or sequence of Result
+    directory : Path or str
+        Made where it is missing.
+    times : sequence of float, optional
+        Time of each step, growing; default 0, 1, 2... Load parameters do where they grow.
+
+    Returns
+    -------
+    list of Path
+        The two PVD files first.
+
+    Raises
+    ------
+    InputError
+        The number of times is not that of the steps.
+    """
+    steps = list(results) if isinstance(results, Sequence) else [results]
+    stamps = [float(k) for k in range(len(steps))] if times is None else [float(t) for t in times]
+    if len(stamps) != len(steps):
+        msg = f"{len(stamps)} times were given for {len(steps)} steps"
+        raise InputError(msg, hint="give one time for each step")
+    directory = Path(directory)
+    directory.mkdir(parents=True, exist_ok=True)
+    bodies = [write_vtu(bodies_grid(r), directory / f"bodies_{k:04d}.vtu") for k, r in enumerate(steps)]
+    contacts = [write_vtu(contacts_grid(r), directory / f"contacts_{k:04d}.vtu") for k, r in enumerate(steps)]
+    series = [
+        write_pvd(bodies, stamps, directory / "bodies.pvd"),
+        write_pvd(contacts, stamps, directory / "contacts.pvd"),
+    ]
+    return [*series, *bodies, *contacts]
+
+
+def _element_means(result: Result, b: int) -> Array:
+    el = result.assembly.disc.shapes[result.assembly.disc.shape_of[b]].elements
+    _, values = result.stress.at_points(b)
+    count = len(el.cells)
+    area = np.bincount(el.cell_of_point, el.weights, count)
+    weighted = el.weights[:, None] * values
+    return np.column_stack([np.bincount(el.cell_of_point, weighted[:, i], count) / area for i in range(3)])

@@ -1,0 +1,114 @@
+"""Figure of a load path: load against the motion of a control point, with its events."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from concio.plot import style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = np.ndarray
+
+
+class PathEvent(Protocol):
+    """An event on a curve: :class:`concio.lcp.event_path.Event` has it."""
+
+    @property
+    def parameter(self) -> float: ...  # noqa: D102
+    @property
+    def control(self) -> float: ...  # noqa: D102
+    @property
+    def kind(self) -> str: ...  # noqa: D102
+
+
+class PathCurve(Protocol):
+    """A load path: load parameters and the motion of a control point at its corners, and its events."""
+
+    @property
+    def parameter(self) -> Sequence[float] | Array: ...  # noqa: D102
+    @property
+    def control(self) -> Sequence[float] | Array: ...  # noqa: D102
+    @property
+    def events(self) -> Sequence[PathEvent]: ...  # noqa: D102
+
+
+MARKS: dict[str, tuple[str, str, str]] = {
+    "opens": ("^", style.OPEN.colour, "opens"),
+    "closes": ("v", style.OPEN.colour, "closes"),
+    "slips": ("D", style.SLIP.colour, "slips"),
+    "sticks": ("s", style.STICK.colour, "sticks"),
+    "crushes": ("X", style.TENSION.colour, "crushes"),
+    "recovers": ("P", style.COMPRESSION.colour, "recovers"),
+}
+"""Marker, colour and word of each kind of event."""
+
+
+def plot_path(
+    curve: PathCurve,
+    ax: Axes | None = None,
+    *,
+    control_label: str = "displacement of the control point [m]",
+    parameter_label: str = "load factor [-]",
+    title: str = "Load path",
+    bound: float | None = None,
+) -> Axes:
+    """Draw a load path, its events and its peak.
+
+    Parameters
+    ----------
+    curve : PathCurve
+        Anything with ``parameter``, ``control`` (same length) and ``events``.
+    ax : Axes, optional
+        Where to draw; default a new figure.
+    control_label, parameter_label, title : str
+        Words of the axes, with units.
+    bound : float, optional
+        A bound on the load factor to draw beside it, such as the associated limit.
+
+    Returns
+    -------
+    Axes
+    """
+    if ax is None:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(7.6, 4.8), layout="constrained")
+        FigureCanvasAgg(figure)
+        ax = figure.add_subplot()
+    load, motion = np.asarray(curve.parameter, dtype=float), np.asarray(curve.control, dtype=float)
+    ax.plot(motion, load, color=style.INK, lw=1.4, zorder=2)
+    handles: list[Any] = []
+    for kind in dict.fromkeys(event.kind for event in curve.events):
+        marker, colour, word = MARKS.get(kind, ("o", style.INK, kind))
+        places = np.array([(e.control, e.parameter) for e in curve.events if e.kind == kind])
+        size = 5.5 if len(curve.events) <= 60 else 3.0
+        drawn = ax.plot(*places.T, ls="none", marker=marker, ms=size, mfc=colour, mec="white", mew=0.5, zorder=3,
+                        label=f"a joint {word} ({len(places)})")  # fmt: skip
+        handles += drawn
+    if len(load):
+        top = int(np.argmax(load))
+        ax.annotate(
+            f"peak {style.number(float(load[top]))}", (motion[top], load[top]), (0, 7), textcoords="offset points",
+            ha="center", fontsize=8.5, color=style.INK,
+        )  # fmt: skip
+    if bound is not None:
+        line = ax.axhline(bound, color=style.COMPRESSION.colour, ls="--", lw=1.1, label=f"bound {style.number(bound)}")
+        handles.append(line)
+    ax.margins(0.05, 0.1)
+    ax.set_xlabel(control_label, fontsize=9)
+    ax.set_ylabel(parameter_label, fontsize=9)
+    ax.tick_params(labelsize=8)
+    for side in ("top", "right"):
+        ax.spines[side].set_visible(False)
+    ax.grid(color="#E8E4DC", lw=0.6)
+    ax.set_axisbelow(True)
+    ax.set_title(title, loc="left", fontsize=11, fontweight="bold", color=style.INK)
+    if handles:
+        ax.legend(handles=handles, frameon=False, fontsize=8.5, loc="lower right")
+    return ax
