@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from concio.cli.outcome import guarded, print_json, say
-from concio.cli.output import replaced_file
+from concio.cli.output import check_writable, replaced_file
 from concio.cli.run import File, Json
 
 if TYPE_CHECKING:
@@ -69,9 +69,7 @@ def _check_picture(out: Path) -> None:
     if out.suffix not in (".png", ".svg", ".pdf"):
         msg = f"a picture ends in .png, .svg or .pdf, not in '{out.suffix}'"
         raise InputError(msg, where="--out", hint=f"write for example --out {out.stem}.png")
-    if not out.absolute().parent.is_dir():
-        msg = f"there is no directory '{out.parent}'"
-        raise InputError(msg, where=str(out), hint="make it first")
+    check_writable(out)
 
 
 def _draw(model: Model, detection: Detection, out: Path) -> None:

@@ -19,7 +19,10 @@ app = typer.Typer(
         "Masonry of blocks held together by contact and friction: answers that prove themselves.\n\n"
         "Start:  concio new panel  |  concio check panel.toml  |  concio run panel.toml --out result"
     ),
-    epilog="Exit codes: 0 solved, 2 bad input, 3 no equilibrium (proved), 4 gave up or undecided, 130 interrupted.",
+    epilog=(
+        "Exit codes: 0 solved, 2 bad input, 3 no equilibrium (proved), 4 gave up or undecided, 130 interrupted, "
+        "1 anything else."
+    ),
 )
 
 

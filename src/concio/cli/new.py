@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 import typer
 
 from concio.cli.outcome import guarded, say
-from concio.cli.output import replaced_file
+from concio.cli.output import check_writable, replaced_file
 
 Kind = Literal["panel", "wall", "arch", "column", "blocks"]
 
@@ -33,9 +33,7 @@ def new(
     if target.exists() and not force:
         msg = "there is a file of that name already"
         raise InputError(msg, where=str(target), hint="give another name, or --force to replace it")
-    if not target.absolute().parent.is_dir():
-        msg = f"there is no directory '{target.parent}'"
-        raise InputError(msg, where=str(target), hint="make it first")
+    check_writable(target)
     text = files("concio.model").joinpath("templates", f"{kind}.toml").read_text(encoding="utf-8")
     with replaced_file(target) as fresh:
         fresh.write_text(text, encoding="utf-8")

@@ -66,7 +66,7 @@ def _told(error: Exception) -> tuple[dict[str, Any], int]:
         reason = "the disk is full" if error.errno == errno.ENOSPC else error.strerror or str(error)
         where = str(error.filename) if error.filename else None
         hint = "nothing was left half written"
-        return {"kind": "OutputError", "what": f"cannot write: {reason}", "where": where, "hint": hint}, 2
+        return {"kind": "OutputError", "what": f"cannot write: {reason}", "where": where, "hint": hint}, INTERNAL
     where = None
     if error.__traceback__ is not None:
         frame = error.__traceback__

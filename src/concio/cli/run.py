@@ -8,14 +8,13 @@ from typing import Annotated
 import typer
 
 from concio.cli.outcome import guarded, print_json, say
-from concio.cli.output import check_target, replaced_directory
+from concio.cli.output import check_directory
 from concio.cli.progress import progress_bar
 
 File = Annotated[Path, typer.Argument(help="Model file (TOML).", show_default=False)]
 Out = Annotated[Path | None, typer.Option("--out", "-o", help="Directory for figures, report and numbers.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing; the exit code tells.")]
-Force = Annotated[bool, typer.Option("--force", help="Replace what --out holds, even if it is not a result.")]
 Factors = Annotated[
     list[str] | None, typer.Option("--factor", "-f", help="Factor of a load group: live=1.5 (repeatable).")
 ]
@@ -29,7 +28,6 @@ def run(
     factor: Factors = None,
     json: Json = False,
     quiet: Quiet = False,
-    force: Force = False,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw figures into --out.")] = True,
 ) -> int:
     """Solve one load step and say what was found.
@@ -40,7 +38,7 @@ def run(
     from concio.cli.lines import result_lines
 
     if out is not None:
-        check_target(out, force=force)
+        check_directory(out)
     model = concio.load(file)
     with progress_bar(shown=not (json or quiet)) as progress:
         result = concio.solve(model, method=method, factors=factors_of(factor), on_failure="return", progress=progress)
@@ -48,8 +46,7 @@ def run(
     if out is not None:
         from concio.io.result_dir import write_result
 
-        with replaced_directory(out) as fresh:
-            written = [out / p.relative_to(fresh) for p in write_result(result, fresh, figures=figures)]
+        written = write_result(result, out, figures=figures)
     if json:
         print_json(result.summary())
     elif not quiet:
@@ -94,5 +91,5 @@ def where_written(paths: list[Path]) -> list[str]:
         names = ", ".join(dict.fromkeys(p.stem for p in figures))
         lines.append(f"  figures      {figures[0].parent}: {names}")
     if others:
-        lines.append(f"  numbers      {', '.join(str(p) for p in others)}")
+        lines.append(f"  numbers      {others[0].parent}: {', '.join(p.name for p in others)}")
     return lines
