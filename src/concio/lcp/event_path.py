@@ -237,11 +237,12 @@ class _Follower:
         """Correct the point where rounding has carried it off the equations of its states (little, or not at all)."""
         b = self.right_hand_side()
         size = float(np.abs(self.x).max(initial=0.0)) + float(np.abs(b).max(initial=0.0))
-        if float(np.abs(b - self.equations.multiply(self.x)).max()) <= ON_EQUATIONS * size:
+        left = b - self.equations.multiply(self.x)
+        if float(np.abs(left).max()) <= ON_EQUATIONS * size:
             return
-        x, residual = self.equations.solve(b)
-        if residual < 1e-10 and np.abs(x - self.x).max() <= 1e-6 * size:
-            self.x = x
+        change, _ = self.equations.solve(left)  # of least size where forces are not unique
+        if np.abs(change).max() <= 1e-6 * size:
+            self.x = self.x + change
 
     def right_hand_side(self) -> Array:
         return self.equations.right_hand_side(self.slip, self.offset, float(self.equations.control @ self.x))
@@ -326,17 +327,17 @@ class _Follower:
 
     def distance(self, v: Values, r: Rates) -> float:
         """Return how far the control can go until a pair meets the next bound of its state."""
-        e, still = self.equations, r.still
+        e = self.equations
         grip = grips(e)
         ways = [
-            (v.gap, r.opening, e.contact == OPEN),
-            (v.force, r.force, e.contact == CLOSED),
-            (v.room, -r.force, e.contact == CLOSED),
-            (v.plus, r.plus, (e.sliding == STICK) & grip),
-            (v.minus, r.minus, (e.sliding == STICK) & grip),
+            (v.gap, r.opening, e.contact == OPEN, r.still),
+            (v.force, r.force, e.contact == CLOSED, r.calm),
+            (v.room, -r.force, e.contact == CLOSED, r.calm),
+            (v.plus, r.plus, (e.sliding == STICK) & grip, r.calm),
+            (v.minus, r.minus, (e.sliding == STICK) & grip, r.calm),
         ]
         best = np.inf
-        for value, rate, mask in ways:
+        for value, rate, mask, still in ways:
             use = mask & (rate < -still) & np.isfinite(value)
             if use.any():
                 best = min(best, float((np.maximum(value[use], 0.0) / -rate[use]).min()))

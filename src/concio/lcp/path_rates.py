@@ -29,6 +29,9 @@ ZERO = 1e-9
 STILL = 1e-10
 """Rates below this share of the largest rate count as zero."""
 
+ROUNDING = 1e-13
+"""Rates of forces below this share of the rates of displacements are rounding, and the other way round (scaled)."""
+
 ROUNDS_ALL, ROUNDS_ONE = 6, 60
 """Rounds in which all wrong pairs are flipped together, then rounds that flip the worst alone."""
 
@@ -64,7 +67,9 @@ class Values:
 
 @dataclass
 class Rates:
-    """Rates of the same quantities; ``slip`` is the rate of the plastic slip, ``still`` the size of no rate.
+    """Rates of the same quantities; ``slip`` is the rate of the plastic slip.
+
+    Motions slower than ``still`` and forces that change less than ``calm`` do not change at all.
 
     Parameters
     ----------
@@ -79,6 +84,7 @@ class Rates:
     plus: Array
     minus: Array
     still: float
+    calm: float
 
 
 def grips(equations: PathEquations) -> Array:
@@ -109,15 +115,18 @@ def rates(equations: PathEquations, direction: Array) -> Rates:
     opening, slip = equations.positions(direction, rate=True)
     t_n, t_t = direction[n : n + m], direction[n + m : -1]
     gap = opening - d["psi"] * np.abs(slip)
-    still = STILL * float(np.abs(direction[:-1]).max(initial=0.0))
-    return Rates(direction, gap, slip, t_n, d["mu"] * t_n + t_t, d["mu"] * t_n - t_t, still)
+    moving = float(np.abs(direction[:n]).max(initial=0.0))
+    loading = float(np.abs(direction[n:-1]).max(initial=0.0))
+    still = max(STILL * moving, ROUNDING * loading)
+    calm = max(STILL * loading, ROUNDING * moving)
+    return Rates(direction, gap, slip, t_n, d["mu"] * t_n + t_t, d["mu"] * t_n - t_t, still, calm)
 
 
 def wrong(equations: PathEquations, v: Values, r: Rates) -> list[tuple[float, int, int, int]]:
     """Return (size of the violation, pair, contact, sliding): states that the rates contradict, and better ones."""
     contact, sliding, grip = equations.contact, equations.sliding, grips(equations)
     rough = (equations.data["mu"] > 0) | (equations.data["c"] > 0)
-    zero, still = v.force_zero, r.still
+    zero, still, calm = v.force_zero, r.still, r.calm
     found: list[tuple[float, int, int, int]] = []
 
     def report(mask: Array, size: Array, new_contact: int, new_sliding: Array | int) -> None:
@@ -126,16 +135,16 @@ def wrong(equations: PathEquations, v: Values, r: Rates) -> list[tuple[float, in
 
     closing = (contact == OPEN) & (v.gap <= v.gap_zero) & (r.opening < -still)
     report(closing, -r.opening, CLOSED, np.where(rough, STICK, 1))
-    opening = (contact == CLOSED) & (v.force <= zero) & (r.force < -still)
+    opening = (contact == CLOSED) & (v.force <= zero) & (r.force < -calm)
     report(opening, -r.force, OPEN, np.where(grip & (v.plus + v.minus > 4 * zero), sliding, 1))
-    crushing = (contact == CLOSED) & (v.room <= zero) & (r.force > still)
+    crushing = (contact == CLOSED) & (v.room <= zero) & (r.force > calm)
     report(crushing, r.force, CRUSHED, sliding)
     recovering = (contact == CRUSHED) & (r.opening > still)
     report(recovering, r.opening, CLOSED, sliding)
     done = closing | opening | crushing | recovering | ~grip
     stuck = (sliding == STICK) & ~done
-    plus = stuck & (v.plus <= zero) & (r.plus < -still)
-    minus = stuck & (v.minus <= zero) & (r.minus < -still)
+    plus = stuck & (v.plus <= zero) & (r.plus < -calm)
+    minus = stuck & (v.minus <= zero) & (r.minus < -calm)
     side = np.where(plus & ~(minus & (r.minus < r.plus)), 1, -1)
     report(plus | minus, np.maximum(-r.plus * plus, -r.minus * minus), -1, side)
     back = (sliding != STICK) & ~done & (sliding * r.slip < -still)
