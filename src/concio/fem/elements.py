@@ -123,7 +123,8 @@ def build(points: Array, cells: Array, name: str, D: Array) -> Elements:
     nodes = np.ascontiguousarray(basis.doflocs.T)
     dofs = basis.element_dofs
     area = basis.dx
-    if not (area > 0).all():
+    jacobian = mesh.mapping().detDF(np.asarray(mesh.elem.refdom.p, dtype=float))  # at corners, where it is least
+    if not ((jacobian > 0).all(1) | (jacobian < 0).all(1)).all():
         msg = "an element of the mesh is turned inside out"
         raise GeometryError(msg, hint="use a finer mesh or a simpler outline")
     e, g = area.shape
