@@ -30,7 +30,7 @@ def cold_states(system: PairSystem) -> tuple[Array, Array]:
 
 
 def named_states(system: PairSystem, states: Array, start: tuple[Array, Array, Array] | None) -> tuple[Array, Array]:
-    """Return normal and tangential states from :class:`~concio.lcp.solution.PairState` codes and an answer near them."""
+    """Return normal and tangential states from codes (:class:`~concio.lcp.solution.PairState`) and an answer near."""
     states = np.asarray(states)
     problem, law = system.problem, system.problem.laws
     slip = np.zeros(system.m)

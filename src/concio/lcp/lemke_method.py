@@ -116,7 +116,7 @@ def lemke(
     ----------
     problem : LinearComplementarity
     cover : (n,) array, optional
-        Positive covering vector d of the scaled problem; ones by default.
+        Positive covering vector d of w = M z + q + d z0, in the units of q; by default ones after scaling.
     limit : int, optional
         Largest number of pivots; default 50 n + 1000.
     refresh : int
@@ -145,7 +145,8 @@ def lemke(
         return LemkeResult(Outcome.SOLVED, np.zeros(n), problem.q.copy(), 0, 0, None, 0.0)
     rows, columns, matrix = equilibrate(problem.M)
     size = float(np.abs(rows * problem.q).max())
-    path = _Path(matrix, rows * problem.q / size, d, refresh, basis, seed)
+    covering = d if cover is None else rows * d / float((rows * d).max())
+    path = _Path(matrix, rows * problem.q / size, covering, refresh, basis, seed)
     outcome, ray = path.follow(limit or 50 * n + 1000, progress)
     w, z = path.read()
     z, w = z * columns * size, w / rows * size

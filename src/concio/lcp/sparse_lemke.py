@@ -4,7 +4,7 @@ Nothing is eliminated and no tableau is kept: u, K and C stay sparse, and the ba
 every pair (:mod:`concio.lcp.pair_rows`), factorised sparsely and updated by single rows
 (:mod:`concio.lcp.updated_factor`). The start is the wall glued together: every pair sticks under a prestress that grows
 with what its joint cannot carry. The prestress is then driven to zero along a piecewise linear path
-(:mod:`concio.lcp.state_path`); the number of pivots is that of the pairs that leave the glued state, not of all unknowns.
+(:mod:`concio.lcp.state_path`); there are as many pivots as pairs change state, not as there are unknowns.
 
 Given ``start_states``, the path starts there instead, with shifts that cover just what is violated: a cheap and exact
 crossover from an approximate answer. Without violations there is nothing to do but one linear solve.
