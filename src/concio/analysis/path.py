@@ -170,10 +170,15 @@ class PathResult:
 
     @cached_property
     def energy_error(self) -> float:
-        """Largest |work - stored - dissipated| of all steps, relative to the energy turned over."""
+        """Largest |work - stored - dissipated| of all steps, relative to the energy turned over.
+
+        That is the largest of work, stored energy and |f| . |u|: a settlement lifts and lowers weights whose work
+        nearly cancels that of the moving support.
+        """
         gap = max(abs(s.state.work - s.state.dissipation - s.stored) for s in self.steps)
-        turned = max(max(abs(s.state.work), s.stored) for s in self.steps)
-        return gap / turned if turned else 0.0
+        sizes = [abs(s.state.work) + s.stored for s in self.steps]
+        sizes += [float(np.abs(self.assembly.problem(s.factors).f) @ np.abs(s.state.displacement)) for s in self.steps]
+        return gap / max(sizes) if max(sizes) else 0.0
 
     def peak(self, stage: int = -1) -> float:
         """Return the largest parameter met in a stage."""
@@ -181,11 +186,16 @@ class PathResult:
         return max(s.parameter for s in self.steps if s.stage == wanted)
 
     def curve(self, point: ControlPoint, stage: int | None = None) -> tuple[Array, Array]:
-        """Return (displacement of the point [m], parameter) at every step, of one stage or of all."""
+        """Return (displacement of the point [m], parameter) at every step, of one stage from its beginning or of all."""
         functional, shift = control_functional(self.assembly, point)
-        steps = [s for s in self.steps if stage is None or s.stage == stage % len(self.outcomes)]
-        u = [functional @ s.state.displacement + shift(s.factors) for s in steps]
-        return np.array(u), np.array([s.parameter for s in steps])
+        chosen = list(range(len(self.steps)))
+        if stage is not None:
+            chosen = [i for i in chosen if self.steps[i].stage == stage % len(self.outcomes)]
+        load = [self.steps[i].parameter for i in chosen]
+        if stage is not None and chosen and chosen[0] > 0:
+            chosen, load = [chosen[0] - 1, *chosen], [0.0, *load]
+        u = [functional @ self.steps[i].state.displacement + shift(self.steps[i].factors) for i in chosen]
+        return np.array(u), np.array(load)
 
     def result(self, step: int = -1) -> Result:
         """Return one step as a :class:`Result`, with its slips counted from the beginning of the path."""

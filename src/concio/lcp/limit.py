@@ -184,7 +184,7 @@ class FrictionMargin:
     programmes: int
 
 
-def smallest_friction(problem: ContactProblem, *, largest: float = 1.0, tolerance: float = 1e-9) -> FrictionMargin:
+def smallest_friction(problem: ContactProblem, *, largest: float = 1.0, tolerance: float = 1e-7) -> FrictionMargin:
     """Find the smallest friction that still admits equilibrium under the problem's loads (associated bound).
 
     What is left unbalanced, e(factor), falls to zero as friction grows and its slope is known from the dual
@@ -196,7 +196,8 @@ def smallest_friction(problem: ContactProblem, *, largest: float = 1.0, toleranc
     largest : float
         Largest factor considered.
     tolerance : float
-        Width of the final bracket, relative to ``largest``.
+        Width of the final bracket, relative to ``largest``. Forces count as admissible at a residual of 1e-9 of the
+        load, so that less makes no sense.
     """
 
     def unbalanced(factor: float) -> tuple[bool, float]:

@@ -1,0 +1,235 @@
+"""Limit loads of a model: the associated bound and the multiplier its Coulomb load path reaches, as a bracket.
+
+The *associated multiplier* (:mod:`concio.lcp.limit`) bounds every collapse from above and needs no stiffness. The
+*path multiplier* is the largest load met on the exact quasi-static path (:mod:`concio.lcp.event_path`): own weight and
+whatever else is dead first, then the live load, controlled by the displacement it works on, so that local slips and
+falling branches are passed. It depends on stiffness and history, as friction does. Collapse of the real wall lies
+between the load at which the path under growing load first finds no way on and the associated bound; neither is passed
+off as the other.
+
+Rigid blocks on hard joints have no unique path. They are given joints of a small uniform compliance, tangential 2.5
+times the normal one; without initial gaps the multiplier does not depend on its size.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from concio.contact.assembly import Assembly, assemble
+from concio.contact.problem import ContactProblem
+from concio.errors import InputError, NoEquilibriumError
+from concio.lcp.event_path import EventPath, Outcome, follow
+from concio.lcp.existence import find_mechanism
+from concio.lcp.limit import FrictionMargin, LimitLoad, associated_limit, smallest_friction
+from concio.lcp.path_state import CLOSED, OPEN, LinearPath, PathState
+from concio.lcp.solution import ProgressCallback
+from concio.model.model import Model
+
+Array = np.ndarray
+
+SHEAR_TO_NORMAL = 2.5
+"""Tangential over normal compliance lent to hard joints of rigid blocks: Poisson's ratio 0.25."""
+
+FAR = 50.0
+"""The path is followed to this multiple of the displacement at its first limit point."""
+
+
+@dataclass(frozen=True, eq=False)
+class LimitResult:
+    """Limit multipliers of the live load.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    associated : LimitLoad
+        Upper bound with forces and mechanism.
+    path : EventPath or None
+        The Coulomb path under displacement control; None where it was not asked for or the bound is infinite.
+    first_limit : float
+        Multiplier at which the path under growing load first finds no way on; ``nan`` without a path.
+    lent_compliance : float
+        Normal compliance lent to hard joints of rigid blocks [m/kN]; 0 where none was needed.
+    """
+
+    assembly: Assembly
+    associated: LimitLoad
+    path: EventPath | None
+    first_limit: float
+    lent_compliance: float
+
+    @property
+    def coulomb(self) -> float:
+        """Largest multiplier met on the Coulomb path; ``nan`` without a path."""
+        return self.path.peak if self.path is not None else float("nan")
+
+    @property
+    def bracket(self) -> tuple[float, float]:
+        """(path multiplier, associated multiplier)."""
+        return self.coulomb, self.associated.multiplier
+
+    def mechanism(self) -> Array | None:
+        """Velocity (N_all,) of the associated mechanism on all unknowns, largest entry 1; None where there is none."""
+        if self.associated.mechanism is None:
+            return None
+        velocity: Array = self.assembly.supported.T @ self.associated.mechanism.velocity
+        return velocity
+
+    def collapse_motion(self) -> Array | None:
+        """Last rate of displacement (N_all,) of the Coulomb path, largest entry 1; None without a path."""
+        if self.path is None:
+            return None
+        velocity: Array = self.assembly.supported.T @ self.path.direction
+        return velocity
+
+    def summary(self) -> dict[str, Any]:
+        """Return the numbers of ``--json``."""
+        a = self.associated
+        return {
+            "associated_multiplier": a.multiplier,
+            "associated_upper_bound": a.upper,
+            "duality_gap": a.gap,
+            "static_residual": a.residual,
+            "mechanism_violation": None if a.mechanism is None else a.mechanism.violation,
+            "checked": a.checked,
+            "coulomb_path_multiplier": None if self.path is None else self.coulomb,
+            "coulomb_first_limit": None if self.path is None else self.first_limit,
+            "path_outcome": None if self.path is None else self.path.outcome.name.lower(),
+            "path_events": None if self.path is None else len(self.path.events),
+            "lent_compliance": self.lent_compliance,
+        }
+
+
+def limit(
+    model: Model | Assembly,
+    live: str | Sequence[str] = "live",
+    *,
+    path: bool = True,
+    progress: ProgressCallback | None = None,
+) -> LimitResult:
+    """Find the limit multipliers of the live load groups; all other groups act with factor 1.
+
+    Parameters
+    ----------
+    model : Model or Assembly
+    live : str or sequence of str
+        Load groups that are multiplied.
+    path : bool
+        Whether the Coulomb path is followed too.
+    progress : callable, optional
+
+    Raises
+    ------
+    InputError
+        A group does not exist, or the live groups hold no load.
+    NoEquilibriumError
+        The dead load alone cannot be carried.
+    """
+    assembly = model if isinstance(model, Assembly) else assemble(model)
+    dead, load = dead_and_live(assembly, live)
+    mechanism = find_mechanism(dead)
+    if mechanism is not None:
+        msg = "the dead load alone cannot be carried: a mechanism proves it"
+        raise NoEquilibriumError(msg, hint="solve the model with the live load factor 0 and look at the mechanism")
+    bound = associated_limit(dead, load)
+    if not path or not np.isfinite(bound.multiplier):
+        return LimitResult(assembly, bound, None, float("nan"), 0.0)
+    problem, lent = with_compliance(dead, load)
+    first, found = coulomb_path(problem, load, progress=progress)
+    return LimitResult(assembly, bound, found, first, lent)
+
+
+def friction_margin(model: Model | Assembly, live: str | Sequence[str] = "live", factor: float = 1.0) -> FrictionMargin:
+    """Return the smallest common factor of all friction coefficients that still admits equilibrium.
+
+    Parameters
+    ----------
+    model : Model or Assembly
+    live : str or sequence of str
+    factor : float
+        Load factor of the live groups; all others have 1.
+    """
+    assembly = model if isinstance(model, Assembly) else assemble(model)
+    dead, load = dead_and_live(assembly, live)
+    return smallest_friction(dead.with_loads(dead.f + factor * load))
+
+
+def dead_and_live(assembly: Assembly, live: str | Sequence[str]) -> tuple[ContactProblem, Array]:
+    """Return the problem without the live groups, and their loads (N,) for factor 1."""
+    groups = (live,) if isinstance(live, str) else tuple(live)
+    for group in groups:
+        if group not in assembly.groups:
+            msg = f"there is no load group '{group}'"
+            raise InputError(msg, hint="groups: " + ", ".join(assembly.groups))
+    dead = assembly.problem(dict.fromkeys(groups, 0.0))
+    load = assembly.problem(dict.fromkeys(groups, 1.0)).f - dead.f
+    if not np.abs(load).any():
+        msg = f"the live load ({', '.join(groups)}) is zero"
+        raise InputError(msg, hint="give the model a load in that group, for example horizontal = 1.0")
+    return dead, load
+
+
+def with_compliance(problem: ContactProblem, live: Array) -> tuple[ContactProblem, float]:
+    """Lend a small compliance to every hard pair where bodies do not deform; return the problem and a_n [m/kN]."""
+    law = problem.laws
+    hard = (law.normal_compliance == 0) | (law.tangential_compliance == 0)
+    if problem.K.nnz and np.abs(problem.K.data).any():
+        return problem, 0.0
+    if not hard.any():
+        return problem, 0.0
+    force = float(np.abs(problem.f).max(initial=0.0)) or float(np.abs(live).max())
+    lent = 1e-6 / force  # displacements of micrometres under the weight of a block
+    laws = replace(
+        law,
+        normal_compliance=np.where(law.normal_compliance > 0, law.normal_compliance, lent),
+        tangential_compliance=np.where(
+            law.tangential_compliance > 0, law.tangential_compliance, SHEAR_TO_NORMAL * lent
+        ),
+    )
+    return replace(problem, laws=laws), lent
+
+
+def coulomb_path(
+    problem: ContactProblem, live: Array, *, progress: ProgressCallback | None = None
+) -> tuple[float, EventPath]:
+    """Follow dead load, then live load, to collapse; return the first limit under growing load, and the whole path.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+        With its dead load.
+    live : (N,) array
+    progress : callable, optional
+
+    Raises
+    ------
+    NoEquilibriumError
+        The path of the dead load itself comes to an end.
+    """
+    zero = np.zeros(problem.pairs)
+    touching = np.where(problem.gap > 0, OPEN, CLOSED).astype(np.int8)
+    rest = PathState(0.0, np.zeros(problem.unknowns), zero, zero, touching, zero.astype(np.int8), zero, zero)
+    weight = follow(LinearPath(problem.with_loads(0.0 * problem.f), problem.f), rest, until=1.0, progress=progress)
+    if weight.outcome is not Outcome.REACHED:
+        msg = f"the dead load is not reached on its own path: {weight.outcome.value}"
+        raise NoEquilibriumError(msg, hint=f"it stops at {weight.end.parameter:.4g} of the dead load")
+    path = LinearPath(problem, live)
+    start = replace(weight.end, parameter=0.0, work=0.0, dissipation=0.0)
+    growing = follow(path, start, until=1e6, progress=progress)
+    control = live / float(np.abs(live).sum())
+    moved = float(control @ (growing.end.displacement - start.displacement))
+    if growing.outcome is not Outcome.LIMIT or not moved > 0:
+        return growing.peak, growing
+    until = float(control @ start.displacement) + FAR * moved
+    falling = follow(path, growing.end, until=until, control=control, progress=progress)
+    whole = EventPath(
+        growing.states + falling.states[1:],
+        growing.events + tuple(replace(e, step=e.step + len(growing.states) - 1) for e in falling.events),
+        falling.outcome,
+        falling.direction,
+        growing.factorisations + falling.factorisations,
+    )
+    return growing.peak, whole

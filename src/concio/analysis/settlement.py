@@ -1,0 +1,82 @@
+"""Imposed movement of supports until it is reached or a mechanism forms, with reactions against the movement."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from concio.analysis.path import PathResult, Stage, run_path
+from concio.contact.assembly import Assembly, assemble
+from concio.errors import InputError
+from concio.lcp.solution import ProgressCallback
+from concio.model.model import Model
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class SettlementResult:
+    """Movement of supports after the dead load.
+
+    Parameters
+    ----------
+    path : PathResult
+        Both stages: loads, then movement.
+    share : (n,) array
+        Share of the movement at each step of the second stage, 0 to 1.
+    reactions : mapping of str to (n, 2) array
+        Reactions of fixed bodies and supports at the same steps [kN].
+    """
+
+    path: PathResult
+    share: Array
+    reactions: Mapping[str, Array]
+
+    @property
+    def reached(self) -> bool:
+        """True when the whole movement was imposed without the structure falling."""
+        return self.path.complete
+
+
+def settle(
+    model: Model | Assembly,
+    group: str = "settlement",
+    *,
+    amount: float = 1.0,
+    method: Literal["events", "steps"] = "events",
+    progress: ProgressCallback | None = None,
+) -> SettlementResult:
+    """Apply all loads, then move the supports of a group.
+
+    Parameters
+    ----------
+    model : Model or Assembly
+    group : str
+        Load group of the imposed displacements.
+    amount : float
+        Factor of the imposed displacements at the end.
+    method : {"events", "steps"}
+    progress : callable, optional
+
+    Raises
+    ------
+    InputError
+        No support of that group moves.
+    """
+    assembly = model if isinstance(model, Assembly) else assemble(model)
+    if group not in assembly.groups:
+        msg = f"no support is moved by the load group '{group}'"
+        raise InputError(msg, hint="give a [[supports]] entry a displacement or a rotation")
+    loads = {g: 1.0 for g in assembly.groups if g != group}
+    stages = [Stage("loads", loads), Stage("settlement", {group: amount})]
+    path = run_path(assembly, stages, method=method, progress=progress)
+    last_load = max(i for i, s in enumerate(path.steps) if s.stage == 0)
+    chosen = [last_load, *(i for i, s in enumerate(path.steps) if s.stage == 1)]
+    results = [path.result(i) for i in chosen]
+    names = results[0].reactions
+    reactions = {name: np.array([r.reactions[name] for r in results]) for name in names}
+    share = np.array([0.0, *(path.steps[i].parameter for i in chosen[1:])])
+    return SettlementResult(path, share, reactions)

@@ -1,0 +1,181 @@
+"""Stages, control points, restart, named events and steps of load paths of models."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from concio.analysis.limit import friction_margin, limit
+from concio.analysis.path import ControlPoint, Stage, run_path
+from concio.analysis.settlement import settle
+from concio.contact.assembly import assemble
+from concio.errors import InputError
+from concio.lcp.event_path import Outcome
+from concio.model.model import Support
+from concio.model.walls import wall
+
+WEIGHT = Stage("weight", {"dead": 1.0}, steps=1)
+
+
+@pytest.fixture(scope="module")
+def small():
+    return assemble(wall(length=1.0, height=0.5, horizontal=1.0, friction=0.6, mesh_size=0.125))
+
+
+@pytest.fixture(scope="module")
+def exact(small):
+    return run_path(small, [WEIGHT, Stage("push", {"live": 0.5})])
+
+
+def test_stages_factors_and_certificates(exact):
+    assert exact.complete
+    assert exact.notes == ()
+    assert exact.steps[-1].factors == {"dead": 1.0, "live": pytest.approx(0.5)}
+    stages = [s.stage for s in exact.steps]
+    assert stages == sorted(stages)
+    assert exact.certificate <= 1e-9
+    assert exact.energy_error <= 1e-9
+    spent = np.diff([s.state.dissipation for s in exact.steps])
+    assert spent.min() >= -1e-12 * max(s.state.work for s in exact.steps)
+
+
+def test_events_are_named(exact):
+    assert exact.events
+    names = {b.name for b in exact.assembly.model.bodies}
+    for event in exact.events:
+        assert set(event.bodies) <= names
+        assert event.kind in ("opens", "closes", "slips", "sticks")
+        assert exact.steps[event.step].parameter == pytest.approx(event.parameter)
+        assert event.bodies[0] in str(event)
+
+
+def test_steps_converge_to_the_exact_path(small, exact):
+    errors = []
+    for n in (4, 16, 64):
+        stages = [WEIGHT, Stage("push", {"live": 0.5}, steps=n)]
+        found = run_path(small, stages, method="steps", solver="interior-point")
+        assert found.complete
+        assert found.certificate <= 1e-9
+        assert found.energy_error <= 1e-9
+        gap = found.steps[-1].state.displacement - exact.steps[-1].state.displacement
+        errors.append(np.abs(gap).max() / np.abs(exact.steps[-1].state.displacement).max())
+    assert errors[2] < 0.5 * errors[0]
+    assert errors[2] < 2e-4
+
+
+def test_without_friction_the_step_size_does_not_matter():
+    """Bodies pressed on smooth joints: one step, ten steps and the events end in the same place."""
+    model = assemble(wall(length=1.0, height=0.5, friction=0.0, mesh_size=0.125, top_pressure=20.0, side_walls=True))
+    stages = [Stage("all", {"dead": 1.0, "top": 1.0})]
+    ends = [run_path(model, stages).steps[-1].state.displacement]
+    for n in (1, 10):
+        one = [replace(stages[0], steps=n)]
+        found = run_path(model, one, method="steps", solver="interior-point")
+        ends.append(found.steps[-1].state.displacement)
+    size = np.abs(ends[0]).max()
+    assert np.abs(ends[1] - ends[2]).max() <= 1e-9 * size
+    assert np.abs(ends[0] - ends[1]).max() <= 1e-9 * size
+
+
+def test_control_point_passes_the_peak(small):
+    point = ControlPoint("c04-b01", (0.0, 0.5))
+    found = run_path(small, [WEIGHT, Stage("push", {"live": 1.0}, control=point, until=2e-5)])
+    moved, load = found.curve(point, stage=1)
+    assert moved[-1] - moved[0] == pytest.approx(2e-5, rel=1e-9)
+    assert load[0] == 0.0
+    assert found.peak() <= limit(small, path=False).associated.multiplier * (1 + 1e-9)
+
+
+def test_load_that_cannot_be_carried(small):
+    found = run_path(small, [WEIGHT, Stage("push", {"live": 1.0}), Stage("never", {"dead": 2.0})])
+    assert found.outcomes[-1] is Outcome.LIMIT
+    assert len(found.outcomes) == 2
+    assert not found.complete
+    assert "cannot be increased" in found.notes[-1]
+    assert found.events[-1].step == len(found.steps) - 1
+
+
+def test_restart_from_a_step(small, exact):
+    middle = len(exact.steps) // 2
+    rest = run_path(small, [Stage("push", {"live": 0.5})], restart=(exact, middle))
+    gap = rest.steps[-1].state.displacement - exact.steps[-1].state.displacement
+    assert np.abs(gap).max() <= 1e-9 * np.abs(exact.steps[-1].state.displacement).max()
+    assert rest.steps[-1].state.dissipation == pytest.approx(exact.steps[-1].state.dissipation, rel=1e-9)
+
+
+def test_unloading_leaves_a_trace(small, exact):
+    back = run_path(small, [Stage("off", {"live": 0.0})], restart=(exact, -1))
+    weight = next(s for s in exact.steps[::-1] if s.stage == 0)
+    assert back.complete
+    assert back.steps[-1].factors["live"] == pytest.approx(0.0, abs=1e-12)
+    left = back.steps[-1].state.displacement - weight.state.displacement
+    assert np.abs(left).max() > 1e-3 * np.abs(exact.steps[-1].state.displacement).max()
+    assert back.energy_error <= 1e-9
+
+
+def test_too_many_events_go_on_in_steps(small):
+    found = run_path(
+        small, [WEIGHT, Stage("push", {"live": 0.5}, steps=8)], max_events=5, solver="interior-point"
+    )  # fmt: skip
+    assert found.complete
+    assert "steps" in found.notes[0]
+
+
+def test_result_of_a_step(exact):
+    result = exact.result(-1)
+    assert result.solved or result.certificate.certified
+    weight = -sum(b.area * 20.0 for b in exact.assembly.model.free_bodies)
+    assert result.reactions["ground"][1] == pytest.approx(-weight, rel=1e-9)
+    assert result.reactions["ground"][0] == pytest.approx(0.5 * weight, rel=1e-9)
+
+
+def test_limit_of_rigid_and_elastic_blocks_agree():
+    size = {"length": 2.0, "height": 1.0, "block_size": (0.4, 0.2), "mesh_size": 0.2}
+    found = [limit(wall(**size, horizontal=1.0, friction=0.65, block=kind)) for kind in ("rigid", "elastic")]
+    rigid, elastic = found
+    assert rigid.associated.checked
+    assert elastic.associated.checked
+    assert rigid.associated.multiplier == pytest.approx(elastic.associated.multiplier, rel=1e-9)
+    for r in found:
+        low, high = r.bracket
+        assert 0.5 * high < low <= high * (1 + 1e-9)
+        assert r.first_limit <= low
+        assert r.summary()["checked"]
+    assert rigid.lent_compliance > 0
+    assert elastic.lent_compliance == 0
+
+
+def test_friction_margin(small):
+    """Sliding on the base governs: the smallest friction is the load factor."""
+    assert friction_margin(small, factor=0.3).factor * 0.6 == pytest.approx(0.3, abs=1e-6)
+
+
+def test_settlement_turns_the_base():
+    """A wall on a base that tilts by less than friction and slenderness allow stays; reactions keep the weight."""
+    tilt = Support("tilt", "ground", rotation=1e-4)
+    model = replace(wall(length=1.0, height=0.5, friction=0.65, mesh_size=0.25), supports=(tilt,))
+    found = settle(model)
+    assert found.reached
+    assert found.share[[0, -1]] == pytest.approx([0.0, 1.0])
+    assert found.reactions["ground"][:, 1] == pytest.approx(10.0, rel=1e-9)
+    assert found.path.certificate <= 1e-9
+
+
+@pytest.mark.parametrize(
+    ("stages", "message"),
+    [
+        ([], "at least one stage"),
+        ([Stage("x", {"wind": 1.0})], "no load group 'wind'"),
+        ([Stage("x", {"dead": 1.0}, control=ControlPoint("nobody", (0, 0)), until=1.0)], "no body called 'nobody'"),
+        ([Stage("x", {"dead": 1.0}, control=ControlPoint("c01-b01", (0, 0), (0, 0)), until=1.0)], "no length"),
+    ],
+)
+def test_bad_input(small, stages, message):
+    with pytest.raises(InputError, match=message):
+        run_path(small, stages)
+    with pytest.raises(InputError, match="no load group"):
+        limit(small, "wind")
+    with pytest.raises(InputError, match="no support is moved"):
+        settle(small)
