@@ -25,11 +25,11 @@ from concio.contact.problem import Array
 from concio.lcp.scaled import Scaled
 from concio.lcp.sparse_factor import SingularMatrixError
 
-DELTA = 1e-7
+DELTA = 1e-6
 """Compliance of closed pairs in the factorised matrix, scaled units."""
 
 LOOSE = 1e-9
-"""Proximal stiffness of unknowns that nothing holds, scaled units."""
+"""Stiffness of the springs that keep unknowns which nothing holds where they are, scaled units."""
 
 EXACT = 1e-14
 """Relative residual at which refinement stops; it stops before where it no longer halves the residual."""
@@ -119,8 +119,13 @@ def read_states(s: Scaled, u: Array, t_n: Array, t_t: Array) -> States:
     return States(closed, sliding, closed & (trial > s.cap))
 
 
-def solve_states(s: Scaled, states: States, u: Array, t_n: Array, t_t: Array) -> tuple[Array, Array, Array, float]:
+def solve_states(
+    s: Scaled, states: States, u: Array, t_n: Array, t_t: Array, anchor: Array | None = None
+) -> tuple[Array, Array, Array, float]:
     """Solve the linear equations of given states, starting refinement from (u, t_n, t_t).
+
+    Unknowns are tied to ``anchor`` (N,) by springs of stiffness ``LOOSE``: what nothing holds stays there, and what is
+    held feels less than the equilibrium's rounding.
 
     Returns
     -------
@@ -147,9 +152,10 @@ def solve_states(s: Scaled, states: States, u: Array, t_n: Array, t_t: Array) ->
     s.factor.factorise(np.concatenate([d_nn, -d_nn * open_wide, d_nn * drag, d_tt - d_nn * open_wide * drag]), LOOSE)
     t_n = np.where(states.crushed, s.cap, np.where(closed, t_n, 0.0))
     t_t = np.where(stick, t_t, drag * t_n - sigma * s.cohesion) * closed
+    anchor = u if anchor is None else anchor
     best, late = (u, t_n, t_t, np.inf), 0
     for _ in range(40):
-        r_u = -s.imbalance(u, t_n, t_t)
+        r_u = -s.imbalance(u, t_n, t_t) - LOOSE * (u - anchor)
         slip_now = s.slip(u, t_t)
         r_n = np.where(hard, -(s.normal_gap(u, t_n) - open_wide * slip_now), 0.0)
         r_t = np.where(stick, -slip_now, 0.0)
@@ -185,13 +191,14 @@ def finish(s: Scaled, u: Array, t_n: Array, t_t: Array, rounds: int = 12, states
         States to begin with; default are those the point suggests.
     """
     states = states or read_states(s, u, t_n, t_t)
+    anchor = u
     seen: set[bytes] = set()
     best: Finished | None = None
     solves = 0
     for _ in range(rounds):
         seen.add(states.key())
         try:
-            u, t_n, t_t, _ = solve_states(s, states, u, t_n, t_t)
+            u, t_n, t_t, _ = solve_states(s, states, u, t_n, t_t, anchor)
         except SingularMatrixError:
             break
         solves += 1
@@ -199,7 +206,8 @@ def finish(s: Scaled, u: Array, t_n: Array, t_t: Array, rounds: int = 12, states
         error = max(imbalance, float(laws.max(initial=0.0)))
         new = read_states(s, u, t_n, t_t)
         undecided = np.flatnonzero(
-            (laws > 1e-10) & ((new.closed != states.closed) | (new.slip != states.slip) | (new.crushed != states.crushed))
+            (laws > 1e-10)
+            & ((new.closed != states.closed) | (new.slip != states.slip) | (new.crushed != states.crushed))
         )
         if best is None or error < best.error:
             best = Finished(u, t_n, t_t, states, error, solves, undecided)
