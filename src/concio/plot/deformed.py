@@ -9,6 +9,8 @@ import numpy as np
 from concio.errors import InputError
 from concio.plot import style
 from concio.post.joint_lines import JointLines, joint_lines
+from concio.post.mechanism import mechanism_states
+from concio.post.motion import body_motions
 from concio.post.outlines import display_scale, outlines
 
 if TYPE_CHECKING:
@@ -133,17 +135,14 @@ def plot_mechanism(result: Result, ax: Axes | None = None, *, share: float = 0.0
     moving = fastest > 1e-6 * fastest.max()
     face = [style.body_colour(b) if m else "#FFFFFF" for b, m in zip(result.model.bodies, moving, strict=True)]
     pieces = joint_lines(result, shown)
-    gaps, slides = separation(result, pieces)
     largest = float(speed.max())
-    opens, slips = gaps > 1e-6 * largest, (np.abs(gaps) <= 1e-6 * largest) & (slides > 1e-6 * largest)
+    state = mechanism_states(result, pieces)
     style.draw_bodies(ax, result.model, shown, scale, face=face)
     ax.add_collection(
-        PolyCollection(list(pieces.openings(scale)[opens]), facecolors=style.FILL_OPEN, edgecolors="none", zorder=2)
+        PolyCollection(list(pieces.openings(scale)[state == 0]), facecolors=style.FILL_OPEN, edgecolors="none", zorder=2)
     )
-    style.draw_lines(ax, pieces.side("middle", scale)[slips], style.SLIP, zorder=3)
+    style.draw_lines(ax, pieces.side("middle", scale)[state > 1], style.SLIP, zorder=3)
     centre = result.assembly.disc.centroids
-    from concio.post.motion import body_motions
-
     motion = body_motions(result, velocity)[:, :2]
     arrows = moving & (np.hypot(*motion.T) > 0.02 * largest) if moving.sum() <= 400 else np.zeros(len(moving), bool)
     ax.quiver(
@@ -157,17 +156,9 @@ def plot_mechanism(result: Result, ax: Axes | None = None, *, share: float = 0.0
         f"power of the loads less what the joints absorb: {power} at a largest velocity of 1 m/s",
     )  # fmt: skip
     style.legend(
-        ax, [style.patch(style.FILL_OPEN, "opens"), style.handle(style.SLIP, "slips"), style.patch("#FFFFFF", "at rest")]
+        ax, [style.patch(style.FILL_OPEN, "opens"), style.handle(style.SLIP, "slides"), style.patch("#FFFFFF", "at rest")]
     )
     return ax
-
-
-def separation(result: Result, pieces: JointLines) -> tuple[Array, Array]:
-    """Return opening and sliding (k,) of the middle of each piece, from the motion of its two sides [m]."""
-    relative = (pieces.moved_b - pieces.moved_a).mean(axis=1)
-    pairs = result.assembly.pairs
-    normal, tangent = pairs.normal[pieces.pair], pairs.tangent[pieces.pair]
-    return (relative * normal).sum(1), np.abs((relative * tangent).sum(1))
 
 
 def _draw_states(ax: Axes, pieces: JointLines, state: Array, scale: float) -> None:

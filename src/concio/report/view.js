@@ -249,7 +249,7 @@
       return;
     }
     const k = picked.piece, j = pieces.face[k], rows = [];
-    if (step.state) {
+    if (step.N) {
       rows.push(row("normal force N", step.N[j], "kN"), row("shear force V", step.V[j], "kN"), row("eccentricity", step.eccentricity[j], "m"));
       rows.push(row("open part", 100 * step.open_share[j], "%"), row("length", joints.length[j], "m"));
       rows.push(row("pressure here", step.pressure[k], "kN/m²"), row("force here", step.t_n[k], "kN"), row("friction here", step.t_t[k], "kN"));

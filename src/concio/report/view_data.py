@@ -14,6 +14,7 @@ import numpy as np
 from concio.lcp.solution import Status
 from concio.plot import style
 from concio.post.joint_lines import joint_lines
+from concio.post.mechanism import mechanism_states
 from concio.post.motion import body_motions
 from concio.post.outlines import Outlines, display_scale, outlines
 
@@ -134,6 +135,8 @@ def _step(result: Result, label: str) -> dict[str, Any]:
         "motion": pack(motion, "f8"),
     }
     if not solved:
+        if velocity is not None:
+            step["state"] = pack(mechanism_states(result, pieces), "u1")
         return step
     s1, s2, angle = result.stress.principal
     contacts, joints = result.contacts, result.joints

@@ -52,7 +52,8 @@ VERDICTS: dict[Status, Verdict] = {
         "motion of the blocks in which no joint overlaps and the loads do more work than the joints can absorb: the "
         "mechanism drawn below. There are therefore no stresses and no displacements to report.",
         (
-            "Look at the mechanism: the blocks that move lack a support, a tie, friction or weight on top.",
+            "Look at the mechanism: the blocks that move lack a support, a tie, friction or weight on top. In this "
+            "motion a joint that slides also opens a little; it is a proof, not a forecast of the fall.",
             "Check that supports, side walls and joints are where you meant them ('concio check'); a block that "
             "touches nothing falls.",
             "'concio limit' tells what share of the load can be carried.",

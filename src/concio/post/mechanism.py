@@ -1,0 +1,42 @@
+"""What each joint does in a collapse mechanism.
+
+The mechanism that proves a collapse obeys ``y_n >= mu |y_t|`` (theory page, section 6): a joint that only slides also
+opens by mu times its slip. Such a joint is told apart from one that opens further.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from concio.analysis.result import Result
+    from concio.post.joint_lines import JointLines
+
+Array = np.ndarray
+
+
+def mechanism_states(result: Result, pieces: JointLines, tolerance: float = 1e-6) -> Array:
+    """Return the state (k,) of each joint piece in a mechanism: 0 opens, 1 stays, 2 slides along +t, 3 along -t.
+
+    Parameters
+    ----------
+    result : Result
+        With a mechanism.
+    pieces : JointLines
+        Moved with the velocities of the mechanism.
+    tolerance : float
+        Relative velocities below this share of the largest are none.
+    """
+    relative = (pieces.moved_b - pieces.moved_a).mean(axis=1)
+    pairs = result.assembly.pairs
+    opening = (relative * pairs.normal[pieces.pair]).sum(1)
+    sliding = (relative * pairs.tangent[pieces.pair]).sum(1)
+    largest = float(np.abs([pieces.moved_a, pieces.moved_b]).max(initial=0.0))
+    little = tolerance * largest
+    friction = result.assembly.laws.friction[pieces.pair]
+    opens = opening > friction * np.abs(sliding) + little
+    slides = ~opens & (np.abs(sliding) > little)
+    state = np.where(slides, np.where(sliding > 0, 2, 3), 1)
+    return np.where(opens, 0, state).astype(np.int8)

@@ -1,0 +1,289 @@
+"""The HTML report: its numbers are the result's numbers, it fetches nothing, and it works in a browser."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import concio
+from concio.analysis.result import Result
+from concio.errors import InputError
+from concio.lcp.solution import Status
+from concio.report.page import report_html, write_report
+from concio.report.view_data import unpack
+from concio.report.wording import VERDICTS, certificate_sentence, checks
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+
+
+@pytest.fixture(scope="module")
+def arched() -> Result:
+    return concio.solve(
+        concio.running_bond_panel(courses=2, blocks=3, joint=0.02, friction=0.6, base="bearings", top_pressure=10.0)
+    )
+
+
+@pytest.fixture(scope="module")
+def sliding() -> Result:
+    model = concio.running_bond_panel(
+        courses=2, blocks=2, friction=0.3, base="full", side_walls=False, unit_weight=20.0, horizontal=0.6
+    )
+    return concio.solve(model, on_failure="return")
+
+
+def embedded(page: str) -> dict:
+    found = re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)
+    assert found
+    return json.loads(found.group(1))
+
+
+def test_embedded_numbers_are_those_of_the_result(arched: Result) -> None:
+    data = embedded(report_html(arched, figures=False))
+    step = data["steps"][0]
+    pair = unpack(data["pieces"]["pair"])
+    contacts, joints = arched.contacts, arched.joints
+    assert data["bodies"]["name"] == [b.name for b in arched.model.bodies]
+    for name, values in (
+        ("t_n", contacts.normal_force[pair]),
+        ("t_t", contacts.friction_force[pair]),
+        ("gap", contacts.gap[pair]),
+        ("slip", contacts.slip[pair]),
+        ("pressure", contacts.pressure[pair]),
+        ("N", joints.N),
+        ("V", joints.V),
+        ("eccentricity", joints.eccentricity),
+        ("s1", arched.stress.principal[0]),
+        ("s2", arched.stress.principal[1]),
+    ):
+        np.testing.assert_array_equal(unpack(step[name]), values)
+    np.testing.assert_array_equal(unpack(step["state"]), contacts.state[pair])
+    assert sorted(pair) == list(range(len(contacts)))  # every pair is there once
+
+
+def test_embedded_shape_is_the_deformed_shape(arched: Result) -> None:
+    data = embedded(report_html(arched, figures=False))
+    start, move = unpack(data["bodies"]["start"]), unpack(data["steps"][0]["move"]).reshape(-1, 2)
+    for b in range(len(arched.model.bodies)):
+        shown = move[start[b] : start[b + 1]]
+        nodes = arched.node_displacement(b)
+        # the first point of an outline is the body's first vertex, where a node stands
+        vertex = np.argmin(np.linalg.norm(arched.nodes(b) - arched.model.bodies[b].outline[0], axis=1))
+        np.testing.assert_allclose(shown[0], nodes[vertex], rtol=1e-6, atol=1e-12)
+
+
+class _Links(HTMLParser):
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found += [v or "" for k, v in attrs if k in ("src", "href", "srcset", "data", "action")]
+
+
+def test_report_fetches_nothing(arched: Result) -> None:
+    page = report_html(arched)
+    links = _Links()
+    links.feed(page)
+    assert links.found
+    assert all(link.startswith("data:") for link in links.found)
+    assert "@import" not in page
+    assert "url(" not in page
+    assert "fetch(" not in page
+
+
+def test_tables_show_the_numbers(arched: Result) -> None:
+    page = report_html(arched, figures=False)
+    for x, y in arched.reactions.values():
+        assert f'title="{x!r}"' in page
+        assert f'title="{y!r}"' in page
+    strongest = int(np.argmax(np.hypot(arched.joints.N, arched.joints.V)))
+    assert f'title="{float(arched.joints.N[strongest])!r}"' in page
+
+
+@pytest.mark.parametrize("status", list(Status))
+def test_every_outcome_has_words(status: Status) -> None:
+    words = VERDICTS[status]
+    assert words.headline.endswith(".")
+    assert words.next_steps
+    assert words.tone == {Status.SOLVED: "good", Status.NO_EQUILIBRIUM: "bad"}.get(status, "unsure")
+
+
+@pytest.mark.parametrize("status", [Status.UNDECIDED, Status.GAVE_UP, Status.CANCELLED])
+def test_no_answer_shows_no_numbers(arched: Result, status: Status) -> None:
+    unsure = Result(arched.assembly, {}, replace(arched.solution, status=status), arched.seconds)
+    page = report_html(unsure)
+    assert VERDICTS[status].headline in page
+    assert "Not certified" in page
+    assert "<h2>Reactions</h2>" not in page
+    assert "fig-deformed" not in page
+    step = embedded(page)["steps"][0]
+    assert "s1" not in step
+    assert not unpack(step["move"]).any()
+    assert "Not certified" in unsure._repr_html_()
+
+
+def test_collapse_shows_its_mechanism(sliding: Result) -> None:
+    assert sliding.status is Status.NO_EQUILIBRIUM
+    page = report_html(sliding)
+    assert "The loads cannot be carried." in page
+    assert "fig-mechanism" in page
+    assert "fig-principal" not in page
+    data = embedded(page)
+    assert data["mechanism"]
+    assert unpack(data["steps"][0]["move"]).any()
+    assert f"{sliding.mechanism.power:.4g}" in certificate_sentence(sliding)
+
+
+def test_checks_are_the_certificate(arched: Result) -> None:
+    c = arched.certificate
+    assert [k.value for k in checks(arched)] == [
+        c.equilibrium, c.penetration, c.cone, c.slip_direction, c.complementarity,
+    ]  # fmt: skip
+    assert all(k.holds for k in checks(arched))
+
+
+def test_title_is_escaped(arched: Result) -> None:
+    model = replace(arched.model, title="</script><script>alert(1)</script>")
+    assembly = replace(arched.assembly, model=model)
+    page = report_html(Result(assembly, {}, arched.solution, arched.seconds), figures=False)
+    assert "<script>alert" not in page
+
+
+def test_name_cannot_end_the_data(arched: Result) -> None:
+    body = replace(arched.model.bodies[0], name="</script>evil")
+    model = replace(arched.model, bodies=(body, *arched.model.bodies[1:]))
+    page = report_html(Result(replace(arched.assembly, model=model), {}, arched.solution, arched.seconds), figures=False)
+    assert "</script>evil" not in page
+    assert embedded(page)["bodies"]["name"][0] == "</script>evil"
+
+
+def test_steps_of_different_models_are_refused(arched: Result, sliding: Result) -> None:
+    with pytest.raises(InputError, match="different models"):
+        report_html([arched, sliding])
+    with pytest.raises(InputError, match="no result"):
+        report_html([])
+
+
+def test_notebook_shows_the_verdict(arched: Result, sliding: Result) -> None:
+    assert "The loads are carried." in arched._repr_html_()
+    assert "data:image" in arched._repr_html_()
+    assert "The loads cannot be carried." in sliding._repr_html_()
+
+
+ACT = """
+<script>
+const report = {};
+const fire = (id, value, kind) => {
+  const box = document.getElementById(id);
+  if (box.type === "checkbox") box.checked = value; else box.value = value;
+  box.dispatchEvent(new Event(kind, { bubbles: true }));
+};
+const picture = () => { concio.paint(); return document.getElementById("canvas").toDataURL(); };
+const press = (x, y) => {
+  const canvas = document.getElementById("canvas"), box = canvas.getBoundingClientRect();
+  for (const kind of ["pointerdown", "pointerup"]) canvas.dispatchEvent(new PointerEvent(kind,
+    { clientX: box.left + canvas.clientLeft + x, clientY: box.top + canvas.clientTop + y, pointerId: 1, bubbles: true }));
+};
+const numbers = () => Object.fromEntries([...document.querySelectorAll("#info dd")].map((d) => [d.dataset.name, Number(d.dataset.value)]));
+const words = () => document.getElementById("info").textContent;
+try {
+  const begin = performance.now();
+  const pictures = [picture()];
+  report.paintMilliseconds = performance.now() - begin;
+  report.step = concio.view.step;
+  fire("scale", "0", "input"); report.scaleAtZero = concio.view.scale; pictures.push(picture());
+  fire("scale", "200", "input"); report.scaleAtFull = concio.view.scale; pictures.push(picture());
+  fire("scale", "0", "input");
+  for (const colour of ["s1", "s2", "move", "pressure"]) { fire("colour", colour, "change"); pictures.push(picture()); }
+  report.legend = document.getElementById("legend").textContent;
+  fire("colour", "none", "change");
+  fire("states", false, "change"); pictures.push(picture());
+  fire("crosses", false, "change"); pictures.push(picture());
+  document.getElementById("zoom-in").click(); pictures.push(picture());
+  document.getElementById("fit").click();
+  report.different = new Set(pictures).size; report.pictures = pictures.length;
+  const c = concio.bodies.centre, body = BODY;
+  press(concio.X(c[2 * body]), concio.Y(c[2 * body + 1]));
+  report.body = numbers(); report.bodyWords = words();
+  const piece = PIECE, p = concio.middle(piece, 0), q = concio.middle(piece, 1);
+  press((p[0] + q[0]) / 2, (p[1] + q[1]) / 2);
+  report.joint = numbers(); report.jointWords = words();
+  if (concio.data.steps.length > 1) {
+    const last = picture(); fire("step", "0", "input"); report.first = document.getElementById("step-text").textContent;
+    report.stepChanges = picture() !== last;
+  }
+  report.overflow = document.documentElement.scrollWidth - document.documentElement.clientWidth;
+} catch (error) { report.failure = String(error.stack || error); }
+report.errors = document.getElementById("errors").textContent;
+const out = document.createElement("pre"); out.id = "outcome"; out.textContent = JSON.stringify(report);
+document.body.append(out);
+</script>
+</body>"""
+
+
+def browse(page: Path, profile: Path, size: str = "1200,900") -> str:
+    flags = (
+        "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+        "--disable-background-networking", "--disable-component-update", "--disable-sync",
+    )  # fmt: skip
+    done = subprocess.run(
+        [CHROMIUM, *flags, f"--user-data-dir={profile}", f"--window-size={size}", "--dump-dom", page.as_uri()],
+        capture_output=True, text=True, timeout=120, check=True,
+    )  # fmt: skip
+    return done.stdout
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
+@pytest.mark.parametrize("size", ["1200,900", "500,900"])
+def test_report_works_in_a_browser(arched: Result, tmp_path: Path, size: str) -> None:
+    half = concio.solve(arched.assembly, factors={"top": 0.5})
+    page = report_html([half, arched], labels=["half", "full"])
+    body = next(i for i, b in enumerate(arched.model.bodies) if b.role == "block")
+    data = embedded(page)
+    pair = unpack(data["pieces"]["pair"])
+    # the piece with the largest force whose middle no other joint crosses: inside an interface
+    force = arched.contacts.normal_force[pair]
+    inner = arched.assembly.pairs.length[pair] >= np.median(arched.assembly.pairs.length[pair])
+    piece = int(np.argmax(np.where(inner, force, -1.0)))
+    acting = ACT.replace("BODY", str(body)).replace("PIECE", str(piece))
+    file = tmp_path / "report.html"
+    file.write_text(page.replace("</body>", acting), encoding="utf-8")
+    dom = browse(file, tmp_path / "profile", size)
+    found = re.search(r'<pre id="outcome">(.*?)</pre>', dom, re.DOTALL)
+    assert found, dom[-2000:]
+    report = json.loads(found.group(1).replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&"))
+    assert "failure" not in report, report["failure"]
+    assert report["errors"] == ""
+    assert report["step"] == 1
+    assert report["scaleAtZero"] == 0
+    assert report["scaleAtFull"] == pytest.approx(4 * data["scale"])
+    assert report["different"] == report["pictures"]
+    assert "contact pressure" in report["legend"]
+    assert report["overflow"] <= 0
+    s1, s2, _ = arched.stress.principal
+    assert arched.model.bodies[body].name in report["bodyWords"]
+    assert report["body"]["largest stress"] == s1[body]
+    assert report["body"]["smallest stress"] == s2[body]
+    k = pair[piece]
+    joint = arched.assembly.pairs.interface[k]
+    assert "joint" in report["jointWords"]
+    assert report["joint"]["normal force N"] == arched.joints.N[joint]
+    assert report["joint"]["force here"] == arched.contacts.normal_force[k]
+    assert report["first"] == "half"
+    assert report["stepChanges"]
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
+def test_collapse_opens_without_errors(sliding: Result, tmp_path: Path) -> None:
+    file = write_report(sliding, tmp_path / "report.html", figures=False)
+    dom = browse(file, tmp_path / "profile")
+    assert re.search(r'<pre id="errors" hidden(="")?></pre>', dom)
+    assert "slides" in dom or "slips" in dom
