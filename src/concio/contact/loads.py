@@ -11,6 +11,9 @@ from concio.model.model import Load
 
 Array = np.ndarray
 
+COMPONENTS = {"weight": 2, "body": 2, "pressure": 1, "traction": 2, "point": 2}
+"""Number of values of each kind of load."""
+
 
 def load_vectors(disc: Discretisation) -> dict[str, Array]:
     """Return the nodal forces (N,) of each load group [kN].
@@ -25,6 +28,10 @@ def load_vectors(disc: Discretisation) -> dict[str, Array]:
         f = vectors.setdefault(load.group, np.zeros(disc.unknowns))
         if not np.isfinite(load.value).all():
             msg = f"a {load.kind} load has a value that is not finite"
+            raise InputError(msg, where=f"load group '{load.group}'")
+        if load.kind in COMPONENTS and len(load.value) != COMPONENTS[load.kind]:
+            wanted = "one value" if COMPONENTS[load.kind] == 1 else "two components"
+            msg = f"a {load.kind} load has {len(load.value)} values, it takes {wanted}"
             raise InputError(msg, where=f"load group '{load.group}'")
         chosen = _bodies(disc, load)
         if load.kind in ("weight", "body"):
@@ -55,9 +62,13 @@ def _bodies(disc: Discretisation, load: Load) -> list[int]:
 
 def _volume(disc: Discretisation, load: Load, chosen: list[int], f: Array) -> None:
     vector = np.array(load.value, dtype=float)
-    for b in chosen:
+    materials = [disc.model.materials[disc.model.bodies[b].material] for b in chosen]
+    if load.kind == "weight" and not any(m.unit_weight for m in materials):
+        msg = "a weight load acts on bodies without weight"
+        raise InputError(msg, where=f"load group '{load.group}'", hint="give their material a unit_weight")
+    for b, material in zip(chosen, materials, strict=True):
         body = disc.model.bodies[b]
-        density = disc.model.materials[body.material].unit_weight if load.kind == "weight" else 1.0
+        density = material.unit_weight if load.kind == "weight" else 1.0
         if not density:
             continue
         at = disc.offsets[b]

@@ -177,18 +177,24 @@ def discretise(model: Model, breaks: Mapping[int, Sequence[Array]] | None = None
         size = _target_size(model, body)
         key = _key(body, size, cuts)
         if key not in known:
+            if body.grid is None:
+                _check_size(2 * body.area * (model.refinement / size) ** 2, f"block '{body.name}'")
             known[key] = len(shapes)
             shapes.append(_shape(model, body, size, cuts))
         shape_of[b] = known[key]
         sizes[b] = shapes[known[key]].unknowns
     offsets = np.concatenate([[0], np.cumsum(sizes)])
-    if offsets[-1] > LARGEST:
-        msg = f"the mesh has {offsets[-1]:,} unknowns, more than {LARGEST:,}"
-        raise InputError(msg, hint="use larger elements or a smaller model")
+    _check_size(float(offsets[-1]))
     centroids = np.array([b.centroid for b in model.bodies])
     reach = np.array([radius_of_gyration(b.outline, c) for b, c in zip(model.bodies, centroids, strict=True)])
     origins = np.array([b.outline[0] for b in model.bodies])
     return Discretisation(model, tuple(shapes), shape_of, offsets, origins, centroids, reach)
+
+
+def _check_size(unknowns: float, where: str | None = None) -> None:
+    if unknowns > LARGEST:
+        msg = f"the mesh has {unknowns:,.0f} unknowns, more than {LARGEST:,}"
+        raise InputError(msg, where=where, hint="use larger elements or a smaller model")
 
 
 def _target_size(model: Model, body: Body) -> float:
