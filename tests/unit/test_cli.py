@@ -127,7 +127,7 @@ def test_collapse_is_told_and_proved(tmp_path: Path) -> None:
     assert code == 3
     assert err == ""
     assert "No equilibrium is possible" in out
-    assert "moves most" in out
+    assert "moves        'c1-b1'" in out
     code, out, _ = run("run", path, "--json")
     assert code == 3
     assert json.loads(out)["status"] == "no_equilibrium"

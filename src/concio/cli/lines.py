@@ -11,6 +11,9 @@ if TYPE_CHECKING:
 
 MOST_REACTIONS = 12
 """More supports than this are not listed one by one."""
+MOST_MOVING = 6
+SLOW = 0.01
+"""Bodies slower than this share of the fastest are not said to move."""
 
 
 def result_lines(result: Result) -> list[str]:
@@ -30,7 +33,7 @@ def result_lines(result: Result) -> list[str]:
         lines += [
             f"  certificate  worst {certificate['worst']:.1e} ({parts})",
             f"  pairs        {_states(result)}",
-            f"  settlement   {1e3 * result.max_settlement:.4g} mm at most",
+            f"  settlement   {1e3 * result.max_settlement + 0.0:.4g} mm at most",
             f"  loads        {force(result.total_load)} in all",
         ]
         reactions = list(result.reactions.items())
@@ -41,10 +44,11 @@ def result_lines(result: Result) -> list[str]:
         if len(reactions) > len(shown):
             lines.append(f"  {'':<12} ... and {len(reactions) - len(shown)} more")
     elif result.mechanism is not None:
-        moving = ", ".join(f"'{name}' ({speed:.2g})" for name, speed in moving_bodies(result)[:5])
+        moving = [f"'{name}'" for name, speed in moving_bodies(result) if speed > SLOW]
+        more = f" and {len(moving) - MOST_MOVING} more" if len(moving) > MOST_MOVING else ""
         lines += [
             f"  mechanism    the loads do {result.mechanism.power:.4g} kN m of work on each metre of it",
-            f"  moves most   {moving}",
+            f"  moves        {', '.join(moving[:MOST_MOVING])}{more}",
         ]
     else:
         lines += [f"  tried        {line}" for line in s.trace]
@@ -59,7 +63,7 @@ def force(value: tuple[float, float]) -> str:
 
 
 def moving_bodies(result: Result) -> list[tuple[str, float]]:
-    """Return the names of the bodies by their largest velocity in the mechanism, fastest first."""
+    """Return the names of the bodies with their largest velocities in the mechanism, fastest first and 1."""
     velocity = result.mechanism_velocity
     if velocity is None:
         return []
@@ -68,7 +72,8 @@ def moving_bodies(result: Result) -> list[tuple[str, float]]:
         if body.kind != "fixed":
             motion = result.node_displacement(b, velocity)
             speeds.append((body.name, float(np.linalg.norm(motion, axis=1).max())))
-    return sorted(speeds, key=lambda entry: -entry[1])
+    fastest = max(speed for _, speed in speeds)
+    return sorted(((name, speed / fastest) for name, speed in speeds), key=lambda entry: -entry[1])
 
 
 def _states(result: Result) -> str:

@@ -1,0 +1,75 @@
+# make demo: the paper's panel, from nothing to figures. make test: everything the project checks. Needs Python 3.11 or
+# later, make and pip. PYTHON=... chooses the interpreter, VENV=... the place of the environment.
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check
+
+.PHONY: demo test lint docs clean
+.DELETE_ON_ERROR:
+
+$(BIN)/python:
+	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'concio needs Python 3.11 or later')"
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.installed: pyproject.toml | $(BIN)/python
+	$(PIP) install --quiet --editable .
+	touch $@
+
+$(VENV)/.installed-dev: pyproject.toml | $(BIN)/python
+	$(PIP) install --quiet --editable '.[dev]'
+	touch $@ $(VENV)/.installed
+
+$(VENV)/.installed-docs: pyproject.toml | $(BIN)/python
+	$(PIP) install --quiet --editable '.[docs]'
+	touch $@ $(VENV)/.installed
+
+demo: $(VENV)/.installed
+	@echo "1. The paper's panel, hung between two walls: the arch carries everything into them."
+	@$(BIN)/concio run examples/ercolano_panel.toml --out demo/no-base
+	@echo
+	@echo "2. The same panel on a full base: the load goes straight down."
+	@$(BIN)/concio run examples/ercolano_panel_full_base.toml --out demo/full-base
+	@echo
+	@echo "Compare demo/no-base/figures/principal.png with demo/full-base/figures/principal.png."
+	@echo "The reports open in a browser: $(BIN)/concio view demo/no-base"
+
+lint: $(VENV)/.installed-dev
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+
+# Everything runs even where something fails, so that one run tells all; the tests come last and close with their count.
+test: $(VENV)/.installed-dev
+	@status=0; \
+	$(BIN)/ruff check . || status=1; \
+	$(BIN)/mypy || status=1; \
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile || status=1; \
+	exit $$status
+
+docs: pyproject.toml | $(BIN)/python
+	$(PIP) install --quiet --editable '.[docs]'
+	touch $@ $(VENV)/.installed
+
+demo: $(VENV)/.installed
+	@echo "1. The paper's panel, hung between two walls: the arch carries everything into them."
+	@$(BIN)/concio run examples/ercolano_panel.toml --out demo/no-base
+	@echo
+	@echo "2. The same panel on a full base: the load goes straight down."
+	@$(BIN)/concio run examples/ercolano_panel_full_base.toml --out demo/full-base
+	@echo
+	@echo "Compare demo/no-base/figures/principal.png with demo/full-base/figures/principal.png."
+	@echo "The reports open in a browser: $(BIN)/concio view demo/no-base"
+
+lint: $(VENV)/.installed-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check src tests/unit examples
+	$(BIN)/mypy
+
+test: lint
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile
+
+docs: $(VENV)/.installed-docs
+	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html
+
+clean:
+	rm -rf $(VENV) build dist demo docs/_build .pytest_cache .mypy_cache .ruff_cache .hypothesis
