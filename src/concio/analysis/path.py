@@ -186,7 +186,7 @@ class PathResult:
         return max(s.parameter for s in self.steps if s.stage == wanted)
 
     def curve(self, point: ControlPoint, stage: int | None = None) -> tuple[Array, Array]:
-        """Return (displacement of the point [m], parameter) at every step, of one stage from its beginning or of all."""
+        """Return (displacement of the point [m], parameter) at every step, of one stage from its start or of all."""
         functional, shift = control_functional(self.assembly, point)
         chosen = list(range(len(self.steps)))
         if stage is not None:

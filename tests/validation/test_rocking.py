@@ -1,0 +1,57 @@
+"""Rocking of a rigid block about its toe: lambda = tan(atan(b / h) - theta), statics of the displaced block by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from concio.analysis.rocking import rock
+from concio.errors import InputError
+from concio.model.materials import Elastic, JointLaw, Rigid
+from concio.model.model import Body, Model
+
+
+def block(width=0.2, height=1.0, friction=0.6, tilt=0.0):
+    c, s = np.cos(tilt), np.sin(tilt)
+    turn = np.array([[c, s], [-s, c]])
+    rectangle = lambda x0, x1, y0, y1: np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]) @ turn  # noqa: E731
+    return Model(
+        bodies=(
+            Body("ground", rectangle(-3, 3, -1, 0), kind="fixed"),
+            Body("pillar", rectangle(0, width, 0, height), kind="rigid"),
+        ),
+        materials={"block": Rigid(20.0)},
+        laws={"joint": JointLaw(friction)},
+    )
+
+
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_pillar_falls_from_a_fifth_to_zero(direction):
+    found = rock(block(), direction=direction, step=0.004)
+    assert found.multiplier[0] == pytest.approx(0.2, abs=1e-12)
+    assert found.multiplier[-1] <= 0.0
+    assert "fell to 0" in found.reason
+    theta = -direction * found.rotation[:, 0]
+    assert theta[0] == 0.0
+    assert (np.diff(theta) > 0).all()
+    assert found.multiplier == pytest.approx(np.tan(np.arctan(0.2) - theta), abs=1e-9)
+    toe = 0.2 if direction > 0 else 0.0
+    last = found.centroid[-1, 0, 0]
+    before = found.centroid[-2, 0, 0]
+    assert direction * before < direction * toe <= direction * last + 1e-12  # the centroid passes the toe at zero
+
+
+def test_step_size_does_not_matter_for_one_hinge():
+    coarse, fine = (rock(block(), step=s) for s in (0.02, 0.005))
+    at = coarse.rotation[:, 0]
+    for i in range(len(at) - 1):
+        expected = np.tan(np.arctan(0.2) + at[i])
+        assert coarse.multiplier[i] == pytest.approx(expected, abs=1e-9)
+    assert len(fine.multiplier) > 3 * len(coarse.multiplier)
+
+
+def test_elastic_blocks_are_refused():
+    model = block()
+    bodies = (model.bodies[0], Body("soft", model.bodies[1].outline))
+    with pytest.raises(InputError, match="rigid"):
+        rock(Model(bodies=bodies, materials={"block": Elastic(1e6)}, laws=model.laws))
