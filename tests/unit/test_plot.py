@@ -1,0 +1,304 @@
+"""Figures: what is drawn is what was computed, on the axes given, with units, scales and one meaning a colour."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+
+import concio
+from concio.analysis.result import Result
+from concio.errors import InputError
+from concio.lcp.solution import Status
+from concio.model.arches import arch
+from concio.model.model import signed_area
+from concio.plot import style
+from concio.plot.figures import TITLES, suitable_figures, write_figures
+from concio.plot.path_figure import plot_path
+from concio.post.crosses import crosses
+from concio.post.force_lines import force_chains, joint_forces
+from concio.post.joint_lines import joint_lines
+from concio.post.mechanism import mechanism_states
+from concio.post.motion import body_motions
+from concio.post.outlines import display_scale, outlines
+from concio.post.pressure import pressure_diagrams
+from concio.post.thrust import thrust_lines
+
+
+@pytest.fixture(scope="module")
+def panel() -> Result:
+    return concio.solve(
+        concio.running_bond_panel(courses=2, blocks=3, joint=0.02, friction=0.6, base="bearings", top_pressure=10.0)
+    )
+
+
+@pytest.fixture(scope="module")
+def ring() -> Result:
+    return concio.solve(arch(span=4.0, ring=0.6, voussoirs=11))
+
+
+@pytest.fixture(scope="module")
+def collapse() -> Result:
+    model = concio.running_bond_panel(
+        courses=2, blocks=2, friction=0.3, base="full", side_walls=False, unit_weight=20.0, horizontal=0.6
+    )
+    return concio.solve(model, on_failure="return")
+
+
+def test_outlines_are_the_blocks(panel: Result) -> None:
+    shown = outlines(panel)
+    for polygon, body in zip(shown.moved(0.0), panel.model.bodies, strict=True):
+        np.testing.assert_array_equal(polygon[0], polygon[-1])
+        assert signed_area(polygon[:-1]) == pytest.approx(body.area, rel=1e-12)
+
+
+def test_outlines_move_with_the_nodes(panel: Result) -> None:
+    shown = outlines(panel)
+    for b in range(len(panel.model.bodies)):
+        nodes, moved = panel.nodes(b), panel.node_displacement(b)
+        part = slice(shown.starts[b], shown.starts[b + 1])
+        away = np.linalg.norm(shown.points[part][:, None] - nodes[None], axis=2)
+        np.testing.assert_allclose(away.min(axis=1), 0.0, atol=1e-12)
+        np.testing.assert_allclose(shown.displacement[part], moved[away.argmin(axis=1)], atol=1e-15)
+
+
+@pytest.mark.parametrize("name", ["panel", "ring"])
+def test_joint_pieces_cover_the_joints_and_move_with_both_sides(name: str, request: pytest.FixtureRequest) -> None:
+    result: Result = request.getfixturevalue(name)
+    pieces = joint_lines(result, outlines(result))
+    pairs = result.assembly.pairs
+    length = np.linalg.norm(pieces.ends[:, 1] - pieces.ends[:, 0], axis=1)
+    face = pairs.interface[pieces.pair]
+    np.testing.assert_allclose(
+        np.bincount(face, length), [f.length for f in result.assembly.detection.interfaces], rtol=1e-6
+    )
+    # where a piece begins at its pair (the end of a joint), its sides move apart as C_n u and C_t u say
+    ends = np.linalg.norm(pieces.ends[:, 0] - pairs.point[pieces.pair], axis=1) < 1e-9
+    assert ends.sum() >= len(result.assembly.detection.interfaces)
+    apart = (pieces.moved_b - pieces.moved_a)[ends, 0]
+    k = pieces.pair[ends]
+    u = result.displacement
+    np.testing.assert_allclose((apart * pairs.normal[k]).sum(1), (pairs.C_n @ u)[k], atol=1e-12)
+    np.testing.assert_allclose((apart * pairs.tangent[k]).sum(1), (pairs.C_t @ u)[k], atol=1e-12)
+
+
+def test_motion_of_a_rigid_turn_is_that_turn(panel: Result) -> None:
+    disc = panel.assembly.disc
+    turn, shift = 1e-3, np.array([2e-3, -1e-3])
+    u = np.zeros(disc.unknowns)
+    for b in np.flatnonzero(disc.shape_of >= 0):
+        arm = disc.nodes(b) - disc.centroids[b]
+        u[disc.offsets[b] : disc.offsets[b + 1]] = (shift + turn * np.column_stack([-arm[:, 1], arm[:, 0]])).ravel()
+    motion = body_motions(panel, u)
+    free = disc.shape_of >= 0
+    np.testing.assert_allclose(motion[free], np.tile([*shift, turn], (free.sum(), 1)), atol=1e-15)
+    assert not motion[~free].any()
+
+
+def test_crosses_of_a_pressed_column() -> None:
+    block = concio.Elastic(1e5, 0.0)
+    model = concio.running_bond_panel(
+        courses=2, blocks=1, block=block, base="full", side_walls=False, top_pressure=10.0, friction=1.0
+    )
+    result = concio.solve(model)
+    for of in ("bodies", "elements"):
+        found = crosses(result, of)
+        np.testing.assert_allclose(found.s2, -10.0, rtol=1e-9)
+        np.testing.assert_allclose(found.s1, 0.0, atol=1e-7)
+        arms, value = found.arms(0.02)
+        upright = arms[value < -1.0]
+        np.testing.assert_allclose(np.abs(upright[:, 1, 1] - upright[:, 0, 1]), 0.2, rtol=1e-9)
+        np.testing.assert_allclose(upright[:, 1, 0], upright[:, 0, 0], atol=1e-9)
+
+
+def test_element_stresses_average_to_the_block(panel: Result) -> None:
+    found = crosses(panel, "elements")
+    mean_trace = np.bincount(found.body, found.size**2 * (found.s1 + found.s2)) / np.bincount(found.body, found.size**2)
+    body = crosses(panel)
+    np.testing.assert_allclose(mean_trace[body.body], body.s1 + body.s2, rtol=1e-9, atol=1e-9)
+
+
+def test_pressure_diagrams_hold_the_normal_forces(panel: Result) -> None:
+    pieces = joint_lines(panel, outlines(panel))
+    diagrams = pressure_diagrams(panel, pieces, 1e-3)
+    loaded = np.flatnonzero([panel.contacts.pressure[panel.assembly.pairs.interface == j].max() > 0
+                             for j in range(len(panel.joints.N))])  # fmt: skip
+    assert len(diagrams) == len(loaded)
+    force = [abs(signed_area(d)) / 1e-3 * 0.10 for d in diagrams]  # area over scale, times thickness
+    np.testing.assert_allclose(force, panel.joints.N[loaded], rtol=1e-9, atol=1e-12)
+
+
+def test_force_chains_carry_the_joint_forces(panel: Result) -> None:
+    found = joint_forces(panel)
+    joints = panel.joints
+    np.testing.assert_allclose(found.size, np.hypot(joints.N, joints.V)[found.joint], rtol=1e-12)
+    off = ((found.point - joints.middle[found.joint]) * joints.tangent[found.joint]).sum(1)
+    assert (np.abs(off) <= joints.length[found.joint] / 2 * (1 + 1e-12)).all()
+    chains = force_chains(panel)
+    assert set(np.round(chains.force, 12)) <= set(np.round(found.size, 12))
+
+
+def test_thrust_line_of_an_arch(ring: Result) -> None:
+    lines = thrust_lines(ring)
+    assert len(lines) == 1
+    line = lines[0]
+    assert len(line.points) == 12
+    assert len(line.bodies) == 13
+    springing = sorted(float(np.hypot(*force)) for force in ring.reactions.values())
+    np.testing.assert_allclose(sorted([line.force[0], line.force[-1]]), springing, rtol=1e-9)
+    order = np.argsort(line.points[:, 0])
+    np.testing.assert_allclose(line.points[order][:, 1], line.points[order][::-1, 1], atol=1e-6)  # symmetric
+    assert (line.ratio < 1).all()
+    for k in range(1, 11):  # each body is between the joints next to it
+        centre = ring.assembly.disc.centroids[line.bodies[k]]
+        assert np.linalg.norm(line.points[k] - centre) < 0.8
+
+
+def test_walls_have_no_thrust_line(collapse: Result) -> None:
+    wall = concio.solve(
+        concio.running_bond_panel(courses=3, blocks=3, base="full", side_walls=False, unit_weight=20.0, friction=0.6)
+    )
+    assert sum(len(line.points) for line in thrust_lines(wall)) * 2 <= len(wall.model.free_bodies)
+    assert "thrust" not in suitable_figures(wall)
+
+
+def test_mechanism_slides_where_it_slides(collapse: Result) -> None:
+    assert collapse.status is Status.NO_EQUILIBRIUM
+    shown = outlines(collapse, collapse.mechanism_velocity)
+    pieces = joint_lines(collapse, shown)
+    state = mechanism_states(collapse, pieces)
+    bodies = collapse.model.bodies
+    pairs = collapse.assembly.pairs
+    on_ground = np.array([
+        "fixed" in (bodies[a].kind, bodies[b].kind)
+        for a, b in zip(pairs.body_a[pieces.pair], pairs.body_b[pieces.pair], strict=True)
+    ])  # fmt: skip
+    assert (state[on_ground] > 1).all()
+    fixed = [i for i, b in enumerate(bodies) if b.kind == "fixed"]
+    assert not shown.displacement[shown.starts[fixed[0]] : shown.starts[fixed[0] + 1]].any()
+    ax = collapse.plot.mechanism()
+    assert "22 of 22" not in _texts(ax)
+    assert f"{len(collapse.model.free_bodies)} of {len(collapse.model.free_bodies)} bodies move" in _texts(ax)
+
+
+def _texts(ax) -> str:
+    labels = [t.get_text() for t in ax.texts] + [ax.get_title(loc="left"), ax.get_xlabel(), ax.get_ylabel()]
+    if ax.get_legend():
+        labels += [t.get_text() for t in ax.get_legend().get_texts()]
+    return "\n".join(labels)
+
+
+def _lines(ax, look: style.Line) -> list[np.ndarray]:
+    found = []
+    for c in ax.collections:
+        colours = c.get_edgecolor() if isinstance(c, LineCollection) else []
+        if len(colours) and to_hex(colours[0]) == look.colour.lower():
+            found += [path.vertices for path in c.get_paths()]
+    return found
+
+
+NAMES = ["model", "deformed", "principal", "pressure", "forces", "slip"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_figures_draw_on_the_axes_given(panel: Result, name: str) -> None:
+    import matplotlib.pyplot as plt
+
+    open_before = plt.get_fignums()
+    ax = Figure().add_subplot()
+    assert getattr(panel.plot, name)(ax=ax) is ax
+    assert ax.has_data()
+    assert ax.get_title(loc="left")
+    assert "[m]" in ax.get_xlabel()
+    assert getattr(panel.plot, name)().figure is not ax.figure
+    assert plt.get_fignums() == open_before  # nothing is kept alive or shown by pyplot
+    hatched = [c for c in ax.collections if isinstance(c, PolyCollection) and c.get_hatch()]
+    assert sum(len(c.get_paths()) for c in hatched) == sum(b.kind == "fixed" for b in panel.model.bodies)
+
+
+def test_deformed_states_scale_and_shows_states(panel: Result) -> None:
+    ax = panel.plot.deformed(scale=25.0)
+    assert "displacements x 25" in _texts(ax)
+    states = panel.contacts.state
+    assert len(_lines(ax, style.STICK)) == (states == 1).sum()
+    assert len(_lines(ax, style.SLIP)) == (states > 1).sum()
+    assert len(_lines(ax, style.OPEN)) == 2 * (states == 0).sum()  # both sides of a gap
+    for word in (style.STICK.word, style.SLIP.word, "open"):
+        assert word in _texts(ax)
+
+
+@pytest.mark.parametrize("of", ["bodies", "elements"])
+def test_crosses_tell_compression_from_tension_twice(panel: Result, of: str) -> None:
+    ax = panel.plot.principal(of=of)
+    found = crosses(panel, of)
+    value = np.concatenate([found.s1, found.s2])
+    shown = np.abs(value) > 0.01 * found.largest
+    assert len(_lines(ax, style.COMPRESSION)) == (shown & (value < 0)).sum()
+    assert len(_lines(ax, style.TENSION)) == (shown & (value > 0)).sum()
+    assert style.COMPRESSION.dash != style.TENSION.dash
+    assert style.number(float(found.s2.min()), "kN/m2") in _texts(ax)
+
+
+def test_looks_differ_in_grey() -> None:
+    """Every state differs from every other by dash or by width, not by colour alone."""
+    looks = [style.STICK, style.SLIP, style.OPEN, style.COMPRESSION, style.TENSION]
+    assert len({(str(look.dash), look.width) for look in looks}) == len(looks)
+
+
+def test_figures_suit_the_outcome(panel: Result, collapse: Result, ring: Result) -> None:
+    assert {"deformed", "principal", "forces"} <= set(suitable_figures(panel))
+    assert set(suitable_figures(collapse)) == {"model", "mechanism"}
+    assert "thrust" in suitable_figures(ring)
+    assert set(suitable_figures(ring)) | {"mechanism"} <= set(TITLES)
+
+
+def test_figures_that_make_no_sense_are_refused(panel: Result) -> None:
+    with pytest.raises(InputError, match="no mechanism"):
+        panel.plot.mechanism()
+    wall = concio.solve(concio.running_bond_panel(courses=2, blocks=2, unit_weight=20.0, side_walls=False, friction=0.6))
+    if not thrust_lines(wall):
+        with pytest.raises(InputError, match="no line of thrust"):
+            wall.plot.thrust()
+
+
+def test_drawings_are_reproducible(collapse: Result, tmp_path) -> None:
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+        write_figures(collapse, tmp_path / name, formats=("svg",))
+    for file in (tmp_path / "a").iterdir():
+        assert file.read_bytes() == (tmp_path / "b" / file.name).read_bytes()
+
+
+def test_path_figure_shows_events_and_peak() -> None:
+    events = [SimpleNamespace(parameter=0.5, control=0.001, kind="opens"),
+              SimpleNamespace(parameter=1.0, control=0.004, kind="slips")]  # fmt: skip
+    curve = SimpleNamespace(parameter=[0.0, 0.5, 1.0, 0.8], control=[0.0, 0.001, 0.004, 0.01], events=events)
+    ax = Figure().add_subplot()
+    assert plot_path(curve, ax, bound=1.1) is ax
+    np.testing.assert_array_equal(ax.lines[0].get_xdata(), curve.control)
+    np.testing.assert_array_equal(ax.lines[0].get_ydata(), curve.parameter)
+    text = _texts(ax)
+    assert "peak 1" in text
+    assert "a joint opens (1)" in text
+    assert "a joint slips (1)" in text
+    assert "bound 1.1" in text
+
+
+@pytest.mark.parametrize(
+    ("largest", "size", "scale"), [(1e-3, 1.0, 50.0), (3.9e-3, 1.4, 10.0), (1.0, 1.0, 0.05), (0.0, 1.0, 1.0)]
+)
+def test_display_scale_is_round(largest: float, size: float, scale: float) -> None:
+    assert display_scale(largest, size) == pytest.approx(scale)
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [(0.0039, "m", "3.9 mm"), (1e5, "kN/m2", "100,000 kN/m2"), (-77.13, "", "-77.1"), (0.0, "m", "0 m"),
+     (2.5e-14, "kN", "2.50e-14 kN"), (4321.0, "kN", "4321 kN")],
+)  # fmt: skip
+def test_numbers_are_short_and_carry_their_unit(value: float, unit: str, text: str) -> None:
+    assert style.number(value, unit) == text
