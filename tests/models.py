@@ -49,7 +49,9 @@ def mapped(model, point, vector, turn=1.0):
         bodies=tuple(replace(b, outline=point(b.outline), grid=None) for b in model.bodies),
         loads=tuple(directed(load) for load in model.loads),
         supports=tuple(
-            replace(s, edge=ends(s.edge), displacement=tuple(vector(np.array(s.displacement))), rotation=turn * s.rotation)
+            replace(
+                s, edge=ends(s.edge), displacement=tuple(vector(np.array(s.displacement))), rotation=turn * s.rotation
+            )
             for s in model.supports
         ),
         ties=tuple(
