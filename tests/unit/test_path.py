@@ -12,7 +12,7 @@ from concio.analysis.path import ControlPoint, Stage, run_path
 from concio.analysis.settlement import settle
 from concio.contact.assembly import assemble
 from concio.errors import InputError
-from concio.lcp.event_path import Outcome
+from concio.lcp.path_record import Outcome
 from concio.model.model import Support
 from concio.model.walls import wall
 

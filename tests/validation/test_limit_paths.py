@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from concio.lcp.event_path import Outcome
 from concio.lcp.limit import associated_limit
+from concio.lcp.path_record import Outcome
 from path_helpers import energy_error, least_dissipation, weight_then, worst_certificate
 from rigid_walls import FERRIS_TIN_LOI, MU, wall
 

@@ -22,9 +22,10 @@ import numpy as np
 from concio.contact.assembly import Assembly, assemble
 from concio.contact.problem import ContactProblem
 from concio.errors import InputError, NoEquilibriumError
-from concio.lcp.event_path import EventPath, Outcome, follow
+from concio.lcp.event_path import follow
 from concio.lcp.existence import find_mechanism
 from concio.lcp.limit import FrictionMargin, LimitLoad, associated_limit, smallest_friction
+from concio.lcp.path_record import EventPath, Outcome
 from concio.lcp.path_state import CLOSED, OPEN, LinearPath, PathState
 from concio.lcp.solution import ProgressCallback
 from concio.model.model import Model

@@ -22,8 +22,9 @@ from concio.analysis.result import Result
 from concio.contact.assembly import Assembly, assemble
 from concio.errors import InputError, SolverError
 from concio.lcp.certificate import Certificate
-from concio.lcp.event_path import Event, Outcome, follow
+from concio.lcp.event_path import follow
 from concio.lcp.methods import find
+from concio.lcp.path_record import Event, Outcome
 from concio.lcp.path_state import OPEN, LinearPath, PathState, certify_step, elastic_energy
 from concio.lcp.solution import ProgressCallback, judge
 from concio.lcp.step_path import StepPath, follow_in_steps

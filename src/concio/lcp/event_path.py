@@ -13,8 +13,7 @@ of a control point), which passes it and follows the falling branch.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from enum import Enum
+from dataclasses import replace
 
 import numpy as np
 
@@ -34,6 +33,7 @@ from concio.lcp.path_rates import (
     vertex_size,
     wrong,
 )
+from concio.lcp.path_record import Event, EventPath, Outcome
 from concio.lcp.path_state import (
     CLOSED,
     CRUSHED,
@@ -53,88 +53,6 @@ ON_EQUATIONS = 1e-15
 
 DUST = 1e-16
 """Scaled displacements below this are rounding of zero and are recorded as zero."""
-
-
-class Outcome(Enum):
-    """How a path ended; the value is the sentence a user reads."""
-
-    REACHED = "The end asked for was reached."
-    LIMIT = "The load cannot be increased further: no state continues the path under growing load."
-    MECHANISM = "A mechanism has formed: the structure moves on without change of load and without further events."
-    LOST = "No state was found that continues the path: none of the critical pairs' states gives consistent rates."
-    TOO_MANY = "There were more events than allowed."
-    CANCELLED = "Stopped on request."
-
-
-@dataclass(frozen=True)
-class Event:
-    """A change of state of one pair.
-
-    Parameters
-    ----------
-    parameter : float
-        Load parameter.
-    control : float
-        Displacement of the control point, or the parameter where there is none.
-    pair : int
-    kind : str
-        "opens", "closes", "slips", "sticks", "crushes" or "recovers".
-    direction : int
-        Of the slip, +1 or -1; else 0.
-    step : int
-        Index of the state of the path at which it happens.
-    """
-
-    parameter: float
-    control: float
-    pair: int
-    kind: str
-    direction: int
-    step: int
-
-
-@dataclass(frozen=True, eq=False)
-class EventPath:
-    """An exact path: its corners and its events.
-
-    Parameters
-    ----------
-    states : tuple of PathState
-        Start, every corner, end.
-    events : tuple of Event
-    outcome : Outcome
-    direction : (N,) array
-        Last rate of the displacements, scaled to largest entry 1: the mechanism where the path ended in one.
-    factorisations : int
-    """
-
-    states: tuple[PathState, ...]
-    events: tuple[Event, ...]
-    outcome: Outcome
-    direction: Array
-    factorisations: int
-
-    @property
-    def peak(self) -> float:
-        """Largest load parameter met."""
-        return max(state.parameter for state in self.states)
-
-    @property
-    def end(self) -> PathState:
-        """Last state."""
-        return self.states[-1]
-
-    def at(self, parameter: float) -> PathState:
-        """Return the state at a value of the parameter on the first branch that meets it, by exact interpolation."""
-        for a, b in zip(self.states, self.states[1:], strict=False):
-            low, high = sorted((a.parameter, b.parameter))
-            if low <= parameter <= high and high > low:
-                share = (parameter - a.parameter) / (b.parameter - a.parameter)
-                names = ("displacement", "normal_force", "friction_force", "slip", "offset")
-                mixed = {name: (1 - share) * getattr(a, name) + share * getattr(b, name) for name in names}
-                return replace(b, parameter=parameter, **mixed)
-        msg = f"the path does not meet the parameter {parameter:g}"
-        raise ValueError(msg)
 
 
 def follow(

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.contact.problem import Array
-from concio.lcp.event_path import Event, Outcome
+from concio.lcp.path_record import Event, Outcome
 from concio.lcp.path_state import CLOSED, CRUSHED, OPEN, STICK, LinearPath, PathState, state_of, step_problem
 from concio.lcp.solution import Progress, ProgressCallback, Solver, Status
 
