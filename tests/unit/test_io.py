@@ -44,7 +44,7 @@ def _mixed() -> Model:
         bodies=(
             concio.Body("ground", square * [3, 1] - [1, 1], kind="fixed", role="obstacle"),
             concio.Body("lower", square, material="stone", thickness=0.3),
-            concio.Body("upper", square + [0, 1], material="rock", kind="rigid", thickness=0.3),
+            concio.Body("upper", square + np.array([0, 1]), material="rock", kind="rigid", thickness=0.3),
         ),
         materials={"stone": concio.Elastic(1e6, 0.2, 20.0), "rock": concio.Rigid(22.0)},
         laws={"joint": law, "dry": concio.JointLaw(0.5)},

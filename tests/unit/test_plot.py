@@ -259,10 +259,11 @@ def test_figures_suit_the_outcome(panel: Result, collapse: Result, ring: Result)
 def test_figures_that_make_no_sense_are_refused(panel: Result) -> None:
     with pytest.raises(InputError, match="no mechanism"):
         panel.plot.mechanism()
-    wall = concio.solve(concio.running_bond_panel(courses=2, blocks=2, unit_weight=20.0, side_walls=False, friction=0.6))
-    if not thrust_lines(wall):
-        with pytest.raises(InputError, match="no line of thrust"):
-            wall.plot.thrust()
+    pressed = concio.running_bond_panel(courses=3, blocks=4, joint=0.02, friction=0.6, top_pressure=10.0)
+    wall = concio.solve(pressed)
+    assert not thrust_lines(wall)
+    with pytest.raises(InputError, match="no line of thrust"):
+        wall.plot.thrust()
 
 
 def test_drawings_are_reproducible(collapse: Result, tmp_path) -> None:

@@ -160,7 +160,8 @@ def test_title_is_escaped(arched: Result) -> None:
 def test_name_cannot_end_the_data(arched: Result) -> None:
     body = replace(arched.model.bodies[0], name="</script>evil")
     model = replace(arched.model, bodies=(body, *arched.model.bodies[1:]))
-    page = report_html(Result(replace(arched.assembly, model=model), {}, arched.solution, arched.seconds), figures=False)
+    assembly = replace(arched.assembly, model=model)
+    page = report_html(Result(assembly, {}, arched.solution, arched.seconds), figures=False)
     assert "</script>evil" not in page
     assert embedded(page)["bodies"]["name"][0] == "</script>evil"
 
@@ -189,10 +190,13 @@ const fire = (id, value, kind) => {
 const picture = () => { concio.paint(); return document.getElementById("canvas").toDataURL(); };
 const press = (x, y) => {
   const canvas = document.getElementById("canvas"), box = canvas.getBoundingClientRect();
-  for (const kind of ["pointerdown", "pointerup"]) canvas.dispatchEvent(new PointerEvent(kind,
-    { clientX: box.left + canvas.clientLeft + x, clientY: box.top + canvas.clientTop + y, pointerId: 1, bubbles: true }));
+  const at = { clientX: box.left + canvas.clientLeft + x, clientY: box.top + canvas.clientTop + y };
+  for (const kind of ["pointerdown", "pointerup"]) {
+    canvas.dispatchEvent(new PointerEvent(kind, { ...at, pointerId: 1, bubbles: true }));
+  }
 };
-const numbers = () => Object.fromEntries([...document.querySelectorAll("#info dd")].map((d) => [d.dataset.name, Number(d.dataset.value)]));
+const numbers = () => Object.fromEntries(
+  [...document.querySelectorAll("#info dd")].map((d) => [d.dataset.name, Number(d.dataset.value)]));
 const words = () => document.getElementById("info").textContent;
 try {
   const begin = performance.now();

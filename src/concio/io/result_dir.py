@@ -66,7 +66,8 @@ def write_result(result: Result, directory: Path | str, *, figures: bool = True,
     except OSError as error:
         shutil.rmtree(partial, ignore_errors=True)
         msg = f"the result cannot be written: {error.strerror or error}"
-        raise ConcioError(msg, where=str(directory), hint="choose another place with --out; nothing was changed") from error
+        hint = "choose another place with --out; nothing was changed"
+        raise ConcioError(msg, where=str(directory), hint=hint) from error
     except BaseException:
         shutil.rmtree(partial, ignore_errors=True)
         raise

@@ -97,7 +97,7 @@ def write_vtu(grid: Grid, path: Path) -> Path:
         return f"<{tag}>{''.join(data.element(k, v) for k, v in arrays.items())}</{tag}>"
 
     points = np.asarray(grid.points, dtype=float)
-    cells = {
+    cells: dict[str, Array] = {
         "connectivity": grid.connectivity.astype(np.int64),
         "offsets": grid.offsets.astype(np.int64),
         "types": grid.types.astype(np.uint8),

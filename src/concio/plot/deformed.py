@@ -138,9 +138,8 @@ def plot_mechanism(result: Result, ax: Axes | None = None, *, share: float = 0.0
     largest = float(speed.max())
     state = mechanism_states(result, pieces)
     style.draw_bodies(ax, result.model, shown, scale, face=face)
-    ax.add_collection(
-        PolyCollection(list(pieces.openings(scale)[state == 0]), facecolors=style.FILL_OPEN, edgecolors="none", zorder=2)
-    )
+    opened = list(pieces.openings(scale)[state == 0])
+    ax.add_collection(PolyCollection(opened, facecolors=style.FILL_OPEN, edgecolors="none", zorder=2))
     style.draw_lines(ax, pieces.side("middle", scale)[state > 1], style.SLIP, zorder=3)
     centre = result.assembly.disc.centroids
     motion = body_motions(result, velocity)[:, :2]
@@ -155,9 +154,8 @@ def plot_mechanism(result: Result, ax: Axes | None = None, *, share: float = 0.0
         f"{int(moving.sum())} of {len(result.model.free_bodies)} bodies move (bodies at rest are white); "
         f"power of the loads less what the joints absorb: {power} at a largest velocity of 1 m/s",
     )  # fmt: skip
-    style.legend(
-        ax, [style.patch(style.FILL_OPEN, "opens"), style.handle(style.SLIP, "slides"), style.patch("#FFFFFF", "at rest")]
-    )
+    handles = [style.patch(style.FILL_OPEN, "opens"), style.handle(style.SLIP, "slides")]
+    style.legend(ax, [*handles, style.patch("#FFFFFF", "at rest")])
     return ax
 
 

@@ -76,7 +76,8 @@ def write_figures(result: Result, directory: Path, formats: tuple[str, ...] = FO
     written = []
     with mpl.rc_context({"svg.hashsalt": "concio", "svg.fonttype": "none"}):
         for name, draw in suitable_figures(result).items():
-            figure = draw().figure
+            figure = draw().get_figure(root=True)
+            assert figure is not None
             for ending in formats:
                 path = directory / f"{name}.{ending}"
                 figure.savefig(path, dpi=dpi, metadata={"Date": None} if ending == "svg" else None)

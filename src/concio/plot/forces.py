@@ -94,7 +94,8 @@ def plot_forces(result: Result, ax: Axes | None = None, *, chains: bool = True, 
         found = force_chains(result)
         largest = float(found.force.max(initial=0.0))
         _chain_lines(ax, found.lines, found.force, largest)
-        title, note = "Force chains", f"line width in proportion to the force of the joint; largest {style.number(largest, 'kN')}"
+        title = "Force chains"
+        note = f"line width in proportion to the force of the joint; largest {style.number(largest, 'kN')}"
         handles.append(style.handle(style.Line(style.COMPRESSION.colour, "-", 5, ""), "force between blocks"))
     else:
         force = result.contacts.force_on_b
@@ -162,7 +163,8 @@ def plot_thrust(result: Result, ax: Axes | None = None) -> Axes:
     )  # fmt: skip
     handles = [style.handle(style.THRUST)]
     if hinges:
-        handles.append(Line2D([], [], ls="none", marker="o", mfc="white", mec=style.OPEN.colour, mew=1.8, ms=7, label="hinge"))
+        look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": style.OPEN.colour, "mew": 1.8, "ms": 7}
+        handles.append(Line2D([], [], ls="none", label="hinge", **look))
     style.legend(ax, handles)
     return ax
 
@@ -186,8 +188,9 @@ def _reactions(ax: Axes, result: Result, box: Array) -> None:
             body = result.model.body(support.body)
         if not np.hypot(fx, fy) > 0 or len(result.reactions) > 12:
             continue
+        text = f"{name}\n{style.number(fx)}, {style.number(fy)} kN"
         ax.annotate(
-            f"{name}\n{style.number(fx)}, {style.number(fy)} kN", body.centroid, ha="center", va="center", fontsize=7.5,
+            text, tuple(body.centroid), ha="center", va="center", fontsize=7.5,
             color=style.LOAD.colour, zorder=6, rotation=90 if _upright(body.outline) else 0,
             bbox={"boxstyle": "round,pad=0.25", "fc": "white", "ec": style.LOAD.colour, "lw": 0.8},
             annotation_clip=False,

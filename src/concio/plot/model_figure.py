@@ -97,7 +97,7 @@ def _names(ax: Axes, model: Model, box: Array) -> None:
         font = min(7.5, 0.85 * width * points_per_metre, 1.6 * room * points_per_metre / max(len(body.name), 1))
         if font >= 2.0:
             ax.annotate(
-                body.name, body.centroid, ha="center", va="center", fontsize=font, color="#5A5348", zorder=4,
+                body.name, tuple(body.centroid), ha="center", va="center", fontsize=font, color="#5A5348", zorder=4,
                 rotation=90 if upright else 0,
                 bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none"} if body.kind == "fixed" else None,
             )  # fmt: skip

@@ -107,7 +107,8 @@ def legend(ax: Axes, handles: Sequence[Any], columns: int = 4) -> None:
         room = ax.get_window_extent().width / ax.figure.dpi
         ax.legend(
             handles=list(handles), loc="upper center", bbox_to_anchor=(0.5, 0.0), bbox_transform=_below(ax),
-            ncols=max(1, min(columns, len(handles), int(room / 1.35))), frameon=False, fontsize=8.5, handlelength=2.6, borderaxespad=0.0,
+            ncols=max(1, min(columns, len(handles), int(room / 1.35))), frameon=False, fontsize=8.5, handlelength=2.6,
+            borderaxespad=0.0,
         )  # fmt: skip
 
 
@@ -154,7 +155,7 @@ def draw_bodies(
 
     polygons = shown.moved(scale)
     fixed = np.array([b.kind == "fixed" for b in model.bodies])
-    free = np.flatnonzero(~fixed)
+    free = np.flatnonzero(~fixed).tolist()
     colours = [body_colour(model.bodies[b]) for b in free] if face is None else [face[b] for b in free]
     many = len(free) > LARGE
     width = 0.2 if many else 0.6

@@ -63,7 +63,10 @@ def crosses(result: Result, of: Literal["bodies", "elements"] = "bodies") -> Cro
         s1, s2, angle = (v[body] for v in result.stress.principal)
         area = np.array([result.model.bodies[b].area for b in body])
         return Crosses(disc.centroids[body], s1, s2, angle, np.sqrt(area), body)
-    centre, stress, size, owner = [], [], [], []
+    centre: list[Array] = []
+    stress: list[Array] = []
+    size: list[Array] = []
+    owner: list[Array] = []
     for s, shape in enumerate(disc.shapes):
         el = shape.elements
         count = len(el.cells)

@@ -1,4 +1,4 @@
-"""Forces between bodies: where the resultant of each joint acts, how large it is, and how it runs through the blocks."""
+"""Forces between bodies: where the resultant of each joint acts, how large it is, how it runs through the blocks."""
 
 from __future__ import annotations
 

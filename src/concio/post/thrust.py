@@ -8,6 +8,7 @@ how the load runs.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -44,7 +45,9 @@ def thrust_lines(result: Result) -> list[ThrustLine]:
     """Return the lines of thrust of all rows of bodies; an empty list where there is none."""
     joints = result.joints
     merged: dict[tuple[int, int], list[int]] = {}
-    for k in np.flatnonzero(joints.N > 1e-9 * np.abs(joints.N).max(initial=0.0)):
+    least = 1e-9 * np.abs(joints.N).max(initial=0.0)
+    force = joints.N
+    for k in np.flatnonzero(force > least):
         merged.setdefault((int(joints.body_a[k]), int(joints.body_b[k])), []).append(int(k))
     touching: dict[int, list[int]] = {}
     for a, b in merged:
@@ -55,7 +58,8 @@ def thrust_lines(result: Result) -> list[ThrustLine]:
     def inner(b: int) -> bool:
         return b not in fixed and len(touching[b]) == 2
 
-    found, used = [], set()
+    found: list[ThrustLine] = []
+    used: set[tuple[int, int]] = set()
     ends = [b for b in touching if not inner(b)]
     for start in ends:
         for following in touching[start]:
@@ -63,7 +67,7 @@ def thrust_lines(result: Result) -> list[ThrustLine]:
             while inner(chain[-1]):
                 a, b = touching[chain[-1]]
                 chain.append(b if a == chain[-2] else a)
-            steps = list(zip(chain, chain[1:], strict=False))
+            steps = list(pairwise(chain))
             if len(chain) < 3 or (min(steps[0]), max(steps[0])) in used or (min(steps[-1]), max(steps[-1])) in used:
                 continue
             used.update((min(s), max(s)) for s in steps)

@@ -50,7 +50,9 @@ def _cell(value: object) -> str:
     if isinstance(value, bool | np.bool_):
         return f"<td>{'yes' if value else 'no'}</td>"
     if isinstance(value, float | np.floating):
-        return "<td class=n>&ndash;</td>" if np.isnan(value) else f'<td class=n title="{float(value)!r}">{number(float(value))}</td>'
+        if np.isnan(value):
+            return "<td class=n>&ndash;</td>"
+        return f'<td class=n title="{float(value)!r}">{number(float(value))}</td>'
     return f"<td>{escape(str(value))}</td>"
 
 
@@ -58,7 +60,8 @@ def figure_html(axes: Axes, name: str, caption: str) -> str:
     """Return a figure with its drawing inside, as SVG where that is small, else as PNG; its figure is given up."""
     import matplotlib as mpl
 
-    figure = axes.figure
+    figure = axes.get_figure(root=True)
+    assert figure is not None
     with mpl.rc_context({"svg.hashsalt": "concio", "svg.fonttype": "path"}):
         drawing = io.BytesIO()
         figure.savefig(drawing, format="svg", metadata={"Date": None})

@@ -109,7 +109,8 @@ def _verdict(result: Result) -> str:
     )
     if result.solved:
         rows = "".join(
-            f"<tr><td>{escape(c.what)}</td><td class=n>{c.value:.1e}</td><td>{'holds' if c.holds else 'fails'}</td></tr>"
+            f"<tr><td>{escape(c.what)}</td><td class=n>{c.value:.1e}</td>"
+            f"<td>{'holds' if c.holds else 'fails'}</td></tr>"
             for c in checks(result)
         )
         text += (

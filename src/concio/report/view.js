@@ -29,7 +29,17 @@
   let step, width = 0, height = 0, waiting = false, range = [0, 1], shade = null, bigStress = 1;
 
   const stepAt = (k) => (steps[k] ??= unpacked(data.steps[k]));
-  const draw = () => { if (!waiting) { waiting = true; requestAnimationFrame(() => { waiting = false; paint(); }); } };
+  /* while a large drawing moves under the finger it is drawn without joints and crosses, and in full when it rests */
+  const LARGE = 1500;
+  let draft = false, resting = 0;
+  const drawMoving = () => {
+    if (count > LARGE) {
+      draft = true; clearTimeout(resting);
+      resting = setTimeout(() => { draft = false; draw(); }, 150);
+    }
+    draw();
+  };
+  const draw = () => { if (!waiting) { waiting = true; requestAnimationFrame(() => { waiting = false; paint(draft); }); } };
 
   /* length of the longest stress cross: the median size of the larger half of the free bodies */
   const sizes = [];
@@ -159,7 +169,8 @@
   };
   function middle(k, e) { const a = end(k, e, "a"), b = end(k, e, "b"); return [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2]; }
   function strokePieces(keep, colour, lineWidth, dash) {
-    pen.strokeStyle = colour; pen.lineWidth = lineWidth; pen.setLineDash(dash); pen.beginPath();
+    const short = typical * view.zoom < 14; /* dashes cannot be told on joints this short */
+    pen.strokeStyle = colour; pen.lineWidth = lineWidth; pen.setLineDash(short ? [] : dash); pen.beginPath();
     for (let k = 0; k < pieceCount; k++) if (keep(k)) {
       const p = middle(k, 0), q = middle(k, 1);
       if (Math.max(p[0], q[0]) < 0 || Math.min(p[0], q[0]) > width || Math.max(p[1], q[1]) < 0 || Math.min(p[1], q[1]) > height) continue;
@@ -182,7 +193,7 @@
       pen.moveTo(...p); pen.lineTo(...q); pen.lineTo(...r); pen.lineTo(...s); pen.closePath();
     }
     pen.fill(); pen.stroke();
-    if (view.colour !== "pressure") strokePieces((k) => step.state[k] === 1, look.stick, 1.2 * thin, []);
+    if (view.colour !== "pressure" && typical * view.zoom >= 10) strokePieces((k) => step.state[k] === 1, look.stick, 1.2 * thin, []);
     strokePieces((k) => step.state[k] > 1, look.slip, 2.8 * thin, [6, 3]);
   }
   function drawCrosses(shown) {
@@ -208,13 +219,15 @@
     else { const p = middle(view.picked.piece, 0), q = middle(view.picked.piece, 1); pen.moveTo(...p); pen.lineTo(...q); pen.lineWidth = 6; }
     pen.stroke();
   }
-  function paint() {
+  function paint(quick = false) {
     const ratio = window.devicePixelRatio || 1;
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, width, height);
     const shown = [];
     for (let b = 0; b < count; b++) if (inside(b)) shown.push(b);
-    hatch(shown); fillBodies(shown); drawJoints(); drawCrosses(shown); drawPicked();
+    hatch(shown); fillBodies(shown);
+    if (!quick) { drawJoints(); drawCrosses(shown); }
+    drawPicked();
     view.painted = (view.painted || 0) + 1;
   }
 
@@ -288,7 +301,7 @@
   const scaleOf = (at) => (at / 100) ** 2 * data.scale;
   function setScale(value) {
     view.scale = value; $("scale-text").textContent = `× ${digits(value)}`;
-    place(); draw();
+    place(); drawMoving();
   }
   function setStep(k) {
     view.step = k; step = stepAt(k);
@@ -298,7 +311,7 @@
   function zoomAt(px, py, factor) {
     const x = view.x + (px - width / 2) / view.zoom, y = view.y - (py - height / 2) / view.zoom;
     view.zoom = Math.max(1e-3 * width / data.size, Math.min(1e5 * width / data.size, view.zoom * factor));
-    view.x = x - (px - width / 2) / view.zoom; view.y = y + (py - height / 2) / view.zoom; draw();
+    view.x = x - (px - width / 2) / view.zoom; view.y = y + (py - height / 2) / view.zoom; drawMoving();
   }
   $("scale").addEventListener("input", (e) => setScale(scaleOf(Number(e.target.value))));
   $("step").addEventListener("input", (e) => setStep(Number(e.target.value)));
@@ -331,7 +344,7 @@
     if (!old) return;
     const now = [e.offsetX, e.offsetY];
     travelled += Math.hypot(now[0] - old[0], now[1] - old[1]);
-    if (fingers.size === 1) { view.x -= (now[0] - old[0]) / view.zoom; view.y += (now[1] - old[1]) / view.zoom; draw(); }
+    if (fingers.size === 1) { view.x -= (now[0] - old[0]) / view.zoom; view.y += (now[1] - old[1]) / view.zoom; drawMoving(); }
     else {
       const other = [...fingers.entries()].find(([id]) => id !== e.pointerId)[1];
       const before = Math.hypot(old[0] - other[0], old[1] - other[1]), after = Math.hypot(now[0] - other[0], now[1] - other[1]);
@@ -357,6 +370,10 @@
   }
 
   /* start */
+  if (count > LARGE && data.steps.some((s) => s.s2)) {
+    view.crosses = false; view.colour = "s2";
+    $("crosses").checked = false; $("colour").value = "s2";
+  }
   $("step").max = data.steps.length - 1;
   if (data.steps.length < 2) $("step-label").hidden = true;
   if (data.steps.length < 2) $("step-label").style.display = "none";

@@ -74,7 +74,7 @@ def view_data(results: Sequence[Result], labels: Sequence[str]) -> dict[str, Any
             "block": style.BLOCK, "mortar": style.FILM, "rigid": style.RIGID, "edge": style.EDGE, "hatch": style.HATCH,
             "compression": style.COMPRESSION.colour, "tension": style.TENSION.colour, "stick": style.STICK.colour,
             "slip": style.SLIP.colour, "open": style.OPEN.colour, "gap": style.FILL_OPEN,
-        },  # fmt: skip
+        },
         "bodies": {
             "name": [b.name for b in model.bodies],
             "kind": [_kind(b) for b in model.bodies],
