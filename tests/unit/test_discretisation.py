@@ -96,7 +96,7 @@ def test_a_node_is_taken_alone_and_a_point_outside_refused():
 def test_sizes_that_cannot_be_meshed():
     with pytest.raises(InputError, match="mesh size"):
         discretise(on_ground(box("a", 0, 1, 0, 1, mesh_size=-1.0)))
-    with pytest.raises(InputError, match="block 'a'.*unknowns"):  # before memory is asked for
+    with pytest.raises(InputError, match=r"block 'a'.*unknowns"):  # before memory is asked for
         discretise(on_ground(box("a", 0, 1, 0, 1, mesh_size=1e-8)))
 
 

@@ -132,5 +132,5 @@ def test_refused(load, message):
 
 @kinds
 def test_weight_of_weightless_bodies_is_not_a_silent_zero(kind):
-    with pytest.raises(InputError, match="without weight.*unit_weight"):
+    with pytest.raises(InputError, match=r"without weight.*unit_weight"):
         loaded(Load("weight", (0, -1.0)), kind, materials={"block": Elastic(1.0), "stone": Rigid()})

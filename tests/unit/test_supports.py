@@ -15,12 +15,16 @@ from models import box, model_of, on_ground, weight
 STONE = {"kind": "rigid", "material": "stone"}
 LEFT, RIGHT, BASE = ((0, 0), (0, 0)), ((4, 0), (4, 0)), ((0, 0), (4, 0))
 
+WEIGHT = weight()
 
-def beam(*supports, stone=False, loads=(weight(),), **options):
+
+def beam(*supports, stone=False, loads=(WEIGHT,), **options):
     """A 4 x 1 beam on supports beside a pebble on the ground, so that there is an interface."""
     kind = STONE if stone else {"mesh_size": 0.5}
     return model_of(
-        box("beam", 0, 4, 0, 1, **kind), box("ground", 10, 12, -1, 0, kind="fixed"), box("pebble", 10, 11, 0, 1, **STONE),
+        box("beam", 0, 4, 0, 1, **kind),
+        box("ground", 10, 12, -1, 0, kind="fixed"),
+        box("pebble", 10, 11, 0, 1, **STONE),
         supports=supports, loads=loads, **options,
     )  # fmt: skip
 
