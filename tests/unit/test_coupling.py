@@ -27,9 +27,7 @@ def check_linear_fields_and_forces(coupling, a, b, length):
     """Linear displacements are read alike on both sides; a uniform pressure becomes consistent nodal forces."""
     for side, mesh in ((coupling.a, a), (coupling.b, b)):
         for field in (np.ones_like, lambda x: 0.3 + 2.0 * x):
-            at_nodes = (
-                (lambda s, f=field: f(s)) if side is None else (lambda n, m=mesh, f=field: f(m.at)[n - m.nodes[0]])
-            )
+            at_nodes = field if side is None else (lambda n, m=mesh, f=field: f(m.at)[n - m.nodes[0]])
             np.testing.assert_allclose(value(coupling, side, at_nodes), field(coupling.at), atol=1e-12)
         if side is not None:
             nodal = np.bincount(side.node - mesh.nodes[0], side.weight * coupling.length[side.pair], len(mesh.at))

@@ -206,7 +206,7 @@ def _by_name(model: Model) -> bool:
 
 
 def _sort(body: object) -> tuple[str, ...]:
-    return tuple(getattr(body, k) for k in ("role", "layer", "material"))
+    return tuple(getattr(body, k) for k in ("kind", "role", "layer", "material"))
 
 
 def _line(

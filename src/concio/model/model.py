@@ -112,8 +112,8 @@ class JointRule:
     law : str
         Key of ``Model.laws``.
     between : pair of str
-        Each matches a body by name, role, layer or material; "*" matches any. Order does not matter. The last rule
-        that matches an interface wins.
+        Each matches a body by name, role, layer or (unless it is fixed) material; "*" matches any. Order does not
+        matter. The last rule that matches an interface wins.
     gap : float
         Initial opening of these interfaces, added to what the geometry shows >= 0 [m].
     """
@@ -131,7 +131,8 @@ class JointRule:
         """Return whether the rule speaks of interfaces between ``a`` and ``b``."""
 
         def fits(word: str, body: Body) -> bool:
-            return word == "*" or (word != "" and word in (body.name, body.role, body.layer, body.material))
+            material = "" if body.kind == "fixed" else body.material
+            return word == "*" or (word != "" and word in (body.name, body.role, body.layer, material))
 
         p, q = self.between
         return (fits(p, a) and fits(q, b)) or (fits(p, b) and fits(q, a))
