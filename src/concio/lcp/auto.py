@@ -1,25 +1,41 @@
-"""Method ``auto``: the engine first, proof of collapse where it fails, pivoting where the problem is small.
+"""Method ``auto``: the engine first, proof of collapse where it fails, pivoting last.
 
-The order is fixed, so that the same problem always goes the same way: interior point with exact finish; if that fails, a
-mechanism is looked for; if there is none (forces that balance the loads exist), the dilatancy homotopy; then Lemke's
-method where the problem is small enough. What was tried is the solution's trace.
+The order is fixed, so that the same problem always goes the same way:
+
+1. interior point with exact finish, from the usual start and from one ten times further out (jammed structures want it);
+   where the finish leaves a few pairs undecided, pivoting from its states settles them (crossover);
+2. a linear programme: either a mechanism, rechecked, proves that there is no equilibrium, or there are statically
+   admissible forces; where no body has to move under them (rigid blocks), they are the answer;
+3. interior point from further out still, then the dilatancy homotopy;
+4. pivoting from nothing, sparse and then dense, where the problem is small enough.
+
+What was tried is the solution's trace. An answer is called solved by its certificate alone, a collapse by its mechanism
+alone; everything else is undecided.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from concio.contact.problem import ContactProblem
-from concio.lcp import methods
+from concio.lcp import lemke, sparse_lemke
 from concio.lcp.engine import STARTS, Cancelled, Run
-from concio.lcp.existence import find_mechanism
+from concio.lcp.exact_finish import Finished
+from concio.lcp.existence import mechanism_from, statically_admissible
 from concio.lcp.scaled import scale
-from concio.lcp.solution import ProgressCallback, Solution, Status, failed
+from concio.lcp.solution import PairState, ProgressCallback, Solution, Status, failed, judge
 from concio.lcp.sparse_factor import Engine
 
-PIVOTING = 800
-"""Largest number of pairs for which Lemke's method is tried."""
+DENSE = 450
+"""Largest number of pairs for which the dense method of Lemke is tried."""
+
+SPARSE = 3000
+"""Largest number of pairs for which sparse pivoting is tried from nothing."""
+
+CLOSE = 0.05
+"""Residual of an exact finish below which its states are worth a crossover."""
 
 
 def solve(
@@ -38,7 +54,7 @@ def solve(
     progress : callable, optional
     engine : {"superlu", "pardiso"}
     pivoting : bool
-        Try Lemke's method last, where there are at most ``PIVOTING`` pairs.
+        Whether step 4 is tried.
 
     Returns
     -------
@@ -47,32 +63,94 @@ def solve(
     """
     run = Run(scale(problem, engine), progress)
     try:
-        found = run.plain(STARTS[0])
-        if found is not None:
-            return run.solution(found)
-        mechanism = find_mechanism(problem)
-        if mechanism is not None:
-            run.trace.append("mechanism found and rechecked")
-            return failed(
-                problem,
-                Status.NO_EQUILIBRIUM,
-                method="mechanism",
-                mechanism=mechanism,
-                iterations=run.iterations,
-                factorisations=run.scaled.factor.count,
-                trace=tuple(run.trace),
-            )
-        run.trace.append("no mechanism: statically admissible forces exist")
-        for start in STARTS[1:]:
+        for start in STARTS[:2]:
+            found = run.plain(start)
+            if found is not None:
+                return run.solution(found)
+            crossed = crossover(run, progress)
+            if crossed is not None:
+                return crossed
+        decided = statics(run)
+        if decided is not None:
+            return decided
+        for start in STARTS[2:]:
             found = found or run.plain(start)
         found = found or run.homotopy()
         if found is not None:
             return run.solution(found)
-        if pivoting and problem.pairs <= PIVOTING:
-            answer = methods.find("lemke")(problem, progress=progress)
-            if answer.solved:
-                return replace(answer, trace=(*run.trace, *answer.trace))
-            run.trace.append(f"lemke: {answer.status.name.lower()}")
+        crossed = crossover(run, progress) or (pivot(run, progress) if pivoting else None)
+        if crossed is not None:
+            return crossed
     except Cancelled:
         return run.solution(None, Status.CANCELLED)
     return run.solution(None, Status.UNDECIDED, method="auto")
+
+
+def crossover(run: Run, progress: ProgressCallback | None) -> Solution | None:
+    """Settle by pivoting the pairs that the exact finish left undecided; None where it was not close or it fails."""
+    best: Finished | None = run.best
+    if best is None or best.error > CLOSE or run.crossed is best:
+        return None
+    run.crossed = best
+    s = run.scaled
+    if not s.problem.laws.plain:
+        return None
+    slip = np.where(best.states.slip > 0, PairState.SLIP_PLUS, PairState.SLIP_MINUS)
+    states = np.where(best.states.slip == 0, PairState.STICK, slip)
+    states = np.where(best.states.closed, states, PairState.OPEN).astype(np.int8)
+    u, t_n, t_t = s.restore(best.u, best.t_n, best.t_t)
+    answer = sparse_lemke.solve(
+        s.problem, start_states=states, start=(u, t_n, t_t[:, None]), limit=500, tries=0, progress=progress
+    )
+    run.trace.append(f"crossover by pivoting: {answer.iterations} pivots, {answer.status.name.lower()}")
+    return merged(run, answer, "interior-point + pivoting") if answer.solved else None
+
+
+def statics(run: Run) -> Solution | None:
+    """Decide by a linear programme: collapse with its mechanism, or equilibrium without motion; None for neither."""
+    problem = run.scaled.problem
+    state = statically_admissible(problem)
+    if state.exists:
+        run.trace.append("statically admissible forces exist")
+        rest = judge(
+            problem, np.zeros(problem.unknowns), state.normal_force, state.friction_force, method="linear-programme"
+        )
+        return merged(run, rest, "linear-programme") if rest.solved else None
+    mechanism = mechanism_from(problem, state.velocity)
+    if mechanism is None:
+        run.trace.append("no statically admissible forces found, but no mechanism could be verified either")
+        return None
+    run.trace.append("no statically admissible forces: mechanism found and rechecked")
+    return merged(run, failed(problem, Status.NO_EQUILIBRIUM, method="", mechanism=mechanism), "mechanism")
+
+
+def pivot(run: Run, progress: ProgressCallback | None) -> Solution | None:
+    """Try pivoting methods from nothing, as far as the size of the problem allows; None where they fail."""
+    problem = run.scaled.problem
+    for module, most in ((lemke, DENSE), (sparse_lemke, SPARSE)):
+        if problem.pairs > most:
+            continue
+        answer = module.solve(problem, progress=progress)
+        name = module.__name__.rsplit(".", 1)[-1].replace("_", "-")
+        run.trace.append(f"{name}: {answer.iterations} pivots, {answer.status.name.lower()}")
+        if answer.solved:
+            return merged(run, answer, name)
+    return None
+
+
+def merged(run: Run, answer: Solution, method: str) -> Solution:
+    """Return an answer of another method with this run's work and trace."""
+    return Solution(
+        answer.status,
+        answer.displacement,
+        answer.normal_force,
+        answer.friction_force,
+        answer.kinematics,
+        answer.certificate,
+        method,
+        iterations=run.iterations + answer.iterations,
+        factorisations=run.scaled.factor.count + answer.factorisations,
+        mechanism=answer.mechanism,
+        trace=tuple(run.trace),
+        info={"history": tuple(run.history), **answer.info},
+    )

@@ -22,6 +22,9 @@ AT_REST = 1e-10
 TARGETS = (1e-6, 1e-8, 1e-10)
 """Relative residuals at which the exact finish is tried."""
 
+EXACT = 1e-11
+"""Largest natural-map residual of an exact finish; a structure drifting off may come near, never here."""
+
 STARTS = (10.0, 100.0, 1000.0)
 """Sizes of the starting points that are tried in turn; jammed structures want the larger."""
 
@@ -83,6 +86,7 @@ class Run:
         self.trace: list[str] = []
         self.history: list[float] = []
         self.best: Finished | None = None
+        self.crossed: Finished | None = None
 
     def watch(self, stage: str) -> Any:
         """Return the callback of a stage."""
@@ -130,7 +134,7 @@ class Run:
     def finish(self, u: np.ndarray, t_n: np.ndarray, t_t: np.ndarray, rounds: int = 12) -> Finished | None:
         """Exact finish of a point; return it if exact, None (and keep the best) if not."""
         found = finish(self.scaled, u, t_n, t_t, rounds)
-        exact = found.error <= 1e-9
+        exact = found.error <= EXACT
         self.trace.append(
             f"exact finish: {found.solves} linear solves, residual {found.error:.1e}"
             + ("" if exact else f", {len(found.undecided)} pairs undecided")
