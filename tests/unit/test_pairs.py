@@ -82,7 +82,7 @@ def test_frames_areas_and_order():
     assert len(p) == 3
     np.testing.assert_allclose(p.normal, [[0, 1]] * 3, atol=1e-15)  # from the ground to the block
     np.testing.assert_allclose(p.tangent, [[-1, 0]] * 3, atol=1e-15)
-    np.testing.assert_allclose(np.sort(p.point[:, 0]), [0, 0.5, 1])
+    np.testing.assert_allclose(np.sort(p.point[:, 0]), [0, 0.5, 1], atol=1e-14)
     np.testing.assert_allclose(p.length, [0.25, 0.5, 0.25])
     np.testing.assert_allclose(p.area, 0.4 * p.length)
     lift = move_everything(assembly, (0.3, 0.1), 0.0)
