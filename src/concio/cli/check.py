@@ -73,10 +73,7 @@ def _check_picture(out: Path) -> None:
 
 
 def _draw(model: Model, detection: Detection, out: Path) -> None:
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    from matplotlib import pyplot as plt
+    from matplotlib.figure import Figure
 
     from concio.plot.model_figure import plot_model
 
@@ -85,6 +82,7 @@ def _draw(model: Model, detection: Detection, out: Path) -> None:
         if things:
             x, y = zip(*(t.at for t in things), strict=True)
             axes.plot(x, y, mark, mec="#c1272d", mfc="none", ms=9, label=word, ls="")
+    figure = axes.figure
+    assert isinstance(figure, Figure)
     with replaced_file(out) as fresh:
-        plt.savefig(fresh, dpi=150)
-    plt.close("all")
+        figure.savefig(fresh, dpi=150)

@@ -6,7 +6,7 @@ import sys
 
 import typer
 
-from concio.cli import check, compare, new, run, schema, view
+from concio.cli import check, compare, export, limit, new, path, run, schema, view
 
 app = typer.Typer(
     name="concio",
@@ -44,8 +44,11 @@ def _common(
 app.command("new")(new.new)
 app.command("check")(check.check)
 app.command("run")(run.run)
+app.command("path")(path.path)
+app.command("limit")(limit.limit)
 app.command("compare")(compare.compare)
 app.command("view")(view.view)
+app.command("export")(export.export)
 app.command("schema")(schema.schema)
 
 

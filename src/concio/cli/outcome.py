@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import functools
 import json as json_text
+import math
 import os
 import sys
 from collections.abc import Callable, Mapping
@@ -89,9 +90,17 @@ def fail(told: Mapping[str, Any], code: int, as_json: bool) -> NoReturn:
 
 
 def print_json(data: Mapping[str, Any]) -> None:
-    """Print one JSON object on standard output."""
-    sys.stdout.write(json_text.dumps(data, allow_nan=False, ensure_ascii=False) + "\n")
+    """Print one JSON object on standard output; numbers that JSON does not know become null."""
+    sys.stdout.write(json_text.dumps(_plain(data), allow_nan=False, ensure_ascii=False) + "\n")
     sys.stdout.flush()
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(v) for key, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def say(text: str = "") -> None:

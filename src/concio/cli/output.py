@@ -58,3 +58,22 @@ def replaced_file(target: Path) -> Iterator[Path]:
         fresh = Path(aside) / target.name
         yield fresh
         fresh.replace(target)
+
+
+@contextmanager
+def replaced_directory(target: Path) -> Iterator[Path]:
+    """Give a directory to write into; when all went well it takes the place of ``target``, otherwise it goes away."""
+    parent = target.absolute().parent
+    parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=parent, prefix=f".{target.name}.") as aside:
+        fresh, old = Path(aside) / "new", Path(aside) / "old"
+        fresh.mkdir()
+        yield fresh
+        if target.exists():
+            target.rename(old)
+        try:
+            fresh.rename(target)
+        except OSError:
+            if old.exists():
+                old.rename(target)
+            raise

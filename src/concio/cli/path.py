@@ -1,0 +1,104 @@
+"""``concio path FILE``: follow a load path, settlement or pushover, event by event."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import typer
+
+from concio.cli.outcome import guarded, print_json, say
+from concio.cli.output import check_directory, replaced_directory
+from concio.cli.progress import progress_bar
+from concio.cli.run import File, Json, factors_of
+
+if TYPE_CHECKING:
+    from concio.analysis.path import ControlPoint, PathResult
+
+
+@guarded
+def path(
+    file: File,
+    stage: Annotated[
+        list[str] | None,
+        typer.Option("--stage", "-s", help="Load factors at the end of a stage: dead=1,top=1 (repeatable, in order)."),
+    ] = None,
+    point: Annotated[str | None, typer.Option("--point", "-p", help="Control point: BODY,X,Y.")] = None,
+    along: Annotated[Literal["x", "y", "-x", "-y"], typer.Option("--along", help="Direction of its motion.")] = "x",
+    until: Annotated[
+        str | None, typer.Option("--until", help="Motion of the point that ends the last stage: 0.02 or '20 mm'.")
+    ] = None,
+    method: Annotated[
+        Literal["events", "steps"], typer.Option("--method", "-m", help="Exact, or in steps.")
+    ] = "events",
+    steps: Annotated[int, typer.Option("--steps", help="Steps of a stage that is walked in steps.")] = 20,
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for curve, events and last state.")] = None,
+    every: Annotated[bool, typer.Option("--all", help="List every event.")] = False,
+    json: Json = False,
+) -> int:
+    """Follow a load path from event to event: which joint opens, closes, slips or sticks at which load.
+
+    Without --stage, each load group of the file is a stage of its own, in the order of the file.
+
+    The exit code is 0 where the end was reached, 3 where the structure carries no more before it, 4 where the path was
+    lost.
+
+    Example: concio path wall.toml --stage dead=1 --stage live=5 --point c10-b05,2.0,2.5 --until "20 mm"
+    """
+    import concio
+    from concio.analysis.path import Stage, run_path
+    from concio.cli.path_lines import curve_point, path_facts, path_lines, write_path
+    from concio.errors import InputError
+    from concio.units import quantity
+
+    if out is not None:
+        check_directory(out)
+    assembly = concio.assemble(concio.load(file))
+    control = None if point is None else _control(point, along)
+    if control is None and until is not None:
+        msg = "--until is the motion of a control point, and there is none"
+        raise InputError(msg, where="--until", hint="add --point BODY,X,Y")
+    wanted = [factors_of(text.split(",")) for text in stage or ()] or [{group: 1.0} for group in assembly.groups]
+    stages = [Stage(f"{k}: {_words(factors)}", factors, steps=steps) for k, factors in enumerate(wanted, 1)]
+    if until is not None:
+        last = stages[-1]
+        stages[-1] = Stage(last.name, last.factors, control, quantity(until, "length", where="--until"), steps)
+    with progress_bar(shown=not json) as progress:
+        found = run_path(assembly, stages, method=method, progress=progress)
+    chosen = control or curve_point(found)
+    if out is not None:
+        with replaced_directory(out) as fresh:
+            write_path(found, chosen, fresh)
+    if json:
+        print_json(path_facts(found, chosen))
+    else:
+        for line in path_lines(found, chosen, every=every):
+            say(line)
+        if out is not None:
+            say(f"  written      {out}: summary.json, path.csv, events.csv, path.png, path.svg, end/")
+    return exit_code(found)
+
+
+def exit_code(found: PathResult) -> int:
+    """Return 0 where the end was reached, 3 where the structure carries no more, 4 where the path was lost."""
+    if found.complete:
+        return 0
+    return 3 if found.outcomes[-1].name in ("LIMIT", "MECHANISM") else 4
+
+
+def _words(factors: dict[str, float]) -> str:
+    return ", ".join(f"{group} = {value:g}" for group, value in factors.items())
+
+
+def _control(text: str, along: str) -> ControlPoint:
+    from concio.analysis.path import ControlPoint
+    from concio.errors import InputError
+    from concio.units import quantity
+
+    parts = text.rsplit(",", 2)
+    if len(parts) != 3:
+        msg = f"'{text}' is not a point of a body"
+        raise InputError(msg, where="--point", hint="write for example --point c03-b02,1.0,0.75")
+    x, y = (quantity(part.strip(), "length", where="--point") for part in parts[1:])
+    direction = {"x": (1.0, 0.0), "y": (0.0, 1.0), "-x": (-1.0, 0.0), "-y": (0.0, -1.0)}[along]
+    return ControlPoint(parts[0].strip(), (x, y), direction)
