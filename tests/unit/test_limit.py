@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from concio.errors import InputError
+from concio.lcp.collapse_state import certify_collapse, find_collapse_state
 from concio.lcp.limit import associated_limit, kinematic_bound, smallest_friction
 from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, wall
 
@@ -88,3 +90,31 @@ def test_smallest_friction_agrees_with_the_limit_multiplier():
     limit = associated_limit(a.problem(0.5, a.load(0, -1)), a.load(1, 0)).multiplier
     found = smallest_friction(a.problem(MU, a.load(limit, -1)))
     assert found.factor * MU == pytest.approx(0.5, abs=1e-7)
+
+
+@pytest.mark.parametrize(("mu", "wanted", "motion"), [(0.3, 0.3, [1, 0, 0]), (0.9, 0.4, [0.5, 0.2, -1.0])])
+def test_collapse_state_of_one_block(mu, wanted, motion):
+    """Sliding without dilatancy, or rocking about the toe."""
+    a = block_on_incline(0.4, 1.0, 0.0)
+    found = find_collapse_state(a.problem(mu, a.load(0, -1)), a.load(1, 0), iterations=5)
+    assert found is not None
+    assert found.certified
+    assert found.multiplier == pytest.approx(wanted, rel=1e-12)
+    assert found.velocity == pytest.approx(motion, abs=1e-9)
+
+
+def test_collapse_state_with_cohesion_and_tension():
+    a = block_on_incline(0.4, 1.0, 0.0)
+    sliding = a.problem(0.3, a.load(0, -1), cohesion=0.02)
+    assert find_collapse_state(sliding, a.load(1, 0), iterations=5).multiplier == pytest.approx(0.34, rel=1e-9)
+    rocking = a.problem(0.9, a.load(0, -1), cohesion=0.1, tension=0.1)
+    assert find_collapse_state(rocking, a.load(1, 0), iterations=5).multiplier == pytest.approx(0.48, rel=1e-9)
+
+
+def test_a_motion_that_is_no_collapse_is_not_certified():
+    a = block_on_incline(0.4, 1.0, 0.0)
+    p = a.problem(0.9, a.load(0, -1))
+    assert certify_collapse(p, a.load(1, 0), np.array([1.0, 0.0, 0.0]), 0) is None  # slides at 0.9, topples at 0.4
+    assert certify_collapse(p, a.load(1, 0), np.array([0.0, -1.0, 0.0]), 0) is None
+    with pytest.raises(InputError, match="caps"):
+        find_collapse_state(a.problem(0.9, a.load(0, -1), cap=2.0), a.load(1, 0))

@@ -141,8 +141,11 @@ def test_limit_of_rigid_and_elastic_blocks_agree():
     for r in found:
         low, high = r.bracket
         assert 0.5 * high < low <= high * (1 + 1e-9)
-        assert r.first_limit <= low
+        assert r.first_limit <= r.coulomb
+        assert r.collapse_state is not None
+        assert r.collapse_state.certified
         assert r.summary()["checked"]
+    assert rigid.collapse_state.multiplier == pytest.approx(elastic.collapse_state.multiplier, rel=1e-6)
     assert rigid.lent_compliance > 0
     assert elastic.lent_compliance == 0
 

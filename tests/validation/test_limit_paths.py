@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from concio.lcp.collapse_state import find_collapse_state
 from concio.lcp.limit import associated_limit
 from concio.lcp.path_record import Outcome
 from path_helpers import energy_error, least_dissipation, weight_then, worst_certificate
@@ -50,3 +51,18 @@ def test_coulomb_path_stays_below_and_is_repeatable(name):
     still = np.abs(found.direction.reshape(-1, 3)).max(axis=1) < 1e-9
     assert still.any()  # the lowest course or corner stays, the rest moves
     assert not still.all()
+
+
+@pytest.mark.parametrize("name", WALLS)
+def test_certified_collapse_states_lie_below_the_associated_multiplier(name):
+    """Found without stiffness or path; in wall 3 the path ends in the very state the search finds."""
+    a = wall(FERRIS_TIN_LOI[name])
+    problem, push = a.problem(MU, a.load(0, -1)), a.load(1, 0)
+    state = find_collapse_state(problem, push, iterations=25)
+    assert state is not None
+    assert state.certified
+    assert state.multiplier < associated_limit(problem, push).multiplier - 1e-3
+    found = pushover(name)[1]
+    assert state.multiplier <= found.peak * (1 + 1e-9)
+    if name == "wall 3":
+        assert state.multiplier == pytest.approx(found.peak, rel=1e-9)

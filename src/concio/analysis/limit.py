@@ -3,9 +3,9 @@
 The *associated multiplier* (:mod:`concio.lcp.limit`) bounds every collapse from above and needs no stiffness. The
 *path multiplier* is the largest load met on the exact quasi-static path (:mod:`concio.lcp.event_path`): own weight and
 whatever else is dead first, then the live load, controlled by the displacement it works on, so that local slips and
-falling branches are passed. It depends on stiffness and history, as friction does. Collapse of the real wall lies
-between the load at which the path under growing load first finds no way on and the associated bound; neither is passed
-off as the other.
+falling branches are passed. It depends on stiffness and history, as friction does. A third number needs neither: the
+multiplier of a certified Coulomb *collapse state* (:mod:`concio.lcp.collapse_state`), at which the wall can begin to
+move; there may be several. None is passed off as another.
 
 Rigid blocks on hard joints have no unique path. They are given joints of a small uniform compliance, tangential 2.5
 times the normal one; without initial gaps the multiplier does not depend on its size.
@@ -22,6 +22,7 @@ import numpy as np
 from concio.contact.assembly import Assembly, assemble
 from concio.contact.problem import ContactProblem
 from concio.errors import InputError, NoEquilibriumError
+from concio.lcp.collapse_state import CollapseState, find_collapse_state
 from concio.lcp.event_path import follow
 from concio.lcp.existence import find_mechanism
 from concio.lcp.limit import FrictionMargin, LimitLoad, associated_limit, smallest_friction
@@ -34,6 +35,9 @@ Array = np.ndarray
 
 SHEAR_TO_NORMAL = 2.5
 """Tangential over normal compliance lent to hard joints of rigid blocks: Poisson's ratio 0.25."""
+
+LARGEST_SEARCH = 1000
+"""Collapse states are searched for in problems of up to this number of pairs: some sixty linear programmes."""
 
 FAR = 50.0
 """The path is followed to this multiple of the displacement at its first limit point."""
@@ -50,6 +54,8 @@ class LimitResult:
         Upper bound with forces and mechanism.
     path : EventPath or None
         The Coulomb path under displacement control; None where it was not asked for or the bound is infinite.
+    collapse_state : CollapseState or None
+        Certified state in which the structure can begin to move under Coulomb friction, the least found.
     first_limit : float
         Multiplier at which the path under growing load first finds no way on; ``nan`` without a path.
     lent_compliance : float
@@ -59,6 +65,7 @@ class LimitResult:
     assembly: Assembly
     associated: LimitLoad
     path: EventPath | None
+    collapse_state: CollapseState | None
     first_limit: float
     lent_compliance: float
 
@@ -69,8 +76,11 @@ class LimitResult:
 
     @property
     def bracket(self) -> tuple[float, float]:
-        """(path multiplier, associated multiplier)."""
-        return self.coulomb, self.associated.multiplier
+        """(least Coulomb multiplier found, associated multiplier): path peak or collapse state, whichever is less."""
+        state = self.collapse_state.multiplier if self.collapse_state is not None else np.inf
+        path = self.coulomb if self.path is not None else np.inf
+        low = min(path, state)
+        return (low if np.isfinite(low) else float("nan")), self.associated.multiplier
 
     def mechanism(self) -> Array | None:
         """Velocity (N_all,) of the associated mechanism on all unknowns, largest entry 1; None where there is none."""
@@ -97,6 +107,7 @@ class LimitResult:
             "mechanism_violation": None if a.mechanism is None else a.mechanism.violation,
             "checked": a.checked,
             "coulomb_path_multiplier": None if self.path is None else self.coulomb,
+            "collapse_state_multiplier": None if self.collapse_state is None else self.collapse_state.multiplier,
             "coulomb_first_limit": None if self.path is None else self.first_limit,
             "path_outcome": None if self.path is None else self.path.outcome.name.lower(),
             "path_events": None if self.path is None else len(self.path.events),
@@ -119,7 +130,7 @@ def limit(
     live : str or sequence of str
         Load groups that are multiplied.
     path : bool
-        Whether the Coulomb path is followed too.
+        Whether the Coulomb path is followed and collapse states are searched for too.
     progress : callable, optional
 
     Raises
@@ -137,10 +148,12 @@ def limit(
         raise NoEquilibriumError(msg, hint="solve the model with the live load factor 0 and look at the mechanism")
     bound = associated_limit(dead, load)
     if not path or not np.isfinite(bound.multiplier):
-        return LimitResult(assembly, bound, None, float("nan"), 0.0)
+        return LimitResult(assembly, bound, None, None, float("nan"), 0.0)
     problem, lent = with_compliance(dead, load)
     first, found = coulomb_path(problem, load, progress=progress)
-    return LimitResult(assembly, bound, found, first, lent)
+    capped = bool(np.isfinite(problem.laws.cap).any())
+    state = None if capped or problem.pairs > LARGEST_SEARCH else find_collapse_state(dead, load)
+    return LimitResult(assembly, bound, found, state, first, lent)
 
 
 def friction_margin(model: Model | Assembly, live: str | Sequence[str] = "live", factor: float = 1.0) -> FrictionMargin:
