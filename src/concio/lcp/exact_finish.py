@@ -17,7 +17,7 @@ times; what then keeps flipping is returned as undecided, for pivoting.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -30,6 +30,9 @@ DELTA = 1e-6
 
 LOOSE = 1e-9
 """Stiffness of the springs that keep unknowns which nothing holds where they are, scaled units."""
+
+SETTLED = 1e-11
+"""Natural-map residual below which states are taken as settled."""
 
 EXACT = 1e-14
 """Relative residual at which refinement stops; it stops before where it no longer halves the residual."""
@@ -120,12 +123,12 @@ def read_states(s: Scaled, u: Array, t_n: Array, t_t: Array) -> States:
 
 
 def solve_states(
-    s: Scaled, states: States, u: Array, t_n: Array, t_t: Array, anchor: Array | None = None
+    s: Scaled, states: States, u: Array, t_n: Array, t_t: Array, anchor: Array | None = None, again: bool = False
 ) -> tuple[Array, Array, Array, float]:
     """Solve the linear equations of given states, starting refinement from (u, t_n, t_t).
 
     Unknowns are tied to ``anchor`` (N,) by springs of stiffness ``LOOSE``: what nothing holds stays there, and what is
-    held feels less than the equilibrium's rounding.
+    held feels less than the equilibrium's rounding. ``again`` reuses the factorisation of the call before.
 
     Returns
     -------
@@ -149,7 +152,9 @@ def solve_states(
     soft_t = np.where(stick, s.a_t + DELTA, 1.0)
     d_nn = np.where(hard, 1.0 / soft_n, 0.0)
     d_tt = np.where(stick, 1.0 / soft_t, 0.0)
-    s.factor.factorise(np.concatenate([d_nn, -d_nn * open_wide, d_nn * drag, d_tt - d_nn * open_wide * drag]), LOOSE)
+    if not again:
+        d_tn = d_nn * drag
+        s.factor.factorise(np.concatenate([d_nn, -d_nn * open_wide, d_tn, d_tt - d_tn * open_wide]), LOOSE)
     t_n = np.where(states.crushed, s.cap, np.where(closed, t_n, 0.0))
     t_t = np.where(stick, t_t, drag * t_n - sigma * s.cohesion) * closed
     anchor = u if anchor is None else anchor
@@ -175,6 +180,21 @@ def solve_states(
         dt_t = np.where(stick, t0 - d_tt * v_t, drag * dt_n)
         u, t_n, t_t = u + du, t_n + dt_n, t_t + dt_t
     return best
+
+
+def _least_norm(s: Scaled, found: Finished, anchor: Array) -> Finished:
+    """Return the same answer with the least-norm forces among those of its states, if these obey the joint laws.
+
+    Where pairs are redundant (corners) their forces are not unique. Refinement from zero forces ends at the least norm,
+    which depends on nothing but the structure; the displacements are the same.
+    """
+    zero = np.zeros(s.pairs)
+    u, t_n, t_t, _ = solve_states(s, found.states, found.u, zero, zero, anchor, again=True)
+    imbalance, laws = natural_residual(s, u, t_n, t_t)
+    error = max(imbalance, float(laws.max(initial=0.0)))
+    if error > max(found.error, SETTLED):
+        return found
+    return replace(found, u=u, t_n=t_n, t_t=t_t, error=error)
 
 
 def finish(s: Scaled, u: Array, t_n: Array, t_t: Array, rounds: int = 12, states: States | None = None) -> Finished:
@@ -211,7 +231,10 @@ def finish(s: Scaled, u: Array, t_n: Array, t_t: Array, rounds: int = 12, states
         )
         if best is None or error < best.error:
             best = Finished(u, t_n, t_t, states, error, solves, undecided)
-        if error < 1e-10 or new.key() in seen:
+        if error < SETTLED:
+            best = _least_norm(s, best, anchor)
+            break
+        if new.key() in seen:
             break
         states = new
     if best is None:

@@ -1,0 +1,134 @@
+"""The engine on walls and panels of growing size, against one sparse factorisation and against Lemke, in one run.
+
+    python benchmarks/wall_family.py [--large] [--huge] [--fast] [--lemke]
+
+Walls: running bond of dry elastic blocks 2:1, 2 x 2 elements, friction 0.6, own weight and a horizontal share alpha of
+it. Head joints are coupled at the inner nodes of a block's end, bed joints at every node. Panels: 0.2 x 0.1 m blocks,
+4 x 2 elements, between rigid walls on a full base, 10 kN/m2 on top.
+
+The yardstick is one SuperLU factorisation of K + C'C of the same problem with SciPy's best built-in ordering
+(``mmd``) and with nested dissection (``nd``): ratios to it do not depend on the machine.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as sla
+
+import concio
+from concio.contact.problem import ContactProblem
+from concio.lcp.methods import find
+from concio.lcp.scaled import scale
+
+WALLS = ((30, 14, 0.30), (30, 14, 0.40), (30, 14, 0.43), (30, 14, 0.44), (50, 40, 0.30), (50, 40, 0.34))
+
+
+def wall(units: int, courses: int, alpha: float) -> ContactProblem:
+    """Return a wall of the family: ``units`` blocks long, horizontal share ``alpha``."""
+    model = concio.running_bond_panel(
+        courses=courses,
+        blocks=units,
+        block_size=(1.0, 0.5),
+        thickness=1.0,
+        block=concio.Elastic(E=1e5, nu=0.15, unit_weight=20.0),
+        friction=0.6,
+        side_walls=False,
+        horizontal=alpha,
+        elements_per_block=(2, 2),
+    )
+    assembly = concio.assemble(model)
+    problem = assembly.problem()
+    pairs = assembly.pairs
+    level = pairs.point[:, 1] / 0.5
+    corner = (np.abs(pairs.normal[:, 0]) > 0.5) & (np.abs(level - np.round(level)) < 1e-6)
+    keep = ~corner
+    return replace(
+        problem,
+        C_n=problem.C_n[keep],
+        C_t=problem.C_t[keep],
+        gap=problem.gap[keep],
+        laws=problem.laws[keep],
+        slip_origin=problem.slip_origin[keep],
+    )
+
+
+def panel(courses: int, blocks: int, joint: float, friction: float) -> ContactProblem:
+    """Return a panel between rigid walls on a full base."""
+    model = concio.running_bond_panel(
+        courses=courses, blocks=blocks, joint=joint, friction=friction, top_pressure=10.0
+    )
+    return concio.assemble(model).problem()
+
+
+def timed(work: Callable[[], object]) -> float:
+    """Return the seconds of one call."""
+    begin = time.perf_counter()
+    work()
+    return time.perf_counter() - begin
+
+
+def yardsticks(problem: ContactProblem) -> tuple[float, float]:
+    """Return the seconds of one factorisation of K + C'C: SciPy's minimum degree, and nested dissection."""
+    scaled = scale(problem)
+    matrix = sp.csc_matrix(scaled.K + problem.C.T @ problem.C)
+    options = {"SymmetricMode": True}
+    mmd = timed(lambda: sla.splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.01, options=options))
+    one, zero = np.ones(problem.pairs), np.zeros(problem.pairs)
+    nd = timed(lambda: scaled.factor.factorise(np.concatenate([one, zero, zero, one])))
+    return mmd, nd
+
+
+def report(name: str, problem: ContactProblem, methods: list[tuple[str, dict[str, str]]]) -> None:
+    """Solve by each method and print a row."""
+    mmd, nd = yardsticks(problem)
+    for method, options in methods:
+        begin = time.perf_counter()
+        solution = find(method)(problem, **options)
+        seconds = time.perf_counter() - begin
+        label = method + "".join(f" {v}" for v in options.values())
+        print(
+            f"{name:28s}{problem.pairs:8d}{problem.unknowns:9d}  {label:24s}{solution.status.name:15s}"
+            f"{solution.certificate.worst:9.1e}{solution.iterations:6d}{solution.factorisations:6d}"
+            f"{seconds:9.2f}{mmd:8.3f}{nd:8.3f}{seconds / mmd:8.1f}{seconds / nd:8.1f}",
+            flush=True,
+        )
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--large", action="store_true", help="also 10,050 blocks and the 40 x 40 panels")
+    parser.add_argument("--huge", action="store_true", help="also 100,000 blocks (takes a quarter of an hour)")
+    parser.add_argument("--fast", action="store_true", help="also with the engine 'pardiso' (extra: fast)")
+    parser.add_argument("--lemke", action="store_true", help="also the pivoting methods on the small walls")
+    arguments = parser.parse_args()
+    engine: list[tuple[str, dict[str, str]]] = [("interior-point", {})]
+    if arguments.fast:
+        engine.append(("interior-point", {"engine": "pardiso"}))
+    heads = ("pairs", "unknowns", "method", "outcome", "worst", "iter", "fact", "s", "mmd s", "nd s", "/mmd", "/nd")
+    widths = (8, 9, -26, -15, 9, 6, 6, 9, 8, 8, 8, 8)
+    titles = zip(heads, widths, strict=True)
+    print(f"{'problem':28s}" + "".join(f"{h:>{w}s}" if w > 0 else f"  {h:{-w - 2}s}" for h, w in titles))
+    for units, courses, alpha in ((6, 7, 0.15), (10, 10, 0.15)) if arguments.lemke else ():
+        pivoting: list[tuple[str, dict[str, str]]] = [("sparse-lemke", {})]
+        report(f"wall {units} x {courses}, {alpha}", wall(units, courses, alpha), engine + pivoting)
+    for units, courses, alpha in WALLS:
+        report(f"wall {units} x {courses}, {alpha:.2f}", wall(units, courses, alpha), engine)
+    for courses, blocks, joint, mu in ((10, 10, 0.0, 1.0), (20, 20, 0.0, 1.0), (10, 10, 0.02, 1.0), (20, 20, 0.02, 0.6)):
+        report(f"panel {courses} x {blocks}, {joint:g}, {mu:g}", panel(courses, blocks, joint, mu), engine)
+    if arguments.large:
+        report("wall 100 x 100, 0.30", wall(100, 100, 0.30), engine)
+        report("panel 40 x 40 dry, 0.6", panel(40, 40, 0.0, 0.6), engine)
+        report("panel 40 x 40 mortar, 0.6", panel(40, 40, 0.02, 0.6), engine)
+    if arguments.huge:
+        report("wall 500 x 200, 0.20", wall(500, 200, 0.20), engine)
+
+
+if __name__ == "__main__":
+    main()
