@@ -46,28 +46,6 @@ test: $(VENV)/.installed-dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile || status=1; \
 	exit $$status
 
-docs: pyproject.toml | $(BIN)/python
-	$(PIP) install --quiet --editable '.[docs]'
-	touch $@ $(VENV)/.installed
-
-demo: $(VENV)/.installed
-	@echo "1. The paper's panel, hung between two walls: the arch carries everything into them."
-	@$(BIN)/concio run examples/ercolano_panel.toml --out demo/no-base
-	@echo
-	@echo "2. The same panel on a full base: the load goes straight down."
-	@$(BIN)/concio run examples/ercolano_panel_full_base.toml --out demo/full-base
-	@echo
-	@echo "Compare demo/no-base/figures/principal.png with demo/full-base/figures/principal.png."
-	@echo "The reports open in a browser: $(BIN)/concio view demo/no-base"
-
-lint: $(VENV)/.installed-dev
-	$(BIN)/ruff check .
-	$(BIN)/ruff format --check src tests/unit examples
-	$(BIN)/mypy
-
-test: lint
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile
-
 docs: $(VENV)/.installed-docs
 	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html
 
