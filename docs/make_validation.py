@@ -1,0 +1,113 @@
+"""Run the validation cases and write the validation book: one table of all numbers, a section and a picture for each case.
+
+    python docs/make_validation.py            writes docs/validation/book.md and docs/validation/*.svg
+
+Every number in the book comes from here; the same rows are asserted by ``tests/validation``.
+"""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import sys
+from pathlib import Path
+from types import ModuleType
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parent / "tests" / "validation")]
+
+from validation_cases import CASES  # noqa: E402
+from validation_cases.row import Row  # noqa: E402
+
+HEAD = """# The validation book
+
+Written by `docs/make_validation.py`; the same rows are asserted by `tests/validation`. *Difference* is relative to the
+expected value unless marked "abs". *Allowed* is the tolerance of the test, with its reason in the section of the case.
+Rows marked *experiment* compare a model with a laboratory test: they are discussed, not asserted.
+
+"""
+
+
+def number(value: float) -> str:
+    """A number as the book prints it."""
+    return f"{value:.6g}"
+
+
+def difference(row: Row) -> str:
+    """Difference, with its kind."""
+    size = abs(row.difference)
+    text = "0" if size == 0 else f"{row.difference:+.1e}" if size < 1e-3 else f"{100 * row.difference:+.2f} %"
+    return text if row.relative else f"{row.difference:+.1e} abs" if size else "0 abs"
+
+
+def allowed(row: Row) -> str:
+    """Tolerance, or the word experiment."""
+    if row.check == "experiment":
+        return "experiment"
+    return "exact" if row.tolerance == 0 else f"{row.tolerance:.0e}"
+
+
+def table(rows: list[Row]) -> str:
+    """Markdown table of rows."""
+    lines = ["| | expected | computed | difference | allowed | checked by |", "|---|---|---|---|---|---|"]
+    for r in rows:
+        unit = "" if r.unit == "-" else f" {r.unit}"
+        lines.append(
+            f"| {r.name} | {number(r.expected)}{unit} | {number(r.computed)}{unit} | {difference(r)} | {allowed(r)} | {r.check} |"
+        )
+    return "\n".join(lines) + "\n"
+
+
+def reasons(rows: list[Row]) -> str:
+    """The tolerances' reasons, each once."""
+    found: dict[str, str] = {}
+    for r in rows:
+        if r.check != "experiment":
+            found.setdefault(r.reason, allowed(r))
+    return "\n".join(f"* {size}: {reason}." for reason, size in found.items()) + "\n"
+
+
+def figure(name: str, module: ModuleType) -> str:
+    """Draw the case's picture where it has one; return its markdown."""
+    if not hasattr(module, "figure"):
+        return ""
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    mpl.rcParams["svg.hashsalt"] = name
+    import matplotlib.pyplot as plt
+
+    picture, axes = plt.subplots(figsize=(5.5, 3.6), layout="constrained")
+    module.figure(axes)
+    picture.savefig(HERE / "validation" / f"{name}.svg", metadata={"Date": None})
+    plt.close(picture)
+    return f"\n![{CASES[name]}]({name}.svg)\n"
+
+
+def section(name: str, title: str) -> tuple[str, list[Row]]:
+    """Run one case; return its section and its rows."""
+    module = importlib.import_module(f"validation_cases.{name}")
+    rows = module.rows()
+    text = inspect.cleandoc(module.__doc__ or "").replace(".. math::", "")
+    body = f"## {title}\n\n```text\n{text}\n```\n\nSource: {module.SOURCE}\n\n{table(rows)}\nTolerances:\n\n{reasons(rows)}"
+    return body + figure(name, module), rows
+
+
+def main() -> int:
+    """Write the book; return 1 where a row is outside its tolerance."""
+    parts, wrong, count = [], [], 0
+    for name, title in CASES.items():
+        text, rows = section(name, title)
+        parts.append(text)
+        count += len(rows)
+        wrong += [f"{name}: {r.name}" for r in rows if not r.passes and r.check != "experiment"]
+        print(f"{name}: {len(rows)} rows")
+    summary = f"{count} rows in {len(CASES)} cases; {len(wrong)} outside their tolerance.\n\n"
+    (HERE / "validation" / "book.md").write_text(HEAD + summary + "\n".join(parts), encoding="utf-8")
+    for line in wrong:
+        print("outside its tolerance:", line, file=sys.stderr)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

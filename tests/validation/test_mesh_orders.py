@@ -1,0 +1,10 @@
+"""Orders of convergence of displacement, contact pressure and settlement."""
+
+from __future__ import annotations
+
+from validation_cases import mesh_orders
+from validation_cases.row import check
+
+
+def test_rows():
+    check(mesh_orders.rows())

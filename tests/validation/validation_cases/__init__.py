@@ -1,0 +1,26 @@
+"""Validation cases: each module computes its rows once; tests check them and the validation book prints them.
+
+A module has ``SOURCE`` (citation), ``rows()`` (a list of :class:`validation_cases.row.Row`) and, where a picture helps,
+``figure(axes)``. Results are cached inside a module, so that a test and the book do not compute them twice.
+"""
+
+from __future__ import annotations
+
+CASES: dict[str, str] = {
+    "patch": "Uniform states and bending through joints",
+    "ercolano_panel": "Ercolano's panel",
+    "ferris_tin_loi": "Walls of Ferris and Tin-Loi",
+    "semicircular_arch": "Least thickness of a semicircular arch",
+    "flat_arch": "Flat arch with spreading abutments",
+    "block_on_base": "Block that slides or topples",
+    "stack_between_walls": "Wall friction in a stack between walls",
+    "strip_on_base": "Elastic strip pulled along a base",
+    "pillar": "Pillar without tension under an eccentric load",
+    "hertz": "Cylinder on a flat base",
+    "flat_punch": "Rigid flat punch",
+    "one_node": "One node, large friction",
+    "cantilever_wall": "Cantilever walls",
+    "granite_walls": "Dry granite walls in shear and compression",
+    "mesh_orders": "Orders of convergence",
+}
+"""Name of each module and the title of its section in the validation book, in the book's order."""

@@ -1,0 +1,62 @@
+"""One line of the validation table."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Row:
+    """A number that was expected from elsewhere and the one concio computed.
+
+    Parameters
+    ----------
+    name : str
+        Unique in its case; says what the number is.
+    expected, computed : float
+    tolerance : float
+        Largest difference allowed: relative to ``expected``, or absolute where ``absolute`` is true or ``expected`` is
+        zero.
+    reason : str
+        Why the tolerance is what it is.
+    unit : str
+    absolute : bool
+    check : str
+        "closed form", "published", "second method" or "experiment"; an experiment is compared, not asserted.
+    """
+
+    name: str
+    expected: float
+    computed: float
+    tolerance: float
+    reason: str
+    unit: str = "-"
+    absolute: bool = False
+    check: str = "closed form"
+
+    @property
+    def difference(self) -> float:
+        """Computed less expected, relative to expected unless absolute."""
+        gap = self.computed - self.expected
+        return gap if self.absolute or self.expected == 0 else gap / abs(self.expected)
+
+    @property
+    def relative(self) -> bool:
+        """True where the difference is a share of the expected value."""
+        return not (self.absolute or self.expected == 0)
+
+    @property
+    def passes(self) -> bool:
+        """True within the tolerance (false for nan)."""
+        return abs(self.difference) <= self.tolerance
+
+
+def check(rows: list[Row]) -> None:
+    """Assert that every row is within its tolerance; experiments are compared, not asserted."""
+    wrong = [
+        f"{r.name}: {r.computed:.9g} instead of {r.expected:.9g}, difference {r.difference:.2e}, allowed {r.tolerance:.0e} ({r.reason})"
+        for r in rows
+        if not r.passes and r.check != "experiment"
+    ]
+    assert rows
+    assert not wrong, "\n".join(wrong)
