@@ -96,7 +96,7 @@ def draw(rng: np.random.Generator, family: str) -> tuple[Assembly, np.ndarray, d
 
 
 def proven(problem: concio.contact.problem.ContactProblem, solution: Solution) -> bool:
-    """True when the verdict's proof holds, recomputed from the arrays of the problem."""
+    """Return whether the verdict's proof holds, recomputed from the arrays of the problem."""
     if solution.status is Status.SOLVED:
         s = solution
         return certify(problem, s.displacement, s.normal_force, s.friction_force).worst <= 1e-9

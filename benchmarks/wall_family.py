@@ -27,6 +27,7 @@ from concio.lcp.methods import find
 from concio.lcp.scaled import scale
 
 WALLS = ((30, 14, 0.30), (30, 14, 0.40), (30, 14, 0.43), (30, 14, 0.44), (50, 40, 0.30), (50, 40, 0.34))
+PANELS = ((10, 10, 0.0, 1.0), (20, 20, 0.0, 1.0), (10, 10, 0.02, 1.0), (20, 20, 0.02, 0.6))
 
 
 def wall(units: int, courses: int, alpha: float) -> ContactProblem:
@@ -120,7 +121,7 @@ def main() -> None:
         report(f"wall {units} x {courses}, {alpha}", wall(units, courses, alpha), engine + pivoting)
     for units, courses, alpha in WALLS:
         report(f"wall {units} x {courses}, {alpha:.2f}", wall(units, courses, alpha), engine)
-    for courses, blocks, joint, mu in ((10, 10, 0.0, 1.0), (20, 20, 0.0, 1.0), (10, 10, 0.02, 1.0), (20, 20, 0.02, 0.6)):
+    for courses, blocks, joint, mu in PANELS:
         report(f"panel {courses} x {blocks}, {joint:g}, {mu:g}", panel(courses, blocks, joint, mu), engine)
     if arguments.large:
         report("wall 100 x 100, 0.30", wall(100, 100, 0.30), engine)

@@ -2,8 +2,8 @@
 
 The order is fixed, so that the same problem always goes the same way:
 
-1. interior point with exact finish, from the usual start and from one ten times further out (jammed structures want it);
-   where the finish leaves a few pairs undecided, pivoting from its states settles them (crossover);
+1. interior point with exact finish, from the usual start and from one ten times further out (jammed structures want
+   it); where the finish leaves a few pairs undecided, pivoting from its states settles them (crossover);
 2. a linear programme: either a mechanism, rechecked, proves that there is no equilibrium, or there are statically
    admissible forces; where no body has to move under them (rigid blocks), they are the answer;
 3. interior point from further out still, then the dilatancy homotopy;

@@ -105,7 +105,7 @@ class Run:
         return self.close_in(z, f"interior point from {start:g}", 0.0, most)
 
     def close_in(self, z: Iterate, stage: str, theta: float = 0.0, most: int = 80) -> Finished | None:
-        """Iterate to ever smaller targets and try the exact finish at each, until it succeeds or no progress is made."""
+        """Iterate to ever smaller targets, trying the exact finish at each, until it succeeds or nothing moves."""
         found = None
         for target in TARGETS:
             outcome = self.engine.run(z, theta=theta, target=target, most=most, watch=self.watch(stage))

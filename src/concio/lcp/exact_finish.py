@@ -8,8 +8,8 @@ With a state for every pair (open, stick, slip either way; crushed) the equation
 
 with the closed pairs c, friction of slipping pairs expressed by their normal force. A compliance ``DELTA`` added to the
 closed pairs gives a matrix of the engine's pattern, K + C'DC, factorised with the ordering already known; iterative
-refinement against the original equations takes it out again. Redundant pairs (corners) and loose bodies do no harm: their
-equations are consistent, and refinement converges to the answer nearest to where it began.
+refinement against the original equations takes it out again. Redundant pairs (corners) and loose bodies do no harm:
+their equations are consistent, and refinement converges to the answer nearest to where it began.
 
 If the signs of the answer agree with the states, it is exact. If not, states are updated (primal-dual active set) a few
 times; what then keeps flipping is returned as undecided, for pivoting.

@@ -2,8 +2,8 @@ r"""Dilatancy homotopy: from associated flow, which is convex, to Coulomb fricti
 
 With the dilatancy :math:`d + \theta(\mu - d)` the problem at theta = 1 is a convex programme, solvable whenever forces
 within the cones balance the loads. The walk keeps a point near the central path at the product ``LEVEL`` and lowers
-theta in steps that grow while they succeed; from theta = 0 the interior point goes down to a solution. A turning point in
-theta (the path bends back) stops the walk; the caller then tries another path.
+theta in steps that grow while they succeed; from theta = 0 the interior point goes down to a solution. A turning point
+in theta (the path bends back) stops the walk; the caller then tries another path.
 """
 
 from __future__ import annotations

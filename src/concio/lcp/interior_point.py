@@ -10,8 +10,8 @@ s- = c + mu t_n - t_t, and the slip parts y+ and y-, all of equations (5), (16),
     y^+ - y^- &= C_t u - s + a_t t_t, &
     t_n y_n &= s^+ y^+ = s^- y^- = q\,p = \tau \to 0, \qquad q = N - t_n .
 
-Newton's equations of a pair are a 2 x 2 system; eliminated, they leave :math:`(K + C^T D C)\,\delta u = r`, sparse and of
-one pattern, regular although K is singular. Steps follow Mehrotra's predictor and corrector. The dilatancy used is
+Newton's equations of a pair are a 2 x 2 system; eliminated, they leave :math:`(K + C^T D C)\,\delta u = r`, sparse and
+of one pattern, regular although K is singular. Steps follow Mehrotra's predictor and corrector. The dilatancy used is
 :math:`\bar d = d + \theta(\mu - d)`: theta = 0 is the problem itself, theta = 1 associated flow, which is convex;
 :mod:`concio.lcp.homotopy` walks from one to the other.
 

@@ -1,8 +1,8 @@
 r"""The plane problem in units of its own, with what the engine factorises again and again.
 
 Lengths and forces are divided by ``U`` and ``F`` so that a typical pair carries one and a typical stiffness is one;
-``F`` is measured on the glued structure (every pair held by two-sided springs of the typical stiffness), which costs one
-factorisation. Strengths are shifted so that every pair reads ``t_n' = t_n + T >= 0``, ``|t_t| <= c' + mu t_n'``.
+``F`` is measured on the glued structure (every pair held by two-sided springs of the typical stiffness), which costs
+one factorisation. Strengths are shifted so that every pair reads ``t_n' = t_n + T >= 0``, ``|t_t| <= c' + mu t_n'``.
 """
 
 from __future__ import annotations

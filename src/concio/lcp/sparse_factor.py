@@ -121,7 +121,8 @@ class PatternFactor:
         matrix = sp.csc_matrix((data, self._minor, self._indptr), shape=shape)
         spec = "MMD_AT_PLUS_A" if self.ordering == "minimum degree" else "NATURAL"
         try:
-            self._lu = sla.splu(matrix, permc_spec=spec, diag_pivot_thresh=0.01, options={"SymmetricMode": True})
+            splu: Any = sla.splu
+            self._lu = splu(matrix, permc_spec=spec, diag_pivot_thresh=0.01, options={"SymmetricMode": True})
         except RuntimeError as error:
             raise SingularMatrixError(str(error)) from None
         except MemoryError:
