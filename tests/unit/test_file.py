@@ -18,9 +18,11 @@ from hypothesis import strategies as st
 
 import concio
 from concio.errors import GeometryError, InputError
+from concio.fem.elements import FAMILIES
 from concio.model.block_table import write_blocks
 from concio.model.file import LARGEST_FILE
 from concio.model.file_generators import KINDS, file_table, hints_of, json_schema
+from concio.model.file_tables import Element
 from concio.model.generators import GENERATORS
 
 BLOCK = """
@@ -235,6 +237,22 @@ def test_units_of_the_file_reach_nested_tables() -> None:
     )
 
 
+def test_a_bond_of_the_files_own() -> None:
+    text = "[wall]\nlength = 2\nheight = 0.5\nblock_size = [0.5, 0.25]\nbond = "
+    own = concio.loads(text + "[[1.0], { unit = [1.0], left = [0.5], right = [0.5] }]")
+    assert_same_outlines(own, concio.loads(text + "'running'"))
+    with pytest.raises(InputError, match=r"\[wall\], bond, 1, 2: 'x' is not a number"):
+        concio.loads(text + "[[1.0, 'x']]")
+    with pytest.raises(InputError, match=r"bond: 3 must be a text"):
+        concio.loads(text + "3")
+
+
+def assert_same_outlines(a: concio.Model, b: concio.Model) -> None:
+    assert [p.name for p in a.bodies] == [q.name for q in b.bodies]
+    for p, q in zip(a.bodies, b.bodies, strict=True):
+        assert p.outline == pytest.approx(q.outline, abs=1e-12)
+
+
 def test_a_generator_with_further_parts() -> None:
     text = """
     [arch]
@@ -303,6 +321,7 @@ WRONG = {
     "a word for true": ("[panel]\nside_walls = 'yes'", "[panel], side_walls: 'yes' must be true or false"),
     "not a choice": ("[panel]\nbase = 'half'", "[panel], base: 'half' is not one of 'full', 'bearings', 'none'"),
     "one number too few": ("[panel]\nblock_size = [0.2]", "[panel], block_size: value 2 is missing"),
+    "no size": ("[arch]\nspan=1e-200\nring=1\nvoussoirs=5", "[arch], span: 1e-200 m is no size of a structure"),
     "key left out": ("[arch]\nspan = 3", "[arch]: 'ring' is missing"),
     "two generators": ("[panel]\n[arch]\nspan=3\nring=0.3\nvoussoirs=7", "more than one of [panel], [arch]"),
     "no blocks": ("[joints.a]\nfriction = 1", "the file describes no blocks (add [[blocks]], blocks_file"),
@@ -393,6 +412,10 @@ def test_every_argument_with_a_unit_has_a_kind(name: str) -> None:
 def test_every_argument_is_a_key(name: str) -> None:
     table = file_table().model_fields[name].annotation
     assert set(table.model_fields) == set(hints_of(GENERATORS[name]))
+
+
+def test_the_elements_a_file_may_name_are_those_there_are() -> None:
+    assert set(get_args(Element)) == set(FAMILIES)
 
 
 TEMPLATES = sorted(p.name for p in files("concio.model").joinpath("templates").iterdir())

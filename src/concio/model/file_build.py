@@ -15,10 +15,12 @@ import numpy as np
 
 from concio.errors import GeometryError, InputError
 from concio.model.block_table import read_blocks
+from concio.model.bonds import Course
 from concio.model.drawing import model_from_dxf
 from concio.model.file_errors import closest, placed
 from concio.model.file_tables import (
     BlockTable,
+    CourseTable,
     FileTable,
     JointTable,
     LoadTable,
@@ -152,6 +154,8 @@ def _argument(value: Any, table: str, key: str, materials: Materials, laws: Laws
         return _material(value, f"[{table}.{key}]")
     if isinstance(value, JointTable):
         return _law(value, f"[{table}.{key}]")
+    if isinstance(value, CourseTable):
+        return Course(tuple(value.unit), tuple(value.left), tuple(value.right), value.height)
     if isinstance(value, Table):
         return {name: _argument(getattr(value, name), table, "", materials, laws) for name in value.model_fields_set}
     if isinstance(value, list):

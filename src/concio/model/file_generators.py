@@ -16,8 +16,8 @@ from typing import Any, Literal, Union, Unpack, get_args, get_origin, get_type_h
 from pydantic import Field, StrictBool, StrictInt, StrictStr, create_model
 
 from concio.model.arguments import Common
-from concio.model.file_tables import FileTable, Friction, Material, Point, Table
-from concio.model.file_values import TYPES
+from concio.model.file_tables import Bond, Element, FileTable, Friction, Material, Table
+from concio.model.file_values import TYPES, Number, Size
 from concio.model.generators import GENERATORS
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.openings import Opening
@@ -56,6 +56,8 @@ def hints_of(function: Callable[..., Any]) -> dict[str, tuple[Any, Any]]:
 def field_type(name: str, hint: Any) -> Any:
     """Return the type of a key of a file from the annotation of the argument it stands for."""
     parts = [p for p in _parts(hint) if p is not NoneType]
+    if name == "element":
+        return Element
     if JointLaw in parts:
         return Friction
     if Elastic in parts or Rigid in parts:
@@ -65,7 +67,7 @@ def field_type(name: str, hint: Any) -> Any:
     if all(get_origin(p) is Literal for p in parts):
         return Literal[tuple(word for p in parts for word in get_args(p))]
     if name in ("block_size", "at"):
-        return Point
+        return tuple[Size, Size]
     if name == "elements_per_block":
         return tuple[StrictInt, StrictInt]
     if any(p is float for p in parts):
@@ -73,8 +75,8 @@ def field_type(name: str, hint: Any) -> Any:
     if name in ("openings", "panels"):
         return list[_table_of(Opening if name == "openings" else Panel)]  # type: ignore[misc]
     if name == "bond":
-        return Any
-    return list[Any]
+        return Bond
+    return list[list[Number]]
 
 
 def _parts(hint: Any) -> tuple[Any, ...]:

@@ -32,6 +32,7 @@ from concio.model.file_values import (
 )
 
 Point = tuple[Length, Length]
+Element = Literal["Q4", "Q4I", "Q8", "Q9", "T3", "T6"]
 Name = Annotated[StrictStr, Field(min_length=1)]
 
 LOAD_KINDS: dict[str, tuple[str, int]] = {
@@ -97,6 +98,33 @@ Material = Annotated[
     Annotated[MaterialTable, Tag("<table>")] | Annotated[StrictStr, Tag("<name>")], Discriminator(_material_branch)
 ]
 """A table, or the name of a table in ``[materials]``."""
+
+
+class CourseTable(Table):
+    """A course of a bond in block lengths; see :class:`concio.model.bonds.Course`."""
+
+    unit: list[Number]
+    left: list[Number] = Field(default_factory=list)
+    right: list[Number] = Field(default_factory=list)
+    height: Number = 1.0
+
+
+def _bond_branch(value: Any) -> str:
+    return "<list>" if isinstance(value, list | tuple) else "<name>"
+
+
+def _course_branch(value: Any) -> str:
+    return "<table>" if isinstance(value, dict | Table) else "<list>"
+
+
+Course = Annotated[
+    Annotated[CourseTable, Tag("<table>")] | Annotated[list[Number], Tag("<list>")], Discriminator(_course_branch)
+]
+"""A table, or the lengths that repeat from the left end on."""
+Bond = Annotated[
+    Annotated[StrictStr, Tag("<name>")] | Annotated[list[Course], Tag("<list>")], Discriminator(_bond_branch)
+]
+"""The name of a bond, or courses of the file's own from below."""
 
 
 class RuleTable(Table):
@@ -182,7 +210,7 @@ class AnalysisTable(Table):
     """How the model is meshed and how joints are found; see :class:`concio.model.model.Model`."""
 
     plane: Literal["stress", "strain"] = "stress"
-    element: Literal["Q4", "Q4I", "Q8", "Q9", "T3", "T6"] = "Q4"
+    element: Element = "Q4"
     mesh_size: Length | None = None
     refinement: StrictInt = 1
     gap_tolerance: Length | None = None

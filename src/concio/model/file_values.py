@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
+from pydantic import AfterValidator, BeforeValidator, ValidationInfo, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from concio.errors import InputError
@@ -101,13 +101,26 @@ JointStiffness = Annotated[
 ]
 Stiffness = Annotated[float, BeforeValidator(_converter("stiffness")), WithJsonSchema(_schema("stiffness"))]
 
+SMALLEST, LARGEST = 1e-9, 1e7
+"""Sizes of a structure lie between these, or are zero [m]."""
+
+
+def _size(value: float) -> float:
+    if value != 0 and not (SMALLEST <= abs(value) <= LARGEST):
+        raise _fault(f"{value:g} m is no size of a structure", f"sizes lie between {SMALLEST:g} and {LARGEST:g} m")  # noqa: EM102
+    return value
+
+
+Size = Annotated[Length, AfterValidator(_size)]
+"""A length that a generator works with: coordinates of outlines may hold rounding errors, sizes may not."""
+
 TYPES: dict[str, Any] = {
     "number": Number,
-    "length": Length,
+    "length": Size,
     "force": Force,
     "stress": Stress,
     "unit weight": UnitWeight,
     "joint stiffness": JointStiffness,
     "stiffness": Stiffness,
 }
-"""Type of each kind of quantity in the tables of a file."""
+"""Type of each kind of quantity in the tables of generators."""
