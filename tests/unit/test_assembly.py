@@ -1,0 +1,108 @@
+"""From a model to its problem: load factors, imposed movements, errors of whole models."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from concio.contact.assembly import assemble, default_tolerance
+from concio.errors import GeometryError, InputError
+from concio.model.model import Body, Load, Support
+from models import box, model_of, on_ground, weight
+
+STONE = {"kind": "rigid", "material": "stone"}
+
+
+def two_groups():
+    return on_ground(
+        box("a", 0, 1, 0, 1, mesh_size=0.5), box("b", 0, 1, 1, 2, **STONE),
+        loads=(weight(), Load("point", (5.0, 0.0), bodies=("b",), at=(0.0, 2.0), group="live")),
+        supports=(Support("sink", "ground", displacement=(0.0, -0.01)),),
+    )  # fmt: skip
+
+
+def test_load_factors_scale_groups():
+    assembly = assemble(two_groups())
+    assert assembly.groups == ("dead", "live", "settlement")
+    whole = assembly.problem()
+    dead, live = assembly.problem({"live": 0.0}), assembly.problem({"dead": 0.0})
+    np.testing.assert_allclose(dead.f + live.f, whole.f)
+    np.testing.assert_allclose(assembly.problem({"dead": 2.0, "live": -3.0}).f, 2 * dead.f - 3 * live.f)
+    half = assembly.problem({"settlement": 0.5})
+    np.testing.assert_allclose(half.gap, whole.gap / 2)
+    base = whole.gap > 1e-6
+    np.testing.assert_allclose(whole.gap[base], 0.01)  # the ground sank away from the block
+    assert base.sum() == 3
+    with pytest.raises(InputError, match=r"no load group 'snow'.*dead, live, settlement"):
+        assembly.problem({"snow": 1.0})
+
+
+def test_problem_is_consistent():
+    assembly = assemble(two_groups())
+    p = assembly.problem()
+    assert p.unknowns == 18 + 3
+    assert p.bodies.tolist() == [0, 0, 18, 21]
+    assert (p.K != p.K.T).nnz == 0
+    assert abs(p.K @ p.R).max() < 1e-9 * abs(p.K).max()
+    assert p.rigid_motions == 6
+    assert p.slip_origin.shape == (p.pairs, 1)
+    np.testing.assert_allclose(p.f[18:20], [5.0, -20.0])
+
+
+def test_refused_models():
+    with pytest.raises(InputError, match="nothing holds"):
+        assemble(model_of(box("a", 0, 1, 0, 1)))
+    with pytest.raises(InputError, match="every body is fixed"):
+        assemble(model_of(box("a", 0, 1, 0, 1, kind="fixed")))
+    with pytest.raises(InputError, match="no two bodies touch"):
+        assemble(on_ground(box("a", 0, 1, 0.5, 1)))
+    with pytest.raises(GeometryError, match=r"'a'.*'b'.*and 1 more"):
+        assemble(on_ground(box("a", 0, 1, 0, 1), box("b", 0.9, 2, 0, 1), box("c", 1.9, 3, 0, 1)))
+
+
+def test_tolerance_follows_the_size_and_not_the_place():
+    model = on_ground(box("a", 0, 1, 0, 1))
+    assert default_tolerance(model) == pytest.approx(1e-5)
+    far = replace(model, bodies=tuple(replace(b, outline=b.outline + 1e4) for b in model.bodies))
+    assert default_tolerance(far) == pytest.approx(1e-5)
+    assert default_tolerance(replace(model, gap_tolerance=1e-3)) == 1e-3
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"outline": np.array([(0, 0), (1, 1), (3, 3.0)])}, "no area"),
+        ({"outline": np.array([(0, 0), (1, 0)])}, "2 different vertices"),
+        ({"outline": np.array([0, 1, 2.0])}, "shape"),
+        ({"outline": np.array([(0, 0), (1, 0), (0, np.nan)])}, "not finite"),
+        ({"thickness": 0.0}, "thickness"),
+        ({"kind": "soft"}, "kind 'soft'"),
+    ],
+)
+def test_refused_bodies(changes, message):
+    with pytest.raises(InputError, match=rf"block 'b'.*{message}"):
+        Body(**{"name": "b", "outline": np.array([(0, 0), (1, 0), (0, 1.0)]), **changes})
+
+
+def test_outlines_are_kept_counter_clockwise_and_read_only():
+    body = Body("b", np.array([(0, 0), (0, 2), (3, 2), (3, 0), (0, 0.0)]))
+    assert len(body.outline) == 4
+    assert body.area == pytest.approx(6.0)
+    np.testing.assert_allclose(body.centroid, [1.5, 1.0])
+    with pytest.raises(ValueError, match="read-only"):
+        body.outline[0, 0] = 1.0
+
+
+def test_names_and_materials_of_a_model():
+    with pytest.raises(InputError, match="two bodies are called 'a'"):
+        on_ground(box("a", 0, 1, 0, 1), box("a", 1, 2, 0, 1))
+    with pytest.raises(InputError, match=r"material 'oak' is not defined.*block, stone"):
+        on_ground(box("a", 0, 1, 0, 1, material="oak"))
+    with pytest.raises(InputError, match="'rigid' has the material 'block'"):
+        on_ground(box("a", 0, 1, 0, 1, kind="rigid"))
+    with pytest.raises(InputError, match="'elastic' has the material 'stone'"):
+        on_ground(box("a", 0, 1, 0, 1, material="stone"))
+    with pytest.raises(InputError, match="no body called 'z'"):
+        on_ground(box("a", 0, 1, 0, 1)).body("z")
