@@ -29,6 +29,12 @@ def cold_states(system: PairSystem) -> tuple[Array, Array]:
     return normal, np.where(system.frictionless, Tangential.PLUS, Tangential.STICK)
 
 
+def open_states(system: PairSystem) -> tuple[Array, Array]:
+    """Return the states of blocks apart, each held by the ground (see ``ground`` of :class:`PairSystem`)."""
+    free = np.arange(system.m) < system.m - system.ground
+    return np.full(system.m, Normal.OPEN), np.where(free, Tangential.PLUS, Tangential.STICK)
+
+
 def named_states(system: PairSystem, states: Array, start: tuple[Array, Array, Array] | None) -> tuple[Array, Array]:
     """Return normal and tangential states from codes (:class:`~concio.lcp.solution.PairState`) and an answer near."""
     states = np.asarray(states)
@@ -53,9 +59,29 @@ def named_states(system: PairSystem, states: Array, start: tuple[Array, Array, A
 
 
 def cover_states(
-    system: PairSystem, normal: Array, tangential: Array, *, base: float = BASE, seed: int = 0, swelling: float = 0.0
+    system: PairSystem,
+    normal: Array,
+    tangential: Array,
+    *,
+    base: float = BASE,
+    seed: int = 0,
+    swelling: float = 0.0,
+    glue: float = 0.0,
 ) -> tuple[Array, Array]:
     """Set the cover of ``system`` for these states, and return them (open pairs turned to the side they slide to).
+
+    Parameters
+    ----------
+    system : PairSystem
+    normal, tangential : (m,) integer arrays
+    base : float
+        Least cover of a pair, in units of the typical force and length.
+    seed : int
+        Of the random factor of each pair.
+    swelling : float
+        Approach forced on closed pairs at z0 = 1, in units of the problem's own length.
+    glue : float
+        Cohesion given to pairs with friction at z0 = 1, in multiples of the base.
 
     Raises
     ------
@@ -66,7 +92,7 @@ def cover_states(
     system.cover = Cover.none(m)
     v = state_solution(system, normal, tangential, swelling=swelling)
     y_t = system.slacks(v, SIGN[tangential])["y_t"]
-    loose = (normal == Normal.OPEN) & system.weak & ~system.frictionless
+    loose = (normal == Normal.OPEN) & system.weak & ~system.frictionless & (tangential != Tangential.STICK)
     side = np.where(y_t < 0, Tangential.MINUS, Tangential.PLUS)
     tangential = np.where(loose, side, tangential)
     value = system.slacks(v, SIGN[tangential])
@@ -74,7 +100,8 @@ def cover_states(
     closed, open_ = normal == Normal.CLOSED, normal == Normal.OPEN
     sign = SIGN[tangential]
     stick = tangential == Tangential.STICK
-    slides = ~stick & ~system.frictionless & ~(open_ & system.weak & (system.dilatancy == 0.0))
+    weak = (system.cohesion == 0.0) & (glue == 0.0)
+    slides = ~stick & ~system.frictionless & ~(open_ & weak & (system.dilatancy == 0.0))
     t = v[system.n : -1].reshape(-1, 2)
     p, r, mu = t[:, 0], t[:, 1], system.mu
     rough = closed & stick & (mu > 0)
@@ -82,9 +109,10 @@ def cover_states(
     lean = np.where(mu > 0, (np.abs(r) - system.cohesion) / np.where(mu > 0, mu, 1.0) - p, 0.0)
     need = np.where(rough, np.maximum(lean, -p), -p)
     P = np.where(closed, least + np.maximum(need, 0.0), 0.0)
-    Q = np.where(closed & ~stick & ~system.frictionless, -sign * mu * P, 0.0)  # slipping: the row does not change
     bound = stick & ~rough & ~system.frictionless  # strength that does not grow with p, or open and sticking
     c = np.where(bound, least + np.maximum(np.abs(r) - system.cohesion - mu * p, 0.0), 0.0)
+    c += np.where(mu > 0, glue * least, 0.0)
+    Q = np.where(~stick & ~system.frictionless, -sign * (mu * P + c), 0.0)  # slipping: u and the forces do not change
     h = np.where(slides, sign * (least + np.maximum(-sign * y_t, 0.0)), 0.0)
     over = np.where(np.isfinite(system.cap), p - np.where(np.isfinite(system.cap), system.cap, 0.0), -np.inf)
     X = np.where(closed & np.isfinite(system.cap), P + least + np.maximum(over, 0.0), 0.0)

@@ -16,12 +16,11 @@ from enum import Enum
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
 from scipy.optimize import linprog
 
 from concio.contact.problem import Array
 from concio.lcp.lemke_method import Outcome, lemke
-from concio.lcp.linear_problem import LinearComplementarity
+from concio.lcp.linear_problem import LinearComplementarity, is_sparse
 
 ACCURATE = 1e-9
 """Residual below which a candidate counts as a solution, relative to 1 + max |q|."""
@@ -98,7 +97,7 @@ def infeasibility(problem: LinearComplementarity) -> Array | None:
 def _branch(problem: LinearComplementarity, limit: int, good: float) -> Decision:
     """Depth-first search over complementary pieces, the worst violated pair first."""
     n = problem.size
-    M = problem.M.toarray() if sp.issparse(problem.M) else problem.M
+    M = problem.M.toarray() if is_sparse(problem.M) else problem.M
     solve: Any = linprog
     count = 0
     stack: list[tuple[frozenset[int], frozenset[int]]] = [(frozenset(), frozenset())]

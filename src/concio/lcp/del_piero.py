@@ -6,8 +6,8 @@ cohesion without friction) keeps the symmetry and is taken in the 4m form.
 
 Coulomb friction is outside the method: it is refused, with the names of methods that take it.
 
-G. Del Piero, A. Smaoui et al., on unilateral structures: G. Del Piero, Limit analysis and no-tension materials, *Int. J.
-Plasticity* 14 (1998) 259-271, and the literature cited by Ercolano.
+G. Del Piero, *Resolution methods for framed structures with unilateral constraints* (in Italian), Institute of
+Theoretical and Applied Mechanics, University of Udine, 1990, as cited by Ercolano.
 
 Parameters of :func:`solve`
 ---------------------------

@@ -22,6 +22,8 @@ from concio.lcp.solution import Progress, ProgressCallback, Solution, Status, fa
 from concio.lcp.split_motions import join, split
 from concio.lcp.state_solution import finish
 
+Back = Callable[[LemkeResult], "tuple[Array, Array, Array | None]"]
+
 EXACT = 1e-12
 """An answer less exact than this is finished by pivoting on the sparse form."""
 
@@ -54,12 +56,23 @@ class DenseRun:
     velocity: Array | None = None
 
     def attempt(self, form: MixedForm, elimination: Elimination, **options: Any) -> Solution | None:
-        """Solve ``form`` with its rigid motions treated by ``elimination``; None where that gave no solution."""
+        """Solve ``form`` with its rigid motions treated by ``elimination``; None where that gave no solution.
+
+        Two covers are tried: the one under which friction does no work along a ray, and ones after scaling.
+        """
         lcp, back, details = _standard(form, elimination, **options)
         self.info.update(
             form=form.name, elimination=elimination, unknowns=lcp.size, rigid_motions=form.motions, **details
         )
-        cover = np.concatenate([form.cover(), np.ones(lcp.size - form.size)])
+        for cover in (np.concatenate([form.cover(), np.ones(lcp.size - form.size)]), None):
+            solution = self._run(form, elimination, lcp, back, cover)
+            if solution is not None:
+                return solution
+        return None
+
+    def _run(
+        self, form: MixedForm, elimination: Elimination, lcp: LinearComplementarity, back: Back, cover: Array | None
+    ) -> Solution | None:
         result = lemke(lcp, cover=cover, limit=self.limit, progress=self._tell if self.progress else None)
         self.pivots += result.pivots
         self.factorisations += result.factorisations
@@ -160,9 +173,6 @@ def read_states(form: MixedForm, z: Array, w: Array) -> tuple[Array, Array]:
     side = np.where(loose, np.where(y_t < 0, Tangential.MINUS, Tangential.PLUS), side)
     tangential[reduction.rough] = side
     return normal, tangential
-
-
-Back = Callable[[LemkeResult], "tuple[Array, Array, Array | None]"]
 
 
 def _standard(

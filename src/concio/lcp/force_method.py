@@ -84,7 +84,7 @@ class ForceMethod:
         return taken
 
     def standard(self) -> tuple[LinearComplementarity, Callable[[Array, Array], tuple[Array, Array]]]:
-        """Return the standard problem after taking z_I from equilibrium, and what maps (z, w) of it back to the form."""
+        """Return the standard problem, z_I taken from equilibrium, and what maps its (z, w) back to the form."""
         form, I, E, H = self.form, self.chosen, self.others, self._ratio()
         n, r = form.size, form.motions
         if r:

@@ -14,7 +14,7 @@ Dilatancy takes tan(psi) |y_t| off the gap: |y_t| = y_t + 2 y- in the first form
 References
 ----------
 D. E. Stewart, J. C. Trinkle, *Int. J. Numer. Methods Engrg.* 39 (1996) 2673-2691. M. Anitescu, F. A. Potra, *Nonlinear
-Dynamics* 14 (1997) 231-247. A. Klarbring, *Ingenieur-Archiv* 56 (1986) 529-541.
+Dynamics* 14 (1997) 231-247.
 """
 
 from __future__ import annotations
@@ -76,10 +76,10 @@ class MixedForm:
     def cover(self) -> Array:
         """Return a covering vector (n,) with which friction never does positive work along a ray.
 
-        The cover shifts gaps, slips and sliding strengths; friction then does the work dt_t dy_t <= 0 if, in the 3m form,
-        the gap is shifted by more than mu times the slip. Where the force method shifts p (strength against pulling) the
-        sliding strength must be shifted by more than mu times as much: possible in the 4m form and for s-, but s+ of the
-        3m form is no row of it, which is why the paper's elimination of rigid motions ends on false rays there.
+        The cover shifts gaps, slips and sliding strengths. Friction then does the work dt_t dy_t <= 0 if, in the 3m
+        form, the gap is shifted by more than mu times the slip. Where the force method shifts p (strength against
+        pulling), the sliding strength must be shifted by more than mu times as much: true of the 4m form, and of s- in
+        the 3m form; s+ is no row of that form, so the argument has a hole there. All in the problem's own units.
         """
         d = np.ones(self.size)
         m, k, mu = self.reduction.pairs, self.reduction.rough.size, self.reduction.mu
@@ -126,6 +126,9 @@ def mixed_form(reduction: Reduction, name: FormName, tangential: Array | None = 
     mu_p = mu @ pick  # (k, m): friction times p
     I, Z = np.eye(k), np.zeros((k, k))
     Zm, Zk = np.zeros((m, k)), np.zeros((k, m))
+    if name not in ("normal", "3m", "4m"):
+        msg = f"there is no form '{name}'"
+        raise MethodError(msg, hint="3m or 4m")
     if name == "normal":
         T, t0 = (
             np.vstack([np.eye(m), Zk]),
@@ -138,7 +141,7 @@ def mixed_form(reduction: Reduction, name: FormName, tangential: Array | None = 
         rows = np.block([[np.eye(m), open_], [Zk, I], [Zk, Z]])
         extra = np.block([[np.zeros((m, m)), Zm, 2 * open_], [Zk, Z, I], [2 * mu_p, -I, Z]])
         q_extra = np.concatenate([np.zeros(m + k), 2 * c])
-    elif name == "4m":
+    else:
         T, t0 = np.block([[np.eye(m), Zm, Zm, Zm], [Zk, I, -I, Z]]), np.zeros(m + k)
         rows = np.block([[np.eye(m), Zm], [Zk, I], [Zk, -I], [Zk, Z]])
         open_ = -(pick.T * reduction.dilatancy)
@@ -146,9 +149,6 @@ def mixed_form(reduction: Reduction, name: FormName, tangential: Array | None = 
             [[np.zeros((m, m)), Zm, Zm, open_], [Zk, Z, Z, I], [Zk, Z, Z, I], [mu_p, -I, -I, Z]],
         )
         q_extra = np.concatenate([np.zeros(m + 2 * k), c])
-    else:
-        msg = f"there is no form '{name}'"
-        raise MethodError(msg, hint="3m or 4m")
     M = rows @ reduction.F @ T + extra
     q = rows @ (reduction.y0 + reduction.F @ t0) + q_extra
     E, e = reduction.G.T @ T, reduction.e0 + reduction.G.T @ t0

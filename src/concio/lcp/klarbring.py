@@ -3,8 +3,7 @@ r"""``klarbring``: condensation onto the contacts and the 3m form (23-25), for s
 With a definite stiffness the displacements leave the problem, ``y = x + C K^{-1} f + F t``, and what remains is a
 standard linear complementarity problem in the contact forces. Lemke's method solves its 3m form without trouble there.
 
-A. Klarbring, A mathematical programming approach to three-dimensional contact problems with friction, *Comput. Methods
-Appl. Mech. Engrg.* 58 (1986) 175-200; *Ingenieur-Archiv* 56 (1986) 529-541.
+A. Klarbring, *Contact problems with friction*, thesis, Linköping Institute of Technology, 1984.
 
 Parameters of :func:`solve`
 ---------------------------

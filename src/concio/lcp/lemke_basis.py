@@ -17,7 +17,7 @@ from scipy.linalg.blas import dger
 from scipy.sparse.linalg import SuperLU, splu
 
 from concio.contact.problem import Array
-from concio.lcp.linear_problem import Matrix
+from concio.lcp.linear_problem import Matrix, is_sparse
 
 
 class SingularBasisError(ArithmeticError):
@@ -27,7 +27,10 @@ class SingularBasisError(ArithmeticError):
 class Basis(Protocol):
     """What the pivoting needs of a basis B of n columns."""
 
-    updates: int
+    @property
+    def updates(self) -> int:
+        """Pivots since the factorisation."""
+        ...
 
     def solve(self, a: Array) -> Array:
         """Return B^-1 a, (n,)."""
@@ -49,7 +52,7 @@ class Columns:
 
     def __init__(self, M: Matrix, d: Array) -> None:
         self.n = n = d.size
-        self.sparse = bool(sp.issparse(M))
+        self.sparse = is_sparse(M)
         if self.sparse:
             self._all = sp.csc_array(sp.hstack([sp.eye_array(n), -sp.csc_array(M), -sp.csc_array(d[:, None])]))
         else:
@@ -81,7 +84,7 @@ class ExplicitInverse:
 
     def __init__(self, columns: Columns, basis: Array) -> None:
         matrix = columns.matrix(basis)
-        dense = matrix.toarray() if sp.issparse(matrix) else matrix
+        dense = matrix.toarray() if is_sparse(matrix) else matrix
         try:
             self._inverse: Array = np.asfortranarray(sl.inv(dense, check_finite=False))
         except sl.LinAlgError as error:

@@ -31,7 +31,7 @@ import scipy.sparse as sp
 from concio.contact.problem import Array
 from concio.errors import InputError
 from concio.lcp.lemke_basis import Basis, Columns, ExplicitInverse, ProductForm, SingularBasisError
-from concio.lcp.linear_problem import LinearComplementarity, Matrix
+from concio.lcp.linear_problem import LinearComplementarity, Matrix, is_sparse
 from concio.lcp.solution import Progress, ProgressCallback
 
 PIVOT = 1e-9
@@ -52,6 +52,7 @@ class Outcome(Enum):
     LIMIT = "limit of pivots reached"
     CANCELLED = "stopped on request"
     BROKEN = "the basis became singular"
+    LOST = "rounding took a wrong turn: the path came back on itself"
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,22 +164,22 @@ def equilibrate(M: Matrix, rounds: int = 4) -> tuple[Array, Array, Matrix]:
     n = M.shape[0]
     r: Array = np.ones(n)
     c: Array = np.ones(n)
-    size: Matrix = abs(sp.csr_array(M)) if sp.issparse(M) else np.abs(M)
+    size: Matrix = abs(sp.csr_array(M)) if is_sparse(M) else np.abs(M)
     for _ in range(rounds):
-        scaled: Matrix = size.multiply(r[:, None]).multiply(c[None, :]) if sp.issparse(size) else size * r[:, None] * c
+        scaled: Matrix = size.multiply(r[:, None]).multiply(c[None, :]) if is_sparse(size) else size * r[:, None] * c
         across = _largest(scaled, 1)
         down = _largest(scaled, 0)
         r /= np.sqrt(np.where(across > 0, across, 1.0))
         c /= np.sqrt(np.where(down > 0, down, 1.0))
     r, c = 2.0 ** np.round(np.log2(r)), 2.0 ** np.round(np.log2(c))
-    if sp.issparse(M):
+    if is_sparse(M):
         return r, c, sp.csr_array(sp.diags_array(r) @ M @ sp.diags_array(c))
     return r, c, M * r[:, None] * c
 
 
 def _largest(a: Matrix, axis: int) -> Array:
     found: Matrix = a.max(axis=axis)
-    largest: Array = (found.toarray() if sp.issparse(found) else found).ravel()
+    largest: Array = (found.toarray() if is_sparse(found) else found).ravel()
     return largest
 
 
@@ -188,9 +189,9 @@ class _Path:
     def __init__(self, M: Matrix, q: Array, d: Array, refresh: int, basis: str, seed: int) -> None:
         self.n = n = q.size
         self.q = q
-        product = basis == "product" or (basis == "auto" and sp.issparse(M) and n > 250)
+        product = basis == "product" or (basis == "auto" and is_sparse(M) and n > 250)
         self._kind: type[ProductForm] | type[ExplicitInverse] = ProductForm if product else ExplicitInverse
-        self.columns = Columns(M if product or not sp.issparse(M) else M.toarray(), d)
+        self.columns = Columns(M if product or not is_sparse(M) else M.toarray(), d)
         self.refresh = refresh
         self.p = 0.5 + np.random.default_rng(seed).random(n)
         self.pivots, self.factorisations = 0, 0
@@ -230,13 +231,19 @@ class _Path:
 
     def _follow(self, limit: int, progress: ProgressCallback | None) -> tuple[Outcome, Ray | None]:
         n = self.n
+        tokens = np.random.default_rng(0).integers(1, 2**62, 2 * n + 1).tolist()
+        key = 0
+        for j in self.basis.tolist():
+            key ^= tokens[j]
+        visited = {key}  # of bases: none is met twice on a path
         while self.pivots < limit:
             entering = self.leaving + n if self.leaving < n else self.leaving - n
             if self.inverse.updates >= self.refresh:
                 self.inverse = self._factorise()
             column = self.inverse.solve(self.columns.column(entering))
             row = self._ratio_test(column)
-            if (row < 0 or abs(column[row]) < 1e-5 * np.abs(column).max()) and self.inverse.updates:
+            old = self.inverse.updates
+            if old and (row < 0 or (old > 8 and abs(column[row]) < 1e-5 * np.abs(column).max())):
                 self.inverse = self._factorise()
                 column = self.inverse.solve(self.columns.column(entering))
                 row = self._ratio_test(column)
@@ -246,9 +253,13 @@ class _Path:
                     return Outcome.SOLVED, None
                 return Outcome.RAY, self._ray(column, entering, at)
             self._pivot(row, entering, column)
+            key ^= tokens[entering] ^ tokens[self.leaving]
             if self.leaving == 2 * n:
                 self.inverse = self._factorise()
                 return Outcome.SOLVED, None
+            if key in visited:
+                return Outcome.LOST, None
+            visited.add(key)
             if progress and self.pivots % 64 == 0:
                 z0 = float(self.x[self.basis == 2 * n][0])
                 if progress(Progress("lemke", self.pivots, z0, f"z0 = {z0:.2e}")):

@@ -94,8 +94,13 @@ class GeneralisedComplementarity:
         return float(max(rows, np.abs(np.minimum(t, y)).max(initial=0.0)))
 
 
+def is_sparse(matrix: Matrix) -> bool:
+    """Return whether a matrix is stored sparsely."""
+    return bool(sp.issparse(matrix))
+
+
 def _finite(name: str, value: Matrix) -> None:
-    data = value.data if sp.issparse(value) else value
+    data = value.data if is_sparse(value) else value
     if not np.isfinite(np.asarray(data)).all():
         msg = f"{name} holds a value that is not finite"
         raise InputError(msg)

@@ -82,6 +82,8 @@ class PairSystem:
     problem : ContactProblem
     proximal : float
         Springs to the ground on every unknown, in units of the typical stiffness; 0 unless bodies hang on nothing.
+    ground : bool
+        Add a pair for each rigid motion, whose friction on the ground has no strength but what a cover gives it.
 
     Raises
     ------
@@ -89,7 +91,7 @@ class PairSystem:
         The problem is not plane.
     """
 
-    def __init__(self, problem: ContactProblem, proximal: float = 0.0) -> None:
+    def __init__(self, problem: ContactProblem, proximal: float = 0.0, *, ground: bool = False) -> None:
         if problem.dim != 2:
             msg = "this method solves plane problems"
             raise MethodError(msg, hint="use a method that works in three dimensions, such as alart-curnier")
@@ -106,7 +108,6 @@ class PairSystem:
         self.cap = cone.upper + tension
         self.dilatancy = s.dilatancy
         self.frictionless = (self.mu == 0.0) & (self.cohesion == 0.0)
-        self.weak = self.cohesion == 0.0  # no strength left when open
         self.a = s.compliance.copy()
         self.x = s.x.copy()
         self.x[:, 0] -= self.a[:, 0] * tension
@@ -116,8 +117,34 @@ class PairSystem:
         self.K = sp.csr_array(s.K + proximal * sp.eye_array(n)) if proximal else sp.csr_array(s.K)
         self.C = sp.csr_array(s.C)
         self.C.sort_indices()
-        self.cover = Cover.none(m)
         self.delta = COMPLIANCE
+        self.ground = 0
+        if ground:
+            self._add_ground()
+        self.cover = Cover.none(self.m)
+
+    def _add_ground(self) -> None:
+        """Add the pairs that hold the rigid motions: no normal direction, the motion itself as tangent."""
+        R = sp.csr_array(sp.csc_array(self.problem.R).T)
+        r = R.shape[0]
+        held = sp.vstack([sp.csr_array((r, self.n)), R])
+        order = np.column_stack([np.arange(r), r + np.arange(r)]).ravel()
+        self.C = sp.csr_array(sp.vstack([self.C, sp.csr_array(held)[order]]))
+        self.C.sort_indices()
+        none = np.zeros(r)
+        for name in ("mu", "tension", "cohesion", "dilatancy"):
+            setattr(self, name, np.concatenate([getattr(self, name), none]))
+        self.cap = np.concatenate([self.cap, np.full(r, np.inf)])
+        self.frictionless = np.concatenate([self.frictionless, np.zeros(r, dtype=bool)])
+        self.a = np.vstack([self.a, np.zeros((r, 2))])
+        self.x = np.vstack([self.x, np.column_stack([np.ones(r), none])])
+        self.m, self.ground = self.m + r, r
+        self.size += 2 * r
+
+    @property
+    def weak(self) -> Array:
+        """Pairs that have no sliding strength left when open, (m,) booleans."""
+        return np.asarray((self.cohesion == 0.0) & (self.cover.c == 0.0))
 
     def equilibrium_rows(self) -> list[Row]:
         """Return the N rows of equilibrium."""

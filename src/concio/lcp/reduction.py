@@ -5,8 +5,8 @@ With a symmetric generalised inverse K+ of the stiffness (body by body) and in u
 .. math:: y = y_0 + F\,t + G\,\alpha,\qquad 0 = e_0 + G^T t,\qquad F = C K^+ C^T + \mathrm{diag}(a),\quad G = C R,
 
 ``y_0 = x + C K+ f``, ``e_0 = R' f``, free parameters alpha of the rigid motions. Compliance of joints adds to the
-diagonal of F; a tensile strength T shifts the normal force, ``p = t_n + T >= 0``, and with it loads and gaps. Components
-are the normals of all pairs, then the tangents of those that can carry friction.
+diagonal of F; a tensile strength T shifts the normal force, ``p = t_n + T >= 0``, and with it loads and gaps.
+Components are the normals of all pairs, then the tangents of those that can carry friction.
 """
 
 from __future__ import annotations
@@ -59,17 +59,17 @@ class Reduction:
     @property
     def mu(self) -> Array:
         """Friction of the rough pairs, (k,)."""
-        return self.system.mu[self.rough]
+        return np.asarray(self.system.mu[self.rough])
 
     @property
     def cohesion(self) -> Array:
         """Strength c' of the rough pairs at p = 0, (k,)."""
-        return self.system.cohesion[self.rough]
+        return np.asarray(self.system.cohesion[self.rough])
 
     @property
     def dilatancy(self) -> Array:
         """Tangent of the dilatancy angle of the rough pairs, (k,)."""
-        return self.system.dilatancy[self.rough]
+        return np.asarray(self.system.dilatancy[self.rough])
 
     def displacement(self, t: Array, alpha: Array) -> Array:
         """Return u (N,) [m] of component forces t (m + k,) and rigid motions alpha (r,), both scaled."""

@@ -10,8 +10,8 @@ Given ``start_states``, the path starts there instead, with shifts that cover ju
 crossover from an approximate answer. Without violations there is nothing to do but one linear solve.
 
 The compliance that keeps redundant corner pairs regular is taken out at the end by iterative refinement, and the answer
-is judged by the certificate as always. Where a path fails, others are tried: other random prestress, then bodies held
-by weak springs that the finish removes.
+is judged by the certificate as always. Where a path fails, others are tried: more and other prestress,
+swollen joints, blocks held apart by friction on the ground that fades away, and weak springs that the finish removes.
 
 Parameters of :func:`solve`
 ---------------------------
@@ -20,9 +20,9 @@ start : (u, t_n, t_t), optional
     An approximate answer; the sign of its slips tells the direction in which open pairs would slide.
 limit : int, optional
     Largest number of pivots of one path, default 20 m + 500.
-tries : int, default 6
+tries : int, default 7
     Cold starts that may be tried.
-refresh : int, default 64
+refresh : int, default 74
     Rows replaced between factorisations.
 """
 
@@ -35,7 +35,7 @@ import numpy as np
 
 from concio.contact.problem import Array, ContactProblem
 from concio.errors import InputError
-from concio.lcp.covering import cold_states, cover_states, named_states
+from concio.lcp.covering import cold_states, cover_states, named_states, open_states
 from concio.lcp.lemke_basis import SingularBasisError
 from concio.lcp.lemke_outcome import no_solution
 from concio.lcp.pair_rows import PairSystem
@@ -49,12 +49,13 @@ Start = tuple[Array, Array, Array]
 
 
 COLD: tuple[tuple[str, dict[str, Any]], ...] = (
-    ("glued", {}),
-    ("glued, more prestress", {"base": 0.5, "seed": 1}),
-    ("glued, swollen joints", {"swelling": 1.0}),
-    ("glued, much prestress", {"base": 5.0, "seed": 2}),
-    ("glued, other prestress", {"base": 0.1, "seed": 3}),
-    ("glued, held by weak springs", {"proximal": 1e-8}),
+    ("cohesion", {"base": 1.0, "glue": 10.0}),
+    ("little prestress", {}),
+    ("swollen joints", {"swelling": 1.0}),
+    ("more cohesion", {"base": 10.0, "glue": 10.0, "seed": 1}),
+    ("blocks apart, held by the ground", {"ground": True, "base": 1.0, "glue": 5.0}),
+    ("other prestress", {"base": 0.5, "seed": 3}),
+    ("held by weak springs", {"proximal": 1e-8}),
 )
 """Starts tried in this order: how the joints are covered."""
 
@@ -91,7 +92,7 @@ def solve(
     start_states: Array | None = None,
     start: Start | None = None,
     limit: int | None = None,
-    tries: int = 6,
+    tries: int = 7,
     refresh: int = 64,
 ) -> Solution:
     """Solve by pivoting on the states of the pairs; see the module for the parameters.
@@ -107,7 +108,7 @@ def solve(
     if start_states is not None and np.shape(start_states) != (problem.pairs,):
         msg = f"start_states has shape {np.shape(start_states)}, expected ({problem.pairs},)"
         raise InputError(msg)
-    work = _Work()
+    work, m = _Work(), problem.pairs
     most = limit or 20 * problem.pairs + 500
     attempts = [_Attempt(name, options) for name, options in COLD[: max(tries, 0)]]
     if start_states is not None:
@@ -124,9 +125,14 @@ def solve(
             if work.velocity is not None:
                 break
             system = PairSystem(problem, proximal)
+        if options.pop("ground", False):
+            held = PairSystem(problem, ground=True)
+            states = open_states(held)
+        else:
+            held = system
         try:
-            start_of_path = cover_states(system, *states, **options)
-            path = StatePath(system, *start_of_path, refresh=refresh)
+            start_of_path = cover_states(held, *states, **options)
+            path = StatePath(held, *start_of_path, refresh=refresh)
         except SingularBasisError:
             work.trace.append(f"{name}: the starting states leave a body loose.")
             continue
@@ -137,12 +143,17 @@ def solve(
         if end.outcome == "cancelled":
             return failed(problem, Status.CANCELLED, method=METHOD, **work.extra())
         if end.outcome == "solution":
-            solution = finish(system, end.normal, end.tangential, method=METHOD, **work.extra(start=name))
+            solution = finish(system, end.normal[:m], end.tangential[:m], method=METHOD, **work.extra(start=name))
             if solution.solved:
                 return solution
             work.trace.append(f"{name}: its end is exact only to {solution.certificate.worst:.1e}.")
         elif end.outcome == "ray":
+            first = work.velocity is None
             work.velocity = _velocity(end, problem.unknowns)
+            if first:  # a way to fall: does it prove that the structure must?
+                verdict = no_solution(problem, METHOD, velocity=work.velocity, **work.extra())
+                if verdict.status is Status.NO_EQUILIBRIUM:
+                    return verdict
     return no_solution(problem, METHOD, velocity=work.velocity, **work.extra())
 
 

@@ -6,11 +6,14 @@ exchange the matrix keeps its sparsity, and its copositivity: the new blocks are
 
 References
 ----------
-G. E. Stavroulakis, P. D. Panagiotopoulos, A. M. Al-Fahed, *Int. J. Numer. Methods Engrg.* 32 (1991) 1047-1069. S. S. Lee,
-*Int. J. Numer. Methods Engrg.* 37 (1994).
+G. E. Stavroulakis, P. D. Panagiotopoulos, A. M. Al-Fahed, On the rigid body displacements and rotations in
+unilateral contact problems and applications, *Computers & Structures* 40 (1991) 599-614. S.-S. Lee, A computational
+method for frictional contact problem using finite element method, *Int. J. Numer. Methods Engrg.* 37 (1994) 217-228.
 """
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -23,7 +26,9 @@ from concio.lcp.linear_problem import LinearComplementarity
 def split(form: MixedForm, *, negligible: float = 1e-14) -> LinearComplementarity:
     """Return the standard problem in (z, alpha+, alpha-), sparse; entries below ``negligible`` are dropped."""
     M = np.where(np.abs(form.M) > negligible, form.M, 0.0)
-    matrix = sp.block_array([[M, form.N, -form.N], [-form.E, None, None], [form.E, None, None]])
+    N, E = sp.csr_array(form.N), sp.csr_array(form.E)
+    blocks: list[list[Any]] = [[sp.csr_array(M), N, -N], [-E, None, None], [E, None, None]]
+    matrix: Any = sp.block_array(blocks)
     return LinearComplementarity(sp.csr_array(matrix), np.concatenate([form.q, -form.e, form.e]))
 
 

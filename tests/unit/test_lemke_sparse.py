@@ -1,0 +1,168 @@
+"""Pivoting on the states of the pairs: laws, warm starts, jammed arches, falls, rigid bodies."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from concio.contact.assembly import assemble
+from concio.errors import InputError, MethodError
+from concio.lcp.methods import find
+from concio.lcp.solution import Status, pair_states
+from concio.lcp.sparse_lemke import solve
+from concio.lcp.updated_factor import UpdatedFactor
+from concio.model.panel import running_bond_panel
+from contact_problems import rigid, wall
+from lcp_problems import small_wall
+
+
+def test_rows_replaced_one_by_one_give_the_inverse_of_the_new_matrix() -> None:
+    rng = np.random.default_rng(0)
+    n = 40
+    dense = np.where(rng.random((n, n)) < 0.15, rng.normal(size=(n, n)), 0.0) + 3 * np.eye(n)
+
+    def row(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return np.flatnonzero(values), values[values != 0]
+
+    factor = UpdatedFactor([row(r) for r in dense], refresh=7)
+    for k in range(30):
+        place = int(rng.integers(n)) if k % 3 else 5  # some places more than once
+        new = np.where(rng.random(n) < 0.2, rng.normal(size=n), 0.0)
+        new[place] += 3.0
+        dense[place] = new
+        factor.replace(place, row(new))
+        b = rng.normal(size=n)
+        np.testing.assert_allclose(factor.solve(b), np.linalg.solve(dense, b), atol=1e-8)
+        np.testing.assert_allclose(factor.column(3), np.linalg.solve(dense, np.eye(n)[3]), atol=1e-8)
+    assert factor.factorisations > 1
+    np.testing.assert_array_equal(factor.matrix().toarray(), dense)
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    st.integers(0, 1000),
+    st.sets(st.sampled_from(["cohesion", "tension", "dilatancy", "springs", "cap", "gap", "origin"])),
+    st.floats(0.0, 0.5),
+    st.floats(0.2, 1.2),
+)
+def test_every_answer_is_certified_or_a_proven_fall(seed: int, laws: set[str], alpha: float, mu: float) -> None:
+    problem = small_wall(seed, *sorted(laws), alpha=alpha, mu=mu)
+    answer = solve(problem)
+    assert answer.status in (Status.SOLVED, Status.NO_EQUILIBRIUM, Status.UNDECIDED)
+    if answer.solved:
+        assert answer.certificate.worst <= 1e-9
+    if "dilatancy" not in laws and "cap" not in laws and alpha <= 0.2 and mu >= 0.5:
+        assert answer.solved, answer.trace
+
+
+def test_crushing_stops_at_the_cap() -> None:
+    problem = wall(2, 2, sides=True)
+    free = solve(problem)
+    law = replace(problem.laws, cap=np.full(problem.pairs, 0.9 * free.normal_force.max()))
+    capped = solve(replace(problem, laws=law))
+    assert capped.solved
+    assert capped.normal_force.max() == pytest.approx(law.cap[0], rel=1e-12)
+    assert capped.kinematics.crushing.max() > 0
+    assert capped.normal_force[free.normal_force.argmax()] < free.normal_force.max()
+
+
+def test_warm_start_from_the_answer_needs_no_pivot() -> None:
+    problem = wall(5, 5, alpha=0.25)
+    cold = solve(problem)
+    assert cold.iterations > 0
+    start = cold.displacement, cold.normal_force, cold.friction_force
+    warm = solve(problem, start_states=pair_states(problem, cold), start=start)
+    assert warm.solved
+    assert warm.iterations == 0
+    np.testing.assert_allclose(warm.displacement, cold.displacement, atol=1e-12 * np.abs(cold.displacement).max())
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.integers(0, 10_000))
+def test_crossover_from_wrong_states_reaches_the_same_answer(seed: int) -> None:
+    problem = wall(4, 4, alpha=0.25)
+    cold = solve(problem)
+    states = pair_states(problem, cold)
+    rng = np.random.default_rng(seed)
+    wrong = rng.choice(problem.pairs, 6, replace=False)
+    states[wrong] = rng.integers(0, 4, 6)
+    warm = solve(problem, start_states=states, start=(cold.displacement, cold.normal_force, cold.friction_force))
+    assert warm.solved
+    np.testing.assert_allclose(warm.displacement, cold.displacement, atol=1e-9 * np.abs(cold.displacement).max())
+
+
+@pytest.mark.parametrize(("friction", "joint"), [(0.6, 0.0), (1.0, 0.0), (0.6, 0.02), (1.0, 0.02)])
+def test_arch_between_walls_with_nothing_below(friction: float, joint: float) -> None:
+    """Jammed states, which iterative methods lose; the split form of Lee is an independent check."""
+    model = running_bond_panel(
+        courses=3, blocks=6, joint=joint, friction=friction, base="none", side_walls=True, top_pressure=10.0,
+        elements_per_block=(4, 2),
+    )  # fmt: skip
+    problem = assemble(model).problem()
+    answer = solve(problem)
+    assert answer.certificate.worst <= 1e-10
+    if joint:
+        return
+    other = find("lee")(problem)
+    assert other.certificate.worst <= 1e-10
+    np.testing.assert_allclose(answer.displacement, other.displacement, atol=1e-9 * np.abs(other.displacement).max())
+
+
+def test_wall_pushed_over_falls_at_the_first_ray() -> None:
+    answer = solve(wall(4, 3, alpha=0.9))
+    assert answer.status is Status.NO_EQUILIBRIUM
+    assert len([line for line in answer.trace if "ray" in line]) == 1
+
+
+def test_rigid_blocks_at_rest() -> None:
+    problem = rigid(wall(3, 3, alpha=0.1))
+    answer = solve(problem)
+    assert answer.solved
+    assert np.abs(answer.displacement).max() <= 1e-9
+    elastic = solve(wall(3, 3, alpha=0.1))
+    assert answer.normal_force.sum() == pytest.approx(elastic.normal_force.sum(), rel=0.3)
+
+
+def test_loose_block_without_load_is_left_alone() -> None:
+    """A body that touches nothing and carries nothing makes every matrix singular; weak springs hold it meanwhile."""
+    problem = wall(1, 2)
+    free = wall(1, 1, base=False)
+    K = sp.csr_array(sp.block_diag([problem.K, free.K]))
+    n = free.unknowns
+    pad = sp.csr_array((problem.pairs, n))
+    joined = replace(
+        problem, K=K, f=np.concatenate([problem.f, np.zeros(n)]),
+        C_n=sp.csr_array(sp.hstack([problem.C_n, pad])), C_t=sp.csr_array(sp.hstack([problem.C_t, pad])),
+        R=sp.csc_array(sp.block_diag([problem.R, free.R])), bodies=np.append(problem.bodies, K.shape[0]),
+    )  # fmt: skip
+    answer = solve(joined)
+    assert answer.solved
+    np.testing.assert_allclose(answer.displacement[-n:], 0.0, atol=1e-12)
+
+
+def test_answers_do_not_depend_on_units() -> None:
+    problem = wall(3, 3, alpha=0.2)
+    length, force = 1e3, 1e-6
+    scaled = replace(problem, K=problem.K * (force / length), f=problem.f * force)
+    one, two = solve(problem), solve(scaled)
+    assert one.iterations == two.iterations
+    np.testing.assert_allclose(
+        two.displacement, one.displacement * length, rtol=0, atol=1e-10 * length * np.abs(one.displacement).max()
+    )
+
+
+def test_cancel_limit_and_bad_input() -> None:
+    problem = wall(6, 6, alpha=0.3)
+    assert solve(problem, progress=lambda p: True).status is Status.CANCELLED
+    assert solve(problem, limit=3, tries=1).status is Status.GAVE_UP
+    with pytest.raises(InputError, match="start_states"):
+        solve(problem, start_states=np.zeros(3))
+    flat = wall(1, 1)
+    space = replace(flat, C_t=sp.csr_array(sp.vstack([flat.C_t, flat.C_t])), slip_origin=np.zeros((flat.pairs, 2)))
+    with pytest.raises(MethodError, match="plane"):
+        solve(space)
