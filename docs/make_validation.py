@@ -1,6 +1,6 @@
-"""Run the validation cases and write the validation book: one table of all numbers, a section and a picture for each case.
+"""Run the validation cases and write the validation book: a table of all numbers, sections and pictures.
 
-    python docs/make_validation.py            writes docs/validation/book.md and docs/validation/*.svg
+    python docs/make_validation.py            writes docs/validation_table.md, docs/validation/book.md and its pictures
 
 Every number in the book comes from here; the same rows are asserted by ``tests/validation``.
 """
@@ -28,16 +28,29 @@ Rows marked *experiment* compare a model with a laboratory test: they are discus
 """
 
 
+TABLE_HEAD = """# All numbers in one table
+
+Written by `docs/make_validation.py`. What each case is, why its tolerances are what they are, and its picture are in
+the [validation book](validation/book.md).
+"""
+
+ROUNDING = 1e-9
+"""Differences below this are rounding, which differs from machine to machine: the book says no more than that."""
+
+
 def number(value: float) -> str:
     """A number as the book prints it."""
-    return f"{value:.6g}"
+    return "0" if abs(value) < 1e-9 else f"{value:.6g}"
 
 
 def difference(row: Row) -> str:
     """Difference, with its kind."""
     size = abs(row.difference)
-    text = "0" if size == 0 else f"{row.difference:+.1e}" if size < 1e-3 else f"{100 * row.difference:+.2f} %"
-    return text if row.relative else f"{row.difference:+.1e} abs" if size else "0 abs"
+    if size < ROUNDING:
+        return "below 1e-9"
+    if not row.relative:
+        return f"{row.difference:+.1e} abs"
+    return f"{row.difference:+.1e}" if size < 1e-3 else f"{100 * row.difference:+.2f} %"
 
 
 def allowed(row: Row) -> str:
@@ -52,9 +65,8 @@ def table(rows: list[Row]) -> str:
     lines = ["| | expected | computed | difference | allowed | checked by |", "|---|---|---|---|---|---|"]
     for r in rows:
         unit = "" if r.unit == "-" else f" {r.unit}"
-        lines.append(
-            f"| {r.name} | {number(r.expected)}{unit} | {number(r.computed)}{unit} | {difference(r)} | {allowed(r)} | {r.check} |"
-        )
+        cells = (f"{number(r.expected)}{unit}", f"{number(r.computed)}{unit}", difference(r), allowed(r), r.check)
+        lines.append(f"| {r.name} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
 
@@ -89,21 +101,32 @@ def section(name: str, title: str) -> tuple[str, list[Row]]:
     module = importlib.import_module(f"validation_cases.{name}")
     rows = module.rows()
     text = inspect.cleandoc(module.__doc__ or "").replace(".. math::", "")
-    body = f"## {title}\n\n```text\n{text}\n```\n\nSource: {module.SOURCE}\n\n{table(rows)}\nTolerances:\n\n{reasons(rows)}"
-    return body + figure(name, module), rows
+    parts = [
+        f"## {title}",
+        f"```text\n{text}\n```",
+        f"Source: {module.SOURCE}",
+        table(rows),
+        "Tolerances:",
+        reasons(rows),
+    ]
+    return "\n\n".join(parts) + figure(name, module), rows
 
 
 def main() -> int:
     """Write the book; return 1 where a row is outside its tolerance."""
     parts, wrong, count = [], [], 0
+    every = [TABLE_HEAD]
     for name, title in CASES.items():
         text, rows = section(name, title)
         parts.append(text)
         count += len(rows)
+        source = importlib.import_module(f"validation_cases.{name}").SOURCE
+        every += [f"## {title}\n", f"Source: {source}\n", table(rows)]
         wrong += [f"{name}: {r.name}" for r in rows if not r.passes and r.check != "experiment"]
         print(f"{name}: {len(rows)} rows")
     summary = f"{count} rows in {len(CASES)} cases; {len(wrong)} outside their tolerance.\n\n"
     (HERE / "validation" / "book.md").write_text(HEAD + summary + "\n".join(parts), encoding="utf-8")
+    (HERE / "validation_table.md").write_text("\n".join(every), encoding="utf-8")
     for line in wrong:
         print("outside its tolerance:", line, file=sys.stderr)
     return 1 if wrong else 0

@@ -129,7 +129,7 @@ def rows() -> list[Row]:
                 check="experiment",
             ),
             Row(
-                f"N = {n:g} kN: peak of the test, contact strength {'fitted' if n == 250 else 'from the fit at 250 kN'}",
+                f"N = {n:g} kN: peak of the test, {'strength fitted' if n == 250 else 'strength from 250 kN'}",
                 peak,
                 bound(n, False, True),
                 0.25,

@@ -54,7 +54,8 @@ class Row:
 def check(rows: list[Row]) -> None:
     """Assert that every row is within its tolerance; experiments are compared, not asserted."""
     wrong = [
-        f"{r.name}: {r.computed:.9g} instead of {r.expected:.9g}, difference {r.difference:.2e}, allowed {r.tolerance:.0e} ({r.reason})"
+        f"{r.name}: {r.computed:.9g} instead of {r.expected:.9g}, "
+        f"difference {r.difference:.2e}, allowed {r.tolerance:.0e} ({r.reason})"
         for r in rows
         if not r.passes and r.check != "experiment"
     ]

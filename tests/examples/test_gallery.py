@@ -1,0 +1,104 @@
+"""Every gallery example runs, without figures, and its numbers obey what the example says of them."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+
+
+def check_arch_effect(found):
+    assert found["worst"] <= 1e-9
+    assert found["hung"] > 20 * found["standing"]
+    assert found["friction"] == pytest.approx(found["load"] / 2, rel=1e-9)
+
+
+def check_semicircular_arch(found):
+    assert found["thick"]
+    assert found["thin falls"]
+    assert found["power"] > 0
+    assert found["reaction"] == pytest.approx(found["weight"] / 2, rel=1e-9)
+
+
+def check_wall_with_door(found):
+    assert found["worst"] <= 1e-9
+    assert found["reaction"] == pytest.approx(-found["push"], rel=1e-9)
+    assert found["open"] > 0
+
+
+def check_settlement(found):
+    assert found["worst"] <= 1e-9
+    assert found["opened"] > 0
+    assert found["reactions"] == pytest.approx(found["weight"], rel=1e-9)
+    assert found["settled"] >= 0.003
+
+
+def check_flat_arch_spreading(found):
+    assert found["worst"] <= 1e-9
+    assert found["thrust"] == pytest.approx(found["by hand"], rel=1e-9)
+
+
+def check_eccentric_pillar(found):
+    assert found["worst"] <= 1e-9
+    assert found["whole"] == 0
+    assert 0.1 < found["cracked"] < 0.6
+
+
+def check_buttress(found):
+    assert found["gap"] <= 1e-8
+    assert found["held"]
+    assert found["falls"]
+
+
+def check_rubble(found):
+    assert found["worst"] <= 1e-9
+    assert abs(found["balance"]) <= 1e-9
+    assert found["stones"] > 10
+
+
+def check_mortar_as_joint_law(found):
+    assert found["worst"] <= 1e-9
+    assert 0 < found["tension"] <= found["strength"] * (1 + 1e-9)
+    assert found["dry falls"]
+
+
+def check_tie_rod(found):
+    assert found["loose falls"]
+    assert found["worst"] <= 1e-9
+
+
+def check_two_methods(found):
+    assert found["worst"] <= 1e-9
+    assert found["gap"] <= 1e-8
+
+
+def check_load_path(found):
+    assert found["certificate"] <= 1e-9
+    assert found["energy"] <= 1e-9
+    assert found["complete"]
+    assert found["events"] > 0
+
+
+def check_bonds(found):
+    assert min(found, key=found.get) == "stack"
+    assert all(0 < v <= 0.65 + 1e-9 for v in found.values())
+
+
+NAMES = sorted(p.stem for p in EXAMPLES.glob("[0-9]*.py"))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_example(name, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    spec = importlib.util.spec_from_file_location(f"example_{name}", EXAMPLES / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    globals()[f"check_{name[3:]}"](module.main())
+    assert not list(tmp_path.iterdir())
+
+
+def test_there_are_at_least_twelve():
+    assert len(NAMES) >= 12
