@@ -321,5 +321,7 @@ class _Follower:
     def finish(self, states: list[PathState], events: list[Event], outcome: Outcome, last: Array | None) -> EventPath:
         n = self.equations.n
         direction = np.zeros(n) if last is None else last[:n]
+        if outcome is Outcome.LIMIT and float(self.path.load_rate @ direction) * self.sense < 0:
+            direction = -direction  # the runaway rate of a nearly singular matrix has either sign
         top = float(np.abs(direction).max(initial=0.0)) or 1.0
         return EventPath(tuple(states), tuple(events), outcome, direction / top, self.equations.factorisations)

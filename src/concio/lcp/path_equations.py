@@ -33,8 +33,11 @@ from scipy.sparse.linalg import splu
 from concio.contact.problem import Array
 from concio.lcp.path_state import CLOSED, CRUSHED, OPEN, STICK, LinearPath
 
-REGULAR = 1e-9
+REGULAR = 1e-8
 """Compliance and stiffness lent to the factors, in scaled units."""
+
+POOR = 1e-9
+"""Residual after refinement at which factors without pivoting are given up for better ones."""
 
 UPDATES = 48
 """Changed rows after which the matrix is factorised anew."""
@@ -191,8 +194,8 @@ class PathEquations:
         top = sp.csr_array(sp.block_array(blocks, format="csr"))
         return sp.csr_array(sp.vstack([top, sp.csr_array(self.control[None])], format="csr"))
 
-    def factorise(self) -> None:
-        """Factorise the matrix of the present states."""
+    def factorise(self, *, careful: bool = False) -> None:
+        """Factorise the matrix of the present states; ``careful`` pivots for stability at the price of fill."""
         self.base = self.assemble()
         n, m = self.n, self.m
         lent = np.zeros(self.size)
@@ -200,15 +203,16 @@ class PathEquations:
         lent[n : n + m] = np.where(self.contact == CLOSED, REGULAR, 0.0)
         lent[n + m : -1] = np.where(self.sliding == STICK, REGULAR, 0.0)
         self.base_lent = lent
-        self.factors = splu(  # minimum degree on the nearly symmetric pattern: a quarter of COLAMD's fill
+        self.factors = splu(  # the lent terms make it quasidefinite: pivots stay on the diagonal, fill stays small
             sp.csc_matrix(self.base + sp.diags_array(lent)),
             permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.01,
+            diag_pivot_thresh=0.01 if careful else 0.0,
             options={"SymmetricMode": True},
         )
         self.changed: dict[int, tuple[Array, Array]] = {}
         self.slots: dict[int, int] = {}
         self.columns = np.zeros((self.size, UPDATES), order="F")
+        self.careful = careful
         self.factorisations += 1
 
     def set_state(self, k: int, contact: int, sliding: int) -> None:
@@ -294,6 +298,9 @@ class PathEquations:
             if worst <= SMALL:
                 break
             x = x + self._approximate(r)
+        if smallest > POOR and not self.careful and self.control[-1] != 1.0:
+            self.factorise(careful=True)  # under displacement control the matrix should be regular: try harder
+            return self.solve(b, rounds)
         return best, smallest
 
     def slip_of(self, k: int) -> Array:
