@@ -28,13 +28,20 @@ def main(figure: Path | None = None) -> dict[str, float]:
     loose = concio.solve(model, on_failure="return")
     tied = concio.solve(replace(model, ties=(tie,)))
     stretched = tied.node_displacement("right")[0, 0] - tied.node_displacement("left")[0, 0]
+    tension = float(tied.contacts.normal_force[tied.contacts.pairs.interface == -1][0])
+    arm = -float(stones[0].centroid[0])
+    weight = 20 * stones[0].area
+    by_hand = weight * (0.7 - 0.1 * 1.3 - arm) / 1.25  # moments of the left stone about the crown (0, 1.3)
     print(f"without the tie: {loose.status.name}; with it: {tied.status.name}")
+    print(f"tension {tension:.4f} kN, by hand {by_hand:.4f} kN")
     if figure:
-        tied.plot.forces().figure.savefig(figure)
+        tied.plot.deformed().figure.savefig(figure)
     return {
         "loose falls": float(loose.status is concio.Status.NO_EQUILIBRIUM),
         "worst": tied.certificate.worst,
         "stretched": float(stretched),
+        "tension": tension,
+        "by hand": by_hand,
     }
 
 

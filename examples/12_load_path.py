@@ -19,7 +19,7 @@ def main(figure: Path | None = None) -> dict[str, float]:
         [Stage("weight", {"dead": 1.0}), Stage("push", {"push": 0.7}), Stage("let go", {"push": 0.0})],
     )
     top = ControlPoint("b01", (0.2, 0.2))
-    shift, share = path.curve(top)
+    shift, _ = path.curve(top)
     print(
         f"{len(path.events)} events; the top stays {1e6 * (shift[-1] - shift[0]):.4f} micrometres from where it began"
     )
@@ -27,8 +27,8 @@ def main(figure: Path | None = None) -> dict[str, float]:
         import matplotlib.pyplot as plt
 
         _, axes = plt.subplots()
-        axes.plot(1e6 * shift, share, "o-", ms=3)
-        axes.set(xlabel="displacement of the top [micrometres]", ylabel="share of the stage")
+        axes.plot(1e6 * shift, [step.factors["push"] for step in path.steps], "o-", ms=3)
+        axes.set(xlabel="displacement of the top [micrometres]", ylabel="factor of the push")
         axes.figure.savefig(figure)
     return {
         "certificate": path.certificate,

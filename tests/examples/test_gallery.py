@@ -68,6 +68,8 @@ def check_mortar_as_joint_law(found):
 def check_tie_rod(found):
     assert found["loose falls"]
     assert found["worst"] <= 1e-9
+    assert found["stretched"] > 0
+    assert found["tension"] == pytest.approx(found["by hand"], rel=1e-9)
 
 
 def check_two_methods(found):

@@ -6,6 +6,7 @@ import json
 import tomllib
 from dataclasses import replace
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,8 @@ from concio.lcp.solution import Status
 from concio.model.file_generators import json_schema
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples"
-FILES = sorted(p.name for p in FOLDER.glob("*.toml"))
+DRAWINGS = () if find_spec("ezdxf") else ("gate_from_a_drawing.toml",)
+FILES = sorted(p.name for p in FOLDER.glob("*.toml") if p.name not in DRAWINGS)
 COLLAPSE = {"pushed_too_hard.toml"}
 
 
@@ -97,6 +99,13 @@ def test_settlement_is_that_of_the_ground() -> None:
     spread = solved("spreading_arch.toml")
     assert spread.node_displacement("right abutment")[:, 0] == pytest.approx(4e-3)
     assert spread.contacts.count("open") > 0
+
+
+def test_the_drawn_gate_is_the_one_of_the_table() -> None:
+    pytest.importorskip("ezdxf")
+    drawn, listed = solved("gate_from_a_drawing.toml"), solved("blocks_from_a_table.toml")
+    assert drawn.max_settlement == pytest.approx(listed.max_settlement, rel=1e-6)
+    assert drawn.reactions["ground"] == pytest.approx(listed.reactions["ground"], rel=1e-6, abs=1e-6)
 
 
 def test_json_of_every_example_is_plain(tmp_path: Path) -> None:

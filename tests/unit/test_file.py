@@ -191,6 +191,13 @@ def test_a_drawing_as_blocks(tmp_path: Path) -> None:
     assert model.materials["STONE"].unit_weight == 22
     assert model.rule_between(*model.bodies).law == "dry"
     assert model.laws["dry"].friction == 0.5
+    assert set(model.materials) == {"STONE"}
+    with pytest.raises(InputError, match="no material for blocks on layer 'STONE'"):
+        concio.loads(text.replace("materials.STONE", "materials.BRICK"), folder=tmp_path)
+    weightless = concio.loads(text.replace("unit_weight = 22", ""), folder=tmp_path)
+    assert not weightless.loads
+    default = concio.loads(text.replace("materials.STONE", "materials.block"), folder=tmp_path)
+    assert default.materials["block"].E == 3e6
 
 
 def test_units_of_the_file_are_those_of_bare_numbers() -> None:

@@ -181,12 +181,19 @@ def _from_drawing(data: FileTable, materials: Materials, laws: Laws, folder: Pat
     options: dict[str, Any] = {"thickness": data.analysis.thickness}
     if table is not None:
         options |= {key: getattr(table, key) for key in table.model_fields_set}
-    if "block" in materials:
-        options["block"] = materials["block"]
+    if materials:  # the drawing's own default is never meant; blocks that would take it are named below
+        options["block"] = materials.get("block", next(iter(materials.values())))
     if laws:
         options["friction"] = next(iter(laws.values()))
     layers = {name: material for name, material in materials.items() if name != "block"}
     model = model_from_dxf(folder / str(data.blocks_file), materials=layers, **options)
+    lost = dict.fromkeys(b.layer for b in model.free_bodies if b.material == "block" and "block" not in materials)
+    if lost:
+        names = ", ".join(f"'{layer}'" for layer in lost)
+        msg = f"there is no material for blocks on layer {names}"
+        raise InputError(msg, hint=f"add [materials.{next(iter(lost))}], or [materials.block] for all other layers")
+    used = {b.material for b in model.free_bodies}
+    model = replace(model, materials={name: m for name, m in model.materials.items() if name in used})
     return replace(model, laws={}, rules=()) if laws else model
 
 
