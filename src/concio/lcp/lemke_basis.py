@@ -1,13 +1,15 @@
 r"""The basis of Lemke's method: columns of ``[I, -M, -d]``, and two ways to keep it solvable as columns change.
 
 * :class:`ExplicitInverse`: the dense inverse, one rank-one update (BLAS 2) a pivot.
-* :class:`ProductForm`: a factorisation (sparse LU of SuperLU), and one eta vector a pivot.
+* :class:`ProductForm`: a factorisation (SuperLU, or LAPACK where more than a fifth of the entries are not zero), and
+  one eta vector a pivot.
 
 Both are refactorised every ``refresh`` pivots; ``docs/decisions/0010`` says what was measured.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
@@ -18,6 +20,9 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from concio.contact.problem import Array
 from concio.lcp.linear_problem import Matrix, is_sparse
+
+DENSE = 0.2
+"""Share of entries that are not zero above which the product form factorises a full matrix."""
 
 
 class SingularBasisError(ArithmeticError):
@@ -113,10 +118,18 @@ class ProductForm:
 
     def __init__(self, columns: Columns, basis: Array) -> None:
         matrix = columns.matrix(basis)
-        try:
-            self._lu: SuperLU = splu(sp.csc_matrix(matrix))
-        except RuntimeError as error:
-            raise SingularBasisError(str(error)) from error
+        count = matrix.nnz if is_sparse(matrix) else np.count_nonzero(matrix)
+        self._solve: Callable[[Array], Array]
+        if count > DENSE * basis.size**2:
+            dense = matrix.toarray() if is_sparse(matrix) else matrix
+            factors = sl.lu_factor(dense, check_finite=False)
+            self._solve = lambda a: sl.lu_solve(factors, a, check_finite=False)
+        else:
+            try:
+                lu: SuperLU = splu(sp.csc_matrix(matrix))
+            except RuntimeError as error:
+                raise SingularBasisError(str(error)) from error
+            self._solve = lu.solve
         self._etas: list[tuple[int, float, Array]] = []
 
     @property
@@ -126,7 +139,7 @@ class ProductForm:
 
     def solve(self, a: Array) -> Array:
         """Return B^-1 a, (n,)."""
-        x: Array = self._lu.solve(a)
+        x = self._solve(a)
         for row, pivot, eta in self._etas:
             value = x[row] / pivot
             if value != 0.0:

@@ -44,6 +44,10 @@ SOLVED = 1e-11
 """z0, relative to its largest value on the path, that counts as zero."""
 
 
+PRODUCT = 250
+"""Size from which the product form is faster than the dense inverse (``benchmarks/lcp_forms.py``)."""
+
+
 class Outcome(Enum):
     """How Lemke's method ended."""
 
@@ -123,7 +127,7 @@ def lemke(
     refresh : int
         Pivots between refactorisations.
     basis : {"auto", "inverse", "product"}
-        How the basis is kept; "auto" takes the product form for sparse M with n > 250.
+        How the basis is kept; "auto" takes the product form for n > 250.
     seed : int
         Of the symbolic perturbation.
     progress : callable, optional
@@ -189,7 +193,7 @@ class _Path:
     def __init__(self, M: Matrix, q: Array, d: Array, refresh: int, basis: str, seed: int) -> None:
         self.n = n = q.size
         self.q = q
-        product = basis == "product" or (basis == "auto" and is_sparse(M) and n > 250)
+        product = basis == "product" or (basis == "auto" and n > PRODUCT)
         self._kind: type[ProductForm] | type[ExplicitInverse] = ProductForm if product else ExplicitInverse
         self.columns = Columns(M if product or not is_sparse(M) else M.toarray(), d)
         self.refresh = refresh
