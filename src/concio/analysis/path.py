@@ -26,7 +26,7 @@ from concio.lcp.event_path import follow
 from concio.lcp.methods import find
 from concio.lcp.path_record import Event, Outcome
 from concio.lcp.path_state import OPEN, LinearPath, PathState, certify_step, elastic_energy
-from concio.lcp.solution import ProgressCallback, judge
+from concio.lcp.solution import ProgressCallback, Status, judge
 from concio.lcp.step_path import StepPath, follow_in_steps
 from concio.model.model import Model
 
@@ -199,13 +199,16 @@ class PathResult:
         return np.array(u), np.array(load)
 
     def result(self, step: int = -1) -> Result:
-        """Return one step as a :class:`Result`, with its slips counted from the beginning of the path."""
+        """Return one step as a :class:`Result`, with its slips counted from the beginning of the path.
+
+        The certificate, and with it the status, is that of the step, whose slip directions count from the step before.
+        """
         chosen = self.steps[step]
         problem, state = self.assembly.problem(chosen.factors), chosen.state
-        solution = judge(problem, state.displacement, state.normal_force, state.friction, method="path")
-        return Result(
-            self.assembly, dict(chosen.factors), replace(solution, certificate=chosen.certificate), {"total": 0.0}
-        )
+        judged = judge(problem, state.displacement, state.normal_force, state.friction, method="path")
+        status = Status.SOLVED if chosen.certificate.certified else Status.GAVE_UP
+        solution = replace(judged, certificate=chosen.certificate, status=status)
+        return Result(self.assembly, dict(chosen.factors), solution, {"total": 0.0})
 
 
 def control_functional(assembly: Assembly, point: ControlPoint) -> tuple[Array, Callable[[Mapping[str, float]], float]]:
