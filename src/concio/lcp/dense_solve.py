@@ -54,6 +54,7 @@ class DenseRun:
     trace: list[str] = field(default_factory=list)
     info: dict[str, Any] = field(default_factory=dict)
     velocity: Array | None = None
+    ray: bool = False
 
     def attempt(self, form: MixedForm, elimination: Elimination, **options: Any) -> Solution | None:
         """Solve ``form`` with its rigid motions treated by ``elimination``; None where that gave no solution.
@@ -84,6 +85,7 @@ class DenseRun:
         if result.outcome is Outcome.CANCELLED:
             return failed(form.reduction.system.problem, Status.CANCELLED, method=self.method, **self.extra())
         if result.outcome is Outcome.RAY:
+            self.ray = True
             self.velocity = self._ray_velocity(form, elimination, result)
             return None
         if result.outcome is not Outcome.SOLVED:
@@ -105,7 +107,9 @@ class DenseRun:
 
     def give_up(self, form: MixedForm) -> Solution:
         """Return the solution that says no answer was found, with a mechanism where there is one."""
-        return no_solution(form.reduction.system.problem, self.method, velocity=self.velocity, **self.extra())
+        return no_solution(
+            form.reduction.system.problem, self.method, velocity=self.velocity, ray=self.ray, **self.extra()
+        )
 
     def _tell(self, progress: Progress) -> bool | None:
         assert self.progress is not None

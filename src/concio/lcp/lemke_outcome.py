@@ -8,7 +8,9 @@ from concio.contact.problem import Array, ContactProblem
 from concio.lcp.solution import Solution, Status, failed
 
 
-def no_solution(problem: ContactProblem, method: str, *, velocity: Array | None = None, **extra: Any) -> Solution:
+def no_solution(
+    problem: ContactProblem, method: str, *, velocity: Array | None = None, ray: bool = False, **extra: Any
+) -> Solution:
     """Return NO_EQUILIBRIUM with a verified mechanism where there is one, UNDECIDED or GAVE_UP otherwise.
 
     Parameters
@@ -17,6 +19,8 @@ def no_solution(problem: ContactProblem, method: str, *, velocity: Array | None 
     method : str
     velocity : (N,) array, optional
         Direction of the displacements on the ray; tried as a mechanism before one is searched for.
+    ray : bool
+        A path ended on a ray, as against a limit or a failure.
     **extra
         Further fields of the solution.
     """
@@ -30,7 +34,7 @@ def no_solution(problem: ContactProblem, method: str, *, velocity: Array | None 
             problem, Status.NO_EQUILIBRIUM, method=method, mechanism=mechanism,
             trace=(*trace, "a mechanism shows that there is no equilibrium."), **extra,
         )  # fmt: skip
-    status = Status.UNDECIDED if velocity is not None else Status.GAVE_UP
+    status = Status.UNDECIDED if ray or velocity is not None else Status.GAVE_UP
     return failed(
         problem, status, method=method,
         trace=(*trace, "no mechanism excludes equilibrium: what pivoting found proves nothing."), **extra,
