@@ -12,7 +12,8 @@ import scipy.sparse.linalg as spla
 
 import concio
 from concio.contact.assembly import assemble, detect
-from concio.contact.pairs import interface_breaks, make_pairs
+from concio.contact.pairs import make_pairs
+from concio.contact.sides import interface_breaks
 from concio.fem.discretisation import discretise
 
 

@@ -9,8 +9,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.contact.loads import load_vectors
-from concio.contact.pairs import Pairs, interface_breaks, make_pairs, pair_laws
+from concio.contact.pairs import Pairs, make_pairs, pair_laws
 from concio.contact.problem import ContactProblem, Laws
+from concio.contact.sides import interface_breaks
 from concio.contact.supports import Supported, apply_supports, moved_obstacles
 from concio.contact.ties import add_ties
 from concio.errors import GeometryError, InputError

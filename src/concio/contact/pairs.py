@@ -7,19 +7,20 @@ reported forces are made reproducible by the solver's last step (least norm amon
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
 
-from concio.contact.coupling import Coupling, Line, Side, couple
+from concio.contact.coupling import Line, Side, couple
 from concio.contact.problem import Laws
+from concio.contact.sides import FacingSides
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, Discretisation
-from concio.fem.mesh import merged
 from concio.model.detect import Interface
-from concio.model.model import Body, Model
+from concio.model.materials import JointLaw
+from concio.model.model import Model
 
 Array = np.ndarray
 
@@ -69,106 +70,83 @@ class Pairs:
         return len(self.gap)
 
 
-def interface_breaks(model: Model, interfaces: Sequence[Interface]) -> Mapping[int, list[Array]]:
-    """Return for each meshed body where interfaces begin and end on each edge of its outline [m]."""
-    marks: dict[int, list[list[float]]] = {}
-    for face in interfaces:
-        for b, edge in ((face.a, face.edge_a), (face.b, face.edge_b)):
-            body = model.bodies[b]
-            if body.kind != "elastic" or body.grid is not None:
-                continue
-            found = marks.setdefault(b, [[] for _ in body.outline])
-            p, q = body.outline[edge], body.outline[(edge + 1) % len(body.outline)]
-            length = float(np.linalg.norm(q - p))
-            tangent = (q - p) / length
-            for end in (face.start, face.end):
-                at = float((end - p) @ tangent)
-                if 1e-6 * length < at < (1 - 1e-6) * length:
-                    found[edge].append(at)
-    return {b: [_distinct(v, model.bodies[b]) for v in found] for b, found in marks.items()}
-
-
-def _distinct(marks: list[float], body: Body) -> Array:
-    """Return marks in order, those nearer than a millionth of the body's size taken as one [m]."""
-    tolerance = 1e-6 * float(np.ptp(body.outline, axis=0).max())
-    return merged(np.array(marks), tolerance) if marks else np.zeros(0)
-
-
 def make_pairs(disc: Discretisation, interfaces: Sequence[Interface]) -> Pairs:
-    """Return the pairs of all interfaces of a discretised model.
+    """Return the pairs of all interfaces of a discretised model, interface by interface.
+
+    Interfaces whose sides are alike (shape, edge, place on it, length, kind of joint) share one coupling, and their
+    pairs are written together: the Python loop runs over the different couplings only.
 
     Raises
     ------
     InputError
         No joint law matches an interface.
     """
-    model = disc.model
-    law_names = tuple(model.laws)
-    law_number = {name: i for i, name in enumerate(law_names)}
-    templates: dict[tuple[object, ...], Coupling] = {}
-    rules: dict[tuple[str, ...], tuple[int, float]] = {}
-    parts: dict[str, list[Array]] = {k: [] for k in ("a", "b", "i", "p", "n", "l", "area", "g", "law")}
-    triplets: list[tuple[Array, Array, Array, Array]] = []  # row, column, C_n, C_t
-    by_name = _by_name(model)
-    unit = 1e-9 * float(np.median(disc.reach))
-    total = 0
-    for number, face in enumerate(interfaces):
-        body_a, body_b = model.bodies[face.a], model.bodies[face.b]
-        key = (body_a.name, body_b.name) if by_name else _sort(body_a) + _sort(body_b)
-        if key not in rules:
-            rule = model.rule_between(body_a, body_b)
-            rules[key] = (law_number[rule.law], rule.gap)
-        law, opening = rules[key]
-        along = face.end - face.start
-        length = float(np.hypot(*along))
-        along = along / length
-        joint = model.laws[law_names[law]]
-        points = 9 if joint.compressive_strength is not None else 5 if joint.normal_stiffness is not None else 2
-        line_a, key_a = _line(disc, face.a, face.edge_a, face.start, along, unit)
-        line_b, key_b = _line(disc, face.b, face.edge_b, face.start, along, unit)
-        where = (key_a, key_b, round(length / unit), points)
-        if where not in templates:
-            templates[where] = couple(line_a, line_b, length, points)
-        coupling = templates[where]
-        count = len(coupling.at)
-        normal = np.asarray(face.normal, dtype=float)
-        tangent = np.array([-normal[1], normal[0]])
-        at = face.start + np.outer(coupling.at, along)
-        for b, side, sign in ((face.a, coupling.a, -1.0), (face.b, coupling.b, 1.0)):
-            if disc.shape_of[b] != FIXED:
-                row, column, value = _side_rows(disc, b, side, at, normal, tangent)
-                triplets.append((row + total, column, sign * value[0], sign * value[1]))
-        share = coupling.at / length
-        gap = np.maximum(face.gap[0] * (1 - share) + face.gap[1] * share, 0.0) + opening
-        parts["a"].append(np.full(count, face.a))
-        parts["b"].append(np.full(count, face.b))
-        parts["i"].append(np.full(count, number))
-        parts["p"].append(at)
-        parts["n"].append(np.tile(normal, (count, 1)))
-        parts["l"].append(coupling.length)
-        parts["area"].append(coupling.length * min(body_a.thickness, body_b.thickness))
-        parts["g"].append(gap)
-        parts["law"].append(np.full(count, law))
-        total += count
-    if not total:
+    if not interfaces:
         msg = "no two bodies touch: there is no interface at all"
         raise InputError(msg, hint="look at the model with 'concio check'; raise gap_tolerance if the drawing has gaps")
+    model = disc.model
+    sides = FacingSides.of(model.bodies, interfaces)
+    law, opening = _laws_of(model, sides)
+    along = sides.end - sides.start
+    length = np.hypot(*along.T)
+    along = along / length[:, None]
+    unit = 1e-9 * float(np.median(disc.reach))
+    first_a, forwards_a, key_a = _place(disc, sides.a, sides.edge_a, sides.p_a, sides.q_a, sides.start, along, unit)
+    first_b, forwards_b, key_b = _place(disc, sides.b, sides.edge_b, sides.p_b, sides.q_b, sides.start, along, unit)
+    points = np.array([_points(model.laws[name]) for name in model.laws])[law]
+    keys = np.column_stack([key_a, key_b, np.round(length / unit).astype(np.int64), points])
+    _, example, group = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    couplings = [
+        couple(
+            _line(disc, int(sides.a[i]), int(sides.edge_a[i]), float(first_a[i]), bool(forwards_a[i])),
+            _line(disc, int(sides.b[i]), int(sides.edge_b[i]), float(first_b[i]), bool(forwards_b[i])),
+            float(length[i]),
+            int(points[i]),
+        )
+        for i in example
+    ]
+    group = group.ravel()
+    count = np.array([len(c.at) for c in couplings])[group]
+    begin = np.concatenate([[0], np.cumsum(count)])
+    total = int(begin[-1])
+    at, own_length = np.zeros(total), np.zeros(total)
+    triplets: list[tuple[Array, Array, Array, Array]] = []  # row, column, C_n, C_t
+    tangent = np.column_stack([-sides.normal[:, 1], sides.normal[:, 0]])
+    order = np.argsort(group, kind="stable")
+    ends = np.searchsorted(group[order], np.arange(len(couplings) + 1))
+    for g, coupling in enumerate(couplings):
+        members = order[ends[g] : ends[g + 1]]
+        rows = begin[members][:, None] + np.arange(len(coupling.at))
+        at[rows], own_length[rows] = coupling.at, coupling.length
+        where = sides.start[members][:, None] + coupling.at[:, None] * along[members][:, None]
+        frame = np.stack([sides.normal[members], tangent[members]])
+        for body, side, sign in ((sides.a, coupling.a, -1.0), (sides.b, coupling.b, 1.0)):
+            b = body[members]
+            if disc.shape_of[b[0]] == FIXED:
+                continue
+            entries = (
+                _rigid_side(disc, b, rows, where, frame) if side is None else _meshed_side(disc, b, rows, side, frame)
+            )
+            row, column, value = entries
+            triplets.append((row.ravel(), column.ravel(), sign * value[0].ravel(), sign * value[1].ravel()))
+    face = np.repeat(np.arange(len(interfaces)), count)
+    share = at / length[face]
+    gap = np.maximum(sides.gap[face, 0] * (1 - share) + sides.gap[face, 1] * share, 0.0) + opening[face]
+    thickness = np.array([b.thickness for b in model.bodies])
     row, column, v_n, v_t = (np.concatenate(v) for v in zip(*triplets, strict=True))
     shape = (total, disc.unknowns)
-    joined = {k: np.concatenate(v) for k, v in parts.items()}
-    normals = joined["n"]
     return Pairs(
-        body_a=joined["a"],
-        body_b=joined["b"],
-        interface=joined["i"],
-        point=joined["p"],
-        normal=normals,
-        tangent=np.column_stack([-normals[:, 1], normals[:, 0]]),
-        length=joined["l"],
-        area=joined["area"],
-        gap=joined["g"],
-        law=joined["law"],
-        law_names=law_names,
+        body_a=sides.a[face],
+        body_b=sides.b[face],
+        interface=face,
+        point=sides.start[face] + at[:, None] * along[face],
+        normal=sides.normal[face],
+        tangent=tangent[face],
+        length=own_length,
+        area=own_length * np.minimum(thickness[sides.a], thickness[sides.b])[face],
+        gap=gap,
+        law=law[face],
+        law_names=tuple(model.laws),
         C_n=_clean(sp.csr_array((v_n, (row, column)), shape=shape)),
         C_t=_clean(sp.csr_array((v_t, (row, column)), shape=shape)),
     )
@@ -200,50 +178,76 @@ def pair_laws(model: Model, pairs: Pairs) -> Laws:
     )
 
 
-def _by_name(model: Model) -> bool:
+def _points(law: JointLaw) -> int:
+    """Return how many pairs an interface of two rigid sides gets under a law."""
+    return 9 if law.compressive_strength is not None else 5 if law.normal_stiffness is not None else 2
+
+
+def _laws_of(model: Model, sides: FacingSides) -> tuple[Array, Array]:
+    """Return the number of the law (i,) and the opening (i,) [m] that the rules give each interface."""
     names = {b.name for b in model.bodies}
-    return any(word in names for rule in model.rules for word in rule.between)
+    if any(word in names for rule in model.rules for word in rule.between):
+        sort = np.arange(len(model.bodies))
+    else:
+        known: dict[tuple[str, ...], int] = {}
+        sort = np.array([known.setdefault((b.kind, b.role, b.layer, b.material), len(known)) for b in model.bodies])
+    pairs = np.column_stack([sort[sides.a], sort[sides.b]])
+    _, example, group = np.unique(pairs, axis=0, return_index=True, return_inverse=True)
+    rules = [model.rule_between(model.bodies[sides.a[i]], model.bodies[sides.b[i]]) for i in example]
+    number = {name: k for k, name in enumerate(model.laws)}
+    group = group.ravel()
+    return np.array([number[rule.law] for rule in rules])[group], np.array([rule.gap for rule in rules])[group]
 
 
-def _sort(body: object) -> tuple[str, ...]:
-    return tuple(getattr(body, k) for k in ("kind", "role", "layer", "material"))
-
-
-def _line(
-    disc: Discretisation, b: int, edge: int, start: Array, along: Array, unit: float
-) -> tuple[Line | None, tuple[int, ...]]:
-    """Return the nodes of one side in positions along the segment, and a key that sides equal to ``unit`` share."""
-    s = int(disc.shape_of[b])
-    if s < 0:
-        return None, (s,)
-    shape = disc.shapes[s]
-    nodes = shape.edges[edge]
-    corner = shape.outline[edge] + disc.origins[b]
-    direction = shape.outline[(edge + 1) % len(shape.outline)] - shape.outline[edge]
-    first = float((corner - start) @ along)
-    forwards = float(direction @ along) > 0
-    at = first + nodes.at if forwards else (first - nodes.at)[::-1]
-    order = nodes.nodes if forwards else nodes.nodes[::-1]
-    return Line(order, at, nodes.order), (s, edge, round(first / unit), int(forwards))
-
-
-def _side_rows(
-    disc: Discretisation, b: int, side: Side | None, at: Array, normal: Array, tangent: Array
+def _place(
+    disc: Discretisation, body: Array, edge: Array, p: Array, q: Array, start: Array, along: Array, unit: float
 ) -> tuple[Array, Array, Array]:
-    """Return (row, column, values (2, k)) of one side's displacement along n and t at each pair."""
-    frame = np.vstack([normal, tangent])
-    if side is None:  # rigid
-        count = len(at)
-        x, y = (at - disc.centroids[b]).T / disc.reach[b]
-        rows = np.repeat(np.arange(count), 3)
-        columns = disc.offsets[b] + np.tile(np.arange(3), count)
-        turn = np.outer(frame[:, 1], x) - np.outer(frame[:, 0], y)  # (2, count)
-        values = np.stack([np.repeat(frame[:, :1], count, 1), np.repeat(frame[:, 1:], count, 1), turn], axis=2)
-        return rows, columns, values.reshape(2, -1)
-    rows = np.repeat(side.pair, 2)
-    columns = disc.offsets[b] + (2 * side.node[:, None] + np.arange(2)).ravel()
-    values = (frame[:, None, :] * side.weight[None, :, None]).reshape(2, -1)
-    return rows, columns, values
+    """Return where edges begin along their segments (i,) [m], whether they run forwards, and keys equal to ``unit``."""
+    shape = disc.shape_of[body]
+    first = ((p - start) * along).sum(1)
+    forwards = ((q - p) * along).sum(1) > 0
+    key = np.column_stack([edge, np.round(first / unit).astype(np.int64), forwards.astype(np.int64)])
+    key[shape < 0] = 0
+    return first, forwards, np.column_stack([shape, key])
+
+
+def _line(disc: Discretisation, b: int, edge: int, first: float, forwards: bool) -> Line | None:
+    """Return the nodes of one side in positions along the segment; None where it is not meshed."""
+    if disc.shape_of[b] < 0:
+        return None
+    nodes = disc.shapes[disc.shape_of[b]].edges[edge]
+    if forwards:
+        return Line(nodes.nodes, first + nodes.at, nodes.order)
+    return Line(nodes.nodes[::-1], (first - nodes.at)[::-1], nodes.order)
+
+
+def _meshed_side(disc: Discretisation, b: Array, rows: Array, side: Side, frame: Array) -> tuple[Array, Array, Array]:
+    """Return rows and columns (g, k, 2) and values (2, g, k, 2) of the displacement along n and t of meshed sides.
+
+    Parameters
+    ----------
+    b : (g,) array
+        Bodies.
+    rows : (g, p) array
+        Numbers of their pairs.
+    side : Side
+        k entries.
+    frame : (2, g, 2) array
+        Normals and tangents.
+    """
+    columns = disc.offsets[b][:, None, None] + (2 * side.node[:, None] + np.arange(2))
+    row = np.broadcast_to(rows[:, side.pair, None], columns.shape)
+    return row, columns, frame[:, :, None] * side.weight[:, None]
+
+
+def _rigid_side(disc: Discretisation, b: Array, rows: Array, at: Array, frame: Array) -> tuple[Array, Array, Array]:
+    """Return the same, (g, p, 3) and (2, g, p, 3), for rigid sides whose points are ``at`` (g, p, 2)."""
+    arm = (at - disc.centroids[b][:, None]) / disc.reach[b][:, None, None]
+    columns = np.broadcast_to(disc.offsets[b][:, None, None] + np.arange(3), (*rows.shape, 3))
+    value = np.empty((2, *rows.shape, 3))
+    value[..., :2] = frame[:, :, None]
+    value[..., 2] = frame[..., 1, None] * arm[..., 0] - frame[..., 0, None] * arm[..., 1]
+    return np.broadcast_to(rows[..., None], columns.shape), columns, value
 
 
 def _clean(matrix: sp.csr_array) -> sp.csr_array:
