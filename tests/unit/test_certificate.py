@@ -1,0 +1,126 @@
+"""Each entry of the certificate, by hand, on one body with two springs and one pair."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from concio.contact.problem import ContactProblem, Laws
+from concio.errors import InputError
+from concio.lcp.certificate import CERTIFIED, Certificate, certify, kinematics
+from concio.lcp.solution import Status, failed, judge
+
+
+def one_pair(f=(3.0, -10.0), gap=0.0, origin=0.0, **laws):
+    """A point on springs of 100 and 200 kN/m above a floor: u = (x, y), n = (0, 1), t = (-1, 0)."""
+    table = {"friction": 0.5, "cohesion": 0.0, "tension": 0.0, "dilatancy": 0.0, "normal_compliance": 0.0,
+             "tangential_compliance": 0.0, "cap": np.inf, **laws}  # fmt: skip
+    return ContactProblem(
+        K=sp.csr_array(np.diag([100.0, 200.0])),
+        f=np.array(f, dtype=float),
+        C_n=sp.csr_array([[0.0, 1.0]]),
+        C_t=sp.csr_array([[-1.0, 0.0]]),
+        gap=np.array([gap]),
+        laws=Laws(**{k: np.array([v]) for k, v in table.items()}),
+        R=sp.csc_array((2, 0)),
+        bodies=np.array([0, 2]),
+        slip_origin=np.array([[origin]]),
+    )
+
+
+def entries(problem, u, t_n, t_t):
+    return certify(problem, np.array(u), np.array([t_n]), np.array([t_t]))
+
+
+def test_stick():
+    """t_t acts along (-1, 0): t_t = 3 holds the push of 3; |3| <= 0.5 x 10."""
+    c = entries(one_pair(), (0.0, 0.0), 10.0, 3.0)
+    assert c.worst == 0.0
+    assert c.certified
+
+
+def test_slip():
+    """Push 8, friction 5: u_x = 3/100, slip y_t = -0.03, t_t = +5 opposes it."""
+    c = entries(one_pair((8.0, -10.0)), (0.03, 0.0), 10.0, 5.0)
+    assert c.worst < 1e-16
+    wrong_sign = entries(one_pair((-2.0, -10.0)), (0.03, 0.0), 10.0, -5.0)  # in equilibrium, but friction drives
+    assert wrong_sign.equilibrium < 1e-16
+    assert wrong_sign.slip_direction == pytest.approx(10.0 / 12.0)
+
+
+def test_each_entry_by_hand():
+    problem = one_pair()  # F = 13
+    assert entries(problem, (0.0, 0.0), 9.0, 3.0).equilibrium == pytest.approx(1 / 13)
+    assert entries(problem, (0.0, 0.0), 10.0, 5.5).cone == pytest.approx(0.5 / 13)
+    assert entries(problem, (0.0, 0.0), -1.0, 0.0).cone == pytest.approx(1 / 13)
+    sunk = entries(problem, (0.01, -0.002), 10.0, 0.0)  # U = 0.01
+    assert sunk.penetration == pytest.approx(0.2)
+    lifted = entries(problem, (0.01, 0.002), 10.0, 0.0)
+    assert lifted.complementarity == pytest.approx(min(0.2, 10 / 13))
+    creeping = entries(problem, (0.01, 0.0), 10.0, 0.0)  # slips without friction
+    assert creeping.slip_direction == pytest.approx(5 / 13)
+
+
+def test_cap_and_crushing():
+    problem = one_pair((0.0, -10.0), cap=6.0)  # the springs take 4: u_y = -0.02, crushed by as much
+    c = entries(problem, (0.0, -0.02), 6.0, 0.0)
+    assert c.worst < 1e-15
+    kin = kinematics(problem, np.array([0, -0.02]), np.array([6.0]), np.zeros((1, 1)))
+    assert kin.crushing == pytest.approx([0.02])
+    assert entries(problem, (0.0, 0.0), 10.0, 0.0).cone == pytest.approx(0.4)
+    assert entries(problem, (0.0, -0.03), 4.0, 0.0).complementarity == pytest.approx(2 / 10)  # crushed below the cap
+
+
+def test_tension_cohesion_dilatancy_compliance_and_origin():
+    pulled = one_pair((0.0, 3.0), tension=4.0, cohesion=2.0)
+    assert entries(pulled, (0.0, 0.0), -3.0, 0.0).worst == 0.0
+    assert entries(pulled, (0.0, -0.005), -4.0, 0.0).penetration == 1.0
+    slid = one_pair((0.0, 0.0), cohesion=2.0, friction=0.0)
+    assert entries(slid.with_loads(np.array([2.0, -1.0])), (0.0, 0.0), 1.0, 2.0).worst == 0.0
+    rising = one_pair((8.0, -10.0 + 200 * 0.2 * 0.03), dilatancy=0.2)
+    assert entries(rising, (0.03, 0.006), 10.0, 5.0).worst < 1e-15
+    soft = one_pair((0.0, -10.0 - 200 * 0.02), normal_compliance=0.002)
+    assert entries(soft, (0.0, -0.02), 10.0, 0.0).worst < 1e-15
+    bent = one_pair((3.0 + 100 * 0.006, -10.0), tangential_compliance=0.002)
+    assert entries(bent, (0.006, 0.0), 10.0, 3.0).worst < 1e-15
+    history = one_pair((3.0 + 100 * 0.05, -10.0), origin=-0.05)  # slipped to u_x = 0.05 before
+    assert entries(history, (0.05, 0.0), 10.0, 3.0).worst < 1e-15
+
+
+def test_gap_open_and_closed():
+    assert entries(one_pair((0.0, -10.0), gap=0.1), (0.0, -0.05), 0.0, 0.0).worst < 1e-15
+    assert entries(one_pair((0.0, -10.0), gap=0.02), (0.0, -0.02), 6.0, 0.0).worst < 1e-15
+    assert entries(one_pair((0.0, -10.0), gap=0.1), (0.0, -0.04), 2.0, 0.0).complementarity > 0.1
+
+
+def test_not_a_number_is_never_certified():
+    c = entries(one_pair(), (np.nan, 0.0), 10.0, 3.0)
+    assert c.worst == np.inf
+    assert not c.certified
+    assert Certificate(np.nan, 0, 0, 0, 0).worst == np.inf
+    assert not Certificate(0, 0, 0, 0, 1.01 * CERTIFIED).certified
+    assert Certificate(0, 0, 0, 0, CERTIFIED).certified
+
+
+def test_judge_calls_solved_only_what_is_certified():
+    problem = one_pair()
+    good = judge(problem, np.zeros(2), np.array([10.0]), np.array([3.0]), method="by hand")
+    assert good.status is Status.SOLVED
+    bad = judge(problem, np.zeros(2), np.array([10.0]), np.array([3.1]), method="by hand")
+    assert bad.status is Status.GAVE_UP
+    assert not bad.solved
+    lost = failed(problem, Status.UNDECIDED, method="by hand")
+    assert lost.status is Status.UNDECIDED
+    assert [s.exit_code for s in (Status.SOLVED, Status.NO_EQUILIBRIUM, Status.UNDECIDED)] == [0, 3, 4]
+
+
+def test_problems_that_make_no_sense():
+    with pytest.raises(InputError, match="friction x tension"):
+        one_pair(tension=5.0)
+    with pytest.raises(InputError, match="f holds a value that is not finite"):
+        one_pair((np.nan, 0.0))
+    with pytest.raises(InputError, match="gap holds"):
+        one_pair(gap=np.inf)
+    with pytest.raises(InputError, match="f has shape"):
+        one_pair((1.0, 2.0, 3.0))
