@@ -143,7 +143,11 @@ def solve(
         if end.outcome == "cancelled":
             return failed(problem, Status.CANCELLED, method=METHOD, **work.extra())
         if end.outcome == "solution":
-            solution = finish(system, end.normal[:m], end.tangential[:m], method=METHOD, **work.extra(start=name))
+            try:
+                solution = finish(system, end.normal[:m], end.tangential[:m], method=METHOD, **work.extra(start=name))
+            except SingularBasisError:
+                work.trace.append(f"{name}: its final states leave a body loose.")
+                continue
             if solution.solved:
                 return solution
             work.trace.append(f"{name}: its end is exact only to {solution.certificate.worst:.1e}.")
