@@ -12,6 +12,7 @@ METHODS: dict[str, str] = {
     "interior-point": "concio.lcp.engine",
     "lemke": "concio.lcp.lemke",
     "sparse-lemke": "concio.lcp.sparse_lemke",
+    "exhaustive": "concio.lcp.exhaustive",
     "klarbring": "concio.lcp.klarbring",
     "ercolano": "concio.lcp.ercolano",
     "lee": "concio.lcp.lee",

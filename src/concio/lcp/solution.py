@@ -18,6 +18,7 @@ class Status(Enum):
 
     SOLVED = "In equilibrium: the certificate proves it."
     NO_EQUILIBRIUM = "No equilibrium is possible: a mechanism proves it."
+    NO_COULOMB_STATE = "No Coulomb equilibrium exists: every combination of joint states was excluded."
     UNDECIDED = (
         "Undecided: statically admissible forces exist, but no state that also obeys Coulomb friction was found, "
         "and none was shown impossible."
@@ -28,7 +29,7 @@ class Status(Enum):
     @property
     def exit_code(self) -> int:
         """Exit code of the command line for this outcome."""
-        return {Status.SOLVED: 0, Status.NO_EQUILIBRIUM: 3}.get(self, 4)
+        return {Status.SOLVED: 0, Status.NO_EQUILIBRIUM: 3, Status.NO_COULOMB_STATE: 3}.get(self, 4)
 
 
 class PairState(IntEnum):
