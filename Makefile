@@ -49,5 +49,11 @@ test: $(VENV)/.installed-dev
 docs: $(VENV)/.installed-docs
 	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html
 
+# Runs every validation case and every gallery example again and rewrites their pages in docs/.
+.PHONY: book
+book: $(VENV)/.installed-docs
+	OMP_NUM_THREADS=1 $(BIN)/python docs/make_validation.py
+	OMP_NUM_THREADS=1 $(BIN)/python docs/make_gallery.py
+
 clean:
 	rm -rf $(VENV) build dist demo docs/_build .pytest_cache .mypy_cache .ruff_cache .hypothesis
