@@ -1,0 +1,157 @@
+"""The engine on whole models: benchmark walls rigid and stiff, the rigid limit, loose blocks, verdicts, cancelling."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import concio
+from concio.lcp.existence import find_mechanism
+from concio.lcp.methods import find
+from concio.lcp.solution import Status
+from concio.model.materials import Elastic, Rigid
+from concio.model.model import Load
+from contact_problems import wall as plain_wall
+from models import box, model_of, on_ground, weight
+from rigid_walls import BLOCK, FERRIS_TIN_LOI, MU
+
+STONE = {"kind": "rigid", "material": "stone"}
+
+
+@pytest.mark.parametrize(("name", "interfaces"), [("wall 1", 83), ("wall 2", 141), ("wall 3", 102)])
+@pytest.mark.parametrize("material", [Rigid(10.0), Elastic(1e8, 0.2, 10.0)], ids=["rigid", "stiff"])
+def test_ferris_and_tin_loi_walls_stand(name, interfaces, material):
+    """Gravity alone; walls of Ferris and Tin-Loi (2001), Int. J. Mech. Sci. 43."""
+    model = concio.wall_of_courses(
+        courses=FERRIS_TIN_LOI[name], block_size=BLOCK, block=material, friction=MU, mesh_size=0.2
+    )
+    result = concio.solve(model)
+    assert len(result.assembly.detection.interfaces) == interfaces
+    assert result.certificate.worst <= 1e-9
+    own = sum(b.area for b in model.free_bodies) * 10.0
+    assert result.reactions["ground"] == pytest.approx((0.0, own), abs=1e-8 * own)
+    # each course carries what is above it
+    total = np.zeros(20)
+    height = BLOCK[1]
+    for y, N, n in zip(result.joints.middle[:, 1], result.joints.N, result.joints.normal, strict=True):
+        if abs(n[1]) > 0.5:
+            total[round(y / height)] += abs(N)
+    for level in range(len(FERRIS_TIN_LOI[name])):
+        above = sum(10.0 * b.area for b in model.free_bodies if b.outline[:, 1].min() > level * height - 1e-9)
+        assert total[level] == pytest.approx(above, rel=2e-2 if name == "wall 3" else 1e-6)
+
+
+def determinate(block, kind):
+    """Three blocks in a leaning stack under weight and a push: all joint resultants follow from statics."""
+    bodies = [
+        replace(box(f"b{k}", 0.05 * k, 1 + 0.05 * k, 0.4 * k, 0.4 * (k + 1), mesh_size=0.2), material="m", kind=kind)
+        for k in range(3)
+    ]
+    push = Load("point", (2.0, 0.0), bodies=("b2",), at=(0.1, 1.2), group="push")
+    return on_ground(*bodies, materials={"m": block}, loads=(weight(), push), law=0.7)
+
+
+def test_rigid_limit_of_a_determinate_stack():
+    rigid = concio.solve(determinate(Rigid(20.0), "rigid"))
+    slope = []
+    for E in (1e4, 1e6, 1e8):
+        elastic = concio.solve(determinate(Elastic(E, 0.2, 20.0), "elastic"))
+        np.testing.assert_allclose(elastic.joints.N, rigid.joints.N, rtol=1e-8)
+        np.testing.assert_allclose(elastic.joints.V, rigid.joints.V, atol=1e-8)
+        np.testing.assert_allclose(elastic.joints.eccentricity, rigid.joints.eccentricity, atol=1e-8)
+        slope.append(np.abs(elastic.displacement).max())
+    np.testing.assert_allclose(np.array(slope[:-1]) / slope[1:], 100.0, rtol=1e-6)  # to no displacement at all
+    assert np.abs(rigid.displacement).max() < 1e-9
+
+
+def test_rigid_limit_of_imposed_settlement():
+    """A beam on two blocks of which one sinks: reactions and rotation approach the rigid answer."""
+
+    def model(block, kind):
+        bodies = [
+            box("left", -2, -1, 0, 1, material="m", kind=kind, mesh_size=0.5),
+            box("right", 1, 2, 0, 1, material="m", kind=kind, mesh_size=0.5),
+            box("beam", -2, 2, 1, 1.5, material="m", kind=kind, mesh_size=0.5),
+            box("soil", 1, 2, -1, 0, kind="fixed"), box("rock", -2, -1, -1, 0, kind="fixed"),
+        ]  # fmt: skip
+        sink = concio.Support("sink", "soil", displacement=(0.0, -0.01))
+        return model_of(*bodies, materials={"m": block}, loads=(weight(),), supports=(sink,), law=0.5)
+
+    rigid = concio.solve(model(Rigid(20.0), "rigid"))
+    # the beam touches at x = -1 and x = 2, its weight 40 acts at x = 0: 80/3 and 40/3, and 20 of each block
+    assert rigid.reactions["rock"][1] == pytest.approx(20 + 80 / 3)
+    errors = []
+    for E in (1e5, 1e6, 1e7):
+        elastic = concio.solve(model(Elastic(E, 0.2, 20.0), "elastic"))
+        # vertical reactions are unique; the thrust between the blocks is not where nothing deforms
+        reaction = [elastic.reactions[name][1] - rigid.reactions[name][1] for name in ("rock", "soil")]
+        sunk = elastic.node_displacement("beam")[:, 1].min() - rigid.node_displacement("beam")[:, 1].min()
+        errors.append(np.abs([*reaction, sunk]))
+    assert errors[-1][:2].max() < 1e-6
+    assert errors[-1][2] < 2e-5
+    assert errors[0][2] > 5e-4
+
+
+def test_a_loose_block_nothing_presses_on_does_no_harm():
+    """A weightless block lying in a niche: it carries nothing and moves nowhere far."""
+    model = on_ground(
+        box("a", -1, 0, 0, 1, mesh_size=0.5), box("b", 0, 1, 0, 0.5, mesh_size=0.5, material="feather"),
+        box("c", 1, 2, 0, 1, mesh_size=0.5), loads=(weight(),),
+        materials={"feather": Elastic(1e4, 0.2)},
+    )  # fmt: skip
+    result = concio.solve(model)
+    assert result.reactions["ground"] == pytest.approx((0.0, 40.0))
+    assert np.abs(result.displacement).max() < 1.0
+
+
+@pytest.mark.parametrize(("share", "stands"), [(0.39, True), (0.41, False)])
+@pytest.mark.parametrize("kind", ["elastic", "rigid"])
+def test_verdicts_on_a_sliding_wall(share, stands, kind):
+    """A low wall slides on its base at tan = mu = 0.4, whatever else it does."""
+    block = Elastic(1e6, 0.2, 20.0) if kind == "elastic" else Rigid(20.0)
+    model = concio.wall(length=2.0, height=0.25, block=block, friction=0.4, horizontal=share)
+    result = concio.solve(model, on_failure="return")
+    assert result.status is (Status.SOLVED if stands else Status.NO_EQUILIBRIUM)
+    assert (find_mechanism(result.assembly.problem()) is None) is stands
+
+
+def test_same_problem_same_answer_to_the_last_bit():
+    problem = plain_wall(3, 3, mu=0.6, alpha=0.2)
+    first, second = find("auto")(problem), find("auto")(problem)
+    assert np.array_equal(first.displacement, second.displacement)
+    assert np.array_equal(first.normal_force, second.normal_force)
+    assert first.trace == second.trace
+
+
+def test_progress_is_told_and_can_cancel():
+    seen = []
+    model = concio.running_bond_panel(top_pressure=10.0)
+    concio.solve(model, progress=lambda p: seen.append((p.iteration, p.residual)) and None)
+    assert len(seen) > 3
+    assert [n for n, _ in seen] == sorted(n for n, _ in seen)
+    calls = []
+
+    def stop(_):
+        calls.append(1)
+        return len(calls) >= 3
+
+    result = concio.solve(model, progress=stop, on_failure="return")
+    assert result.status is Status.CANCELLED
+    assert len(calls) == 3
+
+
+def test_jammed_panel_without_base():
+    """Hung between walls by friction: 3 x 6 stands at mu = 1; without friction it falls.
+
+    Between, forces within the cones exist for any mu > 0 (an arch as flat as friction wants, pressed by the rigid
+    walls): whether Coulomb friction builds up that thrust or not, collapse can never be proved.
+    """
+    panel = {"courses": 3, "blocks": 6, "base": "none", "top_pressure": 10.0}
+    assert concio.solve(concio.running_bond_panel(friction=1.0, **panel)).solved
+    smooth = concio.solve(concio.running_bond_panel(friction=0.0, **panel), on_failure="return")
+    assert smooth.status is Status.NO_EQUILIBRIUM
+    low = concio.solve(concio.running_bond_panel(friction=0.2, **panel), on_failure="return")
+    assert low.status is not Status.NO_EQUILIBRIUM
+    assert find_mechanism(low.assembly.problem()) is None
