@@ -1,4 +1,4 @@
-r"""``exhaustive``: find a Coulomb equilibrium of a small problem or, excluding all joint states, prove that none exists.
+r"""``exhaustive``: find an equilibrium of a small problem or, excluding all joint states, prove that none exists.
 
 Friction is not associated, so no theorem of alternatives says which loads a structure carries: statically admissible
 forces may exist and no Coulomb state. What remains is to try the states of the pairs, open, stick, slip + and slip -,
@@ -44,6 +44,9 @@ from concio.lcp.solution import Progress, ProgressCallback, Solution, Status, fa
 
 ZERO = 1e-9
 """Forces and gaps below this, scaled, count as zero when a point is read as a state; the answer is judged anyway."""
+
+SHRINKS = 0
+"""Times a proof is tried again with its reasons alone, to find fewer."""
 
 REPORT = 20
 """Nodes between two calls of the progress callback."""
@@ -155,7 +158,7 @@ class Search:
     def excluded(self, found: Empty) -> Clause:
         """Return the clause that a proof of emptiness teaches: one of its reasons must not hold."""
         self.leaves += 1
-        found = self.lp.shrink(found)
+        found = self.lp.shrink(found, SHRINKS)
         self.reach = min(self.reach, found.reach)
         return [int(literal) ^ 1 for literal in self.questions.literal[found.reasons]]
 

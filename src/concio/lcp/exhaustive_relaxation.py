@@ -1,4 +1,4 @@
-r"""What is left of the problem when some complementarities are dropped: a linear programme, and proofs that it is empty.
+r"""The problem with some complementarities dropped: a linear programme, and proofs that it is empty.
 
 In units of the problem's own, with t_n = p + q and t_t = mu (p - q), so that p, q >= 0 is the friction cone and
 s+ = 2 mu p, s- = 2 mu q, plain Coulomb friction reads
@@ -14,9 +14,9 @@ u shows that every state obeys the convex inequality
 
 the last because t_t y_t <= 0; its tangents are added where the linear programme violates it.
 
-Proof that a relaxation is empty (Farkas): multipliers z, w of the two sets of equations and lambda >= 0 of the tangents
-such that the coefficients of the combination vanish for u, are not positive for every column that may be positive, while
-its right-hand side is positive. The columns fixed at zero with a positive coefficient are the *reasons*: as long as
+Proof that a relaxation is empty (Farkas): multipliers z, w of the two sets of equations and lambda >= 0 of the
+tangents such that the coefficients of the combination vanish for u and are not positive for every column that may be
+positive, while its right-hand side is positive. The columns fixed at zero with a positive coefficient are the *reasons*: as long as
 they stay fixed no state exists. The linear programme is solved with u eliminated; the multipliers it returns are lifted
 to the original equations, and the combination is formed again from K, C, f, x. It is believed only if what rounding
 left of the coefficients that must vanish could not make up for the right-hand side unless some displacement or force
@@ -78,7 +78,6 @@ class Relaxation:
     problem: ContactProblem
     reduction: Reduction = field(init=False)
     solves: int = 0
-    shrinks: int = 0
     cuts: int = 0
     doubtful: int = 0
 
@@ -112,7 +111,7 @@ class Relaxation:
         b = np.concatenate([red.y0, -red.e0 * self.unit])
         A[np.abs(A) < 1e-14 * np.abs(A).max(initial=1.0)] = 0.0
         self.tangents: list[tuple[Array, Array, float]] = []
-        self.highs = highs = highspy.Highs()
+        self.highs = highs = highspy.Highs()  # type: ignore[no-untyped-call]
         for name, value in (
             ("output_flag", False),
             ("presolve", "off"),
@@ -152,9 +151,9 @@ class Relaxation:
             self.doubtful += found is None
         return found
 
-    def shrink(self, proof: Empty) -> Empty:
+    def shrink(self, proof: Empty, rounds: int) -> Empty:
         """Return a proof with fewer reasons where solving with these reasons alone finds one."""
-        for _ in range(self.shrinks):
+        for _ in range(rounds):
             fixed = np.zeros(self.n, dtype=bool)
             fixed[proof.reasons] = True
             found = self.solve(fixed)
@@ -173,7 +172,7 @@ class Relaxation:
             return Point(values[: self.n], self.B @ values[:c], values[self.n :] * self.unit)
         if status != highspy.HighsModelStatus.kInfeasible:
             return None
-        _, exists, ray = self.highs.getDualRay()
+        _, exists, ray = self.highs.getDualRay()  # type: ignore[attr-defined]
         if not exists:
             return None
         ray = np.asarray(ray)

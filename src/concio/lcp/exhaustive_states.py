@@ -1,9 +1,9 @@
 """Joint states as yes/no questions, and what an answer fixes in the linear programme.
 
-Of every pair: is it open (no force)? Of a rough pair also: is s+ used up (p = 0), is s- used up (q = 0)? The answers of a
-rough pair leave four states: open (yes, yes, yes), stick (no, no, no), slip + (no, yes, no) and slip - (no, no, yes); a
-pair with both used up carries nothing and counts as open. Every answer fixes at most one column of
-:class:`concio.lcp.exhaustive_relaxation.Relaxation` at zero, and every column but the rigid motions belongs to one answer.
+Of every pair: is it open (no force)? Of a rough pair also: is s+ used up (p = 0), is s- used up (q = 0)? The answers of
+a rough pair leave four states: open (yes, yes, yes), stick (no, no, no), slip + (no, yes, no) and slip - (no, no, yes);
+a pair with both used up carries nothing and counts as open. Every answer fixes at most one column of
+:class:`concio.lcp.exhaustive_relaxation.Relaxation` at zero, and every column but the rigid motions has its answer.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from concio.lcp.exhaustive_clauses import Clause
 
 
 class StateQuestions:
-    """Questions 0..m-1: open? m..m+k-1: s+ used up? m+k..m+2k-1: s- used up?
+    """The questions: 0..m-1 open? m..m+k-1 s+ used up? m+k..m+2k-1 s- used up?.
 
     Parameters
     ----------
