@@ -6,16 +6,24 @@ import re
 from importlib.metadata import version as installed_version
 from typing import Any
 
+from docutils import nodes
+from docutils.utils.math import MathError
+from docutils.utils.math.latex2mathml import tex2mathml
+from sphinx.util import logging
+
 project = "concio"
-author = "The concio developers"
+author = copyright = "The concio developers"
 release = version = installed_version("concio")
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax", "sphinx.ext.viewcode"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
 myst_enable_extensions = ["dollarmath", "amsmath", "deflist"]
 myst_heading_anchors = 3
 source_suffix = {".md": "markdown"}
 exclude_patterns = ["_build"]
 html_theme = "furo"
+html_math_renderer = "mathml"
+html_static_path = ["_static"]
+html_css_files = ["math.css"]
 html_title = "concio"
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
@@ -25,6 +33,7 @@ napoleon_use_ivar = True
 napoleon_custom_sections = [("Keys", "params_style")]
 templates_path: list[str] = []
 
+TAG = re.compile(r"\\tag\{([^}]*)\}")
 BAR = re.compile(r"(?<![\\`])\|")
 MATH = re.compile(r":math:`[^`]*`|``[^`]*``|`[^`]*`")
 
@@ -44,6 +53,34 @@ def protect_bars(app: Any, what: str, name: str, obj: Any, options: Any, lines: 
             lines[i] = "".join(a + b for a, b in zip(plain, [*kept, ""], strict=True))
 
 
+def mathml(node: nodes.Element, block: bool) -> str:
+    """Formula as MathML, which browsers draw by themselves: the pages need no network."""
+    text = node.astext()
+    tag = TAG.search(text)
+    try:
+        found = tex2mathml(TAG.sub("", text).strip(), as_block=block)
+    except MathError as error:
+        logging.getLogger(__name__).warning("formula not understood: %s (%s)", text, error, location=node)
+        return f"<code>{text}</code>"
+    if not block:
+        return found
+    number = f'<span class="number">({tag.group(1)})</span>' if tag else ""
+    return f'<div class="formula">{found}{number}</div>'
+
+
+def visit_math(self: Any, node: nodes.Element) -> None:
+    """Write an inline formula."""
+    self.body.append(mathml(node, False))
+    raise nodes.SkipNode
+
+
+def visit_math_block(self: Any, node: nodes.Element) -> None:
+    """Write a displayed formula."""
+    self.body.append(mathml(node, True))
+    raise nodes.SkipNode
+
+
 def setup(app: Any) -> None:
-    """Connect the docstring filter."""
+    """Connect the docstring filter and the formulas."""
+    app.add_html_math_renderer("mathml", (visit_math, None), (visit_math_block, None))
     app.connect("autodoc-process-docstring", protect_bars)

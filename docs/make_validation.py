@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import importlib
 import inspect
+import re
 import sys
 from pathlib import Path
 from types import ModuleType
@@ -65,7 +66,11 @@ def table(rows: list[Row]) -> str:
     lines = ["| | expected | computed | difference | allowed | checked by |", "|---|---|---|---|---|---|"]
     for r in rows:
         unit = "" if r.unit == "-" else f" {r.unit}"
-        cells = (f"{number(r.expected)}{unit}", f"{number(r.computed)}{unit}", difference(r), allowed(r), r.check)
+        if r.reason == "yes or no":
+            shown = ["yes" if value == 1 else "no" for value in (r.expected, r.computed)]
+        else:
+            shown = [number(r.expected) + unit, number(r.computed) + unit]
+        cells = (*shown, difference(r), allowed(r), r.check)
         lines.append(f"| {r.name} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
@@ -100,10 +105,10 @@ def section(name: str, title: str) -> tuple[str, list[Row]]:
     """Run one case; return its section and its rows."""
     module = importlib.import_module(f"validation_cases.{name}")
     rows = module.rows()
-    text = inspect.cleandoc(module.__doc__ or "").replace(".. math::", "")
+    text = re.sub(r"(?<!\\)\|", r"\\|", inspect.cleandoc(module.__doc__ or ""))
     parts = [
         f"## {title}",
-        f"```text\n{text}\n```",
+        f"```{{eval-rst}}\n{text}\n```",
         f"Source: {module.SOURCE}",
         table(rows),
         "Tolerances:",
