@@ -76,6 +76,20 @@ def test_uniform_pressure_is_in_balance_through_every_joint(element):
     np.testing.assert_allclose(f, expected, atol=1e-12)
 
 
+@pytest.mark.parametrize("angle", [0.0, 0.6])
+def test_joints_begin_and_end_at_nodes(angle):
+    """Bodies without a grid of their own are meshed so that no joint ends inside an element edge."""
+    assembly = assemble(turned(model_of(*MIXED[:5], box("far", 0, 3, -9, -8, kind="fixed")), angle))
+    ends = 0
+    for face in assembly.detection.interfaces:
+        for b in (face.a, face.b):
+            if assembly.disc.shape_of[b] >= 0:
+                for end in (face.start, face.end):
+                    assert np.hypot(*(assembly.disc.nodes(b) - end).T).min() < 1e-9
+                    ends += 1
+    assert ends > 15
+
+
 def test_frames_areas_and_order():
     assembly = assemble(on_ground(box("a", 0, 1, 0, 1, thickness=0.4, mesh_size=0.5)))
     p = assembly.pairs

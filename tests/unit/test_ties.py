@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 import concio
@@ -80,6 +82,10 @@ def test_the_end_of_a_tie_moves_with_its_anchor():
     turn = (Support("turn", "frame", rotation=-0.01),)
     assert force_of(concio.solve(hung(aside, force=(0.0, -1.0), supports=turn))) == pytest.approx(100 * 0.005)
     assert force_of(concio.solve(hung(rod, force=(0.0, -1.0)))) == pytest.approx(0.0, abs=1e-12)
+    # a slanted rod: the end at (1, 5.5) rises by 0.001, of which 5 parts in sqrt(25.25) lie along the rod
+    turn = (Support("turn", "frame", rotation=0.001),)
+    slanted = concio.solve(hung(replace(rod, stiffness=100.0), force=(0.0, -1.0), supports=turn))
+    assert force_of(slanted) == pytest.approx(0.1 * 5 / 25.25**0.5)
 
 
 @pytest.mark.parametrize(

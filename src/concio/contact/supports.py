@@ -152,23 +152,17 @@ def moved_obstacles(disc: Discretisation, pairs: Pairs) -> dict[str, tuple[Array
     """Return for each group the change (m,) of the normal and tangential relative displacement by moved obstacles."""
     moved: dict[str, tuple[Array, Array]] = {}
     number = {b.name: i for i, b in enumerate(disc.model.bodies)}
-    ties = np.flatnonzero(pairs.interface < 0)
-    ends = [pairs.point.copy(), pairs.point.copy()]  # where each pair is fastened to a and to b
-    for k, tie in zip(ties, disc.model.ties, strict=True):
-        ends[0][k], ends[1][k] = tie.at_a, tie.at_b
-    rough = np.ones(len(pairs))
-    rough[ties] = 0.0
+    rough = pairs.interface >= 0  # ties have no tangential motion; along a tie a rigid motion is the same everywhere
     for support in disc.model.supports:
         b = number[support.body]
         if disc.shape_of[b] != FIXED:
             continue
         normal, tangential = moved.setdefault(support.group, (np.zeros(len(pairs)), np.zeros(len(pairs))))
-        for side, sign, points in ((pairs.body_a, -1.0, ends[0]), (pairs.body_b, 1.0, ends[1])):
-            arm = points - disc.centroids[b]
-            motion = np.array(support.displacement) + support.rotation * np.column_stack([-arm[:, 1], arm[:, 0]])
-            touched = sign * (side == b)
-            normal += touched * (motion * pairs.normal).sum(1)
-            tangential += touched * rough * (motion * pairs.tangent).sum(1)
+        arm = pairs.point - disc.centroids[b]
+        motion = np.array(support.displacement) + support.rotation * np.column_stack([-arm[:, 1], arm[:, 0]])
+        sign = (pairs.body_b == b).astype(float) - (pairs.body_a == b)
+        normal += sign * (motion * pairs.normal).sum(1)
+        tangential += sign * rough * (motion * pairs.tangent).sum(1)
     return moved
 
 
