@@ -50,7 +50,13 @@ def energy_error(path: LinearPath, found: EventPath) -> float:
     return max(abs(k - e + stored[0]) for k, e in zip(kept, stored, strict=True)) / turned
 
 
-def least_dissipation(found: EventPath) -> float:
-    """Smallest dissipation of a corner's step, relative to the largest work."""
-    top = max(abs(s.work) for s in found.states) or 1.0
-    return min(b.dissipation - a.dissipation for a, b in pairwise(found.states)) / top
+def least_dissipation(path: LinearPath, found: EventPath) -> float:
+    """Smallest dissipation of a corner's step, relative to the energy turned over.
+
+    That is |f| . |u|: what a toppling block gains from the push it loses in lifting its weight, so that their sum, the
+    work, is far smaller than the terms whose rounding it holds.
+    """
+    turned = [
+        float(np.abs(path.problem.f + s.parameter * path.load_rate) @ np.abs(s.displacement)) for s in found.states
+    ]
+    return min(b.dissipation - a.dissipation for a, b in pairwise(found.states)) / (max(turned) or 1.0)

@@ -26,7 +26,7 @@ def test_pushover_of_small_walls(assembly, mu, side, ratio):
     assert found.peak <= bound * (1 + 1e-9)
     assert worst_certificate(path, found) <= 1e-9
     assert energy_error(path, found) <= 1e-9
-    assert least_dissipation(found) >= -1e-10
+    assert least_dissipation(path, found) >= -1e-10
 
 
 @settings(max_examples=10, deadline=None)

@@ -45,7 +45,7 @@ def test_coulomb_path_stays_below_and_is_repeatable(name):
     assert found.peak < limit - 1e-3
     assert worst_certificate(path, found) <= 1e-9
     assert energy_error(path, found) <= 1e-9
-    assert least_dissipation(found) >= -1e-12
+    assert least_dissipation(path, found) >= -1e-12
     again = pushover(name, compliance=1e-5)[1]
     assert again.peak == pytest.approx(found.peak, rel=1e-9)
     still = np.abs(found.direction.reshape(-1, 3)).max(axis=1) < 1e-9

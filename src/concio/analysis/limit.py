@@ -7,8 +7,8 @@ falling branches are passed. It depends on stiffness and history, as friction do
 multiplier of a certified Coulomb *collapse state* (:mod:`concio.lcp.collapse_state`), at which the wall can begin to
 move; there may be several. None is passed off as another.
 
-Rigid blocks on hard joints have no unique path. They are given joints of a small uniform compliance, tangential 2.5
-times the normal one; without initial gaps the multiplier does not depend on its size.
+Rigid blocks on hard joints have no unique path; their joints are lent a compliance
+(:mod:`concio.analysis.lent_compliance`).
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from concio.analysis.lent_compliance import with_compliance
 from concio.contact.assembly import Assembly, assemble
 from concio.contact.problem import ContactProblem
 from concio.errors import InputError, NoEquilibriumError
@@ -32,9 +33,6 @@ from concio.lcp.solution import ProgressCallback
 from concio.model.model import Model
 
 Array = np.ndarray
-
-SHEAR_TO_NORMAL = 2.5
-"""Tangential over normal compliance lent to hard joints of rigid blocks: Poisson's ratio 0.25."""
 
 LARGEST_SEARCH = 1000
 """Collapse states are searched for in problems of up to this number of pairs: some sixty linear programmes."""
@@ -184,26 +182,6 @@ def dead_and_live(assembly: Assembly, live: str | Sequence[str]) -> tuple[Contac
         msg = f"the live load ({', '.join(groups)}) is zero"
         raise InputError(msg, hint="give the model a load in that group, for example horizontal = 1.0")
     return dead, load
-
-
-def with_compliance(problem: ContactProblem, live: Array) -> tuple[ContactProblem, float]:
-    """Lend a small compliance to every hard pair where bodies do not deform; return the problem and a_n [m/kN]."""
-    law = problem.laws
-    hard = (law.normal_compliance == 0) | (law.tangential_compliance == 0)
-    if problem.K.nnz and np.abs(problem.K.data).any():
-        return problem, 0.0
-    if not hard.any():
-        return problem, 0.0
-    force = float(np.abs(problem.f).max(initial=0.0)) or float(np.abs(live).max())
-    lent = 1e-6 / force  # displacements of micrometres under the weight of a block
-    laws = replace(
-        law,
-        normal_compliance=np.where(law.normal_compliance > 0, law.normal_compliance, lent),
-        tangential_compliance=np.where(
-            law.tangential_compliance > 0, law.tangential_compliance, SHEAR_TO_NORMAL * lent
-        ),
-    )
-    return replace(problem, laws=laws), lent
 
 
 def coulomb_path(

@@ -5,8 +5,9 @@ carries the factors of some load groups from where they are to new values, in pr
 Within a stage slip is measured from the last converged state (10, 11).
 
 ``method="events"`` follows the exact polygon (:mod:`concio.lcp.event_path`) and goes over to steps, saying so, when
-there are more events than asked for. ``method="steps"`` takes load steps with the solver named, halving a step that
-fails or that changes too many states at once.
+there are more events than asked for, or where it finds no way on though small load steps find one without a jump.
+``method="steps"`` takes load steps with the solver named, halving a step that fails or that changes too many states
+at once.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from typing import Literal
 
 import numpy as np
 
+from concio.analysis.lent_compliance import SHEAR_TO_NORMAL, assembly_with_compliance
 from concio.analysis.result import Result
 from concio.contact.assembly import Assembly, assemble
 from concio.errors import InputError, SolverError
@@ -25,7 +27,7 @@ from concio.lcp.certificate import Certificate
 from concio.lcp.event_path import follow
 from concio.lcp.methods import find
 from concio.lcp.path_record import Event, Outcome
-from concio.lcp.path_state import OPEN, LinearPath, PathState, certify_step, elastic_energy
+from concio.lcp.path_state import OPEN, LinearPath, PathState, certify_step, elastic_energy, step_problem
 from concio.lcp.solution import ProgressCallback, Status, judge
 from concio.lcp.step_path import StepPath, follow_in_steps
 from concio.model.model import Model
@@ -182,9 +184,9 @@ class PathResult:
         return gap / max(sizes) if max(sizes) else 0.0
 
     def peak(self, stage: int = -1) -> float:
-        """Return the largest parameter met in a stage."""
+        """Return the largest parameter met in a stage: 0 where it ended as it began."""
         wanted = stage % len(self.outcomes)
-        return max(s.parameter for s in self.steps if s.stage == wanted)
+        return max((s.parameter for s in self.steps if s.stage == wanted), default=0.0)
 
     def curve(self, point: ControlPoint, stage: int | None = None) -> tuple[Array, Array]:
         """Return (displacement of the point [m], parameter) at every step, of one stage from its start or of all."""
@@ -264,7 +266,7 @@ def run_path(
     if not stages:
         msg = "a load path needs at least one stage"
         raise InputError(msg, hint="for example Stage('weight', {'dead': 1.0})")
-    assembly = model if isinstance(model, Assembly) else assemble(model)
+    assembly, lent = assembly_with_compliance(model if isinstance(model, Assembly) else assemble(model))
     factors = dict.fromkeys(assembly.groups, 0.0)
     state: PathState | None = None
     if restart is not None:
@@ -274,6 +276,11 @@ def run_path(
     events: list[NamedEvent] = []
     outcomes: list[Outcome] = []
     notes: list[str] = []
+    if lent:
+        notes.append(
+            f"hard joints between rigid blocks were lent a compliance of {lent:.3g} m/kN, {SHEAR_TO_NORMAL:g} times as "
+            "much along the joint: without it their forces are not determined"
+        )
     direction = np.zeros(assembly.supported.T.shape[1])
     for number, stage in enumerate(stages):
         target = _target(assembly, factors, stage)
@@ -325,15 +332,31 @@ def _walk(
         return follow_in_steps(path, state, until=until, steps=stage.steps, solver=find(solver), progress=progress)
     exact = follow(path, state, until=until, control=control, max_events=max_events, progress=progress)
     found = StepPath(exact.states, exact.events, exact.outcome, exact.direction)
-    if exact.outcome is not Outcome.TOO_MANY or control is not None:
+    if control is not None:
         return found
+    ended = exact.outcome in (Outcome.LIMIT, Outcome.LOST)
+    if exact.outcome is not Outcome.TOO_MANY and not (ended and _goes_on(path, exact.end, solver)):
+        return found
+    why = ", where no state of the critical pairs continues it but a load step does," if ended else ""
     notes.append(
-        f"stage '{stage.name}': after {len(exact.events)} events, at {exact.end.parameter:.6g} of its load, the path "
-        f"was continued in {stage.steps} steps"
+        f"stage '{stage.name}': after {len(exact.events)} events, at {exact.end.parameter:.6g} of its load{why} the "
+        f"path was continued in {stage.steps} steps"
     )
     rest = follow_in_steps(path, exact.end, until=until, steps=stage.steps, solver=find(solver), progress=progress)
     moved = tuple(replace(e, step=e.step + len(exact.states) - 1) for e in rest.events)
     return StepPath(exact.states + rest.states[1:], exact.events + moved, rest.outcome, rest.direction)
+
+
+def _goes_on(path: LinearPath, end: PathState, solver: str) -> bool:
+    """Tell whether small load steps lead on from a point, their displacements shrinking with the step: no jump."""
+    moved = []
+    for share in (1e-3, 1e-4):
+        parameter = end.parameter + share * (1.0 - end.parameter)
+        solution = find(solver)(step_problem(path, end, parameter))
+        if not solution.solved:
+            return False
+        moved.append(float(np.abs(solution.displacement - end.displacement).max()))
+    return moved[1] <= 0.5 * moved[0]
 
 
 def _target(assembly: Assembly, factors: Mapping[str, float], stage: Stage) -> dict[str, float]:

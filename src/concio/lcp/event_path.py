@@ -19,13 +19,12 @@ import numpy as np
 
 from concio.contact.problem import Array
 from concio.lcp.methods import find
+from concio.lcp.path_direction import LARGEST_VERTEX, find_direction
 from concio.lcp.path_equations import PathEquations, Scaled
 from concio.lcp.path_rates import (
-    LARGEST_VERTEX,
     Rates,
     Values,
     admissible,
-    find_direction,
     grips,
     rates,
     restore,

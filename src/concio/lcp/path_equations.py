@@ -247,8 +247,8 @@ class PathEquations:
             y[row] += delta @ x[used]
         return y
 
-    def _approximate(self, b: Array) -> Array:
-        """Solve with the regularised matrix of the present states."""
+    def approximate(self, b: Array) -> Array:
+        """Solve with the matrix of the present states with the lent compliance left in; b (size,) or (size, k)."""
         fresh = [row for row in self.changed if row not in self.slots]
         if len(self.slots) + len(fresh) > UPDATES:
             self.factorise()
@@ -285,7 +285,7 @@ class PathEquations:
             Largest residual relative to the largest entry of the right-hand side; not small where the states form a
             mechanism that the right-hand side drives.
         """
-        x = self._approximate(b)
+        x = self.approximate(b)
         best, smallest = x, np.inf
         size = np.abs(b).max(axis=0, initial=0.0)
         size = np.where(size > 0, size, 1.0)
@@ -297,7 +297,7 @@ class PathEquations:
             best, smallest = x, worst
             if worst <= SMALL:
                 break
-            x = x + self._approximate(r)
+            x = x + self.approximate(r)
         if smallest > POOR and not self.careful and self.control[-1] != 1.0:
             self.factorise(careful=True)  # under displacement control the matrix should be regular: try harder
             return self.solve(b, rounds)

@@ -7,9 +7,7 @@ The rates must satisfy, at critical pairs only,
 .. math:: 0 \le \dot y_n \perp \dot t_n \ge 0, \qquad
           0 \le \dot y^\pm \perp \mu\dot t_n \pm \dot t_t \ge 0, \qquad \dot y_t = \dot y^+ - \dot y^-,
 
-everything else being linear: a linear complementarity problem. It is solved by flipping the pairs whose rates are
-wrong, starting from the states the path came with (most events: one flip, one back-substitution); where that goes
-round in circles, by Lemke's method on the critical pairs.
+everything else being linear: a linear complementarity problem, solved in :mod:`concio.lcp.path_direction`.
 """
 
 from __future__ import annotations
@@ -21,7 +19,6 @@ import numpy as np
 from concio.contact.problem import Array
 from concio.lcp.path_equations import PathEquations
 from concio.lcp.path_state import CLOSED, CRUSHED, OPEN, STICK
-from concio.lcp.rate_lcp import lemke
 
 ZERO = 1e-9
 """Gaps and forces below this share of the largest displacement or force count as zero."""
@@ -31,15 +28,6 @@ STILL = 1e-10
 
 ROUNDING = 1e-13
 """Rates of forces below this share of the rates of displacements are rounding, and the other way round (scaled)."""
-
-ROUNDS_ALL, ROUNDS_ONE = 6, 60
-"""Rounds in which all wrong pairs are flipped together, then rounds that flip the worst alone."""
-
-TRUE = 1e-7
-"""Residual up to which the equations of a set of states count as solvable."""
-
-LARGEST_VERTEX = 400
-"""Largest dense complementarity problem tried at a vertex."""
 
 
 @dataclass
@@ -152,66 +140,6 @@ def wrong(equations: PathEquations, v: Values, r: Rates) -> list[tuple[float, in
     return [(size, k, int(contact[k]) if c < 0 else c, s) for size, k, c, s in found]
 
 
-def find_direction(
-    equations: PathEquations, v: Values, first: Array | None = None, sense: float = 1.0, *, vertex: bool = True
-) -> tuple[Rates | None, Array | None]:
-    """Return consistent rates for a control that changes at the rate ``sense`` (+1 or -1).
-
-    The states of ``equations`` are set accordingly; where nothing is found they are left as they were.
-
-    Parameters
-    ----------
-    equations : PathEquations
-    v : Values
-        Distances from the bounds at the point.
-    first : (size,) array, optional
-        Direction of the present states, where it is known already.
-    sense : float
-    vertex : bool
-        Whether Lemke's method is tried where flipping does not settle.
-
-    Returns
-    -------
-    Rates or None
-        None where no direction was found: under load control a limit point.
-    array (size,) or None
-        Where none was found: the rate that ran away, if one did (the mechanism).
-    """
-    unit = np.zeros(equations.size)
-    unit[-1] = sense
-    start = (equations.contact.copy(), equations.sliding.copy())
-    seen: set[bytes] = set()
-    together = ROUNDS_ALL
-    runaway: Array | None = None
-    for round_ in range(ROUNDS_ALL + ROUNDS_ONE):
-        if round_ or first is None:
-            direction, residual = equations.solve(unit)
-        else:
-            direction, residual = first, 0.0
-        if residual > TRUE or not np.isfinite(direction).all():
-            runaway = direction if np.isfinite(direction).all() else None
-            break
-        r = rates(equations, direction)
-        bad = wrong(equations, v, r)
-        if not bad:
-            return r, None
-        key = equations.contact.tobytes() + equations.sliding.tobytes()
-        if key in seen:
-            if round_ > together:
-                break
-            together = round_
-        seen.add(key)
-        if round_ >= together:
-            bad = [max(bad)]
-        for _, k, contact, sliding in bad:
-            equations.set_state(k, contact, sliding)
-    restore(equations, *start)
-    found = by_lemke(equations, v, sense) if vertex else None
-    if found is None:
-        restore(equations, *start)
-    return found, runaway
-
-
 def admissible(equations: PathEquations, v: Values, contact: Array, sliding: Array) -> tuple[Array, Array]:
     """Return the states (m,) wished for wherever the present point allows them, the present states elsewhere."""
     d, now = equations.data, equations.contact
@@ -244,61 +172,3 @@ def critical(equations: PathEquations, v: Values) -> tuple[Array, Array, Array, 
 def vertex_size(equations: PathEquations, v: Values) -> int:
     """Return the number of complementary pairs of variables at a point."""
     return int(sum(mask.sum() for mask in critical(equations, v)))
-
-
-def by_lemke(equations: PathEquations, v: Values, sense: float) -> Rates | None:
-    """Solve the complementarity problem of the critical pairs and set their states; None where it has no solution."""
-    d, n, m = equations.data, equations.n, equations.m
-    normal, cap, plus, minus = critical(equations, v)
-    sets = [np.flatnonzero(mask) for mask in (normal, cap, plus, minus)]
-    size = sum(s.size for s in sets)
-    if size > LARGEST_VERTEX:
-        return None
-    for k in np.flatnonzero(normal | cap | plus | minus):
-        stuck = STICK if plus[k] or minus[k] else int(equations.sliding[k])
-        equations.set_state(int(k), CLOSED if normal[k] or cap[k] else int(equations.contact[k]), stuck)
-    equations.factorise()
-    base = (equations.contact.copy(), equations.sliding.copy())
-    unit = np.zeros(equations.size)
-    unit[-1] = sense
-    B = np.zeros((equations.size, size))
-    at = np.cumsum([0, *(s.size for s in sets)])
-    pick = [np.arange(at[i], at[i + 1]) for i in range(4)]
-    closed = equations.contact == CLOSED
-    B[n + sets[0], pick[0]] = 1.0
-    B[n + sets[1], pick[1]] = -1.0
-    for i, sign in ((2, 1.0), (3, -1.0)):
-        B[n + m + sets[i], pick[i]] = sign
-        B[n + sets[i], pick[i]] += d["psi"][sets[i]] * closed[sets[i]]
-    X, residual = equations.solve(np.column_stack([unit, B]))
-    if residual > TRUE or not np.isfinite(X).all():
-        return None
-    t_n, t_t = X[n : n + m], X[n + m : -1]
-    mu = d["mu"][:, None]
-    W = np.vstack(
-        [t_n[sets[0]], -t_n[sets[1]], (mu * t_n + t_t)[sets[2]], (mu * t_n - t_t)[sets[3]]]
-    )  # fmt: skip
-    scale = float(np.abs(W[:, 0]).max(initial=0.0)) or 1.0
-    A = W[:, 1:]
-    rows = 1.0 / np.sqrt(np.maximum(np.abs(np.diag(A)), 1e-9 * np.abs(A).max(initial=1.0)))
-    A = rows[:, None] * A * rows
-    for cover in (None, 1.0 + np.arange(size) / max(size, 1), 1.0 + np.arange(size)[::-1] ** 2 / max(size, 1)):
-        z = lemke(A, rows * W[:, 0] / scale, cover=cover)
-        if z is None:
-            continue
-        z = z * rows
-        contact, sliding = equations.contact.copy(), equations.sliding.copy()
-        moved = z > 1e-11 * max(1.0, float(z.max(initial=0.0)))
-        contact[sets[0][moved[pick[0]]]] = OPEN
-        contact[sets[1][moved[pick[1]]]] = CRUSHED
-        sliding[sets[2][moved[pick[2]]]] = 1
-        sliding[sets[3][moved[pick[3]]]] = -1
-        spare = d["c"] - d["mu"] * d["T"] > 1e-12 * (1.0 + d["c"])
-        sliding = np.where((contact == OPEN) & ~spare, 1, sliding)
-        restore(equations, contact, sliding)
-        direction, residual = equations.solve(unit)
-        r = rates(equations, direction)
-        if residual <= TRUE and not wrong(equations, v, r):
-            return r
-        restore(equations, *base)
-    return None
