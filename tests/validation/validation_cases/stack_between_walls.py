@@ -101,7 +101,7 @@ def rows() -> list[Row]:
     c = fine.contacts
     away = (np.abs(c.pairs.normal[:, 0]) > 0.9) & (c.point[:, 1] > 1e-6) & (c.normal_force > 1e-9 * total)
     used = np.abs(c.friction_force[away]) / (MU * c.normal_force[away])
-    other = pressed(1, "lagrange")
+    other = pressed(1, "lemke")
     return [
         Row(
             "decay alpha, elastic eigenvalue",
@@ -135,7 +135,7 @@ def rows() -> list[Row]:
             "every pressed pair of the walls slips",
         ),
         Row(
-            "largest displacement, method lagrange",
+            "largest displacement, method lemke",
             float(np.abs(other.displacement).max()),
             float(np.abs(coarse.displacement).max()),
             1e-9,
