@@ -56,6 +56,7 @@ def wall(units: int, courses: int, alpha: float) -> ContactProblem:
         gap=problem.gap[keep],
         laws=problem.laws[keep],
         slip_origin=problem.slip_origin[keep],
+        area=problem.area[keep],
     )
 
 

@@ -103,6 +103,7 @@ class Assembly:
             R=self.supported.R,
             bodies=self.supported.bodies,
             slip_origin=origin[:, None],
+            area=self.pairs.area,
         )
 
     def displacement(self, q: Array, factors: Mapping[str, float] | None = None) -> Array:

@@ -108,6 +108,9 @@ class ContactProblem:
         Unknowns of body k are ``bodies[k]:bodies[k+1]``.
     slip_origin : (m, d-1) array, optional
         s: tangential position from which this step's slip is measured [m]; default zero.
+    area : (m,) array, optional
+        Tributary areas, or anything in proportion to them [m2]; default all equal. They matter only where forces are
+        not unique (corners): there the forces of least weighted norm, sum t^2 / area, are reported.
     """
 
     K: sp.csr_array
@@ -119,6 +122,7 @@ class ContactProblem:
     R: sp.csc_array
     bodies: Array
     slip_origin: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    area: Array = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         m, n = self.C_n.shape
@@ -127,7 +131,9 @@ class ContactProblem:
                 msg = f"slip_origin has shape {self.slip_origin.shape}, expected ({m}, {self.dim - 1})"
                 raise InputError(msg)
             object.__setattr__(self, "slip_origin", np.zeros((m, max(1, self.C_t.shape[0] // max(m, 1)))))
-        checks = {"K": (self.K.shape, (n, n)), "f": (self.f.shape, (n,)), "gap": (self.gap.shape, (m,))}
+        if not self.area.size:
+            object.__setattr__(self, "area", np.ones(m))
+        checks = {"K": (self.K.shape, (n, n)), "f": (self.f.shape, (n,)), "gap": (self.gap.shape, (m,)), "area": (self.area.shape, (m,))}
         for name, (found, wanted) in checks.items():
             if found != wanted:
                 msg = f"{name} has shape {found}, expected {wanted}"

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from concio.contact.problem import ContactProblem
+from concio.errors import MethodError
 from concio.lcp import lemke, sparse_lemke
 from concio.lcp.engine import STARTS, Cancelled, Run
 from concio.lcp.exact_finish import Finished
@@ -130,8 +131,12 @@ def pivot(run: Run, progress: ProgressCallback | None) -> Solution | None:
     for module, most in ((lemke, DENSE), (sparse_lemke, SPARSE)):
         if problem.pairs > most:
             continue
-        answer = module.solve(problem, progress=progress)
         name = module.__name__.rsplit(".", 1)[-1].replace("_", "-")
+        try:
+            answer = module.solve(problem, progress=progress)
+        except MethodError as error:
+            run.trace.append(f"{name}: does not apply, {error.what}")
+            continue
         run.trace.append(f"{name}: {answer.iterations} pivots, {answer.status.name.lower()}")
         if answer.solved:
             return merged(run, answer, name)

@@ -26,7 +26,7 @@ from concio.lcp.scaled import Scaled
 from concio.lcp.sparse_factor import SingularMatrixError
 
 DELTA = 1e-6
-"""Compliance of closed pairs in the factorised matrix, scaled units."""
+"""Compliance of closed pairs of mean area in the factorised matrix, scaled units."""
 
 LOOSE = 1e-9
 """Stiffness of the springs that keep unknowns which nothing holds where they are, scaled units."""
@@ -148,8 +148,9 @@ def solve_states(
     drag = -sigma * s.mu  # t_t = drag t_n - sigma c where slipping
     open_wide = s.dilatancy * sigma
     # gap of a slipping pair: x + C_n u + a_n t_n - d sigma (C_t u - s + a_t t_t)
-    soft_n = np.where(hard, s.a_n - open_wide * s.a_t * drag + DELTA, 1.0)
-    soft_t = np.where(stick, s.a_t + DELTA, 1.0)
+    delta = DELTA / s.share
+    soft_n = np.where(hard, s.a_n - open_wide * s.a_t * drag + delta, 1.0)
+    soft_t = np.where(stick, s.a_t + delta, 1.0)
     d_nn = np.where(hard, 1.0 / soft_n, 0.0)
     d_tt = np.where(stick, 1.0 / soft_t, 0.0)
     if not again:
@@ -186,7 +187,8 @@ def _least_norm(s: Scaled, found: Finished, anchor: Array) -> Finished:
     """Return the same answer with the least-norm forces among those of its states, if these obey the joint laws.
 
     Where pairs are redundant (corners) their forces are not unique. Refinement from zero forces ends at the least norm,
-    which depends on nothing but the structure; the displacements are the same.
+    which depends on nothing but the structure; the displacements are the same. Each pair's compliance goes with the
+    inverse of its area, so it is the norm of the tractions: a uniform pressure is reported as one.
     """
     zero = np.zeros(s.pairs)
     u, t_n, t_t, _ = solve_states(s, found.states, found.u, zero, zero, anchor, again=True)

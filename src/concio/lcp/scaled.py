@@ -17,6 +17,9 @@ from concio.contact.problem import Array, ContactProblem
 from concio.errors import MethodError
 from concio.lcp.sparse_factor import Engine, PatternFactor
 
+SMOOTH = 1e-12
+"""Friction coefficients up to this are taken for none."""
+
 
 @dataclass(frozen=True, eq=False)
 class Scaled:
@@ -36,7 +39,9 @@ class Scaled:
     mu, cohesion, tension, dilatancy, a_n, a_t, cap : (m,) arrays
         Shifted laws: ``cohesion`` is c - mu T, ``cap`` is N + T.
     rough : (m,) boolean array
-        Pairs that can carry friction at all.
+        Pairs that can carry friction at all; coefficients below 1e-12 count as none.
+    share : (m,) array
+        Tributary area of each pair over the mean, kept between 0.05 and 20.
     factor : PatternFactor
         Factorises K + C' D C; couples are (n,n), (n,t), (t,n), (t,t), pair after pair within each.
     """
@@ -58,6 +63,7 @@ class Scaled:
     a_t: Array
     cap: Array
     rough: Array
+    share: Array
     factor: PatternFactor
 
     @property
@@ -134,14 +140,15 @@ def scale(problem: ContactProblem, engine: Engine = "superlu") -> Scaled:
         f=problem.f / force,
         gap=(problem.gap - law.normal_compliance * law.tension) / length,
         origin=problem.slip_origin[:, 0] / length,
-        mu=law.friction,
+        mu=np.where(law.friction > SMOOTH, law.friction, 0.0),
         cohesion=np.maximum(law.cohesion - law.friction * law.tension, 0.0) / force,
         tension=law.tension / force,
         dilatancy=law.dilatancy,
         a_n=law.normal_compliance * stiffness,
         a_t=law.tangential_compliance * stiffness,
         cap=(law.cap + law.tension) / force,
-        rough=(law.friction > 0) | (law.cohesion > 0),
+        rough=(law.friction > SMOOTH) | (law.cohesion > 0),
+        share=np.clip(problem.area / (problem.area.mean() if m else 1.0), 0.05, 20.0),
         factor=factor,
     )
 
