@@ -13,8 +13,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from concio.analysis.limit import friction_margin, limit
+    from concio.analysis.path import ControlPoint, PathResult, Stage, run_path
     from concio.analysis.result import Result
+    from concio.analysis.rocking import rock
+    from concio.analysis.settlement import settle
     from concio.analysis.step import solve
+    from concio.analysis.thrust import thrust_line
     from concio.contact.assembly import Assembly, assemble
     from concio.errors import ConcioError, GeometryError, InputError, MethodError, NoEquilibriumError, SolverError
     from concio.lcp.solution import Status
@@ -32,8 +37,13 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOMES = {
+    "concio.analysis.limit": ("friction_margin", "limit"),
+    "concio.analysis.path": ("ControlPoint", "PathResult", "Stage", "run_path"),
     "concio.analysis.result": ("Result",),
+    "concio.analysis.rocking": ("rock",),
+    "concio.analysis.settlement": ("settle",),
     "concio.analysis.step": ("solve",),
+    "concio.analysis.thrust": ("thrust_line",),
     "concio.contact.assembly": ("Assembly", "assemble"),
     "concio.errors": (
         "ConcioError",
@@ -61,6 +71,7 @@ __all__ = [
     "Assembly",
     "Body",
     "ConcioError",
+    "ControlPoint",
     "Elastic",
     "GeometryError",
     "InputError",
@@ -70,9 +81,11 @@ __all__ = [
     "MethodError",
     "Model",
     "NoEquilibriumError",
+    "PathResult",
     "Result",
     "Rigid",
     "SolverError",
+    "Stage",
     "Status",
     "Support",
     "Tie",
@@ -82,13 +95,19 @@ __all__ = [
     "buttress",
     "column",
     "dumps",
+    "friction_margin",
+    "limit",
     "load",
     "loads",
     "model_from_dxf",
+    "rock",
     "rubble",
+    "run_path",
     "running_bond_panel",
     "save",
+    "settle",
     "solve",
+    "thrust_line",
     "wall",
     "wall_of_courses",
 ]

@@ -7,13 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from concio.analysis.lent_compliance import assembly_with_compliance
 from concio.analysis.limit import friction_margin, limit
 from concio.analysis.path import ControlPoint, Stage, run_path
 from concio.analysis.settlement import settle
 from concio.contact.assembly import assemble
 from concio.errors import InputError
 from concio.lcp.path_record import Outcome
-from concio.model.model import Support
+from concio.model.materials import Elastic
+from concio.model.model import Body, Support
 from concio.model.walls import wall
 
 WEIGHT = Stage("weight", {"dead": 1.0}, steps=1)
@@ -182,3 +184,68 @@ def test_bad_input(small, stages, message):
         limit(small, "wind")
     with pytest.raises(InputError, match="no support is moved"):
         settle(small)
+
+
+def test_rigid_blocks_on_hard_joints_borrow_a_compliance():
+    """Their forces are not determined otherwise; the note says how much, and the bound of the load still holds."""
+    model = wall(length=1.0, height=0.5, horizontal=1.0, friction=0.6, block="rigid")
+    found = run_path(model, [WEIGHT, Stage("push", {"live": 0.3})])
+    assert found.complete
+    assert "lent a compliance" in found.notes[0]
+    assert found.certificate <= 1e-9
+    assert found.energy_error <= 1e-9
+    reaction = found.result().reactions["ground"]
+    assert reaction[0] == pytest.approx(-0.3 * reaction[1], rel=1e-9)
+    half = assemble(replace(model, bodies=tuple(
+        replace(b, kind="elastic", material="elastic") if b.name == "c01-b01" else b for b in model.bodies
+    ), materials={**model.materials, "elastic": Elastic(1e6, 0.2, unit_weight=20.0)}))  # fmt: skip
+    lent, size = assembly_with_compliance(half)
+    assert size > 0
+    soft = lent.laws.normal_compliance > 0
+    one = [b.name for b in half.model.bodies].index("c01-b01")
+    assert (soft == ~((half.pairs.body_a == one) | (half.pairs.body_b == one))).all()
+
+
+def test_a_stage_that_ends_where_it_begins(small):
+    found = run_path(small, [WEIGHT, Stage("push", {"live": 0.1}), Stage("same", {"live": 0.1})])
+    assert found.complete
+    assert found.peak(1) == pytest.approx(1.0)
+    assert run_path(small, [WEIGHT, Stage("fall", {"live": 5.0})]).peak() < 0.6 / 5.0 + 1e-9
+
+
+def test_a_support_that_sinks_breaks_the_grip_of_the_joint_above_it():
+    """Redundant hard pairs forbid the motion until their self-stress has grown to the sliding strength.
+
+    The blocks of a course that meet above the step of the ground touch it and each other: not one of the three pairs
+    of that corner can stay as it is. The path goes on much as steps do, which know nothing of rates; not exactly so,
+    whatever their size, because the forces of redundant pairs are not unique and friction remembers them.
+    """
+    ground = [Body(n, np.array([[x, -0.2], [x + 0.5, -0.2], [x + 0.5, 0.0], [x, 0.0]]), kind="fixed")
+              for n, x in (("left", 0.0), ("right", 0.5))]  # fmt: skip
+    sink = Support("sink", "right", displacement=(0.0, -1e-5))
+    model = wall(length=1.0, height=0.5, friction=0.6, mesh_size=0.25)
+    blocks = [b for b in model.bodies if b.name != "ground"]
+    model = assemble(replace(model, bodies=(*blocks, *ground), supports=(sink,)))
+    stages = [WEIGHT, Stage("sink", {"settlement": 1.0}, steps=64)]
+    found = run_path(model, stages)
+    assert found.complete
+    assert not found.notes
+    assert found.certificate <= 1e-9
+    assert found.energy_error <= 1e-9
+    first = next(i for i, s in enumerate(found.steps) if s.stage == 1)
+    before, after = found.steps[first - 1].state, found.steps[first].state
+    assert found.steps[first].parameter == 0.0  # forces change while nothing moves
+    assert np.abs(after.displacement - before.displacement).max() <= 1e-12 * np.abs(before.displacement).max()
+    assert np.abs(after.friction_force - before.friction_force).max() > 1e-3
+    walked = run_path(model, stages, method="steps", solver="interior-point")
+    gap = walked.steps[-1].state.displacement - found.steps[-1].state.displacement
+    assert np.abs(gap).max() <= 0.1 * 1e-5
+
+
+def test_steps_where_no_rate_is_found_are_told():
+    """At rest between walls hundreds of states are possible; where none is found the load steps go on, and say so."""
+    model = wall(length=1.0, height=0.5, friction=0.6, mesh_size=0.25, side_walls=True)
+    found = run_path(model, [WEIGHT])
+    assert found.complete
+    assert found.certificate <= 1e-9
+    assert "but a load step does" in found.notes[0]
