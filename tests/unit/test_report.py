@@ -113,7 +113,8 @@ def test_every_outcome_has_words(status: Status) -> None:
     words = VERDICTS[status]
     assert words.headline.endswith(".")
     assert words.next_steps
-    assert words.tone == {Status.SOLVED: "good", Status.NO_EQUILIBRIUM: "bad"}.get(status, "unsure")
+    bad = (Status.NO_EQUILIBRIUM, Status.NO_COULOMB_STATE)
+    assert words.tone == ("good" if status is Status.SOLVED else "bad" if status in bad else "unsure")
 
 
 @pytest.mark.parametrize("status", [Status.UNDECIDED, Status.GAVE_UP, Status.CANCELLED])

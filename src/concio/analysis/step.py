@@ -69,5 +69,9 @@ def solve(
         raise NoEquilibriumError(
             solution.status.value, hint="solve with on_failure='return' and look at result.mechanism"
         )
+    if solution.status is Status.NO_COULOMB_STATE:
+        raise NoEquilibriumError(
+            solution.status.value, hint="solve with on_failure='return' and look at result.solution.info"
+        )
     msg = f"{solution.status.value} Tried: {detail}"
     raise SolverError(msg, hint="see result.certificate with on_failure='return'")

@@ -172,6 +172,8 @@ class Search:
             return None
         red, s = self.lp.reduction, self.scaled
         u, (t_n, t_t) = red.displacement(found.t, found.alpha), red.forces(found.t)
+        if np.abs(u).max(initial=0.0) < ZERO * s.length:
+            u = np.zeros_like(u)  # nothing moves: rounding has no length to be measured by
         if judge(self.problem, u, t_n, t_t, method="exhaustive").solved:
             return u, t_n, t_t
         close = finish(s, u / s.length, t_n / s.force, t_t / s.force)

@@ -1,7 +1,8 @@
 r"""Clauses over yes/no questions, and search that learns from its dead ends.
 
 A question v has the answers yes, literal ``2 v``, and no, literal ``2 v + 1``. A clause is a set of literals one of
-which must hold. Answers that clauses force are drawn at once (unit propagation, two watched literals in each clause). A dead
+which must hold. Answers that clauses force are drawn at
+once (unit propagation, two watched literals in each clause). A dead
 end is traced back to the first answer that implies it at the current level (first unique implication point); its
 negation is learned as a new clause, and the search returns to where that clause would have spoken. Dead ends of one
 part of a structure are so met once, not once for every state of the other parts.

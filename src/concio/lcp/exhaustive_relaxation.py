@@ -16,11 +16,14 @@ the last because t_t y_t <= 0; its tangents are added where the linear programme
 
 Proof that a relaxation is empty (Farkas): multipliers z, w of the two sets of equations and lambda >= 0 of the
 tangents such that the coefficients of the combination vanish for u and are not positive for every column that may be
-positive, while its right-hand side is positive. The columns fixed at zero with a positive coefficient are the *reasons*: as long as
-they stay fixed no state exists. The linear programme is solved with u eliminated; the multipliers it returns are lifted
-to the original equations, and the combination is formed again from K, C, f, x. It is believed only if what rounding
-left of the coefficients that must vanish could not make up for the right-hand side unless some displacement or force
-exceeded :data:`REACH` of the problem's own units.
+positive, while its right-hand side is positive. The columns fixed at zero with a positive coefficient are the
+*reasons*: as long as they stay fixed no state exists. The linear programme is solved with u eliminated; the multipliers
+it returns are lifted to the original equations, and the combination is formed again from K, C, f, x. It is believed
+only if what rounding left of the coefficients that must vanish could not make up for the right-hand side unless some
+displacement or force exceeded :data:`REACH` of the problem's own units.
+
+The dual simplex method starts from the last basis of which the columns now fixed are a part, which is dual feasible;
+costs are drawn once, so that it does not stall, and are not perturbed by the solver.
 """
 
 from __future__ import annotations
@@ -119,13 +122,14 @@ class Relaxation:
             ("simplex_strategy", 1),
             ("threads", 1),
             ("simplex_iteration_limit", 3000),
+            ("dual_simplex_cost_perturbation_multiplier", 0.0),
             ("primal_feasibility_tolerance", 1e-9),
             ("dual_feasibility_tolerance", 1e-9),
         ):
             highs.setOptionValue(name, value)
         lp = highspy.HighsLp()
         lp.num_col_, lp.num_row_ = self.n + r, c + r
-        lp.col_cost_ = np.concatenate([np.ones(self.n), np.zeros(r)])
+        lp.col_cost_ = np.concatenate([np.random.default_rng(0).uniform(0.5, 1.5, self.n), np.zeros(r)])
         lp.col_lower_ = np.concatenate([np.zeros(self.n), np.full(r, -np.inf)])
         lp.col_upper_ = np.full(self.n + r, np.inf)
         lp.row_lower_ = lp.row_upper_ = b
@@ -136,6 +140,7 @@ class Relaxation:
         self.index = np.arange(self.n, dtype=np.int32)
         self.zeros = np.zeros(self.n)
         self.fixed = np.zeros(self.n, dtype=bool)
+        self.bases: list[tuple[Array, highspy.HighsBasis]] = []
 
     def solve(self, fixed: Array) -> Point | Empty | None:
         """Solve with columns ``fixed`` (n,) at zero; None where the solver or its proof is not to be trusted."""
@@ -144,11 +149,21 @@ class Relaxation:
             upper = np.where(fixed[changed], 0.0, np.inf)
             self.highs.changeColsBounds(changed.size, changed, self.zeros[changed], upper)
             self.fixed = fixed.copy()
+        loosened = False
+        while self.bases and (self.bases[-1][0] & ~fixed).any():
+            self.bases.pop()
+            loosened = True
+        if loosened and self.bases:
+            self.highs.setBasis(self.bases[-1][1])
         found = self._attempt(fixed)
         if found is None:
             self.highs.clearSolver()
+            self.highs.setOptionValue("dual_simplex_cost_perturbation_multiplier", 1.0)
             found = self._attempt(fixed)
+            self.highs.setOptionValue("dual_simplex_cost_perturbation_multiplier", 0.0)
             self.doubtful += found is None
+        if isinstance(found, Point):
+            self.bases.append((self.fixed, self.highs.getBasis()))
         return found
 
     def shrink(self, proof: Empty, rounds: int) -> Empty:
@@ -226,6 +241,7 @@ class Relaxation:
         row = np.concatenate([row_t @ self.B, np.zeros(self.n - c), -red.e0 * self.unit])
         right = energy - float((2.0 * stress - self.load) @ red.u0)
         used = np.flatnonzero(row).astype(np.int32)
+        self.bases.clear()
         self.highs.addRow(-np.inf, right, used.size, used, row[used])
         self.tangents.append((u, t, energy))
         self.cuts += 1

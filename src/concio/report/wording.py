@@ -59,6 +59,19 @@ VERDICTS: dict[Status, Verdict] = {
             "'concio limit' tells what share of the load can be carried.",
         ),
     ),
+    Status.NO_COULOMB_STATE: Verdict(
+        "bad",
+        "The loads cannot be carried with Coulomb friction.",
+        "Forces that balance the loads within the strength of the joints exist, but in every combination of open, "
+        "sticking and sliding joints some condition fails: sliding joints would have to be held back by more or less "
+        "than friction gives. All combinations were excluded, each by a linear programme whose proof was recomputed "
+        "from the original equations. Unlike a mechanism this is no single motion that could be drawn. There are "
+        "therefore no stresses and no displacements to report.",
+        (
+            "Follow the loads from zero with 'concio path': the path shows where equilibrium is lost.",
+            "'concio limit' gives the load at which even the balance of forces fails; it lies above these loads.",
+        ),
+    ),
     Status.UNDECIDED: Verdict(
         "unsure",
         "It is not known whether the loads are carried.",
@@ -129,4 +142,6 @@ def certificate_sentence(result: Result) -> str:
             f"Proven: the mechanism gains a power of {m.power:.4g} kN m/s at a largest velocity of 1 m/s and violates "
             f"the joints by no more than {m.violation:.1e} (relative)."
         )
+    if result.status is Status.NO_COULOMB_STATE:
+        return "Excluded: no combination of joint states satisfies the equations; every exclusion was recomputed."
     return "Not certified: there is no answer whose equations hold."
