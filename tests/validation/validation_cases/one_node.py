@@ -11,9 +11,15 @@ For mu < k_tt / c there is exactly one solution. For mu > k_tt / c and (k_tt / c
 slip and open. All are equilibria; the certificate proves that an answer is one, not that it is the only one. Along a
 path from f_t = 0 the node sticks until f_t = mu q; there the rate problem has *no* solution: slip would have to go
 backwards. The true structure jumps; a quasi-static path ends, and concio says so.
+
+Make the stiffness singular, k_nn = c^2 / k_tt: the node floats along (c, k_tt). Then open needs k_tt q = c f_t exactly,
+and for mu > k_tt / c and f_t > mu q there is *no* solution in the first step either, although forces within the cone
+balance the loads (t_t = -mu t_n with t_n = (c f_t / k_tt - q) / (c mu / k_tt - 1)), so that no mechanism excludes it.
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -21,9 +27,10 @@ import scipy.sparse as sp
 from concio.contact.problem import ContactProblem, Laws
 from concio.lcp.certificate import certify
 from concio.lcp.event_path import EventPath, follow
+from concio.lcp.existence import statically_admissible
 from concio.lcp.methods import find
 from concio.lcp.path_state import LinearPath, state_of_solution
-from concio.lcp.solution import Solution
+from concio.lcp.solution import Solution, Status
 from validation_cases.row import Row
 
 SOURCE = (
@@ -47,6 +54,22 @@ def problem(mu: float, f_t: float, q: float = Q) -> ContactProblem:
         R=sp.csc_array((2, 0)),
         bodies=np.array([0, 2]),
     )
+
+
+def floating(mu: float, f_t: float) -> ContactProblem:
+    """The same with the stiffness made singular: one rigid motion, (c, k_tt)."""
+    motion = np.array([[C], [K_TT]]) / np.hypot(C, K_TT)
+    K = np.array([[K_TT, -C], [-C, C * C / K_TT]])
+    return replace(problem(mu, f_t), K=sp.csr_array(K), R=sp.csc_array(motion))
+
+
+def floating_by_hand(mu: float, f_t: float, q: float = Q) -> int:
+    """Number of the floating node's solutions that are pressed: stick, slip either way."""
+    count = int(abs(f_t) <= mu * q)
+    for side in (1.0, -1.0):
+        u_t = (f_t - side * mu * q) / (K_TT - side * mu * C)
+        count += int(side * u_t > 0 and q - C * u_t >= 0)
+    return count
 
 
 def by_hand(mu: float, f_t: float, q: float = Q) -> dict[str, tuple[np.ndarray, float, float]]:
@@ -110,4 +133,26 @@ def rows() -> list[Row]:
         for name in METHODS
     ]
     found.append(Row("load at which the path ends, mu = 2", rough * Q, path(rough, 5.0).end.parameter, 1e-12, exact))
+    none = floating(rough, 2.5)
+    verdict, proof = find("auto")(none).status, find("exhaustive")(none).status
+    honest = verdict in (Status.UNDECIDED, Status.NO_COULOMB_STATE)
+    found += [
+        Row("floating node, f_t = 2.5: solutions by hand", 0, floating_by_hand(rough, 2.5), 0, exact),
+        Row("floating node: forces in balance exist", 1.0, float(statically_admissible(none).exists), 0.0, "yes or no"),
+        Row("floating node: auto claims neither answer nor mechanism", 1.0, float(honest), 0.0, "yes or no"),
+        Row(
+            "floating node: exhaustive proves that there is none",
+            1.0,
+            float(proof is Status.NO_COULOMB_STATE),
+            0.0,
+            "yes or no",
+        ),
+        Row(
+            "floating node, f_t = 1.5: answered",
+            1.0,
+            float(find("auto")(floating(rough, 1.5)).solved),
+            0.0,
+            "yes or no",
+        ),
+    ]
     return found
