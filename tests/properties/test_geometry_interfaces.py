@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -58,6 +59,21 @@ def test_renumbering_and_mirror_change_nothing(bodies, seed):
     first = detect_interfaces(bodies, tolerance=1e-5, reach=5e-3)
     for other in (copies(bodies, lambda x: x, order), copies(bodies, lambda x: (x * [-1, 1])[::-1])):
         assert summary(bodies, first) == summary(other, detect_interfaces(other, tolerance=1e-5, reach=5e-3))
+
+
+@pytest.mark.parametrize(
+    ("stones", "gaps", "names"),
+    [(119, 590, ("s02", "s05")), (942, 402, ("s02", "s03")), (584, 711, ("s01", "s02"))],
+)
+def test_a_stone_does_not_hide_its_own_edge(stones, gaps, names):
+    """The cut of the space between two edges with the stone they belong to came out whole, seen from one side only."""
+    rng = np.random.default_rng(gaps)
+    model = rubble(length=2, height=1, stone=0.4, seed=stones)
+    bodies = [Body(b.name, b.outline + rng.choice([0, 0, 2e-3]) * np.array([0, 1]), kind=b.kind) for b in model.bodies]
+    mirrored = copies(bodies, lambda x: (x * [-1, 1])[::-1])
+    found = [summary(b, detect_interfaces(b, tolerance=1e-5, reach=5e-3)) for b in (bodies, mirrored)]
+    assert found[0] == found[1]
+    assert names in [row[:2] for row in found[0]]
 
 
 @settings(max_examples=20, deadline=None)

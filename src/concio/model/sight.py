@@ -11,6 +11,13 @@ from concio.model.facing import FacingPairs
 from concio.model.model import Array, Body
 from concio.model.near import polygons
 
+GRID = 1e-3
+"""Spacing of the grid on which areas are cut, as a share of the tolerance.
+
+The space between two edges has those edges for sides, and cut in floating point with the bodies they belong to it may
+come out whole: rounding decides on which side of itself an edge lies. On a grid the cut is always consistent.
+"""
+
 
 def visible_parts(bodies: Sequence[Body], pairs: FacingPairs, tolerance: float, shortest: Array) -> FacingPairs:
     """Return the parts of the pairs between whose edges no body stands.
@@ -35,7 +42,7 @@ def visible_parts(bodies: Sequence[Body], pairs: FacingPairs, tolerance: float, 
     between = shapely.make_valid(shapely.polygons(corners))
     shapes = polygons(bodies)
     k, q = shapely.STRtree(shapes).query(between)
-    inside = shapely.intersection(between[k], shapes[q])
+    inside = shapely.intersection(between[k], shapes[q], grid_size=GRID * tolerance)
     around = shapely.length(inside)
     keep = 2 * shapely.area(inside) > tolerance * np.maximum(around, tolerance)
     k, inside = k[keep], inside[keep]
