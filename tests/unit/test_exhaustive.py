@@ -13,12 +13,14 @@ from concio.contact.problem import ContactProblem, Laws
 from concio.errors import MethodError
 from concio.lcp.exhaustive import solve
 from concio.lcp.exhaustive_clauses import ClauseSearch
-from concio.lcp.exhaustive_relaxation import Empty, Relaxation
-from concio.lcp.exhaustive_states import StateQuestions
+from concio.lcp.exhaustive_relaxation import Relaxation
+from concio.lcp.exhaustive_states import Empty, StateQuestions
 from concio.lcp.existence import statically_admissible
 from concio.lcp.solution import Status
 from contact_problems import wall
 from lcp_problems import small_wall
+
+pytest.importorskip("highspy")
 
 
 def tiny(seed: int, pairs: int = 3, smooth: bool = False) -> ContactProblem:

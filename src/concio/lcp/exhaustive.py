@@ -29,6 +29,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -37,8 +38,7 @@ from concio.contact.problem import ContactProblem
 from concio.errors import MethodError
 from concio.lcp.exact_finish import finish
 from concio.lcp.exhaustive_clauses import Clause, ClauseSearch
-from concio.lcp.exhaustive_relaxation import Empty, Point, Relaxation
-from concio.lcp.exhaustive_states import StateQuestions
+from concio.lcp.exhaustive_states import Empty, Point, StateQuestions
 from concio.lcp.scaled import Scaled, scale
 from concio.lcp.solution import Progress, ProgressCallback, Solution, Status, failed, judge
 
@@ -50,6 +50,11 @@ SHRINKS = 0
 
 REPORT = 20
 """Nodes between two calls of the progress callback."""
+
+
+def available() -> bool:
+    """Return whether the linear programming code (HiGHS, package highspy) is installed."""
+    return find_spec("highspy") is not None
 
 
 def supports(problem: ContactProblem) -> bool:
@@ -77,8 +82,11 @@ def solve(
     Raises
     ------
     MethodError
-        The problem is not plane, or has cohesion, tension, dilatancy or a cap.
+        The problem is not plane, or has cohesion, tension, dilatancy or a cap; or highspy is not installed.
     """
+    if not available():
+        msg = "exhaustive search needs the package highspy"
+        raise MethodError(msg, hint="pip install highspy")
     if not supports(problem):
         msg = "exhaustive search treats plane problems with pairs and without cohesion, tension, dilatancy and cap"
         raise MethodError(msg, hint="use auto")
@@ -94,6 +102,8 @@ class Search:
     """
 
     def __init__(self, problem: ContactProblem) -> None:
+        from concio.lcp.exhaustive_relaxation import Relaxation  # loads HiGHS
+
         self.problem = problem
         self.scaled: Scaled = scale(problem)
         self.lp = Relaxation(problem)

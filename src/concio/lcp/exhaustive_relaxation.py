@@ -35,6 +35,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.contact.problem import Array, ContactProblem
+from concio.lcp.exhaustive_states import Empty, Point
 from concio.lcp.reduction import Reduction, reduce
 
 REACH = 1e7
@@ -42,23 +43,6 @@ REACH = 1e7
 
 SIGNIFICANT = 1e-10
 """Coefficients of fixed columns below this share of the largest are left out of the reasons."""
-
-
-@dataclass(frozen=True, eq=False)
-class Point:
-    """A point of a relaxation, scaled: columns p, q, y_n, y+, y- (n,), forces t (c,) and rigid motions alpha (r,)."""
-
-    columns: Array
-    t: Array
-    alpha: Array
-
-
-@dataclass(frozen=True, eq=False)
-class Empty:
-    """Proof that a relaxation is empty: the columns that must not all be zero, and up to where it holds."""
-
-    reasons: Array
-    reach: float
 
 
 @dataclass(eq=False)

@@ -1,4 +1,4 @@
-"""Joint states as yes/no questions, and what an answer fixes in the linear programme.
+"""Joint states as yes/no questions, what an answer fixes in the linear programme, and what that may say.
 
 Of every pair: is it open (no force)? Of a rough pair also: is s+ used up (p = 0), is s- used up (q = 0)? The answers of
 a rough pair leave four states: open (yes, yes, yes), stick (no, no, no), slip + (no, yes, no) and slip - (no, no, yes);
@@ -8,10 +8,29 @@ a pair with both used up carries nothing and counts as open. Every answer fixes 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from concio.contact.problem import Array
 from concio.lcp.exhaustive_clauses import Clause
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A point of a relaxation, scaled: columns p, q, y_n, y+, y- (n,), forces t (c,) and rigid motions alpha (r,)."""
+
+    columns: Array
+    t: Array
+    alpha: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Empty:
+    """Proof that a relaxation is empty: the columns that must not all be zero, and up to where it holds."""
+
+    reasons: Array
+    reach: float
 
 
 class StateQuestions:
