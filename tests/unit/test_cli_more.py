@@ -53,6 +53,20 @@ def test_limit_of_a_slender_block(slender: Path) -> None:
     assert "Coulomb load path" in out
 
 
+def test_limit_draws_its_mechanisms(slender: Path, tmp_path: Path) -> None:
+    """Numbers and a figure of each motion go to --out, and JSON holds nothing that JSON cannot say."""
+    place = tmp_path / "limit"
+    code, out, err = run("limit", slender, "--out", place)
+    assert code == 0, err
+    told = json.loads((place / "summary.json").read_text())
+    assert told["friction_factor"] is None or told["friction_factor"] > 0
+    assert {"associated_mechanism.png", "collapse_state.svg"} <= {p.name for p in place.iterdir()}
+    assert "friction" in out
+    assert "written" in out
+    code, out, _ = run("limit", slender, "--no-friction", "--no-path")
+    assert "friction  " not in out
+
+
 def test_limit_without_a_limit_or_a_load(tmp_path: Path) -> None:
     path = tmp_path / "c.toml"
     path.write_text("[column]\nwidth=0.5\nheight=1\nblocks=2\ntop_force=10\n")
@@ -90,7 +104,7 @@ def test_path_writes_curve_events_and_the_last_state(slender: Path) -> None:
     assert (code, err) == (0, "")
     place = slender.parent / "p"
     assert {p.name for p in place.iterdir()} == {
-        "summary.json", "path.csv", "events.csv", "path.png", "path.svg", "end",
+        "summary.json", "path.csv", "events.csv", "path.png", "path.svg", "report.html", "end",
     }  # fmt: skip
     rows = list(csv.reader((place / "path.csv").read_text().splitlines()))
     data = json.loads((place / "summary.json").read_text())

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from concio.cli.outcome import guarded, print_json, say
+from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
 from concio.cli.run import File, Json
 
 if TYPE_CHECKING:
     from concio.analysis.limit import LimitResult
+    from concio.lcp.limit import FrictionMargin
+
+LARGEST_MARGIN = 3000
+"""Up to this number of pairs the friction margin is found unasked: it takes some twenty linear programmes."""
 
 
 @guarded
@@ -21,33 +27,63 @@ def limit(
         list[str] | None, typer.Option("--group", "-g", help="Load group that grows (repeatable); by default live.")
     ] = None,
     path: Annotated[bool, typer.Option("--path/--no-path", help="Follow the Coulomb load path too.")] = True,
-    friction: Annotated[bool, typer.Option("--friction", help="Find the smallest friction that holds, too.")] = False,
+    friction: Annotated[
+        bool | None,
+        typer.Option(
+            "--friction/--no-friction", help="Find the smallest friction that holds; by default up to 3,000 pairs."
+        ),
+    ] = None,
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for figures of the mechanisms.")] = None,
     json: Json = False,
 ) -> int:
-    """Find the load multiplier: the associated bound and the Coulomb load path, as a bracket.
+    """Find the load multiplier: the associated bound and the Coulomb load path, as a bracket, and the friction margin.
 
-    Example: concio limit wall.toml --group live
+    Example: concio limit wall.toml --group live --out limit
     """
     import concio
     from concio.analysis.limit import friction_margin
     from concio.analysis.limit import limit as limit_of
+    from concio.cli.limit_files import write_limit
 
     groups = list(group or ["live"])
+    if out is not None:
+        check_directory(out)
     assembly = concio.assemble(concio.load(file))
     with progress_bar(shown=not json) as progress:
         found = limit_of(assembly, groups, path=path, progress=progress)
-    margin = friction_margin(assembly, groups) if friction else None
+    wanted = len(assembly.pairs) <= LARGEST_MARGIN if friction is None else friction
+    margin = friction_margin(assembly, groups) if wanted else None
+    told = {"status": "solved" if found.associated.checked else "gave_up", "groups": groups, **found.summary()}
+    if margin is not None:
+        told |= {"friction_factor": _number(margin.factor), "friction_factor_below": _number(margin.below)}
+    written: list[str] = []
+    if out is not None:
+        with replaced_directory(out) as fresh:
+            written = write_limit(found, groups, told, fresh)
     if json:
-        told = {"status": "solved" if found.associated.checked else "gave_up", "groups": groups, **found.summary()}
-        if margin is not None:
-            told |= {"friction_factor": margin.factor, "friction_factor_below": margin.below}
         print_json(told)
     else:
         for line in limit_lines(found, groups):
             say(line)
         if margin is not None:
-            say(f"  friction             equilibrium needs at least {margin.factor:.6g} times the coefficients given")
+            say(margin_line(margin))
+        if written:
+            say(f"  written              {out}: {', '.join(written)}")
     return 0 if found.associated.checked else 4
+
+
+def margin_line(margin: FrictionMargin) -> str:
+    """Return the friction margin in words: it is that of admissible forces, hence a bound."""
+    if margin.factor != margin.factor:
+        return "  friction             the load as given is not carried with the coefficients given"
+    if margin.factor == 0:
+        return "  friction             the load as given can be carried without any"
+    return f"  friction             the load as given needs at least {margin.factor:.6g} times the coefficients given"
+
+
+def _number(value: float) -> float | None:
+    """Return a number, or None for what JSON cannot say."""
+    return value if abs(value) < float("inf") else None
 
 
 def limit_lines(found: LimitResult, groups: list[str]) -> list[str]:
@@ -70,9 +106,14 @@ def limit_lines(found: LimitResult, groups: list[str]) -> list[str]:
         f"  Coulomb load path    {found.coulomb:.6g} at its peak, {len(found.path.events):,} events; the first point "
         f"with no way on under growing load is {found.first_limit:.6g}",
         f"  it ended             {found.path.outcome.value}",
-        f"  in short             between {min(found.first_limit, found.coulomb):.6g} and {bound.multiplier:.6g} times "
-        f"the load of '{named}'",
     ]
+    if found.collapse_state is not None:
+        lines.append(
+            f"  collapse state       "
+            f"{found.collapse_state.multiplier:.6g}: there Coulomb friction lets it begin to move"
+        )
+    low = min(found.first_limit, found.bracket[0])
+    lines.append(f"  in short             between {low:.6g} and {bound.multiplier:.6g} times the load of '{named}'")
     if found.lent_compliance:
         lines.append(f"  rigid joints         were lent a compliance of {found.lent_compliance:.1e} m/kN for the path")
     return lines

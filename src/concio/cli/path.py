@@ -75,7 +75,7 @@ def path(
         for line in path_lines(found, chosen, every=every):
             say(line)
         if out is not None:
-            say(f"  written      {out}: summary.json, path.csv, events.csv, path.png, path.svg, end/")
+            say(f"  written      {out}: summary.json, path.csv, events.csv, path.png, path.svg, report.html, end/")
     return exit_code(found)
 
 

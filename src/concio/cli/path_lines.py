@@ -12,8 +12,11 @@ import numpy as np
 from concio.analysis.path import ControlPoint, PathResult
 from concio.io.csv_table import write_csv
 from concio.io.result_dir import write_result
+from concio.report.page import write_report
 
 Array = np.ndarray
+MOST_STEPS = 40
+"""Steps the slider of the report shows."""
 MOST_EVENTS = 30
 """More events than this are counted, unless all are asked for."""
 
@@ -61,11 +64,6 @@ def curve_of(found: PathResult, point: ControlPoint) -> Curve:
     return Curve(through, motion, marks)
 
 
-def peak(found: PathResult, stage: int) -> float:
-    """Return the largest parameter met in a stage; 0 where it ended as it began."""
-    return max((step.parameter for step in found.steps if step.stage == stage), default=0.0)
-
-
 def path_lines(found: PathResult, point: ControlPoint, *, every: bool) -> list[str]:
     """Return the path as lines of text."""
     lines = [found.assembly.model.title or "model without a title"]
@@ -75,7 +73,7 @@ def path_lines(found: PathResult, point: ControlPoint, *, every: bool) -> list[s
         events = [e for e in found.events if e.stage == k]
         moved = f", {1e3 * motion[own[-1]]:+.4g} mm at the end" if own else ""
         lines.append(
-            f"stage {found.stages[k].name}: {outcome.value} {len(events):,} events; at most {peak(found, k):.6g} of it"
+            f"stage {found.stages[k].name}: {outcome.value} {len(events):,} events; at most {found.peak(k):.6g} of it"
             f"{moved}"
         )
         shown = events if every else events[:MOST_EVENTS]
@@ -105,7 +103,7 @@ def path_facts(found: PathResult, point: ControlPoint) -> dict[str, Any]:
                 "name": stage.name,
                 "factors": dict(stage.factors),
                 "outcome": outcome.name.lower(),
-                "peak": peak(found, k),
+                "peak": found.peak(k),
             }
             for k, (stage, outcome) in enumerate(zip(found.stages, found.outcomes, strict=False))
         ],
@@ -126,7 +124,7 @@ def path_facts(found: PathResult, point: ControlPoint) -> dict[str, Any]:
 
 
 def write_path(found: PathResult, point: ControlPoint, place: Path) -> None:
-    """Write summary, curve, events, the figure of the curve, and the last state as a result directory."""
+    """Write summary, curve, events, figure, a report with a slider of load steps, and the last state's results."""
     from matplotlib.figure import Figure
 
     from concio.plot.path_figure import plot_path
@@ -163,3 +161,14 @@ def write_path(found: PathResult, point: ControlPoint, place: Path) -> None:
     for form in ("png", "svg"):
         figure.savefig(place / f"path.{form}", dpi=150)
     write_result(found.result(), place / "end")
+    chosen = report_steps(found)
+    labels = [f"{found.stages[found.steps[i].stage].name} at {found.steps[i].parameter:.4g}" for i in chosen]
+    write_report([found.result(i) for i in chosen], place / "report.html", labels=labels, figures=False)
+
+
+def report_steps(found: PathResult) -> list[int]:
+    """Return the steps the slider of the report shows: all, or some evenly chosen, with the end of every stage."""
+    count = len(found.steps)
+    ends = {max(i for i, s in enumerate(found.steps) if s.stage == k) for k in {s.stage for s in found.steps}}
+    spread = np.linspace(0, count - 1, min(count, MOST_STEPS)).round().astype(int)
+    return sorted(ends | {int(i) for i in spread})

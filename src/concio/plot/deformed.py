@@ -98,8 +98,15 @@ def plot_slip(result: Result, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def plot_mechanism(result: Result, ax: Axes | None = None, *, share: float = 0.08) -> Axes:
-    """Draw the motion that proves that there is no equilibrium.
+def plot_mechanism(
+    result: Result,
+    ax: Axes | None = None,
+    *,
+    share: float = 0.08,
+    title: str = "Collapse mechanism: no equilibrium is possible",
+    note: str | None = None,
+) -> Axes:
+    """Draw the motion that proves that there is no equilibrium, or one in which a structure begins to move.
 
     Parameters
     ----------
@@ -109,6 +116,9 @@ def plot_mechanism(result: Result, ax: Axes | None = None, *, share: float = 0.0
         Where to draw; default a new figure.
     share : float
         Size of the largest motion as a share of the model.
+    title : str
+    note : str, optional
+        What the line under the title says besides how many bodies move; default the power that proves the collapse.
 
     Raises
     ------
@@ -149,11 +159,10 @@ def plot_mechanism(result: Result, ax: Axes | None = None, *, share: float = 0.0
         scale_units="xy", scale=1.0, width=0.0022, headwidth=4, headlength=5, zorder=5, clip_on=False,
     )  # fmt: skip
     power = style.number(result.mechanism.power, "kN m/s")
-    style.dress(
-        ax, box, "Collapse mechanism: no equilibrium is possible",
-        f"{int(moving.sum())} of {len(result.model.free_bodies)} bodies move (bodies at rest are white); "
-        f"power of the loads less what the joints absorb: {power} at a largest velocity of 1 m/s",
-    )  # fmt: skip
+    if note is None:
+        note = f"power of the loads less what the joints absorb: {power} at a largest velocity of 1 m/s"
+    count = f"{int(moving.sum())} of {len(result.model.free_bodies)} bodies move (bodies at rest are white)"
+    style.dress(ax, box, title, f"{count}; {note}")
     handles = [style.patch(style.FILL_OPEN, "opens"), style.handle(style.SLIP, "slides")]
     style.legend(ax, [*handles, style.patch("#FFFFFF", "at rest")])
     return ax
