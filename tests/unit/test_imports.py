@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -69,6 +71,33 @@ def test_rooms_import_only_from_earlier_rooms(path: Path) -> None:
     assert own in LEVEL, f"there is no room '{own}' in the architecture"
     for module in imports(path, lazy=False):
         assert LEVEL[room_of(module)] <= LEVEL[own], f"{own} imports {module}"
+
+
+def test_what_is_imported_is_declared() -> None:
+    project = tomllib.loads((ROOT.parents[1] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    declared = project["dependencies"]
+    optional = [requirement for extra in project["optional-dependencies"].values() for requirement in extra]
+    packages = {"scikit-fem": "skfem"}
+    others = {"concio", "pydantic_core", *sys.stdlib_module_names}  # pydantic asks for its core itself
+
+    def modules(requirements: list[str]) -> set[str]:
+        names = [re.split(r"[^A-Za-z0-9_.-]", requirement)[0] for requirement in requirements]
+        return {packages.get(name, name.replace("-", "_")) for name in names}
+
+    for path in MODULES:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        inner = {id(n) for f in ast.walk(tree) if isinstance(f, ast.FunctionDef) for n in ast.walk(f)}
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Import):
+                names = [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                names = [node.module or ""]
+            else:
+                continue
+            for word in {name.partition(".")[0] for name in names} - others:
+                # a package of an extra may be imported only where it is used
+                known = modules(declared) | (modules(optional) if id(node) in inner else set())
+                assert word in known, f"{path.relative_to(ROOT)} imports {word}, which pyproject.toml does not declare"
 
 
 @pytest.mark.parametrize("path", [p for p in MODULES if p.relative_to(ROOT).parts[0] == "lcp"], ids=lambda p: p.name)
