@@ -341,6 +341,9 @@ WRONG = {
         BLOCK + "[[loads]]\nkind = 'point'\nvalue = [1, 0]\nbodies = ['c']\nat = [0, 0]", "no body called 'c'"),
     "no such tied body": (
         BLOCK + "[[ties]]\nname='t'\nbody_a='c'\nat_a=[0,0]\nat_b=[1,1]\nstiffness=1", "no body called 'c'"),
+    "weight twice": (
+        "[wall]\nlength = 2\nheight = 2\n[[loads]]\nkind = 'weight'\nvalue = [0, -1]",
+        "[[loads]] 1: the weight would count twice: the table that makes the structure brings it already"),
     "load of one number": (BLOCK + "[[loads]]\nkind = 'point'\nvalue = 1", "a point load takes two numbers [x, y]"),
     "load in the wrong unit": (
         BLOCK + "[[loads]]\nkind = 'pressure'\nvalue = '1 kN'", "[[loads]] 1, value: '1 kN' is not a stress"),

@@ -85,6 +85,11 @@ def _parts(
         if value is not None and (value < 0 or (value == 0 and key == "mesh_size")):
             msg = f"{key} = {value:g} m must be {'positive' if key == 'mesh_size' else 'zero or positive'}"
             raise InputError(msg, where="[analysis]")
+    for k, load in enumerate(map(_load, data.loads), 1):
+        if start and load.kind == "weight" and load in start.loads:
+            brought = "the drawing" if data.blocks_file else "the table that makes the structure"
+            msg = f"the weight would count twice: {brought} brings it already, in load group '{load.group}'"
+            raise InputError(msg, where=f"[[loads]] {k}", hint="leave this load out, or give it a group of its own")
     base = start.laws if start else {}
     every = {**base, **laws}
     rules = _rules(data, list(start.rules) if start else [], every)
