@@ -10,10 +10,12 @@ import sys
 from pathlib import Path
 
 import pytest
+import typer
 from typer.testing import CliRunner
 
 import concio
 from concio.cli.main import app
+from concio.cli.outcome import fail
 from concio.cli.run import factors_of, where_written
 from concio.lcp.solution import Progress
 
@@ -245,6 +247,39 @@ def test_check_reports_what_detection_noticed(tmp_path: Path, monkeypatch: pytes
     code, _, err = run("check", path, "--out", "near.txt")
     assert code == 2
     assert "'.txt'" in err
+
+
+def test_run_tells_of_joints_that_were_nearly_made(tmp_path: Path) -> None:
+    path = tmp_path / "near.toml"
+    text = "[column]\nwidth=1\nheight=1\nblocks=1\n[[blocks]]\nname='floating'\nrectangle=[[-0.5,1.001],[0.5,2]]\n"
+    path.write_text(text)
+    code, out, _ = run("run", path)
+    assert "attention    1 joint nearly made, and not: see 'concio check'" in out
+    path.write_text(text.replace("1.001", "1.0"))
+    code, out, _ = run("run", path)
+    assert code == 0
+    assert "attention" not in out
+
+
+def test_run_gives_the_force_in_a_tie(tmp_path: Path) -> None:
+    path = tmp_path / "hangs.toml"
+    path.write_text(
+        "[materials.stone]\nkind='rigid'\nunit_weight=25\n[joints.smooth]\nfriction=0\n"
+        "[[blocks]]\nname='hanging'\nrectangle=[[0,0],[1,1]]\nmaterial='stone'\n"
+        "[[blocks]]\nname='wall'\nrectangle=[[-1,0],[0,1]]\nkind='fixed'\n"
+        "[[loads]]\nkind='weight'\nvalue=[0,-1]\n"
+        "[[supports]]\nname='rail'\nbody='hanging'\nedge=[[1,0],[1,1]]\ndirections='x'\n"
+        "[[ties]]\nname='chain'\nbody_a='hanging'\nat_a=[0.5,1.0]\nat_b=[0.5,3.0]\nstiffness='1 MN/m'\n"
+    )
+    code, out, err = run("run", path)
+    assert (code, err) == (0, "")
+    assert "  ties         chain  +25.0000 kN of tension" in out
+
+
+def test_faults_of_a_drawing_and_the_remedy_are_printed_without_a_gap(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(typer.Exit):
+        fail({"what": "two faults\n  - one\n  - two\n", "hint": "mend them"}, 2, False)
+    assert capsys.readouterr().err == "Error: two faults\n  - one\n  - two\n  -> mend them\n"
 
 
 def test_check_counts_what_a_file_holds(tmp_path: Path) -> None:

@@ -43,6 +43,7 @@ def result_lines(result: Result) -> list[str]:
             lines.append(f"  {'reactions' if k == 0 else '':<12} {name:<{width}}  {force(value)}")
         if len(reactions) > len(shown):
             lines.append(f"  {'':<12} ... and {len(reactions) - len(shown)} more")
+        lines += _ties(result)
     elif result.mechanism is not None:
         moving = [f"'{name}'" for name, speed in moving_bodies(result) if speed > SLOW]
         more = f" and {len(moving) - MOST_MOVING} more" if len(moving) > MOST_MOVING else ""
@@ -54,7 +55,22 @@ def result_lines(result: Result) -> list[str]:
         lines += [f"  tried        {line}" for line in s.trace]
         if np.isfinite(certificate["worst"]):
             lines.append(f"  certificate  worst {certificate['worst']:.1e}: not an equilibrium")
+    missed = len(assembly.detection.near_misses)
+    if missed:
+        joints = f"{missed:,} joint{'s' if missed > 1 else ''}"
+        lines.append(f"  attention    {joints} nearly made, and not: see 'concio check'")
     return lines
+
+
+def _ties(result: Result) -> list[str]:
+    """Return the force in each tie, which are the pairs without an interface in the order of the model."""
+    contacts, ties = result.contacts, result.model.ties
+    forces = contacts.normal_force[contacts.pairs.interface < 0].tolist()
+    width = max((len(tie.name) for tie in ties), default=0)
+    return [
+        f"  {'ties' if k == 0 else '':<12} {tie.name:<{width}}  {_clean(value):+.4f} kN of tension"
+        for k, (tie, value) in enumerate(zip(ties, forces, strict=True))
+    ]
 
 
 def force(value: tuple[float, float]) -> str:

@@ -81,7 +81,7 @@ def _told(error: Exception) -> tuple[dict[str, Any], int]:
 def fail(told: Mapping[str, Any], code: int, as_json: bool) -> NoReturn:
     """Write a message to standard error, and to standard output as JSON where asked for; leave with ``code``."""
     text = f"{told['where']}: {told['what']}" if told.get("where") else told["what"]
-    sys.stderr.write(f"Error: {text}\n")
+    sys.stderr.write(f"Error: {text.rstrip()}\n")
     if told.get("hint"):
         sys.stderr.write(f"  -> {told['hint']}\n")
     if as_json:
