@@ -99,7 +99,8 @@ def quantity(value: float | str, kind: str, *, where: str | None = None) -> floa
         match = _VALUE.match(value)
         if match is None:
             msg = f"'{value}' is not a number with a unit"
-            raise InputError(msg, where=where, hint=f"write for example '1.5 {SYMBOL[kind]}'")
+            example = "1.5" if kind == "number" else f"'1.5 {SYMBOL[kind]}'"
+            raise InputError(msg, where=where, hint=f"write for example {example}")
         number, unit = float(match.group(1)), match.group(2)
     if math.isnan(number):
         msg = "the value is not a number (NaN)"
@@ -109,6 +110,8 @@ def quantity(value: float | str, kind: str, *, where: str | None = None) -> floa
     found = _unit(unit)
     if found is None:
         msg = f"unknown unit '{unit}' in '{value}'"
+        if re.match(r",\d", unit):
+            raise InputError(msg, where=where, hint="decimals are set off by a point, not by a comma: 1.5, not 1,5")
         hint = f"use {SYMBOL[kind]}, or N, kN, MN, m, cm, mm, Pa, kPa, MPa, GPa combined as in 'kN/m2'"
         raise InputError(msg, where=where, hint=hint)
     factor, *exponents = found

@@ -218,7 +218,7 @@ def test_units_and_files(tmp_path):
 def test_a_missing_package_is_named_with_the_way_to_install_it(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "ezdxf", None)
     for call in (lambda: read_drawing(tmp_path / "a.dxf"), lambda: write_dxf(tmp_path / "a.dxf", [], [])):
-        with pytest.raises(InputError, match=r"pip install 'concio\[dxf\]'"):
+        with pytest.raises(InputError, match=r"pip install ezdxf"):
             call()
 
 

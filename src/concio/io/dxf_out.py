@@ -57,7 +57,7 @@ def write_dxf(
         from ezdxf.enums import TextEntityAlignment
     except ImportError:
         msg = "writing DXF needs the package ezdxf, which is not installed"
-        raise InputError(msg, where=str(path), hint="pip install 'concio[dxf]'") from None
+        raise InputError(msg, hint="pip install ezdxf") from None
     if unit not in UNITS:
         msg = f"unit '{unit}' is not one of {', '.join(UNITS)}"
         raise InputError(msg, where=str(path))

@@ -95,7 +95,7 @@ def model_from_dxf(
         obstacles,
         loads=loads,
         materials=table,
-        title=f"drawing {Path(path).name}, {len(pieces)} blocks",
+        title=f"drawing {Path(path).name}, {len(pieces)} block{'s' if len(pieces) != 1 else ''}",
         generator={"kind": "dxf", "file": str(path), "faults": tuple(f.sentence for f in faults)},
     )
     return replace(model, supports=tuple(supports), gap_tolerance=tolerance)

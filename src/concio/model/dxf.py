@@ -203,7 +203,7 @@ def _document(path: Path) -> Any:
         import ezdxf
     except ImportError:
         msg = "reading DXF needs the package ezdxf, which is not installed"
-        raise InputError(msg, where=str(path), hint="pip install 'concio[dxf]'") from None
+        raise InputError(msg, where=str(path), hint="pip install ezdxf") from None
     if not path.is_file():
         msg = "there is no such file"
         raise InputError(msg, where=str(path))

@@ -61,7 +61,8 @@ class NearMiss:
         if kind == "gap":
             text = (
                 f"{pair} face each other over {length:.4g} m {place} with a gap of {1e3 * gap:.4g} mm; no joint was "
-                f"made (raise gap_tolerance above it if they touch, or gap_reach to keep it as an initial gap)"
+                f"made (if they touch raise gap_tolerance above it, or 'mend' of a drawing; gap_reach keeps it as an "
+                f"initial gap)"
             )
         elif kind == "angle":
             text = (
