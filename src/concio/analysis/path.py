@@ -27,7 +27,7 @@ from concio.lcp.certificate import Certificate
 from concio.lcp.event_path import follow
 from concio.lcp.methods import find
 from concio.lcp.path_record import Event, Outcome
-from concio.lcp.path_state import OPEN, LinearPath, PathState, certify_step, elastic_energy, step_problem
+from concio.lcp.path_state import OPEN, LinearPath, PathState, certify_step, elastic_energy, step_problem, weakened
 from concio.lcp.solution import ProgressCallback, Status, judge
 from concio.lcp.step_path import StepPath, follow_in_steps
 from concio.model.model import Model
@@ -115,7 +115,7 @@ class NamedEvent:
         Stage, and index of the step at which it happens.
     parameter : float
     kind : str
-        "opens", "closes", "slips", "sticks", "crushes", "recovers".
+        "opens", "closes", "slips", "sticks", "crushes", "recovers", "breaks".
     bodies : (str, str)
     at : (x, y)
         [m].
@@ -207,6 +207,7 @@ class PathResult:
         """
         chosen = self.steps[step]
         problem, state = self.assembly.problem(chosen.factors), chosen.state
+        problem = weakened(problem, state.broken)
         judged = judge(problem, state.displacement, state.normal_force, state.friction, method="path")
         status = Status.SOLVED if chosen.certificate.certified else Status.GAVE_UP
         solution = replace(judged, certificate=chosen.certificate, status=status)
@@ -239,6 +240,7 @@ def run_path(
     solver: str = "auto",
     restart: tuple[PathResult, int] | None = None,
     max_events: int = 20_000,
+    brittle: bool = False,
     progress: ProgressCallback | None = None,
 ) -> PathResult:
     """Follow a load path through its stages.
@@ -254,6 +256,9 @@ def run_path(
         Begin at a step of an earlier path of the same model instead of at rest.
     max_events : int
         Corners of a stage after which it goes on in steps.
+    brittle : bool
+        Whether joints lose tensile strength and cohesion for good in the step after either was used up; otherwise they
+        are ductile. Only with ``method="steps"``.
     progress : callable, optional
 
     Raises
@@ -266,6 +271,9 @@ def run_path(
     if not stages:
         msg = "a load path needs at least one stage"
         raise InputError(msg, hint="for example Stage('weight', {'dead': 1.0})")
+    if brittle and method != "steps":
+        msg = "joints that break are followed in steps only"
+        raise InputError(msg, hint="use method='steps'")
     assembly, lent = assembly_with_compliance(model if isinstance(model, Assembly) else assemble(model))
     factors = dict.fromkeys(assembly.groups, 0.0)
     state: PathState | None = None
@@ -286,7 +294,7 @@ def run_path(
         target = _target(assembly, factors, stage)
         path = _linear(assembly, factors, target)
         state = _at_rest(path) if state is None else replace(state, parameter=0.0)
-        found = _walk(assembly, path, state, stage, method, solver, max_events, progress, notes)
+        found = _walk(assembly, path, state, stage, method, solver, max_events, brittle, progress, notes)
         first = len(steps)
         for before, after in zip((found.states[0], *found.states), found.states, strict=False):
             if after is found.states[0] and steps:
@@ -317,6 +325,7 @@ def _walk(
     method: str,
     solver: str,
     max_events: int,
+    brittle: bool,
     progress: ProgressCallback | None,
     notes: list[str],
 ) -> StepPath:
@@ -329,7 +338,9 @@ def _walk(
         if control is not None:
             msg = f"stage '{stage.name}' is controlled by a displacement, which steps cannot follow"
             raise InputError(msg, hint="use method='events'")
-        return follow_in_steps(path, state, until=until, steps=stage.steps, solver=find(solver), progress=progress)
+        return follow_in_steps(
+            path, state, until=until, steps=stage.steps, solver=find(solver), brittle=brittle, progress=progress
+        )
     exact = follow(path, state, until=until, control=control, max_events=max_events, progress=progress)
     found = StepPath(exact.states, exact.events, exact.outcome, exact.direction)
     if control is not None:

@@ -32,6 +32,9 @@ def path(
         Literal["events", "steps"], typer.Option("--method", "-m", help="Exact, or in steps.")
     ] = "events",
     steps: Annotated[int, typer.Option("--steps", help="Steps of a stage that is walked in steps.")] = 20,
+    brittle: Annotated[
+        bool, typer.Option("--brittle", help="Joints lose tension and cohesion once exceeded (with --method steps).")
+    ] = False,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for curve, events and last state.")] = None,
     every: Annotated[bool, typer.Option("--all", help="List every event.")] = False,
     json: Json = False,
@@ -64,7 +67,7 @@ def path(
         last = stages[-1]
         stages[-1] = Stage(last.name, last.factors, control, quantity(until, "length", where="--until"), steps)
     with progress_bar(shown=not json) as progress:
-        found = run_path(assembly, stages, method=method, progress=progress)
+        found = run_path(assembly, stages, method=method, brittle=brittle, progress=progress)
     chosen = control or curve_point(found)
     if out is not None:
         with replaced_directory(out) as fresh:

@@ -93,6 +93,8 @@ class PathState:
         o, crushing less dilatancy accumulated up to now [m].
     work, dissipation : float
         Work of loads and obstacles, and energy dissipated, since the path began [kN m].
+    broken : (m,) boolean array, optional
+        Pairs that have lost their tensile strength and cohesion; None where none can.
     """
 
     parameter: float
@@ -105,6 +107,7 @@ class PathState:
     offset: Array
     work: float = 0.0
     dissipation: float = 0.0
+    broken: Array | None = None
 
     @property
     def friction(self) -> Array:
@@ -146,6 +149,30 @@ def energy_of_step(path: LinearPath, before: PathState, after: PathState) -> tup
     return work, -float(t_n @ (n1 - n0) + t_t @ (s1 - s0))
 
 
+def weakened(problem: ContactProblem, broken: Array | None) -> ContactProblem:
+    """Return the problem without the tensile strength and the cohesion of broken pairs (m,)."""
+    if broken is None or not broken.any():
+        return problem
+    law = problem.laws
+    tension, cohesion = np.where(broken, 0.0, law.tension), np.where(broken, 0.0, law.cohesion)
+    return replace(problem, laws=replace(law, tension=tension, cohesion=cohesion))
+
+
+def exceeded(path: LinearPath, state: PathState, tolerance: float = 1e-9) -> Array:
+    """Return which pairs (m,) are broken after a state: those that were, and those whose strength it uses up.
+
+    A pair at its tensile strength, or one with cohesion that slips, keeps them in this step and has lost both in
+    the next.
+    """
+    law = path.problem.laws
+    force, _ = scales(path.at(state.parameter), state.displacement, state.normal_force, state.friction)
+    torn = (law.tension > 0) & (state.normal_force + law.tension <= tolerance * force)
+    sheared = (law.cohesion > 0) & (state.sliding != STICK) & (state.contact != OPEN)
+    was = np.zeros(path.problem.pairs, dtype=bool) if state.broken is None else state.broken
+    result: Array = was | torn | sheared
+    return result
+
+
 def step_problem(path: LinearPath, before: PathState, parameter: float) -> ContactProblem:
     """Return the one-step problem whose slip is measured from the state ``before`` (10, 11).
 
@@ -153,11 +180,12 @@ def step_problem(path: LinearPath, before: PathState, parameter: float) -> Conta
     ----------
     path : LinearPath
     before : PathState
-        Last converged state: its slip is the origin, its crushing and dilatant opening are part of the gap.
+        Last converged state: its slip is the origin, its crushing and dilatant opening are part of the gap, and what
+        broke in it has no strength left.
     parameter : float
         Load parameter of the end of the step.
     """
-    problem = path.at(parameter)
+    problem = weakened(path.at(parameter), before.broken)
     _, position = plastic_position(path, before)
     origin = problem.slip_origin + position[:, None]
     return replace(problem, gap=problem.gap + before.offset, slip_origin=origin)
@@ -191,7 +219,8 @@ def state_of(
     tolerance : float
         Forces below this share of the total load count as zero.
     """
-    problem, law = path.problem, path.problem.laws
+    problem = path.problem if before is None else weakened(path.problem, before.broken)
+    law = problem.laws
     t_t = np.asarray(t_t, dtype=float).reshape(-1)
     force, length = scales(path.at(parameter), u, t_n, t_t[:, None])
     contact = np.where(t_n + law.tension > tolerance * force, CLOSED, OPEN)
@@ -209,7 +238,8 @@ def state_of(
     if before is None:
         return state
     work, dissipation = energy_of_step(path, before, state)
-    return replace(state, work=before.work + work, dissipation=before.dissipation + dissipation)
+    energy = {"work": before.work + work, "dissipation": before.dissipation + dissipation}
+    return replace(state, broken=before.broken, **energy)
 
 
 def state_of_solution(path: LinearPath, parameter: float, solution: Solution) -> PathState:

@@ -2,17 +2,20 @@
 
 The step is halved where the solver finds no certified answer or where more than ``CHANGES`` of the pairs change state,
 and doubled again after an easy step, never beyond the one asked for.
+
+Brittle joints lose tensile strength and cohesion in the step after the one that uses either up. So that a loss is not
+put off with the load growing meanwhile, the step after it is repeated at the same load until nothing more breaks.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from concio.contact.problem import Array
 from concio.lcp.path_record import Event, Outcome
-from concio.lcp.path_state import CLOSED, CRUSHED, OPEN, STICK, LinearPath, PathState, state_of, step_problem
+from concio.lcp.path_state import CLOSED, CRUSHED, OPEN, STICK, LinearPath, PathState, exceeded, state_of, step_problem
 from concio.lcp.solution import Progress, ProgressCallback, Solver, Status
 
 CHANGES = 0.1
@@ -48,6 +51,7 @@ def follow_in_steps(
     steps: int,
     solver: Solver,
     refine: bool = True,
+    brittle: bool = False,
     progress: ProgressCallback | None = None,
 ) -> StepPath:
     """Follow a path in load steps.
@@ -63,20 +67,24 @@ def follow_in_steps(
     solver : Solver
     refine : bool
         Whether steps are halved at many changes of state (a failed step always is).
+    brittle : bool
+        Whether pairs lose tensile strength and cohesion once these are used up.
     progress : callable, optional
     """
     states, events = [start], list[Event]()
     whole = (until - start.parameter) / steps
     size, outcome = whole, Outcome.REACHED
-    while abs(until - states[-1].parameter) > 1e-12 * max(1.0, abs(until)):
+    breaking = False
+    while breaking or abs(until - states[-1].parameter) > 1e-12 * max(1.0, abs(until)):
         before = states[-1]
         left = until - before.parameter
-        size = np.sign(whole) * min(abs(size), abs(left))
+        size = np.sign(whole) * min(abs(size), abs(left)) if not breaking else size
         parameter = until if abs(size) >= abs(left) * (1 - 1e-12) else before.parameter + size
+        parameter = before.parameter if breaking else parameter
         solution = solver(step_problem(path, before, parameter))
         smallest = abs(size) <= SMALLEST * abs(whole)
         if not solution.solved:
-            if not smallest:
+            if not smallest and not breaking:
                 size *= 0.5
                 continue
             outcome = Outcome.LIMIT if solution.status is Status.NO_EQUILIBRIUM else Outcome.LOST
@@ -85,9 +93,18 @@ def follow_in_steps(
             path, parameter, solution.displacement, solution.normal_force, solution.friction_force, before=before
         )
         changed = np.flatnonzero((before.contact != after.contact) | (before.sliding != after.sliding))
-        if refine and len(states) > 1 and changed.size > max(1.0, CHANGES * path.problem.pairs) and not smallest:
+        if (
+            refine
+            and len(states) > 1
+            and changed.size > max(1.0, CHANGES * path.problem.pairs)
+            and not (smallest or breaking)
+        ):
             size *= 0.5
             continue
+        if brittle:
+            after, lost = _broken(path, before, after)
+            breaking = bool(lost.size)
+            events += [Event(parameter, parameter, int(k), "breaks", 0, len(states)) for k in lost]
         events += [event for k in changed for event in _named(before, after, int(k), len(states))]
         states.append(after)
         if abs(size) < abs(whole):
@@ -97,6 +114,13 @@ def follow_in_steps(
             break
     last = states[-1].displacement - states[-2].displacement if len(states) > 1 else np.zeros(path.problem.unknowns)
     return StepPath(tuple(states), tuple(events), outcome, last / (float(np.abs(last).max(initial=0.0)) or 1.0))
+
+
+def _broken(path: LinearPath, before: PathState, after: PathState) -> tuple[PathState, Array]:
+    """Return the state with what it breaks marked as broken, and those pairs."""
+    broken = exceeded(path, after)
+    was = np.zeros(broken.size, dtype=bool) if before.broken is None else before.broken
+    return replace(after, broken=broken), np.flatnonzero(broken & ~was)
 
 
 def _named(before: PathState, after: PathState, k: int, step: int) -> list[Event]:

@@ -43,6 +43,7 @@ MARKS: dict[str, tuple[str, str, str]] = {
     "slips": ("D", style.SLIP.colour, "slips"),
     "sticks": ("s", style.STICK.colour, "sticks"),
     "crushes": ("X", style.TENSION.colour, "crushes"),
+    "breaks": ("*", style.TENSION.colour, "breaks"),
     "recovers": ("P", style.COMPRESSION.colour, "recovers"),
 }
 """Marker, colour and word of each kind of event."""
