@@ -133,8 +133,9 @@ class ContactProblem:
             object.__setattr__(self, "slip_origin", np.zeros((m, max(1, self.C_t.shape[0] // max(m, 1)))))
         if not self.area.size:
             object.__setattr__(self, "area", np.ones(m))
-        checks = {"K": (self.K.shape, (n, n)), "f": (self.f.shape, (n,)), "gap": (self.gap.shape, (m,)), "area": (self.area.shape, (m,))}
-        for name, (found, wanted) in checks.items():
+        wanted_shapes = {"K": (n, n), "f": (n,), "gap": (m,), "area": (m,)}
+        for name, wanted in wanted_shapes.items():
+            found = getattr(self, name).shape
             if found != wanted:
                 msg = f"{name} has shape {found}, expected {wanted}"
                 raise InputError(msg)

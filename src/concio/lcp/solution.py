@@ -137,7 +137,9 @@ class Solver(Protocol):
 
     def __call__(
         self, problem: ContactProblem, *, progress: ProgressCallback | None = None, **options: Any
-    ) -> Solution: ...
+    ) -> Solution:
+        """Solve one load step."""
+        ...
 
 
 def judge(
