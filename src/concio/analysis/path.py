@@ -31,52 +31,11 @@ from concio.lcp.path_state import OPEN, LinearPath, PathState, certify_step, ela
 from concio.lcp.solution import ProgressCallback, Status, judge
 from concio.lcp.step_path import StepPath, follow_in_steps
 from concio.model.model import Model
+from concio.model.stages import ControlPoint, Stage
+
+__all__ = ["ControlPoint", "NamedEvent", "PathResult", "PathStep", "Stage", "control_functional", "run_path"]
 
 Array = np.ndarray
-
-
-@dataclass(frozen=True)
-class ControlPoint:
-    """A point whose displacement is controlled or plotted.
-
-    Parameters
-    ----------
-    body : str
-        Name of the body.
-    at : (x, y)
-        Position; the nearest node of an elastic body is taken [m].
-    direction : (x, y)
-        Direction in which the displacement is measured; scaled to length one.
-    """
-
-    body: str
-    at: tuple[float, float]
-    direction: tuple[float, float] = (1.0, 0.0)
-
-
-@dataclass(frozen=True)
-class Stage:
-    """One stage of loading.
-
-    Parameters
-    ----------
-    name : str
-    factors : mapping of str to float
-        Load factors at the end of the stage; groups not named stay as they are.
-    control : ControlPoint, optional
-        Go on until this point has moved by ``until`` in the stage, whatever the load does; without it, the load goes
-        to its end.
-    until : float
-        Displacement of the control point [m].
-    steps : int
-        Steps of the stage where it is walked in steps.
-    """
-
-    name: str
-    factors: Mapping[str, float]
-    control: ControlPoint | None = None
-    until: float = 0.0
-    steps: int = 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,7 +193,7 @@ def control_functional(assembly: Assembly, point: ControlPoint) -> tuple[Array, 
 
 def run_path(
     model: Model | Assembly,
-    stages: Sequence[Stage],
+    stages: Sequence[Stage] = (),
     *,
     method: Literal["events", "steps"] = "events",
     solver: str = "auto",
@@ -249,6 +208,7 @@ def run_path(
     ----------
     model : Model or Assembly
     stages : sequence of Stage
+        By default those that come with the model.
     method : {"events", "steps"}
     solver : str
         Method of the load steps and of the start of event paths.
@@ -268,6 +228,7 @@ def run_path(
     SolverError
         A stage could not even be begun.
     """
+    stages = stages or (model.model if isinstance(model, Assembly) else model).stages
     if not stages:
         msg = "a load path needs at least one stage"
         raise InputError(msg, hint="for example Stage('weight', {'dead': 1.0})")

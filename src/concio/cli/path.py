@@ -41,7 +41,8 @@ def path(
 ) -> int:
     """Follow a load path from event to event: which joint opens, closes, slips or sticks at which load.
 
-    Without --stage, each load group of the file is a stage of its own, in the order of the file.
+    Without --stage, the [[stages]] of the file are followed; where there are none, each load group is a stage, in the
+    order of the file.
 
     The exit code is 0 where the end was reached, 3 where the structure carries no more before it, 4 where the path was
     lost.
@@ -63,6 +64,9 @@ def path(
         raise InputError(msg, where="--until", hint="add --point BODY,X,Y")
     wanted = [factors_of(text.split(",")) for text in stage or ()] or [{group: 1.0} for group in assembly.groups]
     stages = [Stage(f"{k}: {_words(factors)}", factors, steps=steps) for k, factors in enumerate(wanted, 1)]
+    if not stage and assembly.model.stages:
+        stages = list(assembly.model.stages)
+        control = control or stages[-1].control
     if until is not None:
         last = stages[-1]
         stages[-1] = Stage(last.name, last.factors, control, quantity(until, "length", where="--until"), steps)

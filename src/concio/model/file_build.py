@@ -25,6 +25,7 @@ from concio.model.file_tables import (
     JointTable,
     LoadTable,
     MaterialTable,
+    StageTable,
     SupportTable,
     Table,
     TieTable,
@@ -33,6 +34,7 @@ from concio.model.generators import GENERATORS
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Body, JointRule, Load, Model, Support, Tie
 from concio.model.polygon_check import check_polygon
+from concio.model.stages import ControlPoint, Stage
 
 Materials = dict[str, Elastic | Rigid]
 Laws = dict[str, JointLaw]
@@ -101,6 +103,7 @@ def _parts(
         "supports": (*(start.supports if start else ()), *(_support(t, k) for k, t in enumerate(data.supports, 1))),
         "loads": (*(start.loads if start else ()), *(_load(t) for t in data.loads)),
         "ties": (*(start.ties if start else ()), *(_tie(t) for t in data.ties)),
+        "stages": (*(start.stages if start else ()), *(_stage(t, k) for k, t in enumerate(data.stages, 1))),
         **chosen,
     }
     if data.title or not start:
@@ -273,12 +276,23 @@ def _tie(table: TieTable) -> Tie:
     return Tie(table.name, table.body_a, table.at_a, table.body_b, table.at_b, table.stiffness, table.prestress)
 
 
+def _stage(table: StageTable, number: int) -> Stage:
+    if (table.control is None) != (table.until == 0):
+        msg = "until is the motion of a control point, and one of the two is missing"
+        hint = "give both control = { body = ..., at = [x, y] } and until, or neither"
+        raise InputError(msg, where=f"[[stages]] {number} '{table.name}'", hint=hint)
+    point = table.control
+    control = None if point is None else ControlPoint(point.body, point.at, point.direction)
+    return Stage(table.name, table.factors, control, table.until, table.steps)
+
+
 def _check_names(model: Model) -> None:
     """Raise where a support, load or tie names a body that does not exist."""
     names = {b.name for b in model.bodies}
     sorts = {word for b in model.bodies for word in (b.name, b.role, b.layer) if word}
     used = [(f"[[supports]] '{s.name}'", s.body, names) for s in model.supports]
     used += [(f"[[ties]] '{t.name}'", w, names) for t in model.ties for w in (t.body_a, t.body_b) if w]
+    used += [(f"[[stages]] '{s.name}'", s.control.body, names) for s in model.stages if s.control]
     used += [(f"[[loads]] of kind {load.kind}", w, sorts) for load in model.loads for w in load.bodies]
     for place, word, known in used:
         if word not in known:

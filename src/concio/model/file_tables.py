@@ -206,6 +206,24 @@ class TieTable(Table):
     prestress: Force = 0.0
 
 
+class ControlTable(Table):
+    """A point whose displacement is controlled; see :class:`concio.model.stages.ControlPoint`."""
+
+    body: Name
+    at: Point
+    direction: tuple[Number, Number] = (1.0, 0.0)
+
+
+class StageTable(Table):
+    """A stage of a load path; see :class:`concio.model.stages.Stage`."""
+
+    name: Name
+    factors: dict[str, Number]
+    control: ControlTable | None = None
+    until: Length = 0.0
+    steps: Annotated[StrictInt, Field(ge=1)] = 20
+
+
 class AnalysisTable(Table):
     """How the model is meshed and how joints are found; see :class:`concio.model.model.Model`."""
 
@@ -242,5 +260,6 @@ class FileTable(Table):
     supports: list[SupportTable] = Field(default_factory=list)
     loads: list[LoadTable] = Field(default_factory=list)
     ties: list[TieTable] = Field(default_factory=list)
+    stages: list[StageTable] = Field(default_factory=list)
     analysis: AnalysisTable = Field(default_factory=AnalysisTable)
     record: dict[str, Any] = Field(default_factory=dict, description="how the model was made; not read by concio")

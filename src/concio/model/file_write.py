@@ -19,6 +19,7 @@ from concio.errors import InputError
 from concio.model.block_table import write_blocks
 from concio.model.materials import Elastic, Rigid
 from concio.model.model import Body, Load, Model, Support
+from concio.model.stages import Stage
 
 
 def dumps(model: Model, *, blocks_file: str | None = None) -> str:
@@ -51,6 +52,8 @@ def dumps(model: Model, *, blocks_file: str | None = None) -> str:
         lines += _table("loads", _load(load), many=True)
     for tie in model.ties:
         lines += _table("ties", {f.name: getattr(tie, f.name) for f in fields(tie)}, many=True)
+    for stage in model.stages:
+        lines += _table("stages", _stage(stage), many=True)
     if model.generator:
         lines += _table("record", model.generator)
     return "\n".join(lines) + "\n"
@@ -118,6 +121,13 @@ def _support(support: Support) -> dict[str, Any]:
 def _load(load: Load) -> dict[str, Any]:
     found = {f.name: getattr(load, f.name) for f in fields(load)}
     return {key: value for key, value in found.items() if value != ()}
+
+
+def _stage(stage: Stage) -> dict[str, Any]:
+    found = {f.name: getattr(stage, f.name) for f in fields(stage)}
+    if stage.control is None:
+        return {key: value for key, value in found.items() if key not in ("control", "until")}
+    return {**found, "control": {f.name: getattr(stage.control, f.name) for f in fields(stage.control)}}
 
 
 def _table(name: str, values: Mapping[str, Any], *, many: bool = False) -> list[str]:

@@ -11,6 +11,7 @@ import numpy as np
 
 from concio.errors import GeometryError, InputError
 from concio.model.materials import Elastic, JointLaw, Rigid
+from concio.model.stages import Stage
 
 Array = np.ndarray
 Kind = Literal["elastic", "rigid", "fixed"]
@@ -249,6 +250,8 @@ class Model:
     title : str
     generator : mapping
         How the model was made, for the record.
+    stages : tuple of Stage
+        Load path that comes with the model; :func:`concio.run_path` takes it where it is given no stages.
     """
 
     bodies: tuple[Body, ...]
@@ -266,6 +269,7 @@ class Model:
     gap_reach: float = 0.0
     title: str = ""
     generator: Mapping[str, object] = field(default_factory=dict)
+    stages: tuple[Stage, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.bodies:
