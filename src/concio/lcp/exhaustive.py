@@ -10,7 +10,8 @@ forces may exist and no Coulomb state. What remains is to try the states of the 
    exclude each other; that clause holds whatever the rest of the structure does, and is kept
    (:mod:`concio.lcp.exhaustive_clauses`);
 3. if its solution obeys all conditions, it is a state: solved for exactly and judged, it is the answer;
-4. otherwise a condition it violates is decided, and so on.
+4. otherwise a condition it violates is decided, and so on. Before the first decision both answers of every violated
+   condition are tried alone, the worst first; what fails is settled for good.
 
 The search ends with an answer, with the proof that there is none (the clauses admit no combination of states;
 ``Status.NO_COULOMB_STATE``), or at its limits, undecided. The proof excludes states whose displacements and forces stay
@@ -148,6 +149,9 @@ class Search:
 
     def steps(self) -> Iterator[tuple[Any, Any, Any] | None]:
         """Yield None after each node, or (u, t_n, t_t) of an equilibrium; end where nothing is left to try."""
+        yield from self.probe()
+        if self.clauses.impossible:
+            return
         while True:
             conflict = self.clauses.propagate()
             if conflict is None:
@@ -164,6 +168,50 @@ class Search:
                         conflict = [self.clauses.trail[at] ^ 1 for at in self.clauses.starts]
             if conflict is not None and not self.clauses.learn(conflict):
                 return
+
+    def probe(self) -> Iterator[None]:
+        """Before any decision, try both answers of the questions the relaxation violates, the worst first.
+
+        An answer that is excluded leaves the other one for good, and the relaxation is solved again.
+        """
+        clauses, questions = self.clauses, self.questions
+        found: Point | Empty | None = None
+        order: list[int] = []
+        while True:
+            if clauses.propagate() is not None:
+                clauses.impossible = True
+                return
+            if not order:
+                if found is not None:
+                    return
+                found = self.lp.solve(questions.fixed(clauses.trail))
+                if not isinstance(found, Point):
+                    return
+                force, gap = questions.products(found.columns)
+                worst = np.argsort(-np.minimum(force, gap), kind="stable")
+                worst = worst[np.minimum(force, gap)[worst] > ZERO]
+                order = [2 * int(q) + int(side) for q in worst for side in (force[q] < gap[q], force[q] >= gap[q])][
+                    ::-1
+                ]
+                if not order:
+                    return
+            literal = order.pop()
+            if clauses.holds(literal) is not None:
+                continue
+            clauses.decide(literal)
+            conflict = clauses.propagate()
+            if conflict is None:
+                self.nodes += 1
+                trial = self.lp.solve(questions.fixed(clauses.trail))
+                conflict = self.excluded(trial) if isinstance(trial, Empty) else None
+                yield None
+            if conflict is None:
+                clauses.back(0)
+                continue
+            if not clauses.learn(conflict):
+                return
+            clauses.back(0)
+            found, order = None, []
 
     def excluded(self, found: Empty) -> Clause:
         """Return the clause that a proof of emptiness teaches: one of its reasons must not hold."""
