@@ -238,8 +238,8 @@ def state_of(
     if before is None:
         return state
     work, dissipation = energy_of_step(path, before, state)
-    energy = {"work": before.work + work, "dissipation": before.dissipation + dissipation}
-    return replace(state, broken=before.broken, **energy)
+    state = replace(state, work=before.work + work, dissipation=before.dissipation + dissipation)
+    return replace(state, broken=before.broken)
 
 
 def state_of_solution(path: LinearPath, parameter: float, solution: Solution) -> PathState:
