@@ -243,7 +243,7 @@ def test_check_reports_what_detection_noticed(tmp_path: Path, monkeypatch: pytes
     code, out, err = run("check", path)
     assert code == 2
     assert "overlap" in out
-    assert "overlap" in err
+    assert err.startswith("Error: 'b01' and 'floating' overlap at ")
     code, _, err = run("check", path, "--out", "near.txt")
     assert code == 2
     assert "'.txt'" in err
@@ -274,6 +274,26 @@ def test_run_gives_the_force_in_a_tie(tmp_path: Path) -> None:
     code, out, err = run("run", path)
     assert (code, err) == (0, "")
     assert "  ties         chain  +25.0000 kN of tension" in out
+    assert "  1 body, 1 joint, " in out
+
+
+def test_run_tells_of_blocks_that_a_drawing_lost(tmp_path: Path) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    drawing = ezdxf.new(units=6)
+    for x, layer, close in ((0.0, "stone", True), (2.0, "stone", False)):
+        drawing.modelspace().add_lwpolyline(
+            [(x, 0), (x + 1, 0), (x + 1, 1), (x, 1)], close=close, dxfattribs={"layer": layer}
+        )
+    ground = [(-1, -1), (4, -1), (4, 0), (-1, 0)]
+    drawing.modelspace().add_lwpolyline(ground, close=True, dxfattribs={"layer": "CONCIO_FIXED"})
+    drawing.saveas(tmp_path / "open.dxf")
+    path = tmp_path / "open.toml"
+    path.write_text(
+        "blocks_file = 'open.dxf'\n[drawing]\non_fault = 'skip'\n[materials.stone]\nE = '5 GPa'\nunit_weight = 20\n"
+    )
+    code, out, err = run("run", path)
+    assert (code, err) == (0, "")
+    assert "attention    1 fault of the drawing mended or left out: see 'concio check'" in out
 
 
 def test_faults_of_a_drawing_and_the_remedy_are_printed_without_a_gap(capsys: pytest.CaptureFixture[str]) -> None:

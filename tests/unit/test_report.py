@@ -19,7 +19,7 @@ from concio.errors import InputError
 from concio.lcp.solution import Status
 from concio.report.page import report_html, write_report
 from concio.report.view_data import unpack
-from concio.report.wording import VERDICTS, certificate_sentence, checks
+from concio.report.wording import VERDICTS, certificate_sentence, checks, verdict
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
@@ -292,3 +292,12 @@ def test_collapse_opens_without_errors(sliding: Result, tmp_path: Path) -> None:
     dom = browse(file, tmp_path / "profile")
     assert re.search(r'<pre id="errors" hidden(="")?></pre>', dom)
     assert "slides" in dom or "slips" in dom
+
+
+def test_joints_that_were_nearly_made_come_first_of_what_to_do_next() -> None:
+    text = "[column]\nwidth=1\nheight=1\nblocks=1\n[[blocks]]\nname='floating'\nrectangle=[[-0.5,1.001],[0.5,2]]\n"
+    fallen = concio.solve(concio.loads(text), on_failure="return")
+    assert verdict(fallen).next_steps[0].startswith("At 1 place bodies nearly touch and have no joint")
+    assert "nearly touch and have no joint" in report_html(fallen)
+    touching = concio.solve(concio.loads(text.replace("1.001", "1.0")), on_failure="return")
+    assert verdict(touching) == VERDICTS[touching.status]

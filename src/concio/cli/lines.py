@@ -22,8 +22,9 @@ def result_lines(result: Result) -> list[str]:
     assembly = result.assembly
     lines = [
         result.model.title or "model without a title",
-        f"  {len(result.model.free_bodies):,} bodies, {len(assembly.detection.interfaces):,} joints, "
-        f"{len(assembly.pairs):,} contact pairs, {assembly.disc.unknowns:,} displacements",
+        f"  {counted(len(result.model.free_bodies), 'body', 'bodies')}, "
+        f"{counted(len(assembly.detection.interfaces), 'joint')}, "
+        f"{counted(len(assembly.pairs), 'contact pair')}, {counted(assembly.disc.unknowns, 'displacement')}",
         result.status.value,
         f"  {s.method}: {s.iterations} iterations, {seconds['solve']:.2f} s; assembled in {seconds['assemble']:.2f} s",
     ]
@@ -55,11 +56,20 @@ def result_lines(result: Result) -> list[str]:
         lines += [f"  tried        {line}" for line in s.trace]
         if np.isfinite(certificate["worst"]):
             lines.append(f"  certificate  worst {certificate['worst']:.1e}: not an equilibrium")
+    faults = result.model.generator.get("faults", ())
+    if isinstance(faults, tuple | list) and faults:
+        lines.append(
+            f"  attention    {counted(len(faults), 'fault')} of the drawing mended or left out: see 'concio check'"
+        )
     missed = len(assembly.detection.near_misses)
     if missed:
-        joints = f"{missed:,} joint{'s' if missed > 1 else ''}"
-        lines.append(f"  attention    {joints} nearly made, and not: see 'concio check'")
+        lines.append(f"  attention    {counted(missed, 'joint')} nearly made, and not: see 'concio check'")
     return lines
+
+
+def counted(number: int, one: str, several: str | None = None) -> str:
+    """Return a number and its noun."""
+    return f"{number:,} {one if number == 1 else several or one + 's'}"
 
 
 def _ties(result: Result) -> list[str]:

@@ -148,8 +148,9 @@ def assemble(model: Model) -> Assembly:
     detection = detect(model)
     if detection.overlaps:
         first = detection.overlaps[0]
-        more = f" and {len(detection.overlaps) - 1} more" if len(detection.overlaps) > 1 else ""
-        raise GeometryError(f"{first}{more}", hint="move the blocks apart, or raise gap_tolerance")  # noqa: EM102
+        others = len(detection.overlaps) - 1
+        msg = first.sentence + (f", and {others} more overlap{'s' if others > 1 else ''}" if others else "")
+        raise GeometryError(msg, hint="raise gap_tolerance only where the overlap is no more than inaccurate drawing")
     disc = discretise(model, interface_breaks(model, detection.interfaces))
     pairs = make_pairs(disc, detection.interfaces)
     laws = pair_laws(model, pairs)

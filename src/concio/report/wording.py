@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from concio.lcp.certificate import CERTIFIED
@@ -114,8 +114,14 @@ class Check:
 
 
 def verdict(result: Result) -> Verdict:
-    """Return the outcome of a result in words."""
-    return VERDICTS[result.status]
+    """Return the outcome of a result in words; joints that were nearly made come first of what to do next."""
+    words = VERDICTS[result.status]
+    missed = len(result.assembly.detection.near_misses)
+    if not missed:
+        return words
+    places = f"At {missed:,} place{'s' if missed > 1 else ''}"
+    step = f"{places} bodies nearly touch and have no joint: 'concio check' names them. Is that what you meant?"
+    return replace(words, next_steps=(step, *words.next_steps))
 
 
 def checks(result: Result) -> list[Check]:
