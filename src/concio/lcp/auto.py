@@ -42,6 +42,9 @@ SMALL = 200
 SEARCH = 6000
 """Nodes of the exhaustive search up to 60 pairs, fewer with their square beyond; some 10 to 20 s on any problem."""
 
+PATIENCE = 120.0
+"""Seconds after which the exhaustive search ends all the same; met only where linear programmes run into trouble."""
+
 CLOSE = 0.05
 """Residual of an exact finish below which its states are worth a crossover."""
 
@@ -161,7 +164,7 @@ def exhaust(run: Run, progress: ProgressCallback | None) -> Solution | None:
         run.trace.append("exhaustive search: not tried, the package highspy is not installed")
         return None
     limit = int(SEARCH * min(1.0, (60.0 / problem.pairs) ** 2))
-    answer = exhaustive.solve(problem, progress=progress, time_limit=np.inf, node_limit=limit)
+    answer = exhaustive.solve(problem, progress=progress, time_limit=PATIENCE, node_limit=limit)
     if answer.status is Status.CANCELLED:
         raise Cancelled
     nodes, leaves = answer.info["nodes"], answer.info["leaves"]
