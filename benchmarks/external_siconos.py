@@ -1,6 +1,6 @@
 """Siconos on one contact problem; run by the system's Python (Debian package ``python3-siconos``).
 
-    /usr/bin/python3 external_siconos.py problem.npz answer.npz lemke|admm
+    /usr/bin/python3 external_siconos.py problem.npz answer.npz lemke|admm|admm-tight
 
 Knows nothing of concio: reads K, f, C_n, C_t, gap and friction, writes displacements, seconds and an outcome. K must be
 definite. Two ways, as Siconos offers them:
@@ -10,7 +10,9 @@ definite. Two ways, as Siconos offers them:
     condensing the displacements: F = C inv(K) C'. The time of the condensation is part of the seconds.
 ``admm``
     Siconos' ADMM for the global friction problem K u = f + H r, with sparse K. It is three-dimensional: every pair gets
-    a second tangent with an unknown of its own that nothing loads.
+    a second tangent with an unknown of its own that nothing loads. To 1e-6.
+``admm-tight``
+    The same to 1e-10, nearer to what the engine delivers.
 
 Forces are divided by the mean load on a pair, lengths by that force times the mean flexibility (ADMM: over the mean
 stiffness).
@@ -68,7 +70,7 @@ def lemke(K, f, C_n, C_t, gap, mu):
     return factor.solve(f) + flexible @ t, residual < 1e-6, note
 
 
-def admm(K, f, C_n, C_t, gap, mu):
+def admm(K, f, C_n, C_t, gap, mu, tolerance=1e-6):
     """Return (u, converged, note) by Siconos' ADMM on the global problem."""
     m, n = C_n.shape
     force = np.abs(f).sum() / m
@@ -91,18 +93,23 @@ def admm(K, f, C_n, C_t, gap, mu):
     reaction, relative, u = np.zeros(3 * m), np.zeros(3 * m), np.zeros(n + m)
     options = sn.SolverOptions(sn.SICONOS_GLOBAL_FRICTION_3D_ADMM)
     options.iparam[sn.SICONOS_IPARAM_MAX_ITER] = 100000
-    options.dparam[sn.SICONOS_DPARAM_TOL] = 1e-6
+    options.dparam[sn.SICONOS_DPARAM_TOL] = tolerance
     info = sn.gfc3d_driver(problem, reaction, relative, u, options)
     iterations, residual = options.iparam[sn.SICONOS_IPARAM_ITER_DONE], options.dparam[sn.SICONOS_DPARAM_RESIDU]
     note = f"{iterations} iterations, residual {residual:.0e}"
     return u[:n] * length, info == 0, note
 
 
+def tight(*arguments):
+    """Return (u, converged, note) by ADMM to 1e-10."""
+    return admm(*arguments, tolerance=1e-10)
+
+
 def main():
     """Solve the problem of the first file, write the answer to the second."""
     data = np.load(sys.argv[1])
     arguments = [sparse(data, name) for name in ("K", "C_n", "C_t")]
-    way = {"lemke": lemke, "admm": admm}[sys.argv[3]]
+    way = {"lemke": lemke, "admm": admm, "admm-tight": tight}[sys.argv[3]]
     begin = time.perf_counter()
     u, converged, note = way(arguments[0], data["f"], arguments[1], arguments[2], data["gap"], data["friction"])
     seconds = time.perf_counter() - begin
