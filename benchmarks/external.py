@@ -112,6 +112,7 @@ def checked(case: Case) -> Case:
 CASES: dict[str, Callable[[], Case]] = {
     "wall-6x7": lambda: wall_case(6, 7, 0.15),
     "wall-10x10": lambda: wall_case(10, 10, 0.15),
+    "wall-30x14": lambda: wall_case(30, 14, 0.43),
     "panel-dry": lambda: panel_case(10, 10, 0.0, 1.0),
     "panel-mortar": lambda: panel_case(10, 10, 0.02, 1.0),
 }
@@ -199,6 +200,9 @@ def calculix(case: Case, spring: float, limit: float) -> Answer:
         return Answer(u, seconds, "NOT converged" if u is None else "converged", note)
 
 
+NEAR_COLLAPSE = "wall-30x14"
+"""Takes minutes, so only on demand: 0.97 of the associated limit."""
+
 TOOLS: dict[str, Callable[[Case, float, float], Answer]] = {
     "siconos-lemke": system_python("siconos.numerics", "python3-siconos", "external_siconos.py", "lemke"),
     "siconos-admm": system_python("siconos.numerics", "python3-siconos", "external_siconos.py", "admm"),
@@ -223,7 +227,9 @@ def row(case: Case, label: str, answer: Answer, reference: Answer) -> None:
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("cases", nargs="*", metavar="problem", help="of: " + ", ".join(CASES) + " (default: all)")
+    parser.add_argument(
+        "cases", nargs="*", metavar="problem", help="of: " + ", ".join(CASES) + " (default: all but wall-30x14)"
+    )
     parser.add_argument("--tools", default=",".join(TOOLS), help="names with commas (default: all)")
     parser.add_argument("--limit", type=float, default=60.0, help="seconds for each tool and problem")
     arguments = parser.parse_args()
@@ -234,7 +240,7 @@ def main() -> None:
                 parser.error(f"unknown name '{name}'; there are: {', '.join(known)}")
     print(f"{'problem':24s}{'pairs':>6s}  {'tool':19s}{'outcome':15s}{'x engine':>9s}{'settlement m':>13s}"
           f"{'difference':>12s}{'du':>10s}  note")  # fmt: skip
-    for name in arguments.cases or CASES:
+    for name in arguments.cases or (c for c in CASES if c != NEAR_COLLAPSE):
         case = CASES[name]()
         loose = engine(case.problem)
         problem, spring = with_springs(case.problem)
