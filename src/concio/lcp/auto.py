@@ -23,7 +23,7 @@ import numpy as np
 from concio.contact.problem import ContactProblem
 from concio.errors import MethodError
 from concio.lcp import exhaustive, lemke, sparse_lemke
-from concio.lcp.engine import STARTS, Cancelled, Run
+from concio.lcp.engine import STARTS, Cancelled, Run, at_rest
 from concio.lcp.exact_finish import Finished
 from concio.lcp.existence import mechanism_from, statically_admissible
 from concio.lcp.scaled import scale
@@ -72,6 +72,9 @@ def solve(
     Solution
         SOLVED, NO_EQUILIBRIUM with its mechanism, NO_COULOMB_STATE, or UNDECIDED with what was tried.
     """
+    rest = at_rest(problem)
+    if rest is not None:
+        return rest
     run = Run(scale(problem, engine), progress)
     try:
         for start in STARTS[:2]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -58,6 +59,9 @@ def solve(
     Solution
         SOLVED with its certificate, or GAVE_UP; this method proves no collapse.
     """
+    rest = at_rest(problem)
+    if rest is not None:
+        return rest
     scaled = scale(problem, engine)
     run = Run(scaled, progress)
     try:
@@ -69,6 +73,15 @@ def solve(
     except Cancelled:
         return run.solution(None, Status.CANCELLED)
     return run.solution(found)
+
+
+def at_rest(problem: ContactProblem) -> Solution | None:
+    """Return the answer without motion and forces where nothing acts: no load, no pushed support, no slip origin."""
+    if problem.f.any() or (problem.gap < 0).any() or problem.slip_origin.any():
+        return None
+    m = problem.pairs
+    rest = judge(problem, np.zeros(problem.unknowns), np.zeros(m), np.zeros((m, problem.dim - 1)), method=NAME)
+    return replace(rest, trace=("nothing acts on the structure: it rests",)) if rest.solved else None
 
 
 class Run:

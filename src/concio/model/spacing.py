@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 Array = np.ndarray
@@ -20,7 +22,7 @@ def subdivided(marks: Array, size: float, refinement: int = 1) -> Array:
         Further equal splits of each span.
     """
     lines = [marks[:1]]
-    for a, b in zip(marks[:-1], marks[1:], strict=True):
+    for a, b in pairwise(marks):
         n = max(1, int(np.ceil((b - a) / size - 1e-6))) * refinement
         lines.append(a + (b - a) * np.arange(1, n + 1) / n)
     return np.concatenate(lines)
