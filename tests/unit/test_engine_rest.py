@@ -22,3 +22,12 @@ def test_a_tie_with_prestress_acts():
     model = concio.running_bond_panel(courses=1, blocks=1, unit_weight=100.0, side_walls=False)
     result = concio.solve(replace(model, ties=(tie,)), on_failure="return")
     assert not result.solved or np.abs(result.displacement).max() > 0
+
+
+def test_the_papers_sufficient_condition_is_reported():
+    full = concio.solve(concio.running_bond_panel(courses=2, blocks=2, top_pressure=10.0))
+    assert full.existence.holds
+    assert full.summary()["sufficient_condition"]["margin"] == pytest.approx(full.existence.margin)
+    hung = concio.solve(concio.running_bond_panel(courses=3, blocks=6, friction=0.6, base="none", top_pressure=10.0))
+    assert hung.solved
+    assert not hung.existence.holds  # walls on the sides alone carry nothing without friction

@@ -15,6 +15,7 @@ from concio.contact.assembly import Assembly
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID, rigid_rows
 from concio.lcp.certificate import Certificate
+from concio.lcp.existence import SufficientCondition, sufficient_condition
 from concio.lcp.solution import Mechanism, Solution, Status, pair_states
 from concio.model.model import Model
 
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
     from concio.post.tables import Tables
 
 Array = np.ndarray
+
+EXISTENCE = 2000
+"""Largest number of pairs for which summaries report the paper's sufficient condition (a linear programme)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,6 +208,11 @@ class Result:
 
         return notebook_html(self)
 
+    @cached_property
+    def existence(self) -> SufficientCondition:
+        """The paper's sufficient condition: normal forces alone, all positive, balance the loads; with its margin."""
+        return sufficient_condition(self.assembly.problem(self.factors))
+
     def summary(self) -> dict[str, Any]:
         """Return the numbers of ``--json``: plain types, kN and m."""
         contacts = self.contacts if self.solved else None
@@ -229,6 +238,9 @@ class Result:
             data["max_settlement"] = self.max_settlement
             data["reactions"] = {name: list(force) for name, force in self.reactions.items()}
             data["pairs"] = {name: contacts.count(name) for name in ("open", "stick", "slip")}
+        if len(self.assembly.pairs) <= EXISTENCE:
+            condition = self.existence
+            data["sufficient_condition"] = {"holds": condition.holds, "margin": _finite(condition.margin)}
         if self.mechanism is not None:
             data["mechanism"] = {"power": self.mechanism.power, "violation": self.mechanism.violation}
         return data

@@ -33,6 +33,7 @@ def result_lines(result: Result) -> list[str]:
         parts = ", ".join(f"{k.replace('_', ' ')} {v:.0e}" for k, v in certificate.items() if k != "worst")
         lines += [
             f"  certificate  worst {certificate['worst']:.1e} ({parts})",
+            *_existence(result),
             f"  pairs        {_states(result)}",
             f"  settlement   {1e3 * result.max_settlement + 0.0:.4g} mm at most",
             f"  loads        {force(result.total_load)} in all",
@@ -70,6 +71,19 @@ def result_lines(result: Result) -> list[str]:
 def counted(number: int, one: str, several: str | None = None) -> str:
     """Return a number and its noun."""
     return f"{number:,} {one if number == 1 else several or one + 's'}"
+
+
+def _existence(result: Result) -> list[str]:
+    """Return the paper's sufficient condition in a line, for problems where its linear programme is quick."""
+    from concio.analysis.result import EXISTENCE
+
+    if len(result.assembly.pairs) > EXISTENCE:
+        return []
+    condition = result.existence
+    if not condition.holds:
+        return ["  existence    not guaranteed beforehand: normal forces alone cannot carry the loads"]
+    margin = "without limit" if np.isinf(condition.margin) else f"by {condition.margin:.3g} kN at least"
+    return [f"  existence    guaranteed: positive normal forces alone balance the loads, {margin}"]
 
 
 def _ties(result: Result) -> list[str]:
