@@ -183,20 +183,22 @@ def solve_states(
     return best
 
 
-def _least_norm(s: Scaled, found: Finished, anchor: Array) -> Finished:
+def _least_norm(s: Scaled, found: Finished) -> Finished:
     """Return the same answer with the least-norm forces among those of its states, if these obey the joint laws.
 
     Where pairs are redundant (corners) their forces are not unique. Refinement from zero forces ends at the least norm,
     which depends on nothing but the structure; the displacements are the same. Each pair's compliance goes with the
-    inverse of its area, so it is the norm of the tractions: a uniform pressure is reported as one.
+    inverse of its area, so it is the norm of the tractions: a uniform pressure is reported as one. The springs of
+    loose unknowns are anchored anew at the answer, which takes their last influence out.
     """
     zero = np.zeros(s.pairs)
-    u, t_n, t_t, _ = solve_states(s, found.states, found.u, zero, zero, anchor, again=True)
-    imbalance, laws = natural_residual(s, u, t_n, t_t)
-    error = max(imbalance, float(laws.max(initial=0.0)))
-    if error > max(found.error, SETTLED):
-        return found
-    return replace(found, u=u, t_n=t_n, t_t=t_t, error=error)
+    for start_n, start_t in ((found.t_n, found.t_t), (zero, zero)):
+        u, t_n, t_t, _ = solve_states(s, found.states, found.u, start_n, start_t, found.u, again=True)
+        imbalance, laws = natural_residual(s, u, t_n, t_t)
+        error = max(imbalance, float(laws.max(initial=0.0)))
+        if error <= max(found.error, SETTLED):
+            found = replace(found, u=u, t_n=t_n, t_t=t_t, error=error)
+    return found
 
 
 def finish(s: Scaled, u: Array, t_n: Array, t_t: Array, rounds: int = 12, states: States | None = None) -> Finished:
@@ -234,7 +236,7 @@ def finish(s: Scaled, u: Array, t_n: Array, t_t: Array, rounds: int = 12, states
         if best is None or error < best.error:
             best = Finished(u, t_n, t_t, states, error, solves, undecided)
         if error < SETTLED:
-            best = _least_norm(s, best, anchor)
+            best = _least_norm(s, best)
             break
         if new.key() in seen:
             break
