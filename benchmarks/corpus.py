@@ -20,6 +20,7 @@ import concio
 import concio.lcp.auto
 from concio.contact.assembly import Assembly
 from concio.lcp.certificate import certify
+from concio.lcp.departure import verify_departure
 from concio.lcp.existence import verify_mechanism
 from concio.lcp.limit import associated_limit
 from concio.lcp.methods import find
@@ -27,7 +28,7 @@ from concio.lcp.solution import Solution, Status
 
 FAMILIES = ("dry wall", "dry panel", "mortar panel", "no base", "gaps", "loose blocks", "rigid wall", "mixed materials")
 
-DECIDED = ("SOLVED", "NO_EQUILIBRIUM", "NO_COULOMB_STATE")
+DECIDED = ("SOLVED", "NO_EQUILIBRIUM", "COLLAPSES", "NO_COULOMB_STATE")
 """Verdicts that are proofs."""
 
 
@@ -106,6 +107,9 @@ def proven(problem: concio.contact.problem.ContactProblem, solution: Solution) -
     if solution.status is Status.NO_EQUILIBRIUM and solution.mechanism is not None:
         again = verify_mechanism(problem, solution.mechanism.velocity)
         return again.violation <= 1e-9 and again.power > 0
+    if solution.status is Status.COLLAPSES and solution.departure is not None:
+        d = solution.departure
+        return verify_departure(problem, d.acceleration, d.displacement, d.normal_force, d.friction_force).certified
     return solution.status is Status.NO_COULOMB_STATE  # its exclusions were recomputed as they were made
 
 

@@ -37,7 +37,7 @@ class GeometryError(InputError):
 
 
 class NoEquilibriumError(ConcioError):
-    """The loads cannot be carried: a mechanism proves it (exit code 3)."""
+    """The loads are not carried, and that is proven (exit code 3)."""
 
     exit_code = 3
 

@@ -29,7 +29,8 @@ def test_exit_codes() -> None:
         "SolverError": 4,
     }  # fmt: skip
     assert {s.name: s.exit_code for s in Status} == {
-        "SOLVED": 0, "NO_EQUILIBRIUM": 3, "NO_COULOMB_STATE": 3, "UNDECIDED": 4, "GAVE_UP": 4, "CANCELLED": 4,
+        "SOLVED": 0, "NO_EQUILIBRIUM": 3, "COLLAPSES": 3, "NO_COULOMB_STATE": 3,
+        "UNDECIDED": 4, "GAVE_UP": 4, "CANCELLED": 4,
     }  # fmt: skip
 
 

@@ -139,6 +139,7 @@ def test_loose_block_without_load_is_left_alone() -> None:
         problem, K=K, f=np.concatenate([problem.f, np.zeros(n)]),
         C_n=sp.csr_array(sp.hstack([problem.C_n, pad])), C_t=sp.csr_array(sp.hstack([problem.C_t, pad])),
         R=sp.csc_array(sp.block_diag([problem.R, free.R])), bodies=np.append(problem.bodies, K.shape[0]),
+        inertia=np.ones(K.shape[0]),
     )  # fmt: skip
     answer = solve(joined)
     assert answer.solved

@@ -113,7 +113,7 @@ def test_every_outcome_has_words(status: Status) -> None:
     words = VERDICTS[status]
     assert words.headline.endswith(".")
     assert words.next_steps
-    bad = (Status.NO_EQUILIBRIUM, Status.NO_COULOMB_STATE)
+    bad = (Status.NO_EQUILIBRIUM, Status.COLLAPSES, Status.NO_COULOMB_STATE)
     assert words.tone == ("good" if status is Status.SOLVED else "bad" if status in bad else "unsure")
 
 

@@ -49,7 +49,7 @@ def solve(
     InputError
         The model cannot be used as it is.
     NoEquilibriumError
-        A mechanism proves that the loads cannot be carried.
+        A mechanism, a motion without end or the exclusion of all joint states proves that the loads are not carried.
     SolverError
         The solver stopped without an answer.
     """
@@ -65,7 +65,7 @@ def solve(
     if solution.solved or on_failure == "return":
         return result
     detail = "; ".join(solution.trace)
-    if solution.status is Status.NO_EQUILIBRIUM:
+    if solution.status in (Status.NO_EQUILIBRIUM, Status.COLLAPSES):
         raise NoEquilibriumError(
             solution.status.value, hint="solve with on_failure='return' and look at result.mechanism"
         )

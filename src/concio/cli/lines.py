@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.lcp.solution import Status
+
 if TYPE_CHECKING:
     from concio.analysis.result import Result
 
@@ -47,10 +49,11 @@ def result_lines(result: Result) -> list[str]:
             lines.append(f"  {'':<12} ... and {len(reactions) - len(shown)} more")
         lines += _ties(result)
     elif result.mechanism is not None:
+        word = "motion" if result.status is Status.COLLAPSES else "mechanism"
         moving = [f"'{name}'" for name, speed in moving_bodies(result) if speed > SLOW]
         more = f" and {len(moving) - MOST_MOVING} more" if len(moving) > MOST_MOVING else ""
         lines += [
-            f"  mechanism    the loads do {result.mechanism.power:.4g} kN m of work on each metre of it",
+            f"  {word:<12} the loads do {result.mechanism.power:.4g} kN m of work on each metre of it",
             f"  moves        {', '.join(moving[:MOST_MOVING])}{more}",
         ]
     else:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
 
+from concio.contact.inertia import lumped_masses
 from concio.contact.loads import load_vectors
 from concio.contact.pairs import Pairs, make_pairs, pair_laws
 from concio.contact.problem import ContactProblem, Laws
@@ -104,7 +106,15 @@ class Assembly:
             bodies=self.supported.bodies,
             slip_origin=origin[:, None],
             area=self.pairs.area,
+            inertia=self.inertia,
         )
+
+    @cached_property
+    def inertia(self) -> Array:
+        """Mass that goes with each free unknown (N,) [t]."""
+        T = self.supported.T
+        masses: Array = T.multiply(T).T @ lumped_masses(self.disc)
+        return masses
 
     def displacement(self, q: Array, factors: Mapping[str, float] | None = None) -> Array:
         """Return the displacements (N_all,) of all bodies from the free unknowns q (N,) [m]."""

@@ -111,6 +111,9 @@ class ContactProblem:
     area : (m,) array, optional
         Tributary areas, or anything in proportion to them [m2]; default all equal. They matter only where forces are
         not unique (corners): there the forces of least weighted norm, sum t^2 / area, are reported.
+    inertia : (N,) array, optional
+        Mass that goes with each unknown [t], all positive; default all one. It does not enter any equilibrium: it
+        tells how a structure that has none moves away.
     """
 
     K: sp.csr_array
@@ -123,6 +126,7 @@ class ContactProblem:
     bodies: Array
     slip_origin: Array = field(default_factory=lambda: np.zeros((0, 0)))
     area: Array = field(default_factory=lambda: np.zeros(0))
+    inertia: Array = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         m, n = self.C_n.shape
@@ -133,7 +137,9 @@ class ContactProblem:
             object.__setattr__(self, "slip_origin", np.zeros((m, max(1, self.C_t.shape[0] // max(m, 1)))))
         if not self.area.size:
             object.__setattr__(self, "area", np.ones(m))
-        wanted_shapes = {"K": (n, n), "f": (n,), "gap": (m,), "area": (m,)}
+        if not self.inertia.size:
+            object.__setattr__(self, "inertia", np.ones(n))
+        wanted_shapes = {"K": (n, n), "f": (n,), "gap": (m,), "area": (m,), "inertia": (n,)}
         for name, wanted in wanted_shapes.items():
             found = getattr(self, name).shape
             if found != wanted:

@@ -7,11 +7,14 @@ The order is fixed, so that the same problem always goes the same way:
 2. a linear programme: either a mechanism, rechecked, proves that there is no equilibrium, or there are statically
    admissible forces; where no body has to move under them (rigid blocks), they are the answer;
 3. interior point from further out still, then the dilatancy homotopy;
-4. pivoting from nothing, sparse and then dense, where the problem is small enough;
-5. on small problems, exhaustive search over the states of the pairs, which finds one or proves that there is none.
+4. release: the structure is let go and followed in slow motion, from rest and from the state in which associated flow
+   jams; it comes to rest, which is an equilibrium, or settles into a motion without end, which is kept;
+5. pivoting from nothing, sparse and dense, where the problem is small enough; what it finds comes before a motion;
+6. the motion kept from step 4 is the answer; without one, release with pivoting in each step;
+7. on small problems, exhaustive search over the states of the pairs, which finds one or proves that there is none.
 
 What was tried is the solution's trace. An answer is called solved by its certificate alone, a collapse by its mechanism
-alone, a load that no Coulomb state carries by exhaustion alone; everything else is undecided.
+or its motion alone, a load that no Coulomb state carries by exhaustion alone; everything else is undecided.
 """
 
 from __future__ import annotations
@@ -26,8 +29,9 @@ from concio.lcp import exhaustive, lemke, sparse_lemke
 from concio.lcp.engine import STARTS, Cancelled, Run, at_rest
 from concio.lcp.exact_finish import Finished
 from concio.lcp.existence import mechanism_from, statically_admissible
+from concio.lcp.release import associated_state, release
 from concio.lcp.scaled import scale
-from concio.lcp.solution import PairState, ProgressCallback, Solution, Status, failed, judge
+from concio.lcp.solution import Departure, Mechanism, ProgressCallback, Solution, Status, failed, judge
 from concio.lcp.sparse_factor import Engine
 
 DENSE = 450
@@ -65,12 +69,13 @@ def solve(
     progress : callable, optional
     engine : {"superlu", "pardiso"}
     pivoting : bool
-        Whether steps 4 and 5 are tried.
+        Whether steps 5 and 7, and step 6 with pivoting, are tried.
 
     Returns
     -------
     Solution
-        SOLVED, NO_EQUILIBRIUM with its mechanism, NO_COULOMB_STATE, or UNDECIDED with what was tried.
+        SOLVED, NO_EQUILIBRIUM with its mechanism, COLLAPSES with its motion, NO_COULOMB_STATE, or UNDECIDED with
+        what was tried.
     """
     rest = at_rest(problem)
     if rest is not None:
@@ -93,13 +98,42 @@ def solve(
         if found is not None:
             return run.solution(found)
         crossed = crossover(run, progress)
-        if crossed is None and pivoting:
-            crossed = pivot(run, progress) or exhaust(run, progress)
+        if crossed is None:
+            crossed = last_resorts(run, progress, pivoting)
         if crossed is not None:
             return crossed
     except Cancelled:
         return run.solution(None, Status.CANCELLED)
     return run.solution(None, Status.UNDECIDED, method="auto")
+
+
+def last_resorts(run: Run, progress: ProgressCallback | None, pivoting: bool) -> Solution | None:
+    """Take steps 4 to 7: let the structure go, but look for an equilibrium by pivoting before a motion is believed."""
+    ended = release(run) or release(run, associated_state(run))
+    if isinstance(ended, Finished):
+        return run.solution(ended)
+    small = pivoting and run.scaled.problem.pairs <= SPARSE
+    if small:
+        answer = pivot(run, progress)
+        if answer is None and ended is None:
+            ended = release(run, pivoting=True)
+        if answer is not None:
+            return answer
+    if isinstance(ended, Finished):
+        return run.solution(ended)
+    if ended is not None:
+        return moves_away(run, ended)
+    return exhaust(run, progress) if pivoting else None
+
+
+def moves_away(run: Run, motion: Departure) -> Solution:
+    """Return the verdict of a certified motion."""
+    problem = run.scaled.problem
+    top = float(np.abs(motion.acceleration).max())
+    direction = motion.acceleration / top
+    mechanism = Mechanism(direction, float(problem.f @ direction), motion.violation)
+    answer = failed(problem, Status.COLLAPSES, method="", mechanism=mechanism, departure=motion)
+    return merged(run, answer, "release")
 
 
 def crossover(run: Run, progress: ProgressCallback | None) -> Solution | None:
@@ -111,12 +145,9 @@ def crossover(run: Run, progress: ProgressCallback | None) -> Solution | None:
     s = run.scaled
     if not s.problem.laws.plain:
         return None
-    slip = np.where(best.states.slip > 0, PairState.SLIP_PLUS, PairState.SLIP_MINUS)
-    states = np.where(best.states.slip == 0, PairState.STICK, slip)
-    states = np.where(best.states.closed, states, PairState.OPEN).astype(np.int8)
     u, t_n, t_t = s.restore(best.u, best.t_n, best.t_t)
     answer = sparse_lemke.solve(
-        s.problem, start_states=states, start=(u, t_n, t_t[:, None]), limit=500, tries=0, progress=progress
+        s.problem, start_states=best.states.codes(), start=(u, t_n, t_t[:, None]), limit=500, tries=0, progress=progress
     )
     run.trace.append(f"crossover by pivoting: {answer.iterations} pivots, {answer.status.name.lower()}")
     return merged(run, answer, "interior-point + pivoting") if answer.solved else None
@@ -190,6 +221,7 @@ def merged(run: Run, answer: Solution, method: str) -> Solution:
         iterations=run.iterations + answer.iterations,
         factorisations=run.scaled.factor.count + answer.factorisations,
         mechanism=answer.mechanism,
+        departure=answer.departure,
         trace=tuple(run.trace),
         info={"history": tuple(run.history), **answer.info},
     )

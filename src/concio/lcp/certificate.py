@@ -96,7 +96,9 @@ def scales(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> tuple[f
     return force or 1.0, length or 1.0
 
 
-def certify(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> Certificate:
+def certify(
+    problem: ContactProblem, u: Array, t_n: Array, t_t: Array, *, total_load: float | None = None
+) -> Certificate:
     """Compute the certificate of an answer from the original problem.
 
     Parameters
@@ -108,12 +110,15 @@ def certify(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> Certif
         Normal forces, compression positive [kN].
     t_t : (m, d-1) array
         Friction forces on side b along t [kN].
+    total_load : float, optional
+        F to measure forces by, where the problem's own loads are not the measure [kN].
     """
     law = problem.laws
     t_t = t_t.reshape(problem.pairs, -1)
     if not (np.isfinite(u).all() and np.isfinite(t_n).all() and np.isfinite(t_t).all()):
         return Certificate(*([np.inf] * 5))
     force, length = scales(problem, u, t_n, t_t)
+    force = total_load or force
     kin = kinematics(problem, u, t_n, t_t)
     residual = problem.K @ u - problem.f - problem.C_n.T @ t_n - problem.C_t.T @ t_t.ravel()
     strength = problem.sliding_strength(t_n)

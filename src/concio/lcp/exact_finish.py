@@ -23,6 +23,7 @@ import numpy as np
 
 from concio.contact.problem import Array
 from concio.lcp.scaled import Scaled
+from concio.lcp.solution import PairState
 from concio.lcp.sparse_factor import SingularMatrixError
 
 DELTA = 1e-6
@@ -57,6 +58,12 @@ class States:
     def key(self) -> bytes:
         """Return bytes that identify the states."""
         return np.packbits(self.closed).tobytes() + self.slip.astype(np.int8).tobytes() + self.crushed.tobytes()
+
+
+    def codes(self) -> Array:
+        """Return the states as :class:`concio.lcp.solution.PairState` (m,), for pivoting to begin with."""
+        slip = np.where(self.slip > 0, PairState.SLIP_PLUS, PairState.SLIP_MINUS)
+        return np.where(self.closed, np.where(self.slip == 0, PairState.STICK, slip), PairState.OPEN).astype(np.int8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,12 +130,20 @@ def read_states(s: Scaled, u: Array, t_n: Array, t_t: Array) -> States:
 
 
 def solve_states(
-    s: Scaled, states: States, u: Array, t_n: Array, t_t: Array, anchor: Array | None = None, again: bool = False
+    s: Scaled,
+    states: States,
+    u: Array,
+    t_n: Array,
+    t_t: Array,
+    anchor: Array | None = None,
+    *,
+    springs: Array | float = LOOSE,
+    again: bool = False,
 ) -> tuple[Array, Array, Array, float]:
     """Solve the linear equations of given states, starting refinement from (u, t_n, t_t).
 
-    Unknowns are tied to ``anchor`` (N,) by springs of stiffness ``LOOSE``: what nothing holds stays there, and what is
-    held feels less than the equilibrium's rounding. ``again`` reuses the factorisation of the call before.
+    Unknowns are tied to ``anchor`` (N,) by ``springs`` of stiffness ``LOOSE``: what nothing holds stays there, and what
+    is held feels less than the equilibrium's rounding. ``again`` reuses the factorisation of the call before.
 
     Returns
     -------
@@ -155,13 +170,13 @@ def solve_states(
     d_tt = np.where(stick, 1.0 / soft_t, 0.0)
     if not again:
         d_tn = d_nn * drag
-        s.factor.factorise(np.concatenate([d_nn, -d_nn * open_wide, d_tn, d_tt - d_tn * open_wide]), LOOSE)
+        s.factor.factorise(np.concatenate([d_nn, -d_nn * open_wide, d_tn, d_tt - d_tn * open_wide]), springs)
     t_n = np.where(states.crushed, s.cap, np.where(closed, t_n, 0.0))
     t_t = np.where(stick, t_t, drag * t_n - sigma * s.cohesion) * closed
     anchor = u if anchor is None else anchor
     best, late = (u, t_n, t_t, np.inf), 0
     for _ in range(40):
-        r_u = -s.imbalance(u, t_n, t_t) - LOOSE * (u - anchor)
+        r_u = -s.imbalance(u, t_n, t_t) - springs * (u - anchor)
         slip_now = s.slip(u, t_t)
         r_n = np.where(hard, -(s.normal_gap(u, t_n) - open_wide * slip_now), 0.0)
         r_t = np.where(stick, -slip_now, 0.0)

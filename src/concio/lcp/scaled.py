@@ -7,7 +7,7 @@ one factorisation. Strengths are shifted so that every pair reads ``t_n' = t_n +
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -42,6 +42,8 @@ class Scaled:
         Pairs that can carry friction at all; coefficients below 1e-12 count as none.
     share : (m,) array
         Tributary area of each pair over the mean, kept between 0.05 and 20.
+    inertia : (N,) array
+        Mass of each unknown over the mean.
     factor : PatternFactor
         Factorises K + C' D C; couples are (n,n), (n,t), (t,n), (t,t), pair after pair within each.
     """
@@ -64,6 +66,7 @@ class Scaled:
     cap: Array
     rough: Array
     share: Array
+    inertia: Array
     factor: PatternFactor
 
     @property
@@ -95,6 +98,17 @@ class Scaled:
         """Return y_t = C_t u - s + a_t t_t (m,)."""
         slip: Array = self.C_t @ u - self.origin + self.a_t * t_t
         return slip
+
+    def step_from(self, u: Array, e: float) -> Scaled:
+        """Return the problem of one step of slow motion from ``u`` (N,): K + e M, f + e M u for K, f."""
+        added = e * self.inertia
+        K = sp.csr_array(self.K + sp.diags_array(added))
+        return replace(self, K=K, f=self.f + added * u, factor=self.factor.with_diagonal(added))
+
+    def acceleration(self, a: Array) -> Array:
+        """Return the accelerations [m/s2] that belong to scaled ones, M a = F m' a'."""
+        physical: Array = a * (self.force / self.problem.inertia.mean())
+        return physical
 
     def restore(self, u: Array, t_n: Array, t_t: Array) -> tuple[Array, Array, Array]:
         """Return u [m], t_n and t_t [kN] of the original problem."""
@@ -149,6 +163,7 @@ def scale(problem: ContactProblem, engine: Engine = "superlu") -> Scaled:
         cap=(law.cap + law.tension) / force,
         rough=(law.friction > SMOOTH) | (law.cohesion > 0),
         share=np.clip(problem.area / (problem.area.mean() if m else 1.0), 0.05, 20.0),
+        inertia=problem.inertia / problem.inertia.mean(),
         factor=factor,
     )
 

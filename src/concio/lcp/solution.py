@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from concio.contact.problem import Array, ContactProblem
-from concio.lcp.certificate import Certificate, Kinematics, certify, kinematics, scales
+from concio.lcp.certificate import CERTIFIED, Certificate, Kinematics, certify, kinematics, scales
 
 
 class Status(Enum):
@@ -18,6 +18,9 @@ class Status(Enum):
 
     SOLVED = "In equilibrium: the certificate proves it."
     NO_EQUILIBRIUM = "No equilibrium is possible: a mechanism proves it."
+    COLLAPSES = (
+        "Collapses: released at rest it moves away; an accelerating motion that obeys contact and friction proves it."
+    )
     NO_COULOMB_STATE = "No Coulomb equilibrium exists: every combination of joint states was excluded."
     UNDECIDED = (
         "Undecided: statically admissible forces exist, but no state that also obeys Coulomb friction was found, "
@@ -29,7 +32,11 @@ class Status(Enum):
     @property
     def exit_code(self) -> int:
         """Exit code of the command line for this outcome."""
-        return {Status.SOLVED: 0, Status.NO_EQUILIBRIUM: 3, Status.NO_COULOMB_STATE: 3}.get(self, 4)
+        return {Status.SOLVED: 0, **dict.fromkeys(PROVEN_FAILURES, 3)}.get(self, 4)
+
+
+PROVEN_FAILURES = (Status.NO_EQUILIBRIUM, Status.COLLAPSES, Status.NO_COULOMB_STATE)
+"""Outcomes that are proofs that the structure does not stand."""
 
 
 class PairState(IntEnum):
@@ -57,21 +64,58 @@ ProgressCallback = Callable[[Progress], "bool | None"]
 
 @dataclass(frozen=True, eq=False)
 class Mechanism:
-    """A rigid motion that proves there is no equilibrium (section 6 of the theory page).
+    """A rigid motion that proves there is no equilibrium (theory page, section 6), or the direction of a departure.
 
     Parameters
     ----------
     velocity : (N,) array
         Direction of the motion, scaled to largest entry 1.
     power : float
-        f' v minus the most the joints can absorb (cohesion, tension, cap), positive [kN].
+        f' v minus the most the joints can absorb (cohesion, tension, cap), positive [kN]; in a departure f' v.
     violation : float
-        Largest violation of C_n v >= mu |C_t v| (relative to the largest velocity), and of K v = 0.
+        Largest violation of C_n v >= mu |C_t v| (relative to the largest velocity), and of K v = 0; in a departure its
+        own.
     """
 
     velocity: Array
     power: float
     violation: float
+
+
+@dataclass(frozen=True, eq=False)
+class Departure:
+    """A motion that starts from rest and never ends: constant acceleration and constant forces that obey every law.
+
+    See :mod:`concio.lcp.departure` for the equations.
+
+    Parameters
+    ----------
+    acceleration : (N,) array
+        a: rigid motion of each body [m/s2 where the masses are in t].
+    inertia : (N,) array
+        Masses that resist it, the diagonal of M [t].
+    displacement : (N,) array
+        u + s_0 a, a state on the way [m].
+    normal_force, friction_force : (m,), (m, d-1) arrays
+        Forces during the motion [kN].
+    power : float
+        f'a over the total load and the largest acceleration, positive.
+    violation : float
+        Worst of: the certificate under the loads f - M a, K a = 0, and the laws of the joints' rates along a.
+    """
+
+    acceleration: Array
+    inertia: Array
+    displacement: Array
+    normal_force: Array
+    friction_force: Array
+    power: float
+    violation: float
+
+    @property
+    def certified(self) -> bool:
+        """True where every residual is rounding and the motion really takes power from the loads."""
+        return self.violation <= CERTIFIED and self.power > 10.0 * CERTIFIED
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +140,9 @@ class Solution:
     iterations, factorisations : int
         Work done.
     mechanism : Mechanism or None
-        Proof that there is no equilibrium.
+        Proof that there is no equilibrium, or the direction of the departure.
+    departure : Departure or None
+        Proof that the structure moves away.
     trace : tuple of str
         What was tried, in order, in words.
     info : mapping
@@ -113,6 +159,7 @@ class Solution:
     iterations: int = 0
     factorisations: int = 0
     mechanism: Mechanism | None = None
+    departure: Departure | None = None
     trace: tuple[str, ...] = ()
     info: Mapping[str, Any] = field(default_factory=dict)
 

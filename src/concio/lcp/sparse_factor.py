@@ -9,6 +9,7 @@ Engines, chosen by name and never by what happens to be installed: ``superlu`` (
 
 from __future__ import annotations
 
+from copy import copy
 from typing import Any, Literal
 
 import numpy as np
@@ -98,6 +99,14 @@ class PatternFactor:
         self.count = 0
         self._lu: Any = None
         self._pardiso: Any = None
+
+    def with_diagonal(self, diagonal: Array) -> PatternFactor:
+        """Return a factor of K + diag(diagonal) that shares ordering and pattern; each keeps factors of its own."""
+        other = copy(self)
+        other._base = self._base.copy()
+        other._base[self._diagonal] += diagonal[self.order]
+        other._lu, other._pardiso, other.count = None, None, 0
+        return other
 
     def factorise(self, d: Array, diagonal: Array | float = 0.0) -> None:
         """Factorise K + sum_k d_k C_i' C_j + diag(diagonal).

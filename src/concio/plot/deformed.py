@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from concio.errors import InputError
+from concio.lcp.solution import Status
 from concio.plot import style
 from concio.post.joint_lines import JointLines, joint_lines
 from concio.post.mechanism import mechanism_states
@@ -103,7 +104,7 @@ def plot_mechanism(
     ax: Axes | None = None,
     *,
     share: float = 0.08,
-    title: str = "Collapse mechanism: no equilibrium is possible",
+    title: str | None = None,
     note: str | None = None,
 ) -> Axes:
     """Draw the motion that proves that there is no equilibrium, or one in which a structure begins to move.
@@ -111,14 +112,13 @@ def plot_mechanism(
     Parameters
     ----------
     result : Result
-        With status NO_EQUILIBRIUM.
+        With status NO_EQUILIBRIUM or COLLAPSES.
     ax : Axes, optional
         Where to draw; default a new figure.
     share : float
         Size of the largest motion as a share of the model.
-    title : str
-    note : str, optional
-        What the line under the title says besides how many bodies move; default the power that proves the collapse.
+    title, note : str, optional
+        Title, and what the line under it says besides how many bodies move; default what the motion proves.
 
     Raises
     ------
@@ -159,8 +159,12 @@ def plot_mechanism(
         scale_units="xy", scale=1.0, width=0.0022, headwidth=4, headlength=5, zorder=5, clip_on=False,
     )  # fmt: skip
     power = style.number(result.mechanism.power, "kN m/s")
+    if title is None:
+        departs = result.status is Status.COLLAPSES
+        title = "How the structure moves away" if departs else "Collapse mechanism: no equilibrium is possible"
     if note is None:
-        note = f"power of the loads less what the joints absorb: {power} at a largest velocity of 1 m/s"
+        less = "" if result.status is Status.COLLAPSES else " less what the joints absorb"
+        note = f"power of the loads{less}: {power} at a largest velocity of 1 m/s"
     count = f"{int(moving.sum())} of {len(result.model.free_bodies)} bodies move (bodies at rest are white)"
     style.dress(ax, box, title, f"{count}; {note}")
     handles = [style.patch(style.FILL_OPEN, "opens"), style.handle(style.SLIP, "slides")]

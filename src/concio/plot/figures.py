@@ -6,7 +6,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from concio.lcp.solution import Status
 from concio.plot.accessor import Plots
 
 if TYPE_CHECKING:
@@ -37,7 +36,7 @@ def suitable_figures(result: Result) -> dict[str, Callable[[], Axes]]:
     """
     plots = Plots(result)
     found: dict[str, Callable[[], Axes]] = {"model": plots.model}
-    if result.status is Status.NO_EQUILIBRIUM and result.mechanism is not None:
+    if result.mechanism is not None:
         found["mechanism"] = plots.mechanism
     if not result.solved:
         return found

@@ -1,7 +1,8 @@
 """What each joint does in a collapse mechanism.
 
 The mechanism that proves a collapse obeys ``y_n >= mu |y_t|`` (theory page, section 6): a joint that only slides also
-opens by mu times its slip. Such a joint is told apart from one that opens further.
+opens by mu times its slip. Such a joint is told apart from one that opens further. In a motion without end the joints
+that slide stay closed, as they do in reality.
 """
 
 from __future__ import annotations
@@ -9,6 +10,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from concio.lcp.solution import Status
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
@@ -35,8 +38,9 @@ def mechanism_states(result: Result, pieces: JointLines, tolerance: float = 1e-6
     sliding = (relative * pairs.tangent[pieces.pair]).sum(1)
     largest = float(np.abs([pieces.moved_a, pieces.moved_b]).max(initial=0.0))
     little = tolerance * largest
-    friction = result.assembly.laws.friction[pieces.pair]
-    opens = opening > friction * np.abs(sliding) + little
+    laws = result.assembly.laws
+    swelling = laws.dilatancy if result.status is Status.COLLAPSES else laws.friction
+    opens = opening > swelling[pieces.pair] * np.abs(sliding) + little
     slides = ~opens & (np.abs(sliding) > little)
     state = np.where(slides, np.where(sliding > 0, 2, 3), 1)
     return np.where(opens, 0, state).astype(np.int8)

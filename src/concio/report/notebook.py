@@ -5,7 +5,6 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING
 
-from concio.lcp.solution import Status
 from concio.plot.style import number
 from concio.report.html_parts import figure_html
 from concio.report.wording import certificate_sentence, verdict
@@ -38,7 +37,7 @@ def notebook_html(result: Result) -> str:
     if len(result.model.bodies) <= LARGEST:
         if result.solved:
             figure = figure_html(result.plot.deformed(), "deformed", "deformed shape")
-        elif result.status is Status.NO_EQUILIBRIUM and result.mechanism is not None:
+        elif result.mechanism is not None:
             figure = figure_html(result.plot.mechanism(), "mechanism", "collapse mechanism")
     return (
         f"<div><p style='border-left:5px solid {_TONE[v.tone]};padding-left:.7em;margin:.4em 0'><b>{escape(v.headline)}"

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from concio.lcp.solution import Status
 from concio.plot import style
 from concio.post.joint_lines import joint_lines
 from concio.post.mechanism import mechanism_states
@@ -68,7 +67,7 @@ def view_data(results: Sequence[Result], labels: Sequence[str]) -> dict[str, Any
         "origin": origin.tolist(),
         "scale": display_scale(largest, shown.size),
         "size": shown.size,
-        "mechanism": first.status is Status.NO_EQUILIBRIUM,
+        "mechanism": first.mechanism is not None,
         "left_out": len(results) - len(steps),
         "look": {
             "block": style.BLOCK, "mortar": style.FILM, "rigid": style.RIGID, "edge": style.EDGE, "hatch": style.HATCH,
@@ -103,7 +102,7 @@ def _kind(body: Any) -> str:
 
 
 def _shown(result: Result) -> Outlines:
-    if result.status is Status.NO_EQUILIBRIUM and result.mechanism_velocity is not None:
+    if result.mechanism_velocity is not None:
         return outlines(result, result.mechanism_velocity)
     return outlines(result)
 

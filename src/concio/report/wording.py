@@ -59,6 +59,22 @@ VERDICTS: dict[Status, Verdict] = {
             "'concio limit' tells what share of the load can be carried.",
         ),
     ),
+    Status.COLLAPSES: Verdict(
+        "bad",
+        "The structure moves away under these loads.",
+        "Forces that balance the loads within the strength of the joints exist, but no state was found in which "
+        "sliding also obeys Coulomb's law; and released at rest the structure accelerates along the motion drawn "
+        "below and does not come to rest. During this motion the forces are constant: closed joints press, sliding "
+        "joints are held back by full friction, and what is left of the loads accelerates the masses. There are "
+        "therefore no stresses and no displacements to report.",
+        (
+            "Look at the motion: joints that slide want more friction or more weight on top, blocks that turn want a "
+            "support or a tie.",
+            "That it moves away from rest does not exclude an equilibrium reached by another history, for example "
+            "with wedges driven in or after the joints were pressed together; 'concio path' follows a history.",
+            "'concio limit' tells what share of the load can be carried.",
+        ),
+    ),
     Status.NO_COULOMB_STATE: Verdict(
         "bad",
         "The loads cannot be carried with Coulomb friction.",
@@ -142,7 +158,13 @@ def certificate_sentence(result: Result) -> str:
     worst = result.certificate.worst
     if result.solved:
         return f"Certified: the largest error in any equation is {worst:.1e} (relative; {CERTIFIED:.0e} is allowed)."
-    if result.mechanism is not None and result.status is Status.NO_EQUILIBRIUM:
+    if result.mechanism is not None and result.status is Status.COLLAPSES:
+        m = result.mechanism
+        return (
+            f"Proven: along this motion the loads do {m.power:.4g} kN m of work on each metre, more than friction "
+            f"takes; motion, forces and masses satisfy every equation to {m.violation:.1e} (relative)."
+        )
+    if result.mechanism is not None:
         m = result.mechanism
         return (
             f"Proven: the mechanism gains a power of {m.power:.4g} kN m/s at a largest velocity of 1 m/s and violates "

@@ -26,6 +26,7 @@ ENGINE = "interior-point"
 OUTCOMES = {
     Status.SOLVED: "solved",
     Status.NO_EQUILIBRIUM: "no equilibrium",
+    Status.COLLAPSES: "collapses",
     Status.NO_COULOMB_STATE: "no Coulomb state",
     Status.UNDECIDED: "undecided",
     Status.GAVE_UP: "gave up",

@@ -1,0 +1,150 @@
+r"""Let the structure go and see where it ends: at rest in a Coulomb state, or moving away without end.
+
+Where no method finds a Coulomb state, this one follows what the structure would do in a medium that resists its motion
+in proportion to the masses M, by implicit steps
+
+.. math:: (K + e M)\, u_{k+1} = f + e M u_k + C^T t_{k+1}, \qquad \text{joint laws at } u_{k+1},
+
+each of them a contact problem of its own, solved by interior point (or pivoting) and exact finish. K + e M holds every
+body, so that a step has a solution whatever the friction, and small steps (large e) have it close by. Steps grow while
+they succeed. What stands still is an equilibrium, made exact with the states it has; what settles into a steady
+motion is a :class:`concio.lcp.solution.Departure`. Two beginnings are tried: from rest undeformed, and from the
+deformed state that associated flow would jam in, as if formwork were lowered.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+from concio.contact.problem import Array
+from concio.lcp import sparse_lemke
+from concio.lcp.departure import departure, verify_departure
+from concio.lcp.engine import EXACT, STARTS, Run
+from concio.lcp.exact_finish import Finished, finish, natural_residual, read_states
+from concio.lcp.scaled import Scaled
+from concio.lcp.solution import Departure
+
+FIRST = 1e-2
+"""Resistance e of the first step, scaled units."""
+
+LONG = 1e-6
+"""Resistance e of the first step where pivoting solves it."""
+
+LEAST = 1e-8
+"""Least resistance e."""
+
+STEP = 1e-10
+"""Natural-map residual up to which a step counts as solved."""
+
+MOST = 60
+"""Largest number of steps tried."""
+
+TRIES = 3
+"""Covers that pivoting tries for one step."""
+
+FAILURES = 8
+"""Largest number of steps that may fail."""
+
+
+def release(run: Run, u: Array | None = None, *, pivoting: bool = False) -> Finished | Departure | None:
+    """Follow the slow motion from ``u`` (N,), scaled, or from rest; return where it ends, or None.
+
+    Parameters
+    ----------
+    run : Run
+        Keeps count and trace.
+    u : (N,) array, optional
+        Displacements at the beginning.
+    pivoting : bool
+        Begin with a long step, and solve by pivoting from nothing the steps that the interior point does not solve.
+    """
+    s = run.scaled
+    begin = "rest" if u is None else "the associated state"
+    u = np.zeros(len(s.f)) if u is None else u
+    e, good, failures, taken = (LONG if pivoting else FIRST), 0, 0, 0
+    here: Finished | None = None
+    shift = np.zeros_like(u)
+    ended: Finished | Departure | None = None
+    for _ in range(MOST):
+        step = s.step_from(u, e)
+        new = _solve(run, step, u, shift, here, pivoting)
+        if new is None:
+            failures, good, e = failures + 1, 0, 10 * e
+            if failures >= (FAILURES if not pivoting else FAILURES // 2):
+                break
+            continue
+        shift, u, here, taken, good = new.u - u, new.u, new, taken + 1, good + 1
+        rest = finish(s, new.u, new.t_n, new.t_t, rounds=6)
+        if rest.error <= EXACT:
+            ended = rest
+        else:
+            ended = _steady(s, e * shift, new) or departure(s, new.states, new.u, new.t_n, new.t_t)
+        if ended is not None:
+            break
+        if good >= 2:
+            e = max(0.3 * e, LEAST)
+    outcome = {Finished: "comes to rest", Departure: "moves away", type(None): "no end found"}[type(ended)]
+    run.trace.append(f"released from {begin}: {taken} steps of slow motion, {failures} failed, {outcome}")
+    return ended
+
+
+def associated_state(run: Run) -> Array:
+    """Return the displacements (N,), scaled, at which associated flow holds the structure, or nearly so."""
+    z = run.engine.start(STARTS[0])
+    outcome = run.engine.run(z, theta=1.0, target=1e-6, watch=run.watch("associated flow"))
+    run.iterations += outcome.iterations
+    return z.u
+
+
+def _steady(s: Scaled, a: Array, now: Finished) -> Departure | None:
+    """Return the motion of the step just made, if it is a departure already."""
+    R = s.problem.R
+    u, t_n, t_t = s.restore(now.u, now.t_n, now.t_t)
+    found = verify_departure(s.problem, s.acceleration(R @ (R.T @ a)), u, t_n, t_t[:, None])
+    return found if found.certified else None
+
+
+def _solve(run: Run, step: Scaled, u: Array, shift: Array, here: Finished | None, pivoting: bool) -> Finished | None:
+    """Solve one step: from the states of the last one, then by interior point, then by pivoting."""
+    if here is not None:
+        for guess, states in ((u + shift, here.states), (u, None)):
+            new = finish(step, guess, here.t_n, here.t_t, rounds=20, states=states)
+            if new.error <= STEP:
+                return new
+    inner = Run(step, run.progress)
+    found: Finished | None = None
+    for start in STARTS:
+        found = inner.plain(start)
+        if found is None and inner.best is not None and inner.best.error <= STEP:
+            found = inner.best
+        if found is not None:
+            break
+    run.iterations += inner.iterations
+    run.history.extend(inner.history)
+    return found or (_pivot(run, step, here) if pivoting else None)
+
+
+def _pivot(run: Run, step: Scaled, here: Finished | None) -> Finished | None:
+    """Solve one step by sparse pivoting, from the states of the last one or from nothing."""
+    p = step.problem
+    held = replace(
+        p, K=sp.csr_array(step.K * (step.force / step.length)), f=step.f * step.force, R=sp.csc_array((p.unknowns, 0))
+    )
+    known: dict[str, Any] = {}
+    if here is not None:
+        u, t_n, t_t = step.restore(here.u, here.t_n, here.t_t)
+        known = {"start_states": here.states.codes(), "start": (u, t_n, t_t[:, None])}
+    answer = sparse_lemke.solve(held, progress=run.progress, tries=TRIES, **known)
+    run.iterations += answer.iterations
+    if not answer.solved:
+        return None
+    u, t_n = answer.displacement / step.length, answer.normal_force / step.force + step.tension
+    t_t = answer.friction_force[:, 0] / step.force
+    imbalance, laws = natural_residual(step, u, t_n, t_t)
+    error = max(imbalance, float(laws.max(initial=0.0)))
+    found = Finished(u, t_n, t_t, read_states(step, u, t_n, t_t), error, 0, np.zeros(0, dtype=int))
+    return found if error <= STEP else None

@@ -1,0 +1,184 @@
+"""Motions without end: hand-worked accelerations, proofs that fail when anything in them is changed, verdicts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+import concio
+from concio import Body, Elastic, JointLaw, Load, Model, Rigid, Status
+from concio.contact.inertia import GRAVITY, lumped_masses
+from concio.contact.problem import ContactProblem
+from concio.lcp.departure import departure, verify_departure
+from concio.lcp.engine import Run
+from concio.lcp.exact_finish import States
+from concio.lcp.methods import find
+from concio.lcp.release import associated_state, release
+from concio.lcp.scaled import scale
+from concio.lcp.solution import Departure
+
+BRICK = Elastic(E=1e6, nu=0.2, unit_weight=20.0)
+
+
+def box(name: str, x: float, y: float, w: float, h: float, kind: str = "elastic") -> Body:
+    outline = np.array([(x, y), (x + w, y), (x + w, y + h), (x, y + h)])
+    return Body(name, outline, "brick", kind)
+
+
+def between_walls(material: Elastic | Rigid = BRICK) -> Model:
+    """A block that touches two vertical walls and nothing else, under its own weight."""
+    bodies = (
+        box("left", -0.5, 0.0, 0.5, 1.0, "fixed"),
+        box("block", 0.0, 0.2, 1.0, 0.5, "rigid" if isinstance(material, Rigid) else "elastic"),
+        box("right", 1.0, 0.0, 0.5, 1.0, "fixed"),
+    )
+    own = Load("weight", (0.0, -1.0)) if material.unit_weight else Load("body", (0.0, -1.0))
+    return Model(bodies, {"brick": material}, {"joint": JointLaw(0.5)}, loads=(own,))
+
+
+def falling(material: Elastic | Rigid = BRICK) -> ContactProblem:
+    """The arrays of the block between the walls."""
+    return concio.assemble(between_walls(material)).problem()
+
+
+def pushed_wall(share: float, mu: float = 0.4) -> ContactProblem:
+    """A dry wall of elastic blocks pushed sideways by a share of its weight, on its base."""
+    model = concio.running_bond_panel(
+        courses=4, blocks=3, block_size=(0.2, 0.1), block=BRICK, friction=mu, base="full", side_walls=False,
+        elements_per_block=(2, 1),
+    )  # fmt: skip
+    model = replace(model, loads=(*model.loads, Load("weight", (share, 0.0))))
+    return concio.assemble(model).problem()
+
+
+def test_masses_are_weights_over_gravity() -> None:
+    problem = falling()
+    assert problem.inertia[::2].sum() == pytest.approx(20.0 * 0.5 / GRAVITY)
+    assert problem.inertia[1::2].sum() == pytest.approx(20.0 * 0.5 / GRAVITY)
+    rigid = falling(Rigid(unit_weight=20.0))
+    np.testing.assert_allclose(rigid.inertia, 20.0 * 0.5 / GRAVITY)
+
+
+def test_masses_without_weight_are_volumes() -> None:
+    np.testing.assert_allclose(falling(Elastic(E=1e6, nu=0.2)).inertia[::2].sum(), 0.5)
+
+
+@pytest.mark.parametrize("element", ["Q4", "Q8", "Q9", "T6"])
+def test_masses_are_positive_for_every_element(element: str) -> None:
+    model = concio.running_bond_panel(courses=2, blocks=2, block=BRICK, element=element)
+    disc = concio.assemble(model).disc
+    masses = lumped_masses(disc)
+    assert masses.min() > 0
+    area = sum(b.area * b.thickness for b in model.bodies if b.kind == "elastic")
+    assert masses[::2].sum() == pytest.approx(20.0 / GRAVITY * area)
+
+
+def test_block_between_two_walls_falls_freely() -> None:
+    solution = find("auto")(falling())
+    assert solution.status is Status.COLLAPSES
+    motion = solution.departure
+    np.testing.assert_allclose(motion.acceleration[0::2], 0.0, atol=1e-9 * GRAVITY)
+    np.testing.assert_allclose(motion.acceleration[1::2], -GRAVITY, rtol=1e-9)
+    np.testing.assert_allclose(motion.normal_force, 0.0, atol=1e-9 * 10.0)
+    assert motion.power == pytest.approx(1.0)
+    assert not solution.displacement.any()
+
+
+def test_block_on_an_incline_accelerates_as_galileo_says() -> None:
+    angle, mu = np.radians(30.0), 0.3
+    rotate = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    bodies = tuple(
+        replace(b, outline=b.outline @ rotate.T)
+        for b in (box("ground", -1.0, -0.2, 4.0, 0.2, "fixed"), box("block", 1.0, 0.0, 0.8, 0.2))
+    )
+    model = Model(
+        bodies, {"brick": BRICK}, {"joint": JointLaw(mu)}, loads=(Load("weight", (0.0, -1.0)),)
+    )
+    problem = concio.assemble(model).problem()
+    s = scale(problem)
+    m = problem.pairs
+    sliding = States(np.ones(m, bool), np.sign(problem.C_t @ np.tile(-rotate[:, 0], problem.unknowns // 2)).astype(int),
+                     np.zeros(m, bool))  # fmt: skip
+    motion = departure(s, sliding, np.zeros(problem.unknowns), np.ones(m), np.zeros(m))
+    assert motion is not None
+    expected = -GRAVITY * (np.sin(angle) - mu * np.cos(angle)) * rotate[:, 0]
+    np.testing.assert_allclose(motion.acceleration.reshape(-1, 2), np.tile(expected, (problem.unknowns // 2, 1)),
+                               rtol=1e-8, atol=1e-8)  # fmt: skip
+
+
+def test_wall_moves_away_and_its_proof_stands_by_itself() -> None:
+    problem = pushed_wall(0.41)
+    ended = release(Run(scale(problem)))
+    assert isinstance(ended, Departure)
+    a, u, t_n, t_t = ended.acceleration, ended.displacement, ended.normal_force, ended.friction_force[:, 0]
+    total = np.abs(problem.f).sum()
+    # equilibrium with inertia, friction cones, rates of closed joints: written out here again
+    balance = problem.K @ u + problem.inertia * a - problem.f - problem.C_n.T @ t_n - problem.C_t.T @ t_t
+    assert np.abs(balance).max() < 1e-9 * total
+    assert (np.abs(t_t) <= problem.laws.friction * t_n + 1e-9 * total).all()
+    top = np.abs(a).max()
+    w_n, w_t = problem.C_n @ a, problem.C_t @ a
+    pressed = t_n > 1e-6 * total
+    assert pressed.any()
+    assert np.abs(w_n[pressed]).max() < 1e-8 * top
+    assert w_n.min() > -1e-8 * top
+    slides = pressed & (np.abs(w_t) > 1e-6 * top)
+    assert slides.any()
+    np.testing.assert_allclose(a[0::2], GRAVITY * (0.41 - 0.4), rtol=1e-7)  # all of it, over the base alone
+    np.testing.assert_allclose(a[1::2], 0.0, atol=1e-9 * GRAVITY)
+    np.testing.assert_allclose(
+        t_t[slides], -(problem.laws.friction * t_n * np.sign(w_t))[slides], rtol=0, atol=1e-8 * total
+    )
+    assert problem.f @ a > a @ (problem.inertia * a) > 0
+
+
+@pytest.mark.parametrize("part", ["acceleration", "displacement", "normal_force", "friction_force"])
+def test_a_changed_proof_is_refused(part: str) -> None:
+    problem = pushed_wall(0.41)
+    motion = release(Run(scale(problem)))
+    assert isinstance(motion, Departure)
+    pieces = {n: getattr(motion, n) for n in ("acceleration", "displacement", "normal_force", "friction_force")}
+
+    def check(values: dict[str, np.ndarray]) -> Departure:
+        return verify_departure(problem, *(values[n] for n in pieces))
+
+    assert check(pieces).certified
+    for change in (1.0 + 1e-4, -1.0):
+        assert not check({**pieces, part: change * pieces[part]}).certified
+
+
+def test_what_stands_comes_to_rest() -> None:
+    problem = pushed_wall(0.1)
+    whole = find("interior-point")(problem)
+    run = Run(scale(problem))
+    for begin in (None, associated_state(run)):
+        ended = release(run, begin)
+        assert not isinstance(ended, Departure)
+        assert ended is not None
+        u, t_n, t_t = run.scaled.restore(ended.u, ended.t_n, ended.t_t)
+        assert concio.lcp.certificate.certify(problem, u, t_n, t_t[:, None]).certified
+        np.testing.assert_allclose(u, whole.displacement, rtol=0, atol=1e-8 * np.abs(u).max())
+
+
+def test_held_bodies_have_no_departure() -> None:
+    problem = falling()
+    held = replace(problem, K=sp.csr_array(problem.K + sp.eye_array(problem.unknowns)), R=problem.R[:, :0])
+    s = scale(held)
+    m = held.pairs
+    states = States(np.zeros(m, bool), np.zeros(m, int), np.zeros(m, bool))
+    assert departure(s, states, np.zeros(held.unknowns), np.zeros(m), np.zeros(m)) is None
+
+
+def test_verdict_of_a_motion_reaches_the_result() -> None:
+    model = between_walls()
+    with pytest.raises(concio.NoEquilibriumError, match="moves away"):
+        concio.solve(model)
+    result = concio.solve(model, on_failure="return")
+    assert result.status is Status.COLLAPSES
+    assert result.status.exit_code == 3
+    assert result.mechanism.power == pytest.approx(10.0)
+    assert "moves away" in str(result) or "moves away" in result.status.value
+    result.plot.mechanism()
