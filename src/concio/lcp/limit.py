@@ -119,7 +119,7 @@ def associated_limit(problem: ContactProblem, live: Array) -> LimitLoad:
     t_n, t_t = programme.forces(x)
     if static_residual(problem, loaded, t_n, t_t) > 1e-13:
         t_n, t_t = programme.forces(programme.balance(x, loaded))
-    velocity = problem.R @ (-result.eqlin.marginals / programme.scale)
+    velocity = problem.R @ (-result.marginals / programme.scale)
     upper, mechanism = kinematic_bound(problem, live, multiplier, velocity)
     residual = static_residual(problem, loaded, t_n, t_t)
     return LimitLoad(multiplier, upper, t_n, t_t, residual, mechanism)
