@@ -194,14 +194,16 @@ def optimise(
     equations, inequalities : (matrix, right-hand side)
     bounds : (n, 2) array
     method : {"interior", "simplex"}, optional
-        :func:`concio.lcp.linear_interior.solve_interior`, or the dual simplex method of HiGHS; by default the first
-        from ``LARGE`` columns on, and HiGHS where it finds no answer.
+        :func:`concio.lcp.linear_interior.solve_interior` or HiGHS, alone; by default the first from ``LARGE`` columns
+        on, and the other where it finds no answer.
     """
     reducible = not (~np.isfinite(bounds[:, 0]) & np.isfinite(bounds[:, 1])).any()
     if method == "interior" or (method is None and cost.size >= LARGE and reducible):
         found = _interior(cost, equations, bounds, inequalities)
         if found is not None:
             return found
+        if method is not None:
+            return Optimum(4, np.zeros(0), np.zeros(0), "the interior point did not converge")
     return _highs(cost, equations, bounds, inequalities)
 
 
@@ -216,10 +218,15 @@ def _interior(
     if inequalities is not None:
         equations, bounds = with_slacks(equations, bounds, inequalities)
         cost = np.concatenate([cost, np.zeros(inequalities[1].size)])
-    found = solve_interior(cost, equations, bounds)
+    A, b = sp.csc_array(equations[0]), equations[1]
+    x, moves = bounds[:, 0].copy(), bounds[:, 0] < bounds[:, 1]
+    if not moves.all():
+        A, b = sp.csc_array(A[:, moves]), b - A[:, ~moves] @ x[~moves]
+        cost, bounds = cost[moves], bounds[moves]
+    found = solve_interior(cost, (A, b), bounds)
     if found is None or not found.close:
         return None
-    x = rebalance(equations[0], found.x, -equations[1], bounds)
+    x[moves] = rebalance(A, found.x, -b, bounds)
     return Optimum(0, x[:n], found.y[:rows], f"interior point: {found.iterations} iterations")
 
 
