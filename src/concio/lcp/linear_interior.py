@@ -37,7 +37,10 @@ TARGET = 1e-12
 """Residuals and relative gap at which the iteration ends."""
 
 ENOUGH = 1e-7
-"""Residuals and relative gap that still count as an answer where the iteration ends by itself."""
+"""Residual of the equations at which the iteration may end; the rest is :func:`rebalance`'s."""
+
+STILL_CLOSE = 1e-5
+"""Residuals and relative gap that are worth being rechecked as an answer where the iteration ends by itself."""
 
 PATIENCE = 25
 """Iterations without progress after which the best point met is returned."""
@@ -48,7 +51,7 @@ MOST = 200
 SHORT_OF_ONE = 0.995
 """Share of the step to the boundary that is taken."""
 
-OBJECTIVE = 1e-3
+OBJECTIVE = 0.1
 """Objectives smaller than this, the programme scaled, are measured absolutely."""
 
 
@@ -76,7 +79,7 @@ class LinearAnswer:
     @property
     def close(self) -> bool:
         """True when the point is worth being rechecked as an answer."""
-        return max(self.primal, self.dual, self.gap) <= ENOUGH
+        return max(self.primal, self.dual, self.gap) <= STILL_CLOSE
 
 
 class NormalEquations:
@@ -234,7 +237,7 @@ def solve_interior(
     """
     q = _Programme(cost, sp.csc_array(equations[0]), equations[1], bounds)
     p = q.start()
-    best, kept, since, iteration = (np.inf, np.inf, np.inf), None, 0, 0
+    best, kept, since, narrow, iteration = (np.inf, np.inf, np.inf), None, 0, np.inf, 0
     with np.errstate(all="ignore"):
         for iteration in range(MOST + 1):  # noqa: B007
             rest = q.residuals(p)
@@ -245,8 +248,8 @@ def solve_interior(
             relative = gap / max(abs(objective), OBJECTIVE)
             if not np.isfinite(primal + dual + relative):
                 break
-            better = max(primal, dual, relative) < 0.9 * max(best) or relative < 0.5 * best[2]
-            since = 0 if better else since + 1
+            since = 0 if gap < 0.5 * narrow or max(primal, dual, relative) < 0.9 * max(best) else since + 1
+            narrow = gap if since == 0 else narrow
             if max(primal, dual, relative) < max(best) or (max(primal, dual) <= ENOUGH and relative < best[2]):
                 best, kept = (primal, dual, relative), p
             if max(dual, relative) < target and primal < ENOUGH:
