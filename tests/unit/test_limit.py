@@ -120,7 +120,7 @@ def test_a_motion_that_is_no_collapse_is_not_certified():
     assert certify_collapse(p, a.load(1, 0), np.array([1.0, 0.0, 0.0]), 0) is None  # slides at 0.9, topples at 0.4
     assert certify_collapse(p, a.load(1, 0), np.array([0.0, -1.0, 0.0]), 0) is None
     crushing = a.problem(0.9, a.load(0, -1), cap=0.8)
-    assert certify_collapse(crushing, a.load(1, 0), np.array([0.5, 0.2, -1.0]), 0) is None  # the toe cannot carry it all
+    assert certify_collapse(crushing, a.load(1, 0), np.array([0.5, 0.2, -1.0]), 0) is None  # toe too weak
     sinking = np.array([0.5, -0.2, -1.0])  # about the heel, the toe sinks
     assert certify_collapse(a.problem(0.9, a.load(0, -1)), a.load(1, 0), sinking, 0) is None
     assert certify_collapse(crushing, a.load(1, 0), sinking, 0) is not None

@@ -181,7 +181,7 @@ def certify_collapse(problem: ContactProblem, live: Array, velocity: Array, iter
     programme = StaticProgramme(problem)
     motion = Motion.of(problem, velocity)
     equations, bounds, caps, force = forces_asked_for(programme, motion, live)
-    alone: Method | None = "interior" if len(bounds) >= LARGE else None  # to learn "there are none" is not worth minutes
+    alone: Method | None = "interior" if len(bounds) >= LARGE else None  # "there are none" is not worth minutes
     result = optimise(np.r_[np.zeros(len(bounds) - 1), 1.0], equations, bounds, caps, method=alone)
     if result.status != 0:
         return None

@@ -13,8 +13,8 @@ of the blocks: it is ordered once by nested dissection and factorised in millise
 multiplier) are bordered. General codes spend their time elsewhere: simplex pivots, crossover, bases.
 
 The answer is not a vertex but a point inside the optimal face, all of whose dual slacks are positive: the motion read
-from y is admissible to rounding, whatever is left of the gap, and :func:`rebalance` takes the last digits of the forces'
-imbalance away. What the pair of them proves is for the caller to recompute.
+from y is admissible to rounding, whatever is left of the gap, and :func:`concio.lcp.normal_equations.rebalance` takes
+the last digits of the forces' imbalance away. What the pair of them proves is for the caller to recompute.
 
 Reference: Mehrotra, On the implementation of a primal-dual interior point method, SIAM J. Optim. 2 (1992).
 """
@@ -25,10 +25,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-import scipy.sparse.linalg as sla
 
 from concio.contact.problem import Array
-from concio.lcp.sparse_factor import nested_dissection
+from concio.lcp.normal_equations import NormalEquations
 
 START = 10.0
 """Size of variables and slacks at the start, the largest entry of b and of c being one."""
@@ -37,7 +36,7 @@ TARGET = 1e-12
 """Residuals and relative gap at which the iteration ends."""
 
 ENOUGH = 1e-7
-"""Residual of the equations at which the iteration may end; the rest is :func:`rebalance`'s."""
+"""Residual of the equations at which the iteration may end; the rest is taken away afterwards."""
 
 STILL_CLOSE = 1e-5
 """Residuals and relative gap that are worth being rechecked as an answer where the iteration ends by itself."""
@@ -80,40 +79,6 @@ class LinearAnswer:
     def close(self) -> bool:
         """True when the point is worth being rechecked as an answer."""
         return max(self.primal, self.dual, self.gap) <= STILL_CLOSE
-
-
-class NormalEquations:
-    """Factorises A Theta A' for changing positive Theta; the rows of A are put in a fill-reducing order once.
-
-    Parameters
-    ----------
-    A : (M, n) sparse array
-    group : int
-        Consecutive rows that belong together: the rigid motions of a block.
-    """
-
-    def __init__(self, A: sp.csc_array, group: int = 3) -> None:
-        pattern = sp.csr_array(abs(A) @ abs(A).T)
-        self.order, self.ordering = nested_dissection(pattern, group)
-        self.A = sp.csr_array(sp.csr_array(A)[self.order])
-        self.At = sp.csr_array(self.A.T)
-
-    def factorise(self, theta: Array) -> None:
-        """Factorise A diag(theta) A', its diagonal lifted by rounding; rows of nothing get a one."""
-        matrix = sp.csc_matrix((self.A @ sp.diags_array(theta)) @ self.At)
-        diagonal = matrix.diagonal()
-        lifted = diagonal * (1.0 + 1e-15) + 1e-14 * float(np.median(diagonal))
-        matrix.setdiag(np.where(lifted > 0, lifted, 1.0))
-        matrix.sort_indices()
-        self.matrix = matrix
-        spec = "MMD_AT_PLUS_A" if self.ordering == "minimum degree" else "NATURAL"
-        self.lu = sla.splu(matrix, permc_spec=spec, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-
-    def solve(self, g: Array) -> Array:
-        """Return M^-1 g for g in the order of :attr:`order`, once refined."""
-        x = self.lu.solve(g)
-        refined: Array = x + self.lu.solve(g - self.matrix @ x)
-        return refined
 
 
 @dataclass
@@ -185,7 +150,7 @@ class _Programme:
         return min(_longest(p.x, d.x), _longest(p.s[c], d.s[c])), min(_longest(p.z, d.z), _longest(p.w[c], d.w[c]))
 
     def restore(self, p: _Point) -> tuple[Array, Array]:
-        """x and y of the programme as it was given."""
+        """Return x and y of the programme as it was given."""
         x = np.empty(self.held.size)
         x[self.held] = np.clip(p.x, 0.0, self.upper) * self.load + self.lower
         x[self.is_free] = p.free * self.load / self.width
@@ -239,7 +204,7 @@ def solve_interior(
     p = q.start()
     best, kept, since, narrow, iteration = (np.inf, np.inf, np.inf), None, 0, np.inf, 0
     with np.errstate(all="ignore"):
-        for iteration in range(MOST + 1):  # noqa: B007
+        for iteration in range(MOST + 1):
             rest = q.residuals(p)
             gap = q.gap(p)
             objective = float(q.c @ p.x + q.c_free @ p.free)
@@ -274,48 +239,3 @@ def solve_interior(
     if kept is None:
         return None
     return LinearAnswer(*q.restore(kept), *best, iteration)
-
-
-def rebalance(A: sp.csc_array, x: Array, target: Array, bounds: Array, rounds: int = 4) -> Array:
-    """Remove what is left of A x + target by changes of x in proportion to the room within the bounds.
-
-    With D the distance to the nearer bound (cut at the largest held x) and free columns F: x - D A'v for the held and
-    x - phi for the free, where A D A'v + F phi = A x + target, F'v = 0; cut at the bounds, repeated while it helps.
-
-    Parameters
-    ----------
-    A : (M, n) CSC array
-    x : (n,) array
-    target : (M,) array
-    bounds : (n, 2) array
-        Columns with two infinite bounds are free.
-    rounds : int
-    """
-    lower, upper = bounds[:, 0], bounds[:, 1]
-    held = np.isfinite(lower) | np.isfinite(upper)
-    x = np.clip(x, lower, upper)
-    residual = A @ x + target
-    if not np.abs(residual).max(initial=0.0) > 0:
-        return x
-    normal = NormalEquations(sp.csc_array(A[:, held]))
-    F = A[:, ~held].toarray()[normal.order]
-    for _ in range(rounds):
-        room = np.minimum(np.minimum(x - lower, upper - x), np.abs(x[held]).max(initial=1e-300))[held]
-        try:
-            normal.factorise(room)
-        except RuntimeError:
-            break
-        v = normal.solve(residual[normal.order])
-        trial = x.copy()
-        if F.shape[1]:
-            solved = np.column_stack([normal.solve(f) for f in F.T])
-            phi = np.linalg.solve(F.T @ solved, F.T @ v)
-            trial[~held] -= phi
-            v -= solved @ phi
-        trial[held] -= room * (normal.At @ v)
-        trial = np.clip(trial, lower, upper)
-        left = A @ trial + target
-        if not np.abs(left).max() < np.abs(residual).max():
-            break
-        x, residual = trial, left
-    return x

@@ -22,7 +22,8 @@ import scipy.sparse as sp
 from scipy.optimize import linprog
 
 from concio.contact.problem import Array, ContactProblem
-from concio.lcp.linear_interior import rebalance, solve_interior
+from concio.lcp.linear_interior import solve_interior
+from concio.lcp.normal_equations import rebalance
 
 SIDES = 16
 """Rays of the polygonal friction cone in space."""
