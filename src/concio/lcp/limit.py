@@ -114,7 +114,7 @@ def associated_limit(problem: ContactProblem, live: Array) -> LimitLoad:
         return LimitLoad(np.inf if state.exists else np.nan, np.inf, *nothing, state.residual, None)
     found = programmed_limit(problem, live, None)
     if np.isfinite(found.multiplier) and not found.checked:
-        other = programmed_limit(problem, live, "simplex")
+        other = programmed_limit(problem, live, "highs")
         found = other if other.checked or other.worst < found.worst else found
     return found
 

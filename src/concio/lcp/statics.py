@@ -31,7 +31,10 @@ SIDES = 16
 LARGE = 1_000
 """Number of columns from which the interior point is tried before the simplex method; below, the latter is as fast."""
 
-Method = Literal["interior", "simplex"]
+HUGE = 5_000
+"""Number of columns from which HiGHS, where it is asked, begins with its interior point."""
+
+Method = Literal["interior", "highs"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,7 +197,7 @@ def optimise(
     cost : (n,) array
     equations, inequalities : (matrix, right-hand side)
     bounds : (n, 2) array
-    method : {"interior", "simplex"}, optional
+    method : {"interior", "highs"}, optional
         :func:`concio.lcp.linear_interior.solve_interior` or HiGHS, alone; by default the first from ``LARGE`` columns
         on, and the other where it finds no answer.
     """
@@ -237,15 +240,21 @@ def _highs(
     bounds: Array,
     inequalities: tuple[sp.csc_array, Array] | None,
 ) -> Optimum:
-    """HiGHS: the dual simplex method, and its interior-point method where that does not finish."""
+    """HiGHS, right-hand sides scaled to one: the dual simplex method, or interior point for large programmes.
+
+    Where the first does not finish, the other is tried.
+    """
+    unit = float(np.abs(equations[1]).max(initial=0.0)) or 1.0
     options: dict[str, Any] = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10}
-    arguments: dict[str, Any] = {"A_eq": equations[0], "b_eq": equations[1], "bounds": bounds, "options": options}
+    arguments: dict[str, Any] = {"A_eq": equations[0], "b_eq": equations[1] / unit, "bounds": bounds / unit}
     if inequalities is not None:
-        arguments |= {"A_ub": inequalities[0], "b_ub": inequalities[1]}
+        arguments |= {"A_ub": inequalities[0], "b_ub": inequalities[1] / unit}
     highs: Any = linprog
-    result = highs(cost, method="highs-ds", **arguments)
-    if result.status in (1, 4):  # iteration limit, numerical trouble
-        result = highs(cost, method="highs-ipm", **arguments)
+    methods = ("highs-ipm", "highs-ds") if cost.size > HUGE else ("highs-ds", "highs-ipm")
+    for method in methods:
+        result = highs(cost, method=method, options=options, **arguments)
+        if result.status not in (1, 4):  # iteration limit, numerical trouble
+            break
     if result.x is None:
         return Optimum(result.status, np.zeros(0), np.zeros(0), result.message)
-    return Optimum(result.status, result.x, result.eqlin.marginals, result.message)
+    return Optimum(result.status, result.x * unit, result.eqlin.marginals, result.message)
