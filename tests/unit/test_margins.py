@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -66,7 +68,7 @@ def test_two_bounds_that_do_not_meet_are_both_told(slender):
     apart = LimitLoad(0.4, 0.5, np.zeros(2), np.zeros((2, 1)), 1e-14, still)
     assert apart.bounds_hold
     assert not apart.checked
-    text = "\n".join(limit_lines(limits.LimitResult(found.assembly, apart, None, None, 0.0, 0.0), ["live"]))
+    text = "\n".join(limit_lines(replace(found, associated=apart), ["live"]))
     assert "between 0.4, carried, and 0.5, not exceeded" in text
     loose = LimitLoad(0.4, 0.4, np.zeros(2), np.zeros((2, 1)), 1e-3, still)
     assert not loose.bounds_hold
