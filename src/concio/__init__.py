@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from concio.analysis.limit import friction_margin, limit
+    from concio.analysis.margins import friction_by_solving, load_margin
     from concio.analysis.path import ControlPoint, PathResult, Stage, run_path
     from concio.analysis.result import Result
     from concio.analysis.rocking import rock
@@ -38,6 +39,7 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "concio.analysis.limit": ("friction_margin", "limit"),
+    "concio.analysis.margins": ("friction_by_solving", "load_margin"),
     "concio.analysis.path": ("ControlPoint", "PathResult", "Stage", "run_path"),
     "concio.analysis.result": ("Result",),
     "concio.analysis.rocking": ("rock",),
@@ -95,9 +97,11 @@ __all__ = [
     "buttress",
     "column",
     "dumps",
+    "friction_by_solving",
     "friction_margin",
     "limit",
     "load",
+    "load_margin",
     "loads",
     "model_from_dxf",
     "rock",

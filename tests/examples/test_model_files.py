@@ -11,8 +11,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import concio
+from concio.cli.main import app
 from concio.lcp.solution import Status
 from concio.model.file_generators import json_schema
 
@@ -106,6 +108,28 @@ def test_the_drawn_gate_is_the_one_of_the_table() -> None:
     drawn, listed = solved("gate_from_a_drawing.toml"), solved("blocks_from_a_table.toml")
     assert drawn.max_settlement == pytest.approx(listed.max_settlement, rel=1e-6)
     assert drawn.reactions["ground"] == pytest.approx(listed.reactions["ground"], rel=1e-6, abs=1e-6)
+
+
+def test_the_stages_are_followed_in_their_order(tmp_path: Path) -> None:
+    """Through the command line: all four reached; the neighbour props the wall against the wind, and then lets go."""
+    told = CliRunner().invoke(app, ["path", str(FOLDER / "load_stages.toml"), "--json", "--out", str(tmp_path / "out")])
+    assert told.exit_code == 0, told.output
+    data = json.loads(told.stdout)
+    names = ["own weight", "floor", "wind", "settlement"]
+    assert [(s["name"], s["outcome"]) for s in data["stages"]] == [(name, "reached") for name in names]
+    assert data["certificate"]["worst"] <= 1e-9
+    assert data["energy_error"] <= 1e-9
+    wind = 0.2 * 1.6 * 0.8 * 0.30 * 20.0
+    weight = wind / 0.2 + 20.0 * 1.6 * 0.30
+    path = concio.run_path(concio.load(FOLDER / "load_stages.toml"))
+    ends = [max(i for i, step in enumerate(path.steps) if step.stage == k) for k in range(4)]
+    windy, after = (path.result(i) for i in ends[2:])
+    assert windy.reactions["neighbour"][0] < -0.5 * wind
+    assert after.reactions["neighbour"] == pytest.approx((0.0, 0.0), abs=1e-9)
+    assert after.reactions["ground"] == pytest.approx((-wind, weight), rel=1e-9)
+    at_once = solved("load_stages.toml")
+    assert at_once.reactions["ground"] == pytest.approx((-wind, weight), rel=1e-9)
+    assert (after.contacts.state != at_once.contacts.state).any()  # friction remembers
 
 
 def test_json_of_every_example_is_plain(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import csv
 import errno
 import json
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -98,6 +98,14 @@ def test_result_reloads_to_the_same_object(name: str, request: pytest.FixtureReq
     assert again.assembly.disc.model is again.assembly.model  # shared objects stay shared
     if result.mechanism is not None:
         np.testing.assert_array_equal(again.mechanism.velocity, result.mechanism.velocity)
+
+
+def test_the_load_stages_of_the_model_are_kept(tmp_path: Path) -> None:
+    point = concio.ControlPoint("c01-b01", (0.0, 0.1))
+    stages = (concio.Stage("weight", {"dead": 1.0}), concio.Stage("push", {"live": 0.5}, point, 0.01, 7))
+    result = concio.solve(replace(_panel(), stages=stages))
+    save_result(result, tmp_path)
+    assert load_result(tmp_path).model.stages == stages
 
 
 def test_reloaded_result_certifies_and_solves_again(panel: Result, tmp_path: Path) -> None:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 
+from concio.contact.problem import ContactProblem, Laws
 from concio.errors import InputError
+from concio.lcp import collapse_state, statics
 from concio.lcp.collapse_state import certify_collapse, find_collapse_state
 from concio.lcp.limit import associated_limit, kinematic_bound, smallest_friction
 from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, wall
@@ -116,5 +119,39 @@ def test_a_motion_that_is_no_collapse_is_not_certified():
     p = a.problem(0.9, a.load(0, -1))
     assert certify_collapse(p, a.load(1, 0), np.array([1.0, 0.0, 0.0]), 0) is None  # slides at 0.9, topples at 0.4
     assert certify_collapse(p, a.load(1, 0), np.array([0.0, -1.0, 0.0]), 0) is None
-    with pytest.raises(InputError, match="caps"):
-        find_collapse_state(a.problem(0.9, a.load(0, -1), cap=2.0), a.load(1, 0))
+    crushing = a.problem(0.9, a.load(0, -1), cap=0.8)
+    assert certify_collapse(crushing, a.load(1, 0), np.array([0.5, 0.2, -1.0]), 0) is None  # toe too weak
+    sinking = np.array([0.5, -0.2, -1.0])  # about the heel, the toe sinks
+    assert certify_collapse(a.problem(0.9, a.load(0, -1)), a.load(1, 0), sinking, 0) is None
+    assert certify_collapse(crushing, a.load(1, 0), sinking, 0) is not None
+
+
+@pytest.mark.parametrize(
+    ("mu", "cap", "cohesion", "wanted", "motion"),
+    [
+        (0.9, 0.8, 0.0, 0.24, [0.5, -0.2, -1.0]),  # toe carries 0.8, heel 0.2: (0.8 - 0.2) 0.2 = 0.5 lambda; toe sinks
+        (0.9, 2.0, 0.0, 0.4, [0.5, 0.2, -1.0]),  # topples before the toe is crushed
+        (0.2, 0.8, 0.0, 0.2, [1.0, 0.0, 0.0]),  # slides
+        ([0.9, 0.0], [np.inf, 0.8], [1.0, 0.0], 0.24, [0.5, -0.2, -1.0]),  # the same on a smooth toe, glued at the heel
+    ],
+)
+@pytest.mark.parametrize("large", [1, 10**9])
+def test_collapse_state_with_a_cap(monkeypatch, large, mu, cap, cohesion, wanted, motion):
+    monkeypatch.setattr(statics, "LARGE", large)
+    monkeypatch.setattr(collapse_state, "LARGE", large)
+    a = block_on_incline(0.4, 1.0, 0.0)
+    p = a.problem(np.asarray(mu) * np.ones(2), a.load(0, -1), cap=cap, cohesion=cohesion)
+    found = find_collapse_state(p, a.load(1, 0), iterations=8)
+    assert found is not None
+    assert found.certified
+    assert found.multiplier == pytest.approx(wanted, rel=1e-9)
+    assert found.velocity == pytest.approx(motion, abs=1e-9)
+
+
+def test_collapse_states_are_plane():
+    space = ContactProblem(
+        sp.csr_array((3, 3)), np.array([0.0, 0.0, -1.0]), sp.csr_array([[0.0, 0.0, 1.0]]), sp.csr_array(np.eye(3)[:2]),
+        np.zeros(1), Laws.coulomb(0.5, 1), sp.csc_array(sp.eye_array(3)), np.array([0, 3]),
+    )  # fmt: skip
+    with pytest.raises(InputError, match="plane"):
+        find_collapse_state(space, np.array([1.0, 0.0, 0.0]))

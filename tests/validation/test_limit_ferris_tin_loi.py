@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from concio.lcp.existence import find_mechanism, verify_mechanism
 from concio.lcp.limit import associated_limit
 from rigid_walls import FERRIS_TIN_LOI, MU, running_bond, wall
 
@@ -44,3 +45,22 @@ def test_2446_pairs():
     found = associated_limit(a.problem(0.6, a.load(0, -1)), a.load(1, 0))
     assert found.checked
     assert 0.4 < found.multiplier < 0.6
+
+
+def test_10458_pairs():
+    """1,785 blocks: both proofs to rounding, and a tenth above the limit a mechanism that proves it."""
+    a = running_bond(42, 42)
+    p, live = a.problem(0.6, a.load(0, -1)), a.load(1, 0)
+    assert p.pairs == 10_458
+    found = associated_limit(p, live)
+    assert found.residual <= 1e-10
+    assert found.mechanism is not None
+    assert found.mechanism.violation <= 1e-10
+    assert found.gap <= 1e-9
+    above = p.with_loads(p.f + 1.1 * found.multiplier * live)
+    mechanism = find_mechanism(above)
+    assert mechanism is not None
+    assert mechanism.violation <= 1e-9
+    again = verify_mechanism(above, mechanism.velocity)
+    assert again.power == pytest.approx(mechanism.power, rel=1e-12)
+    assert again.power > 0

@@ -5,7 +5,8 @@ The *associated multiplier* (:mod:`concio.lcp.limit`) bounds every collapse from
 whatever else is dead first, then the live load, controlled by the displacement it works on, so that local slips and
 falling branches are passed. It depends on stiffness and history, as friction does. A third number needs neither: the
 multiplier of a certified Coulomb *collapse state* (:mod:`concio.lcp.collapse_state`), at which the wall can begin to
-move; there may be several. None is passed off as another.
+move; there may be several. None is passed off as another. How far the given load is from all this:
+:mod:`concio.analysis.margin`.
 
 Rigid blocks on hard joints have no unique path; their joints are lent a compliance
 (:mod:`concio.analysis.lent_compliance`).
@@ -34,8 +35,11 @@ from concio.model.model import Model
 
 Array = np.ndarray
 
-LARGEST_SEARCH = 1000
-"""Collapse states are searched for in problems of up to this number of pairs: some sixty linear programmes."""
+LARGEST_SEARCH = 15_000
+"""Collapse states are searched for in problems of up to this number of pairs: about a minute there."""
+
+MOST_PROGRAMMES, SEARCH_WORK = 60, 350_000
+"""Linear programmes of that search at most, and their number times the pairs."""
 
 FAR = 50.0
 """The path is followed to this multiple of the displacement at its first limit point."""
@@ -54,6 +58,8 @@ class LimitResult:
         The Coulomb path under displacement control; None where it was not asked for or the bound is infinite.
     collapse_state : CollapseState or None
         Certified state in which the structure can begin to move under Coulomb friction, the least found.
+    search : str
+        What the search for collapse states did, or why it was not tried.
     first_limit : float
         Multiplier at which the path under growing load first finds no way on; ``nan`` without a path.
     lent_compliance : float
@@ -66,6 +72,7 @@ class LimitResult:
     collapse_state: CollapseState | None
     first_limit: float
     lent_compliance: float
+    search: str = "not asked for"
 
     @property
     def coulomb(self) -> float:
@@ -106,6 +113,7 @@ class LimitResult:
             "checked": a.checked,
             "coulomb_path_multiplier": None if self.path is None else self.coulomb,
             "collapse_state_multiplier": None if self.collapse_state is None else self.collapse_state.multiplier,
+            "collapse_state_search": self.search,
             "coulomb_first_limit": None if self.path is None else self.first_limit,
             "path_outcome": None if self.path is None else self.path.outcome.name.lower(),
             "path_events": None if self.path is None else len(self.path.events),
@@ -118,6 +126,7 @@ def limit(
     live: str | Sequence[str] = "live",
     *,
     path: bool = True,
+    search: bool | None = None,
     progress: ProgressCallback | None = None,
 ) -> LimitResult:
     """Find the limit multipliers of the live load groups; all other groups act with factor 1.
@@ -128,7 +137,9 @@ def limit(
     live : str or sequence of str
         Load groups that are multiplied.
     path : bool
-        Whether the Coulomb path is followed and collapse states are searched for too.
+        Whether the Coulomb path is followed too.
+    search : bool, optional
+        Whether collapse states are searched for; by default where the path is followed.
     progress : callable, optional
 
     Raises
@@ -145,13 +156,27 @@ def limit(
         msg = "the dead load alone cannot be carried: a mechanism proves it"
         raise NoEquilibriumError(msg, hint="solve the model with the live load factor 0 and look at the mechanism")
     bound = associated_limit(dead, load)
-    if not path or not np.isfinite(bound.multiplier):
-        return LimitResult(assembly, bound, None, None, float("nan"), 0.0)
-    problem, lent = with_compliance(dead, load)
-    first, found = coulomb_path(problem, load, progress=progress)
-    capped = bool(np.isfinite(problem.laws.cap).any())
-    state = None if capped or problem.pairs > LARGEST_SEARCH else find_collapse_state(dead, load)
-    return LimitResult(assembly, bound, found, state, first, lent)
+    if not np.isfinite(bound.multiplier):
+        return LimitResult(assembly, bound, None, None, float("nan"), 0.0, "not tried: no load is the last")
+    first, found, lent = float("nan"), None, 0.0
+    if path:
+        problem, lent = with_compliance(dead, load)
+        first, found = coulomb_path(problem, load, progress=progress)
+    state, said = search_collapse(dead, load) if (path if search is None else search) else (None, "not asked for")
+    return LimitResult(assembly, bound, found, state, first, lent, said)
+
+
+def search_collapse(dead: ContactProblem, live: Array) -> tuple[CollapseState | None, str]:
+    """Search a collapse state where the problem is not too large; return it, and what was done in words."""
+    if dead.dim != 2:
+        return None, "not tried: the search handles plane problems"
+    if dead.pairs > LARGEST_SEARCH:
+        return None, f"not tried: {dead.pairs:,} contact pairs are more than {LARGEST_SEARCH:,}"
+    most = min(MOST_PROGRAMMES, SEARCH_WORK // max(dead.pairs, 1))
+    state = find_collapse_state(dead, live, iterations=most)
+    if state is None:
+        return None, f"none found in {most} linear programmes; that proves nothing"
+    return state, f"least of those found, in programme {state.iterations} of at most {most}"
 
 
 def friction_margin(model: Model | Assembly, live: str | Sequence[str] = "live", factor: float = 1.0) -> FrictionMargin:

@@ -14,9 +14,10 @@ from concio.cli.run import File, Json
 
 if TYPE_CHECKING:
     from concio.analysis.limit import LimitResult
+    from concio.analysis.margins import Margin
     from concio.lcp.limit import FrictionMargin
 
-LARGEST_MARGIN = 3000
+LARGEST_MARGIN = 10_000
 """Up to this number of pairs the friction margin is found unasked: it takes some twenty linear programmes."""
 
 
@@ -30,9 +31,16 @@ def limit(
     friction: Annotated[
         bool | None,
         typer.Option(
-            "--friction/--no-friction", help="Find the smallest friction that holds; by default up to 3,000 pairs."
+            "--friction/--no-friction", help="Find the smallest friction that holds; by default up to 10,000 pairs."
         ),
     ] = None,
+    search: Annotated[
+        bool | None,
+        typer.Option("--search/--no-search", help="Search Coulomb collapse states; by default with --path."),
+    ] = None,
+    solves: Annotated[
+        bool, typer.Option("--solves", help="Also bisect load and friction with solved load steps (some twenty).")
+    ] = False,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for figures of the mechanisms.")] = None,
     json: Json = False,
 ) -> int:
@@ -43,6 +51,7 @@ def limit(
     import concio
     from concio.analysis.limit import friction_margin
     from concio.analysis.limit import limit as limit_of
+    from concio.analysis.margins import friction_by_solving, load_margin
     from concio.cli.limit_files import write_limit
 
     groups = list(group or ["live"])
@@ -50,12 +59,18 @@ def limit(
         check_directory(out)
     assembly = concio.assemble(concio.load(file))
     with progress_bar(shown=not json) as progress:
-        found = limit_of(assembly, groups, path=path, progress=progress)
+        found = limit_of(assembly, groups, path=path, search=search, progress=progress)
     wanted = len(assembly.pairs) <= LARGEST_MARGIN if friction is None else friction
     margin = friction_margin(assembly, groups) if wanted else None
     told = {"status": "solved" if found.associated.checked else "gave_up", "groups": groups, **found.summary()}
     if margin is not None:
         told |= {"friction_factor": _number(margin.factor), "friction_factor_below": _number(margin.below)}
+    by_solving = []
+    if solves:
+        by_solving = [load_margin(assembly, groups), friction_by_solving(assembly, groups)]
+        for name, solved in zip(("load", "friction"), by_solving, strict=True):
+            told[f"{name}_holds_by_solving"] = _number(solved.holds)
+            told[f"{name}_fails_by_solving"] = _number(solved.fails)
     written: list[str] = []
     if out is not None:
         with replaced_directory(out) as fresh:
@@ -67,6 +82,8 @@ def limit(
             say(line)
         if margin is not None:
             say(margin_line(margin))
+        for name, solved in zip(("load", "friction"), by_solving, strict=False):
+            say(solving_line(name, solved))
         if written:
             say(f"  written              {out}: {', '.join(written)}")
     return 0 if found.associated.checked else 4
@@ -79,6 +96,17 @@ def margin_line(margin: FrictionMargin) -> str:
     if margin.factor == 0:
         return "  friction             the load as given can be carried without any"
     return f"  friction             the load as given needs at least {margin.factor:.6g} times the coefficients given"
+
+
+def solving_line(name: str, margin: Margin) -> str:
+    """Return what bisection with solved load steps found, in words."""
+    head = f"  {name + ', by solving':21s}"
+    if margin.holds != margin.holds:
+        return f"{head}no equilibrium was found with {'friction' if name == 'friction' else 'dead load'} as given"
+    if margin.holds == float("inf"):
+        return f"{head}no load is the last"
+    found = f"{head}a certified Coulomb equilibrium at {margin.holds:.6g} times what is given"
+    return found if margin.fails != margin.fails else f"{found}, none found at {margin.fails:.6g}"
 
 
 def _number(value: float) -> float | None:
@@ -94,26 +122,41 @@ def limit_lines(found: LimitResult, groups: list[str]) -> list[str]:
     lines = [found.assembly.model.title or "model without a title"]
     if math.isinf(bound.multiplier):
         return [*lines, f"  associated bound     none: friction and geometry carry any multiple of '{named}'"]
-    state = "checked from both sides" if bound.checked else "NOT checked"
     violation = bound.mechanism.violation if bound.mechanism else math.nan
-    lines += [
-        f"  associated bound     {bound.multiplier:.6g}: no equilibrium beyond it",
-        f"                       {state}: forces {bound.residual:.0e}, mechanism {violation:.0e}, gap {bound.gap:.0e}",
-    ]
+    residuals = f"forces {bound.residual:.0e}, mechanism {violation:.0e}, gap {bound.gap:.0e}"
+    if bound.checked or not bound.bounds_hold:
+        state = "checked from both sides" if bound.checked else "NOT checked"
+        lines += [
+            f"  associated bound     {bound.multiplier:.6g}: no equilibrium beyond it",
+            f"                       {state}: {residuals}",
+        ]
+    else:
+        lines += [
+            f"  associated bound     between {bound.multiplier:.9g}, carried, and {bound.upper:.9g}, not exceeded",
+            f"                       each is checked, but they do not meet: {residuals}",
+        ]
+    if bound.multiplier > 0:
+        lines.append(f"  margin               '{named}' as given is {1.0 / bound.multiplier:.4g} of that bound")
+    state_line = collapse_line(found)
     if found.path is None:
-        return lines
+        return [*lines, state_line] if state_line else lines
     lines += [
         f"  Coulomb load path    {found.coulomb:.6g} at its peak, {len(found.path.events):,} events; the first point "
         f"with no way on under growing load is {found.first_limit:.6g}",
         f"  it ended             {found.path.outcome.value}",
     ]
-    if found.collapse_state is not None:
-        lines.append(
-            f"  collapse state       "
-            f"{found.collapse_state.multiplier:.6g}: there Coulomb friction lets it begin to move"
-        )
+    if state_line:
+        lines.append(state_line)
     low = min(found.first_limit, found.bracket[0])
     lines.append(f"  in short             between {low:.6g} and {bound.multiplier:.6g} times the load of '{named}'")
     if found.lent_compliance:
         lines.append(f"  rigid joints         were lent a compliance of {found.lent_compliance:.1e} m/kN for the path")
     return lines
+
+
+def collapse_line(found: LimitResult) -> str:
+    """Return the collapse state in words, or why there is none; empty where none was asked for."""
+    if found.collapse_state is not None:
+        number = found.collapse_state.multiplier
+        return f"  collapse state       {number:.6g}: there Coulomb friction lets it begin to move ({found.search})"
+    return "" if found.search == "not asked for" else f"  collapse state       {found.search}"

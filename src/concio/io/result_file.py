@@ -36,6 +36,7 @@ from concio.model.detect import Detection, Interface
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Body, JointRule, Load, Model, Support, Tie
 from concio.model.near import NearMiss, Overlap
+from concio.model.stages import ControlPoint, Stage
 
 FORMAT = "concio result"
 VERSION = 1
@@ -45,8 +46,8 @@ CLASSES: dict[str, type] = {
     cls.__name__: cls
     for cls in (
         Assembly, Body, Certificate, Detection, Discretisation, Elastic, Elements, Interface, JointLaw, JointRule,
-        Kinematics, Laws, Load, Mechanism, Model, NearMiss, Overlap, Pairs, Result, Rigid, Shape, Solution, Status,
-        Support, Supported, Tie,
+        ControlPoint, Kinematics, Laws, Load, Mechanism, Model, NearMiss, Overlap, Pairs, Result, Rigid, Shape,
+        Solution, Stage, Status, Support, Supported, Tie,
     )
 }  # fmt: skip
 """Classes that may appear in a file, by the names they have there. A renamed class keeps its name here."""

@@ -26,13 +26,19 @@ from concio.contact.problem import Array, ContactProblem
 from concio.errors import InputError
 from concio.lcp.existence import pair_velocities
 from concio.lcp.limit import associated_limit, static_residual
-from concio.lcp.statics import StaticProgramme, optimise
+from concio.lcp.statics import LARGE, Method, StaticProgramme, optimise
 
 MOVES = 1e-8
 """Relative velocities above this share of the largest count as opening or slipping."""
 
 CERTIFIED = 1e-8
 """Largest residual of a collapse state that is returned."""
+
+NEARLY_STILL = 1e-3
+"""Relative change of the multiplier of frozen strength below which its motion is tried."""
+
+STILL, PATIENCE = 1e-9, 6
+"""The search ends where that change is below ``STILL`` for ``PATIENCE`` iterations in a row."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,15 +83,15 @@ def find_collapse_state(
     Parameters
     ----------
     problem : ContactProblem
-        With its dead load; two-dimensional, without caps.
+        With its dead load; two-dimensional.
     live : (N,) array
     iterations : int
-        Linear programmes with frozen strength.
+        Linear programmes with frozen strength, at most.
     average : float
         Weight of the new forces in the strength.
     """
-    if problem.dim != 2 or np.isfinite(problem.laws.cap).any():
-        msg = "the search for collapse states handles plane problems without compressive caps"
+    if problem.dim != 2:
+        msg = "the search for collapse states handles plane problems"
         raise InputError(msg, hint="follow the load path instead")
     law = problem.laws
     start = associated_limit(problem, live)
@@ -93,52 +99,130 @@ def find_collapse_state(
         return None
     strength = problem.sliding_strength(start.normal_force)
     best: CollapseState | None = None
-    last = np.inf
+    last, still = np.inf, 0
     zero = np.zeros(problem.pairs)
+    asked: set[bytes] = set()
     for count in range(1, iterations + 1):
         frozen = replace(law, friction=zero, dilatancy=zero, cohesion=strength)
         found = associated_limit(replace(problem, laws=frozen), live)
         if not np.isfinite(found.multiplier) or found.mechanism is None:
             return best
-        if abs(found.multiplier - last) <= 1e-3 * max(1.0, abs(last)):
-            state = certify_collapse(problem, live, found.mechanism.velocity, count)
-            if state is not None and (best is None or state.multiplier < best.multiplier - 1e-12):
-                best = state
+        change = abs(found.multiplier - last) / max(1.0, abs(last)) if count > 1 else 0.0
+        if change <= NEARLY_STILL:
+            motion = Motion.of(problem, found.mechanism.velocity)
+            if motion.key not in asked:
+                asked.add(motion.key)
+                state = certify_collapse(problem, live, found.mechanism.velocity, count)
+                if state is not None and (best is None or state.multiplier < best.multiplier - 1e-12):
+                    best = state
+        still = still + 1 if change <= STILL else 0
+        if still >= PATIENCE:
+            return best
         last = found.multiplier
         strength = (1 - average) * strength + average * problem.sliding_strength(found.normal_force)
     return best
 
 
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Which pairs open, slip (and which way) and crush in a motion.
+
+    Parameters
+    ----------
+    velocity : (N,) array
+        Largest entry 1.
+    w_n, w_t : (m,) arrays
+        Its relative velocities.
+    opens, slips, crushes : (m,) boolean arrays
+    """
+
+    velocity: Array
+    w_n: Array
+    w_t: Array
+    opens: Array
+    slips: Array
+    crushes: Array
+
+    @classmethod
+    def of(cls, problem: ContactProblem, velocity: Array) -> Motion:
+        """Return what a motion (N,) of any size asks of the pairs."""
+        v = velocity / float(np.abs(velocity).max())
+        w_n, _ = pair_velocities(problem, v)
+        w_t = problem.C_t @ v
+        crushes = np.isfinite(problem.laws.cap) & (w_n < -MOVES)
+        return cls(v, w_n, w_t, w_n > MOVES, np.abs(w_t) > MOVES, crushes)
+
+    @property
+    def key(self) -> bytes:
+        """The states of all pairs: equal keys ask for the same forces."""
+        return np.concatenate([self.opens, self.crushes, np.where(self.slips, np.sign(self.w_t), 0)]).tobytes()
+
+    def flow_error(self, problem: ContactProblem, t_n: Array, t_t: Array) -> Array:
+        """Return the power that should not be there at each pair, (m,), for forces t_n, t_t (m,) [kN]."""
+        law = problem.laws
+        cap = np.where(np.isfinite(law.cap), law.cap, 0.0)
+        opposed = problem.sliding_strength(t_n) * np.sign(self.w_t) + t_t
+        wrong: Array = np.maximum.reduce(
+            [
+                np.abs(np.where(self.opens, self.w_n, 0.0) * (t_n + law.tension)),
+                np.abs(np.where(self.slips, self.w_t, 0.0) * opposed),
+                np.abs(np.where(self.crushes, self.w_n, 0.0) * (cap - t_n)),
+            ]
+        )
+        return wrong
+
+    def penetration(self) -> float:
+        """Largest rate at which pairs that do not crush come closer."""
+        return float(np.where(self.crushes, 0.0, np.maximum(-self.w_n, 0.0)).max(initial=0.0))
+
+
 def certify_collapse(problem: ContactProblem, live: Array, velocity: Array, iterations: int) -> CollapseState | None:
     """Find forces of the true cones that go with a motion (N,), and return the certified state or None."""
     programme = StaticProgramme(problem)
-    law, v = problem.laws, velocity / float(np.abs(velocity).max())
-    w_n, _ = pair_velocities(problem, v)
-    w_t = problem.C_t @ v
-    opens, slips = w_n > MOVES, np.abs(w_t) > MOVES
-    bounds = programme.bounds.copy()
-    pair, direction = programme.rays
-    against = np.sign(w_t)[pair] * direction[:, 0]
-    bounds[: pair.size][opens[pair] | (slips[pair] & (against > 0) & (law.friction[pair] > 0)), 1] = 0.0
-    sticky = np.flatnonzero(programme.spare > 0)
-    bounds[pair.size :][slips[sticky]] = (-np.sign(w_t) * programme.spare)[sticky][slips[sticky], None]
-    A, e0 = programme.equilibrium
-    force = max(float(np.abs(problem.f).sum()), float(np.abs(live).sum()))
-    column = sp.csc_array((programme.project(live) / force)[:, None])
-    equations = sp.csc_array(sp.hstack([A, column])), -(programme.project(problem.f) + e0) / force
-    scaled = np.vstack([bounds / force, [-np.inf, np.inf]])
-    result = optimise(np.r_[np.zeros(A.shape[1]), 1.0], equations, scaled)
+    motion = Motion.of(problem, velocity)
+    equations, bounds, caps, force = forces_asked_for(programme, motion, live)
+    alone: Method | None = "interior" if len(bounds) >= LARGE else None  # "there are none" is not worth minutes
+    result = optimise(np.r_[np.zeros(len(bounds) - 1), 1.0], equations, bounds, caps, method=alone)
     if result.status != 0:
         return None
     multiplier = float(result.x[-1])
     t_n, t_t = programme.forces(result.x[:-1] * force)
     load = problem.f + multiplier * live
-    total = float(np.abs(load).sum())
-    friction = problem.sliding_strength(t_n) * np.sign(w_t) + t_t[:, 0]
-    wrong = np.maximum(
-        np.abs(np.where(opens, w_n, 0.0) * (t_n + law.tension)), np.abs(np.where(slips, w_t, 0.0) * friction)
-    )
-    flow = max(float(wrong.max(initial=0.0)) / total, float(np.maximum(-w_n, 0.0).max(initial=0.0)))
+    wrong = float(motion.flow_error(problem, t_n, t_t[:, 0]).max(initial=0.0)) / float(np.abs(load).sum())
+    flow = max(wrong, motion.penetration())
     statics = static_residual(problem, load, t_n, t_t)
-    state = CollapseState(multiplier, t_n, t_t, v, statics, flow, iterations)
-    return state if state.certified and float(live @ v) > 0 else None
+    state = CollapseState(multiplier, t_n, t_t, motion.velocity, statics, flow, iterations)
+    return state if state.certified and float(live @ motion.velocity) > 0 else None
+
+
+def forces_asked_for(
+    programme: StaticProgramme, motion: Motion, live: Array
+) -> tuple[tuple[sp.csc_array, Array], Array, tuple[sp.csc_array, Array] | None, float]:
+    """Return equations, bounds, caps and unit of force [kN] of the programme over forces that a motion allows.
+
+    Its variables are those of ``programme`` and the multiplier of the live load (N,). Pairs that open carry -T, pairs
+    that slip the whole strength against the slip, pairs that crush the cap; all others what their cone allows.
+    """
+    problem, law = programme.problem, programme.problem.laws
+    rough = law.friction > 0
+    bounds = programme.bounds.copy()
+    pair, direction = programme.rays
+    sign = np.sign(motion.w_t)
+    wrong_way = motion.slips[pair] & (sign[pair] * direction[:, 0] > 0) & rough[pair]
+    bounds[: pair.size][motion.opens[pair] | wrong_way, 1] = 0.0
+    full = np.flatnonzero(motion.crushes[pair] & ~rough[pair])
+    bounds[full, 0] = bounds[full, 1]
+    sticky = np.flatnonzero(programme.spare > 0)
+    bounds[pair.size :][motion.slips[sticky]] = (-sign * programme.spare)[sticky][motion.slips[sticky], None]
+    A, e0 = programme.equilibrium
+    force = max(float(np.abs(problem.f).sum()), float(np.abs(live).sum()))
+    column = sp.csc_array((programme.project(live) / force)[:, None])
+    matrix, right = sp.csc_array(sp.hstack([A, column])), -(programme.project(problem.f) + e0) / force
+    caps = programme.caps
+    if caps is not None:
+        rows = sp.csr_array(sp.hstack([caps[0], sp.csc_array((caps[0].shape[0], 1))]))
+        full = motion.crushes[np.isfinite(law.cap) & rough]
+        matrix = sp.csc_array(sp.vstack([matrix, rows[full]]))
+        right = np.concatenate([right, caps[1][full] / force])
+        caps = (sp.csc_array(rows[~full]), caps[1][~full] / force) if not full.all() else None
+    return (matrix, right), np.vstack([bounds / force, [-np.inf, np.inf]]), caps, force

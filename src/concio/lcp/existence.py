@@ -163,7 +163,7 @@ def statically_admissible(problem: ContactProblem, *, around: bool = False) -> S
         rows = sp.csc_array((caps[0].shape[0], 2 * r))
         caps = sp.csc_array(sp.hstack([caps[0], rows])), caps[1] / force
     result = optimise(np.r_[np.zeros(n), np.ones(2 * r)], equations, bounds, caps)
-    if result.x is None:
+    if not result.x.size:
         return StaticState(False, np.zeros(m), np.zeros((m, s)), np.inf, np.zeros(problem.unknowns))
     x = result.x * force
     for attempt in range(2):
@@ -173,7 +173,7 @@ def statically_admissible(problem: ContactProblem, *, around: bool = False) -> S
         if attempt or not 1e-12 < residual < NEARLY:
             break
         x = programme.balance(x, problem.f)
-    velocity = problem.R @ (-result.eqlin.marginals / programme.scale)
+    velocity = problem.R @ (-result.marginals / programme.scale)
     return StaticState(residual <= VIOLATION, t_n, t_t, residual, velocity)
 
 

@@ -24,10 +24,13 @@ from concio.contact.problem import Array, ContactProblem
 from concio.errors import SolverError
 from concio.lcp.existence import absorbed_power, polish, statically_admissible, total_load, verify_mechanism
 from concio.lcp.solution import Mechanism
-from concio.lcp.statics import StaticProgramme, optimise
+from concio.lcp.statics import Method, StaticProgramme, optimise
 
 CHECKED = 1e-8
 """Largest residual, violation and relative duality gap of a limit load that counts as checked."""
+
+BALANCED = 1e-11
+"""Residual below which forces count as admissible where the least friction is sought."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,10 +69,24 @@ class LimitLoad:
     @property
     def checked(self) -> bool:
         """True when forces and motion prove the multiplier from both sides (always for ``inf``: forces only)."""
+        return self.worst <= CHECKED
+
+    @property
+    def worst(self) -> float:
+        """Largest of residual, violation and gap."""
         if not np.isfinite(self.multiplier):
-            return self.residual <= CHECKED
+            return self.residual
         violation = self.mechanism.violation if self.mechanism else np.inf
-        return max(self.residual, violation, self.gap) <= CHECKED
+        return max(self.residual, violation, self.gap)
+
+    @property
+    def bounds_hold(self) -> bool:
+        """True when forces and motion are each beyond doubt, whatever lies between them.
+
+        Then ``multiplier`` is carried and ``upper`` is not exceeded; they are the answer where they do not coincide.
+        """
+        violation = self.mechanism.violation if self.mechanism else np.inf
+        return max(self.residual, violation) <= CHECKED
 
 
 def associated_limit(problem: ContactProblem, live: Array) -> LimitLoad:
@@ -95,6 +112,17 @@ def associated_limit(problem: ContactProblem, live: Array) -> LimitLoad:
     if problem.rigid_motions == 0 or m == 0 or pushed <= 1e-12 * size:
         state = statically_admissible(problem)
         return LimitLoad(np.inf if state.exists else np.nan, np.inf, *nothing, state.residual, None)
+    found = programmed_limit(problem, live, None)
+    if np.isfinite(found.multiplier) and not found.checked:
+        other = programmed_limit(problem, live, "highs")
+        found = other if other.checked or other.worst < found.worst else found
+    return found
+
+
+def programmed_limit(problem: ContactProblem, live: Array, method: Method | None) -> LimitLoad:
+    """Return what one linear programme says, rechecked; ``method`` is that of :func:`concio.lcp.statics.optimise`."""
+    nothing = (np.zeros(problem.pairs), np.zeros((problem.pairs, problem.dim - 1)))
+    size = float(np.abs(live).sum())
     programme = StaticProgramme(problem)
     A, e0 = programme.equilibrium
     force = max(total_load(problem) if problem.f.any() else 0.0, size)
@@ -104,7 +132,7 @@ def associated_limit(problem: ContactProblem, live: Array) -> LimitLoad:
     caps = programme.caps
     if caps is not None:
         caps = sp.csc_array(sp.hstack([caps[0], sp.csc_array((caps[0].shape[0], 1))])), caps[1] / force
-    result = optimise(np.r_[np.zeros(A.shape[1]), -1.0], equations, bounds, caps)
+    result = optimise(np.r_[np.zeros(A.shape[1]), -1.0], equations, bounds, caps, method=method)
     if result.status == 2:
         return LimitLoad(np.nan, np.nan, *nothing, np.inf, None)
     if result.status == 3:
@@ -119,7 +147,7 @@ def associated_limit(problem: ContactProblem, live: Array) -> LimitLoad:
     t_n, t_t = programme.forces(x)
     if static_residual(problem, loaded, t_n, t_t) > 1e-13:
         t_n, t_t = programme.forces(programme.balance(x, loaded))
-    velocity = problem.R @ (-result.eqlin.marginals / programme.scale)
+    velocity = problem.R @ (-result.marginals / programme.scale)
     upper, mechanism = kinematic_bound(problem, live, multiplier, velocity)
     residual = static_residual(problem, loaded, t_n, t_t)
     return LimitLoad(multiplier, upper, t_n, t_t, residual, mechanism)
@@ -196,13 +224,13 @@ def smallest_friction(problem: ContactProblem, *, largest: float = 1.0, toleranc
     largest : float
         Largest factor considered.
     tolerance : float
-        Width of the final bracket, relative to ``largest``. Forces count as admissible at a residual of 1e-9 of the
-        load, so that less makes no sense.
+        Width of the final bracket, relative to ``largest``. Forces count as admissible at a residual of 1e-11 of the
+        load.
     """
 
     def unbalanced(factor: float) -> tuple[bool, float]:
         state = statically_admissible(scaled_friction(problem, factor))
-        if state.exists:
+        if state.residual <= BALANCED:
             return True, factor
         v = state.velocity
         w_t = np.linalg.norm((problem.C_t @ v).reshape(problem.pairs, -1), axis=1)

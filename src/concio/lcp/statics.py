@@ -15,20 +15,26 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.optimize import linprog
-from scipy.sparse.linalg import splu
 
 from concio.contact.problem import Array, ContactProblem
+from concio.lcp.linear_interior import solve_interior
+from concio.lcp.normal_equations import rebalance
 
 SIDES = 16
 """Rays of the polygonal friction cone in space."""
 
-LARGE = 20_000
-"""Number of columns from which the interior-point code of HiGHS is tried before the simplex method."""
+LARGE = 1_000
+"""Number of columns from which the interior point is tried before the simplex method; below, the latter is as fast."""
+
+HUGE = 5_000
+"""Number of columns from which HiGHS, where it is asked, begins with its interior point."""
+
+Method = Literal["interior", "highs"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,29 +140,46 @@ class StaticProgramme:
         m = self.problem.pairs
         return t[:m], t[m:].reshape(m, -1)
 
-    def balance(self, x: Array, load: Array, rounds: int = 3) -> Array:
-        """Remove what rounding left unbalanced: least change of x (n,), each measured by its room within the bounds.
-
-        The affine-scaling projection: with D the distance to the nearer bound, A D z = -(A x + e0 + R' load / scale),
-        x + D z, cut at the bounds.
-        """
+    def balance(self, x: Array, load: Array) -> Array:
+        """Remove what rounding left unbalanced, by the least change of x (n,) within bounds and caps."""
         A, e0 = self.equilibrium
-        target = self.project(load) + e0
-        x = np.clip(x[: A.shape[1]], self.bounds[:, 0], self.bounds[:, 1])
-        residual = A @ x + target
-        for _ in range(rounds):
-            room = np.minimum(np.minimum(x - self.bounds[:, 0], self.bounds[:, 1] - x), np.abs(x).max(initial=1.0))
-            scaled = sp.csc_array(A @ sp.diags_array(room / (room.max(initial=0.0) or 1.0)))
-            weak = -1e-12 * sp.eye_array(A.shape[0])
-            matrix = sp.block_array([[sp.eye_array(x.size), scaled.T], [scaled, weak]])
-            z = splu(sp.csc_matrix(matrix)).solve(np.concatenate([np.zeros(x.size), -residual]))[: x.size]
-            step = room / (room.max(initial=0.0) or 1.0) * z
-            trial = np.clip(x + step, self.bounds[:, 0], self.bounds[:, 1])
-            left = A @ trial + target
-            if not np.abs(left).max() < np.abs(residual).max():
-                break
-            x, residual = trial, left
-        return x
+        x, target, bounds = x[: A.shape[1]], self.project(load) + e0, self.bounds
+        if self.caps is None:
+            return rebalance(A, x, target, bounds)
+        (A, b), bounds = with_slacks((A, -target), bounds, self.caps)
+        G, h = self.caps
+        return rebalance(A, np.concatenate([x, np.maximum(h - G @ x, 0.0)]), -b, bounds)[: x.size]
+
+
+def with_slacks(
+    equations: tuple[sp.csc_array, Array], bounds: Array, inequalities: tuple[sp.csc_array, Array]
+) -> tuple[tuple[sp.csc_array, Array], Array]:
+    """Return equations and bounds in which G x <= h has become G x + s = h, s >= 0."""
+    G, h = inequalities
+    A = sp.block_array([[equations[0], None], [G, sp.eye_array(h.size)]], format="csc")
+    slack = np.tile([0.0, np.inf], (h.size, 1))
+    return (sp.csc_array(A), np.concatenate([equations[1], h])), np.vstack([bounds, slack])
+
+
+@dataclass(frozen=True, eq=False)
+class Optimum:
+    """Answer of :func:`optimise`.
+
+    Parameters
+    ----------
+    status : int
+        0 optimal, 2 infeasible, 3 unbounded, anything else: no answer (the numbers of SciPy's ``linprog``).
+    x : (n,) array
+        Empty where there is no answer.
+    marginals : (M,) array
+        Multipliers y of the equations: the reduced costs are c - A'y.
+    message : str
+    """
+
+    status: int
+    x: Array
+    marginals: Array
+    message: str
 
 
 def optimise(
@@ -165,25 +188,73 @@ def optimise(
     bounds: Array,
     inequalities: tuple[sp.csc_array, Array] | None = None,
     *,
-    method: str | None = None,
-) -> Any:
-    """Minimise cost'x subject to A x = b, bounds and G x <= h by HiGHS; return SciPy's ``OptimizeResult``.
+    method: Method | None = None,
+) -> Optimum:
+    """Minimise cost'x subject to A x = b, bounds and G x <= h.
 
     Parameters
     ----------
     cost : (n,) array
     equations, inequalities : (matrix, right-hand side)
     bounds : (n, 2) array
-    method : str, optional
-        "highs-ds" or "highs-ipm"; default by size, and the other one where the first does not finish.
+    method : {"interior", "highs"}, optional
+        :func:`concio.lcp.linear_interior.solve_interior` or HiGHS, alone; by default the first from ``LARGE`` columns
+        on, and the other where it finds no answer.
     """
-    first = method or ("highs-ipm" if cost.size > LARGE else "highs-ds")
-    options: dict[str, Any] = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10}
-    arguments: dict[str, Any] = {"A_eq": equations[0], "b_eq": equations[1], "bounds": bounds, "options": options}
+    reducible = not (~np.isfinite(bounds[:, 0]) & np.isfinite(bounds[:, 1])).any()
+    if method == "interior" or (method is None and cost.size >= LARGE and reducible):
+        found = _interior(cost, equations, bounds, inequalities)
+        if found is not None:
+            return found
+        if method is not None:
+            return Optimum(4, np.zeros(0), np.zeros(0), "the interior point did not converge")
+    return _highs(cost, equations, bounds, inequalities)
+
+
+def _interior(
+    cost: Array,
+    equations: tuple[sp.csc_array, Array],
+    bounds: Array,
+    inequalities: tuple[sp.csc_array, Array] | None,
+) -> Optimum | None:
+    """Interior point, its equations made exact to rounding; None where it does not converge."""
+    n, rows = cost.size, equations[1].size
     if inequalities is not None:
-        arguments |= {"A_ub": inequalities[0], "b_ub": inequalities[1]}
+        equations, bounds = with_slacks(equations, bounds, inequalities)
+        cost = np.concatenate([cost, np.zeros(inequalities[1].size)])
+    A, b = sp.csc_array(equations[0]), equations[1]
+    x, moves = bounds[:, 0].copy(), bounds[:, 0] < bounds[:, 1]
+    if not moves.all():
+        A, b = sp.csc_array(A[:, moves]), b - A[:, ~moves] @ x[~moves]
+        cost, bounds = cost[moves], bounds[moves]
+    found = solve_interior(cost, (A, b), bounds)
+    if found is None or not found.close:
+        return None
+    x[moves] = rebalance(A, found.x, -b, bounds)
+    return Optimum(0, x[:n], found.y[:rows], f"interior point: {found.iterations} iterations")
+
+
+def _highs(
+    cost: Array,
+    equations: tuple[sp.csc_array, Array],
+    bounds: Array,
+    inequalities: tuple[sp.csc_array, Array] | None,
+) -> Optimum:
+    """HiGHS, right-hand sides scaled to one: the dual simplex method, or interior point for large programmes.
+
+    Where the first does not finish, the other is tried.
+    """
+    unit = float(np.abs(equations[1]).max(initial=0.0)) or 1.0
+    options: dict[str, Any] = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10}
+    arguments: dict[str, Any] = {"A_eq": equations[0], "b_eq": equations[1] / unit, "bounds": bounds / unit}
+    if inequalities is not None:
+        arguments |= {"A_ub": inequalities[0], "b_ub": inequalities[1] / unit}
     highs: Any = linprog
-    result = highs(cost, method=first, **arguments)
-    if result.status in (1, 4):  # iteration limit, numerical trouble
-        result = highs(cost, method="highs-ds" if first == "highs-ipm" else "highs-ipm", **arguments)
-    return result
+    methods = ("highs-ipm", "highs-ds") if cost.size > HUGE else ("highs-ds", "highs-ipm")
+    for method in methods:
+        result = highs(cost, method=method, options=options, **arguments)
+        if result.status not in (1, 4):  # iteration limit, numerical trouble
+            break
+    if result.x is None:
+        return Optimum(result.status, np.zeros(0), np.zeros(0), result.message)
+    return Optimum(result.status, result.x * unit, result.eqlin.marginals, result.message)

@@ -1,0 +1,125 @@
+"""How far a structure is from its limit, with the load and with friction, by admissible forces and by solving.
+
+Two questions, each answered twice. *How much more load?* *How much less friction?* Linear programming answers for
+associated friction: beyond that load, or below that friction, no equilibrium exists, and a mechanism proves it
+(:mod:`concio.lcp.limit`). What Coulomb friction carries may be less. So the same question is put to the solver of a
+load step (without its pivoting and exhaustive stages), bisecting between what was found to hold and the proven limit:
+at one end a certified equilibrium, at the other a load step for which none was found. The set of loads that Coulomb
+friction carries need not be an interval, and a solver that finds nothing proves nothing: the pair of numbers is what
+was found, no more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.analysis.limit import dead_and_live
+from concio.contact.assembly import Assembly, assemble
+from concio.contact.problem import ContactProblem
+from concio.lcp.auto import solve as solve_step
+from concio.lcp.limit import associated_limit, scaled_friction, smallest_friction
+from concio.lcp.solution import Status
+from concio.model.model import Model
+
+FAR = 1e6
+"""A load that can grow beyond this factor counts as unlimited."""
+
+
+@dataclass(frozen=True)
+class Margin:
+    """Load factor or friction factor at which a structure comes to its limit.
+
+    Parameters
+    ----------
+    holds : float
+        Factor with a certified Coulomb equilibrium, closest to the limit of those tried; ``nan`` where none was found,
+        ``inf`` where the load can grow without end.
+    fails : float
+        Factor without one, closest to ``holds``; ``nan`` where none was tried.
+    outcome : Status or None
+        Outcome at ``fails``.
+    proven : float
+        Associated limit: beyond this load, or below this friction, no equilibrium exists (to rounding).
+    solves : int
+        Load steps solved.
+    """
+
+    holds: float
+    fails: float
+    outcome: Status | None
+    proven: float
+    solves: int
+
+
+def load_margin(model: Model | Assembly, live: str | Sequence[str] = "live", tolerance: float = 1e-3) -> Margin:
+    """Return the largest factor of the live load that :func:`concio.solve` was found to carry, in one step.
+
+    The load goes from nothing to its value in one step, without history. On a load path it may be another one.
+
+    Parameters
+    ----------
+    model : Model or Assembly
+    live : str or sequence of str
+        Load groups that are multiplied; all others have factor 1.
+    tolerance : float
+        Width of the final bracket relative to the associated limit.
+
+    Raises
+    ------
+    InputError
+        A group does not exist, or the live groups hold no load.
+    """
+    assembly = model if isinstance(model, Assembly) else assemble(model)
+    dead, load = dead_and_live(assembly, live)
+    limit = associated_limit(dead, load).multiplier
+    if not (limit < FAR):
+        return Margin(float("inf") if limit > 0 else float("nan"), float("nan"), None, limit, 0)
+    return _bisect(lambda factor: dead.with_loads(dead.f + factor * load), 0.0, limit, tolerance * abs(limit))
+
+
+def friction_by_solving(
+    model: Model | Assembly, live: str | Sequence[str] = "live", factor: float = 1.0, tolerance: float = 1e-3
+) -> Margin:
+    """Return the smallest common factor of all friction coefficients with which :func:`concio.solve` was found to hold.
+
+    Parameters
+    ----------
+    model : Model or Assembly
+    live : str or sequence of str
+    factor : float
+        Load factor of the live groups; all others have 1.
+    tolerance : float
+        Width of the final bracket.
+
+    Raises
+    ------
+    InputError
+        A group does not exist, or the live groups hold no load.
+    """
+    assembly = model if isinstance(model, Assembly) else assemble(model)
+    dead, load = dead_and_live(assembly, live)
+    loaded = dead.with_loads(dead.f + factor * load)
+    least = smallest_friction(loaded).factor
+    if np.isnan(least):
+        return Margin(float("nan"), float("nan"), None, least, 0)
+    return _bisect(lambda share: scaled_friction(loaded, share), 1.0, least, tolerance)
+
+
+def _bisect(problem: Callable[[float], ContactProblem], safe: float, limit: float, width: float) -> Margin:
+    """Bisect between ``safe``, which ought to hold, and ``limit``, beyond which nothing does."""
+    first = solve_step(problem(safe), pivoting=False)
+    if not first.solved:
+        return Margin(float("nan"), safe, first.status, limit, 1)
+    holds, fails, outcome, count = safe, limit, None, 1
+    while abs(fails - holds) > width:
+        middle = 0.5 * (holds + fails)
+        found = solve_step(problem(middle), pivoting=False)
+        count += 1
+        if found.solved:
+            holds = middle
+        else:
+            fails, outcome = middle, found.status
+    return Margin(holds, fails if outcome is not None else float("nan"), outcome, limit, count)

@@ -1,0 +1,84 @@
+"""The interior point of the statics against HiGHS, and what it leaves to be rechecked."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from scipy.optimize import linprog
+
+from concio.lcp.linear_interior import solve_interior
+from concio.lcp.normal_equations import NormalEquations, rebalance
+from concio.lcp.statics import optimise
+from rigid_walls import running_bond
+
+
+def programme(seed: int):
+    """A programme with an answer, by construction: x and y complementary, a free column, some upper bounds."""
+    rng = np.random.default_rng(seed)
+    rows, n = 9, 24
+    A = sp.random_array((rows, n), density=0.4, rng=rng).toarray() - 0.2 * np.eye(rows, n)
+    upper = np.where(rng.random(n) < 0.3, rng.uniform(0.5, 3.0, n), np.inf)
+    lower = np.where(rng.random(n) < 0.3, -rng.uniform(0.0, 2.0, n), 0.0)
+    lower[-1], upper[-1] = -np.inf, np.inf
+    inside = np.where(np.isfinite(lower), lower, 0.0) + 0.4 * np.minimum(np.where(np.isfinite(upper), upper, 1.0), 1.0)
+    x = np.where(rng.random(n) < 0.5, inside, np.where(np.isfinite(lower), lower, rng.normal(size=n)))
+    reduced = np.where(x == lower, rng.random(n), 0.0)
+    y = rng.normal(size=rows)
+    return A.T @ y + reduced, (sp.csc_array(A), A @ x), np.column_stack([lower, upper]), x
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_against_a_programme_whose_answer_is_known(seed):
+    cost, equations, bounds, x = programme(seed)
+    found = solve_interior(cost, equations, bounds)
+    assert found is not None
+    assert found.close
+    assert cost @ found.x == pytest.approx(cost @ x, abs=1e-9 * (1 + abs(cost @ x)))
+    other = linprog(cost, A_eq=equations[0], b_eq=equations[1], bounds=bounds, method="highs")
+    assert cost @ found.x == pytest.approx(other.fun, abs=1e-9 * (1 + abs(other.fun)))
+    assert np.abs(equations[0] @ found.x - equations[1]).max() <= 1e-6
+    balanced = rebalance(equations[0], found.x, -equations[1], bounds)
+    assert np.abs(equations[0] @ balanced - equations[1]).max() <= 1e-13
+    assert (balanced >= bounds[:, 0]).all()
+    assert (balanced <= bounds[:, 1]).all()
+    # weak duality, with the reduced costs of y alone
+    reduced = cost - equations[0].T @ found.y
+    held = np.isfinite(bounds).any(axis=1)
+    low = np.where(np.isfinite(bounds[:, 0]), bounds[:, 0], 0.0) * np.maximum(reduced, 0)
+    high = np.where(np.isfinite(bounds[:, 1]), bounds[:, 1], 0.0) * np.minimum(reduced, 0)
+    assert equations[1] @ found.y + (low + high)[held].sum() == pytest.approx(cost @ x, abs=1e-9 * (1 + abs(cost @ x)))
+
+
+@pytest.mark.parametrize("method", ["interior", "highs"])
+def test_inequalities_and_fixed_columns(method):
+    """Maximise x0 + x1 with x0 + x2 = 2, x1 = 0.25 fixed, x0 + x1 <= 1."""
+    cost, equations = np.array([-1.0, -1.0, 0.0]), (sp.csc_array([[1.0, 0.0, 1.0]]), np.array([2.0]))
+    bounds = np.array([[0.0, np.inf], [0.25, 0.25], [0.0, np.inf]])
+    caps = sp.csc_array([[1.0, 1.0, 0.0]]), np.array([1.0])
+    found = optimise(cost, equations, bounds, caps, method=method)
+    assert found.status == 0
+    assert found.x == pytest.approx([0.75, 0.25, 1.25], abs=1e-9)
+    assert found.marginals == pytest.approx([0.0], abs=1e-9)
+
+
+def test_what_has_no_answer_gets_none():
+    contradiction = sp.csc_array([[1.0], [1.0]]), np.array([1.0, 2.0])
+    bounds = np.array([[0.0, np.inf]])
+    found = solve_interior(np.array([1.0]), contradiction, bounds)
+    assert found is None or not found.close
+    assert optimise(np.array([1.0]), contradiction, bounds, method="interior").status == 4
+    assert optimise(np.array([1.0]), contradiction, bounds).status == 2
+
+
+def test_normal_equations_are_those_of_springs():
+    a = running_bond(5, 4)
+    p = a.problem(0.6, a.load(0, -1))
+    A = sp.csc_array(p.C.T)
+    theta = np.random.default_rng(1).uniform(0.1, 10.0, A.shape[1])
+    normal = NormalEquations(A)
+    normal.factorise(theta)
+    g = p.f
+    x = np.empty_like(g)
+    x[normal.order] = normal.solve(g[normal.order])
+    assert (A * theta) @ (A.T @ x) == pytest.approx(g, abs=1e-10)
