@@ -31,7 +31,7 @@ from concio.lcp.solution import Departure
 FIRST = 1e-2
 """Resistance e of the first step, scaled units."""
 
-LONG = 1e-6
+PIVOTED = 1e-3
 """Resistance e of the first step where pivoting solves it."""
 
 LEAST = 1e-8
@@ -65,7 +65,7 @@ def release(run: Run, u: Array | None = None, *, pivoting: bool = False) -> Fini
     s = run.scaled
     begin = "rest" if u is None else "the associated state"
     u = np.zeros(len(s.f)) if u is None else u
-    e, good, failures, taken = (LONG if pivoting else FIRST), 0, 0, 0
+    e, good, failures, taken = (PIVOTED if pivoting else FIRST), 0, 0, 0
     here: Finished | None = None
     shift = np.zeros_like(u)
     ended: Finished | Departure | None = None
@@ -74,7 +74,7 @@ def release(run: Run, u: Array | None = None, *, pivoting: bool = False) -> Fini
         new = _solve(run, step, u, shift, here, pivoting)
         if new is None:
             failures, good, e = failures + 1, 0, 10 * e
-            if failures >= (FAILURES if not pivoting else FAILURES // 2):
+            if failures >= FAILURES:
                 break
             continue
         shift, u, here, taken, good = new.u - u, new.u, new, taken + 1, good + 1
@@ -109,12 +109,17 @@ def _steady(s: Scaled, a: Array, now: Finished) -> Departure | None:
 
 
 def _solve(run: Run, step: Scaled, u: Array, shift: Array, here: Finished | None, pivoting: bool) -> Finished | None:
-    """Solve one step: from the states of the last one, then by interior point, then by pivoting."""
+    """Solve one step: from the states of the last one, then by interior point or pivoting."""
     if here is not None:
         for guess, states in ((u + shift, here.states), (u, None)):
             new = finish(step, guess, here.t_n, here.t_t, rounds=20, states=states)
             if new.error <= STEP:
                 return new
+    return _pivot(run, step, here) if pivoting else _iterate(run, step)
+
+
+def _iterate(run: Run, step: Scaled) -> Finished | None:
+    """Solve one step by interior point from nothing."""
     inner = Run(step, run.progress)
     found: Finished | None = None
     for start in STARTS:
@@ -125,20 +130,20 @@ def _solve(run: Run, step: Scaled, u: Array, shift: Array, here: Finished | None
             break
     run.iterations += inner.iterations
     run.history.extend(inner.history)
-    return found or (_pivot(run, step, here) if pivoting else None)
+    return found
 
 
 def _pivot(run: Run, step: Scaled, here: Finished | None) -> Finished | None:
-    """Solve one step by sparse pivoting, from the states of the last one or from nothing."""
+    """Solve one step by sparse pivoting, from the states of the last one or, at the beginning, from nothing."""
     p = step.problem
     held = replace(
         p, K=sp.csr_array(step.K * (step.force / step.length)), f=step.f * step.force, R=sp.csc_array((p.unknowns, 0))
     )
-    known: dict[str, Any] = {}
+    known: dict[str, Any] = {"tries": TRIES}
     if here is not None:
         u, t_n, t_t = step.restore(here.u, here.t_n, here.t_t)
-        known = {"start_states": here.states.codes(), "start": (u, t_n, t_t[:, None])}
-    answer = sparse_lemke.solve(held, progress=run.progress, tries=TRIES, **known)
+        known = {"tries": 0, "start_states": here.states.codes(), "start": (u, t_n, t_t[:, None])}
+    answer = sparse_lemke.solve(held, progress=run.progress, limit=p.pairs + 500, **known)
     run.iterations += answer.iterations
     if not answer.solved:
         return None
