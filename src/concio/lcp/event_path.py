@@ -21,6 +21,7 @@ from concio.contact.problem import Array
 from concio.lcp.methods import find
 from concio.lcp.path_direction import LARGEST_VERTEX, find_direction
 from concio.lcp.path_equations import PathEquations, Scaled
+from concio.lcp.path_events import PairStates, changes
 from concio.lcp.path_rates import (
     Rates,
     Values,
@@ -33,6 +34,7 @@ from concio.lcp.path_rates import (
     wrong,
 )
 from concio.lcp.path_record import Event, EventPath, Outcome
+from concio.lcp.path_restart import SHARES, Beyond, load_unit, look_beyond, moves_freely
 from concio.lcp.path_state import (
     CLOSED,
     CRUSHED,
@@ -41,6 +43,7 @@ from concio.lcp.path_state import (
     LinearPath,
     PathState,
     energy_of_step,
+    plastic_position,
     state_of,
     step_problem,
 )
@@ -52,6 +55,12 @@ ON_EQUATIONS = 1e-15
 
 DUST = 1e-16
 """Scaled displacements below this are rounding of zero and are recorded as zero."""
+
+MOST_RESTARTS = 200
+"""Finite steps (jumps and restarts) taken on one path before it counts as lost."""
+
+CLOSE = 20.0
+"""A restart within this many increments of the one before takes a ten times larger increment."""
 
 
 def follow(
@@ -84,15 +93,22 @@ def follow(
     return _Follower(path, start, until, control).run(max_events, progress, stop)
 
 
+def states_in_use(path: LinearPath, state: PathState) -> tuple[Array, Array]:
+    """Return the contact and sliding states (m,) of a state; pairs without grip count as slipping."""
+    law = path.problem.laws
+    spare = law.cohesion - law.friction * law.tension
+    rough = (law.friction > 0) | (law.cohesion > 0)
+    contact, sliding = state.contact.astype(np.int8), state.sliding.astype(np.int8)
+    return contact, np.where(~rough | ((contact == OPEN) & (spare <= 0)), 1, sliding).astype(np.int8)
+
+
 class _Follower:
     def __init__(self, path: LinearPath, start: PathState, until: float, control: Array | None) -> None:
         self.path, self.state = path, start
         self.scaled = Scaled.of(path)
         functional = None if control is None else np.asarray(control, dtype=float)
-        spare = path.problem.laws.cohesion - path.problem.laws.friction * path.problem.laws.tension
-        rough = (path.problem.laws.friction > 0) | (path.problem.laws.cohesion > 0)
-        contact, sliding = start.contact.astype(np.int8), start.sliding.astype(np.int8)
-        sliding = np.where(~rough | ((contact == OPEN) & (spare <= 0)), 1, sliding).astype(np.int8)
+        contact, sliding = states_in_use(path, start)
+        self.restarts, self.restarted, self.share = 0, -np.inf, SHARES[0]
         self.by_load = functional is None
         self.unit = 1.0 if functional is None else self.scaled.length
         self.control = np.zeros(path.problem.unknowns + 2 * path.problem.pairs + 1)
@@ -127,12 +143,21 @@ class _Follower:
         for corner in range(max_events):
             self.settle()
             v = values(self.equations, self.x, self.slip, self.offset)
-            old = (self.equations.contact.copy(), self.equations.sliding.copy(), grips(self.equations))
+            old = PairStates.of(self.equations)
             found, runaway = self.direction(v, direction)
             if found is None:
-                events.extend(self.last_events(v, direction, old, len(states) - 1))
-                outcome = Outcome.LIMIT if self.by_load else Outcome.LOST
-                return self.finish(states, events, outcome, direction if runaway is None else runaway)
+                beyond = self.beyond(progress)
+                if beyond.cancelled:
+                    return self.finish(states, events, Outcome.CANCELLED, direction)
+                if beyond.state is None:
+                    events.extend(self.last_events(v, direction, old, len(states) - 1))
+                    return self.end_of_path(states, events, direction, runaway, beyond)
+                states.append(self.go_to(beyond.state))
+                events.extend(self.name_step(old, beyond, states))
+                direction = None
+                if (self.until - self.given()) * self.sense <= 0:
+                    return self.finish(states, events, Outcome.REACHED, direction)
+                continue
             events.extend(self.name_events(old, len(states) - 1))
             direction = found.direction
             rate = float(self.control @ direction) * self.sense
@@ -149,6 +174,67 @@ class _Follower:
             if progress is not None and progress(note):
                 return self.finish(states, events, Outcome.CANCELLED, direction)
         return self.finish(states, events, Outcome.TOO_MANY, direction)
+
+    def beyond(self, progress: ProgressCallback | None) -> Beyond:
+        """Look for a certified state at a finite distance, by a growing load (or, asked to go down, a falling one)."""
+        if self.restarts >= MOST_RESTARTS:
+            return Beyond(None)
+        point, sense = self.state, self.sense if self.by_load else 1.0
+        walked = abs(point.parameter - self.restarted) / load_unit(self.path, point)
+        self.share = 10 * self.share if walked <= CLOSE * self.share else SHARES[0]
+        found = look_beyond(self.path, point, sense, least=self.share, progress=progress)
+        if found.state is None:
+            return found
+        if self.by_load and (self.until - found.state.parameter) * self.sense < 0:
+            return Beyond(None)
+        if not self.by_load and self.control[:-1] @ self.unknowns(found.state)[:-1] * self.sense <= self.given():
+            return Beyond(None)  # the control point would go back
+        self.restarts, self.restarted = self.restarts + 1, found.state.parameter
+        return found
+
+    def unknowns(self, state: PathState) -> Array:
+        """Return the scaled unknowns (size,) of a state."""
+        force, length = self.scaled.force, self.scaled.length
+        forces = np.concatenate([state.normal_force, state.friction_force]) / force
+        return np.concatenate([state.displacement / length, forces, [state.parameter]])
+
+    def go_to(self, state: PathState) -> PathState:
+        """Take over a certified state and the states of its pairs."""
+        if self.driven:
+            self.equations.set_control(self.control)
+            self.driven = False
+        contact, sliding = states_in_use(self.path, state)
+        self.equations.set_states(contact, sliding)
+        self.x = self.unknowns(state)
+        self.slip, self.offset = state.slip / self.scaled.length, state.offset / self.scaled.length
+        self.state = state
+        self.put_on_equations()
+        return state
+
+    def name_step(self, old: PairStates, beyond: Beyond, states: list[PathState]) -> list[Event]:
+        """Name a finite step after the pair that moves most in it, and what changed in it."""
+        (n0, t0), (n1, t1) = (plastic_position(self.path, s) for s in states[-2:])
+        most = int(np.argmax(np.abs(n1 - n0) + np.abs(t1 - t0)))
+        parameter, given, step = float(self.x[-1]), self.given() * self.unit, len(states) - 1
+        first = Event(parameter, given, most, "jumps" if beyond.jump else "restarts", 0, step)
+        return [first, *changes(old, PairStates.of(self.equations), parameter, given, step)]
+
+    def end_of_path(
+        self,
+        states: list[PathState],
+        events: list[Event],
+        direction: Array | None,
+        runaway: Array | None,
+        beyond: Beyond,
+    ) -> EventPath:
+        """Finish where nothing continues the path: LIMIT where that is shown, LOST where it is not."""
+        last = direction if runaway is None else runaway
+        if beyond.no_equilibrium:
+            return self.finish(states, events, Outcome.LIMIT, beyond.motion)
+        for way in (1.0, -1.0):
+            if runaway is not None and moves_freely(self.path, self.state, way * runaway[: self.equations.n]):
+                return self.finish(states, events, Outcome.LIMIT, way * runaway)
+        return self.finish(states, events, Outcome.LOST, last)
 
     def put_on_equations(self) -> None:
         """Correct the point where rounding has carried it off the equations of its states (little, or not at all)."""
@@ -285,7 +371,7 @@ class _Follower:
         return after
 
     def last_events(
-        self, v: Values, direction: Array | None, old: tuple[Array, Array, Array], step: int
+        self, v: Values, direction: Array | None, old: PairStates, step: int
     ) -> list[Event]:
         """Name what the pairs at their bounds were about to do where the path ends."""
         if direction is None:
@@ -294,33 +380,13 @@ class _Follower:
             self.equations.set_state(k, contact, sliding)
         return self.name_events(old, step)
 
-    def name_events(self, old: tuple[Array, Array, Array], step: int) -> list[Event]:
-        e = self.equations
-        contact, sliding, grip = old
-        now = grips(e)
-        given = self.given() * self.unit
-        found = []
-        for k in np.flatnonzero((contact != e.contact) | (sliding != e.sliding)):
-            if contact[k] != e.contact[k]:
-                kind = {
-                    (CLOSED, OPEN): "opens",
-                    (OPEN, CLOSED): "closes",
-                    (CLOSED, CRUSHED): "crushes",
-                    (CRUSHED, CLOSED): "recovers",
-                }.get((int(contact[k]), int(e.contact[k])), "changes")
-                found.append(Event(float(self.x[-1]), given, int(k), kind, 0, step))
-            side = int(e.sliding[k]) if now[k] else 0
-            before = int(sliding[k]) if grip[k] else 0
-            if side != before and now[k]:
-                kind = "slips" if side != STICK else "sticks"
-                if not (kind == "sticks" and contact[k] != e.contact[k]):
-                    found.append(Event(float(self.x[-1]), given, int(k), kind, side, step))
-        return found
+    def name_events(self, old: PairStates, step: int) -> list[Event]:
+        return changes(old, PairStates.of(self.equations), float(self.x[-1]), self.given() * self.unit, step)
 
     def finish(self, states: list[PathState], events: list[Event], outcome: Outcome, last: Array | None) -> EventPath:
         n = self.equations.n
         direction = np.zeros(n) if last is None else last[:n]
-        if outcome is Outcome.LIMIT and float(self.path.load_rate @ direction) * self.sense < 0:
+        if outcome is Outcome.LOST and self.by_load and float(self.path.load_rate @ direction) * self.sense < 0:
             direction = -direction  # the runaway rate of a nearly singular matrix has either sign
         top = float(np.abs(direction).max(initial=0.0)) or 1.0
         return EventPath(tuple(states), tuple(events), outcome, direction / top, self.equations.factorisations)

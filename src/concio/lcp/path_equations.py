@@ -225,6 +225,11 @@ class PathEquations:
             np.add.at(new, entries[0], entries[1])
             self._replace(row, new)
 
+    def set_states(self, contact: Array, sliding: Array) -> None:
+        """Give all pairs other states (m,) at once."""
+        self.contact, self.sliding = contact.copy(), sliding.copy()
+        self.factorise()
+
     def set_control(self, control: Array) -> None:
         """Prescribe another functional (size,) of the scaled unknowns."""
         self.control = control
