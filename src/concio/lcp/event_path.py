@@ -138,13 +138,14 @@ class _Follower:
         self, max_events: int, progress: ProgressCallback | None, stop: Callable[[PathState], bool] | None
     ) -> EventPath:
         states, events = [self.state], list[Event]()
+        known: Rates | None = None
         direction: Array | None = None
         self.put_on_equations()
         for corner in range(max_events):
             self.settle()
             v = values(self.equations, self.x, self.slip, self.offset)
             old = PairStates.of(self.equations)
-            found, runaway = self.direction(v, direction)
+            found, runaway = self.direction(v, known)
             if found is None:
                 beyond = self.beyond(progress)
                 if beyond.cancelled:
@@ -154,12 +155,12 @@ class _Follower:
                     return self.end_of_path(states, events, direction, runaway, beyond)
                 states.append(self.go_to(beyond.state))
                 events.extend(self.name_step(old, beyond, states))
-                direction = None
+                known, direction = None, None
                 if (self.until - self.given()) * self.sense <= 0:
                     return self.finish(states, events, Outcome.REACHED, direction)
                 continue
             events.extend(self.name_events(old, len(states) - 1))
-            direction = found.direction
+            known, direction = found, found.direction
             rate = float(self.control @ direction) * self.sense
             left = (self.until - self.given()) * self.sense / rate if rate > found.still else np.inf
             length = self.distance(v, found)
@@ -263,14 +264,14 @@ class _Follower:
         exact = (e.contact == CRUSHED) | ((e.contact == CLOSED) & moving & (e.data["psi"] > 0))
         return np.where(moving, position, self.slip), np.where(exact, -opening, offset)
 
-    def direction(self, v: Values, known: Array | None) -> tuple[Rates | None, Array | None]:
+    def direction(self, v: Values, known: Rates | None) -> tuple[Rates | None, Array | None]:
         """Find the way on: under the control; failing that, past a snap-back, driven by a pair that wants to move.
 
         Under displacement control the structure may snap back: no state continues the path while the control point
         advances, but one does while load and control point retreat and a pair slips or opens on. That pair's motion
         is then prescribed until the control point advances again.
         """
-        if self.driven and known is not None and float(self.control @ known) * self.sense > 0:
+        if self.driven and known is not None and float(self.control @ known.direction) * self.sense > 0:
             self.equations.set_control(self.control)
             self.driven, known = False, None
         sense = 1.0 if self.driven else self.sense
@@ -280,7 +281,7 @@ class _Follower:
         if found is not None or self.by_load or known is None:
             return found, runaway
         driver = self.equations.control
-        for row in self.drivers(v, known):
+        for row in self.drivers(v, known.direction):
             self.equations.set_control(row)
             found, _ = find_direction(self.equations, v)
             if found is not None:
@@ -370,9 +371,7 @@ class _Follower:
         self.state = after
         return after
 
-    def last_events(
-        self, v: Values, direction: Array | None, old: PairStates, step: int
-    ) -> list[Event]:
+    def last_events(self, v: Values, direction: Array | None, old: PairStates, step: int) -> list[Event]:
         """Name what the pairs at their bounds were about to do where the path ends."""
         if direction is None:
             return []

@@ -120,6 +120,7 @@ class PathEquations:
         self.K = sp.csr_array(problem.K * (scaled.length / scaled.force))
         self.control = control
         self.contact, self.sliding = contact.copy(), sliding.copy()
+        self.lent = REGULAR / np.clip(problem.area / problem.area.mean() if self.m else 1.0, 0.05, 20.0)
         self.factorisations = 0
         self.factorise()
 
@@ -162,8 +163,8 @@ class PathEquations:
         if row < n:
             return REGULAR
         if row < n + m:
-            return REGULAR if self.contact[row - n] == CLOSED else 0.0
-        return REGULAR if row < n + 2 * m and self.sliding[row - n - m] == STICK else 0.0
+            return float(self.lent[row - n]) if self.contact[row - n] == CLOSED else 0.0
+        return float(self.lent[row - n - m]) if row < n + 2 * m and self.sliding[row - n - m] == STICK else 0.0
 
     # -- factors --------------------------------------------------------------------------------------------------
 
@@ -200,8 +201,8 @@ class PathEquations:
         n, m = self.n, self.m
         lent = np.zeros(self.size)
         lent[:n] = REGULAR
-        lent[n : n + m] = np.where(self.contact == CLOSED, REGULAR, 0.0)
-        lent[n + m : -1] = np.where(self.sliding == STICK, REGULAR, 0.0)
+        lent[n : n + m] = np.where(self.contact == CLOSED, self.lent, 0.0)
+        lent[n + m : -1] = np.where(self.sliding == STICK, self.lent, 0.0)
         self.base_lent = lent
         self.factors = splu(  # the lent terms make it quasidefinite: pivots stay on the diagonal, fill stays small
             sp.csc_matrix(self.base + sp.diags_array(lent)),
@@ -283,6 +284,9 @@ class PathEquations:
     def solve(self, b: Array, rounds: int = 8) -> tuple[Array, float]:
         """Solve with the true matrix by refinement; b (size,) or (size, k).
 
+        What the lent compliance adds to the answer is kept in ``creep`` (like b): where redundant pairs do not move at
+        all, it tells which way they would, were they a little compliant.
+
         Returns
         -------
         x : array like b
@@ -291,7 +295,8 @@ class PathEquations:
             mechanism that the right-hand side drives.
         """
         x = self.approximate(b)
-        best, smallest = x, np.inf
+        creep = np.zeros_like(x)
+        best, smallest, self.creep = x, np.inf, creep
         size = np.abs(b).max(axis=0, initial=0.0)
         size = np.where(size > 0, size, 1.0)
         for _ in range(rounds):
@@ -299,10 +304,11 @@ class PathEquations:
             worst = float(np.max(np.abs(r).max(axis=0) / size))
             if not np.isfinite(worst) or worst >= smallest:
                 break
-            best, smallest = x, worst
+            best, smallest, self.creep = x, worst, creep
             if worst <= SMALL:
                 break
-            x = x + self.approximate(r)
+            change = self.approximate(r)
+            x, creep = x + change, creep - change
         if smallest > POOR and not self.careful and self.control[-1] != 1.0:
             self.factorise(careful=True)  # under displacement control the matrix should be regular: try harder
             return self.solve(b, rounds)
