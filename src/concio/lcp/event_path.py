@@ -56,6 +56,10 @@ ON_EQUATIONS = 1e-15
 DUST = 1e-16
 """Scaled displacements below this are rounding of zero and are recorded as zero."""
 
+FIRM = 1e-3
+"""Compliance lent to hard pairs while the answer of another solver is put on the equations: the rounding of its
+displacements contradicts redundant pairs, and over a small compliance it would turn into forces."""
+
 MOST_RESTARTS = 200
 """Finite steps (jumps and restarts) taken on one path before it counts as lost."""
 
@@ -205,11 +209,12 @@ class _Follower:
             self.equations.set_control(self.control)
             self.driven = False
         contact, sliding = states_in_use(self.path, state)
-        self.equations.set_states(contact, sliding)
+        self.equations.set_states(contact, sliding, lent=FIRM)
         self.x = self.unknowns(state)
         self.slip, self.offset = state.slip / self.scaled.length, state.offset / self.scaled.length
         self.state = state
         self.put_on_equations()
+        self.equations.set_states(contact, sliding)
         return state
 
     def name_step(self, old: PairStates, beyond: Beyond, states: list[PathState]) -> list[Event]:
@@ -230,11 +235,11 @@ class _Follower:
     ) -> EventPath:
         """Finish where nothing continues the path: LIMIT where that is shown, LOST where it is not."""
         last = direction if runaway is None else runaway
-        if beyond.no_equilibrium:
-            return self.finish(states, events, Outcome.LIMIT, beyond.motion)
         for way in (1.0, -1.0):
             if runaway is not None and moves_freely(self.path, self.state, way * runaway[: self.equations.n]):
                 return self.finish(states, events, Outcome.LIMIT, way * runaway)
+        if beyond.no_equilibrium:
+            return self.finish(states, events, Outcome.LIMIT, beyond.motion)
         return self.finish(states, events, Outcome.LOST, last)
 
     def put_on_equations(self) -> None:

@@ -12,7 +12,9 @@ The step is therefore solved with a small compliance whose springs are relaxed u
           y_t = C_t u - s + (a_t + \delta)\,t_t - \delta\,t_t^0,
 
 and the compliance is then taken out by the exact finish of the original problem, which keeps the forces near to where
-it begins. delta goes with the inverse of a pair's area, so that the distance is one of tractions.
+it begins. delta goes with the inverse of a pair's area, so that the distance is one of tractions. Very soft springs
+between the bodies and their last place settle likewise what only neutral equilibrium leaves open (a block balancing on
+one point).
 """
 
 from __future__ import annotations
@@ -24,6 +26,7 @@ import scipy.sparse as sp
 
 from concio.contact.problem import Array, ContactProblem
 from concio.lcp import engine
+from concio.lcp.certificate import certify
 from concio.lcp.exact_finish import finish, read_states
 from concio.lcp.scaled import scale, typical_stiffness
 from concio.lcp.solution import ProgressCallback, Solution, judge
@@ -37,12 +40,20 @@ TETHER = 1e-8
 NAME = "interior-point near the last forces"
 
 
+def needed(problem: ContactProblem) -> bool:
+    """Tell whether a plane problem has hard pairs, whose forces may not be unique."""
+    law = problem.laws
+    return problem.dim == 2 and not ((law.normal_compliance > 0) & (law.tangential_compliance > 0)).all()
+
+
 def softened(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> ContactProblem:
     """Return the problem with a small compliance, relaxed under the forces given, in its hard pairs.
 
     Parameters
     ----------
     problem : ContactProblem
+    u : (N,) array
+        [m].
     t_n, t_t : (m,) arrays
         [kN].
     """
@@ -70,13 +81,15 @@ def softened(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> Conta
 def solve_near(
     problem: ContactProblem, u: Array, t_n: Array, t_t: Array, *, progress: ProgressCallback | None = None
 ) -> Solution:
-    """Solve one plane load step, taking of all forces it allows those near to the ones given.
+    """Solve one plane load step, taking of all answers it allows the one near to the state given.
 
     Parameters
     ----------
     problem : ContactProblem
+    u : (N,) array
+        Displacements of the last state [m].
     t_n, t_t : (m,) arrays
-        Forces of the last state [kN].
+        Its forces [kN].
     progress : callable, optional
 
     Returns
@@ -97,13 +110,17 @@ def solve_near(
         gap=(soft.gap - law.normal_compliance * law.tension) / s.length,
         origin=soft.slip_origin[:, 0] / s.length,
     )
-    u = first.displacement / s.length
+    v = first.displacement / s.length
     p_n, p_t = first.normal_force / s.force + s.tension, first.friction_force[:, 0] / s.force
-    found = finish(s, u, p_n, p_t, states=read_states(lent, u, p_n, p_t), least=False)
-    u, p_n, p_t = s.restore(found.u, found.t_n, found.t_t)
+    found = finish(s, v, p_n, p_t, states=read_states(lent, v, p_n, p_t), least=False)
+    still = float(np.abs(found.u).max(initial=0.0)) < engine.AT_REST
+    v, p_n, p_t = s.restore(found.u, found.t_n, found.t_t)
+    rest = np.zeros_like(v)
+    if still and certify(problem, rest, p_n, p_t[:, None]).certified:
+        v = rest  # nothing moves: rounding must not be measured against itself
     return judge(
         problem,
-        u,
+        v,
         p_n,
         p_t[:, None],
         method=NAME,

@@ -120,7 +120,8 @@ class PathEquations:
         self.K = sp.csr_array(problem.K * (scaled.length / scaled.force))
         self.control = control
         self.contact, self.sliding = contact.copy(), sliding.copy()
-        self.lent = REGULAR / np.clip(problem.area / problem.area.mean() if self.m else 1.0, 0.05, 20.0)
+        self.share = np.clip(problem.area / problem.area.mean(), 0.05, 20.0) if self.m else np.ones(0)
+        self.lent = REGULAR / self.share
         self.factorisations = 0
         self.factorise()
 
@@ -226,9 +227,10 @@ class PathEquations:
             np.add.at(new, entries[0], entries[1])
             self._replace(row, new)
 
-    def set_states(self, contact: Array, sliding: Array) -> None:
-        """Give all pairs other states (m,) at once."""
+    def set_states(self, contact: Array, sliding: Array, lent: float = REGULAR) -> None:
+        """Give all pairs other states (m,) at once, and perhaps the factors another compliance of hard pairs."""
         self.contact, self.sliding = contact.copy(), sliding.copy()
+        self.lent = lent / self.share
         self.factorise()
 
     def set_control(self, control: Array) -> None:

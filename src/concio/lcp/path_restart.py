@@ -21,6 +21,7 @@ import numpy as np
 from concio.contact.problem import Array
 from concio.lcp import auto, engine
 from concio.lcp.certificate import scales
+from concio.lcp.near_forces import solve_near
 from concio.lcp.path_state import LinearPath, PathState, plastic_position, state_of, step_problem
 from concio.lcp.solution import ProgressCallback, Solution, Status
 
@@ -107,7 +108,9 @@ def solve_step(
 ) -> Solution:
     """Solve one load step from a point: quickly, and if ``thorough`` by whatever short of pivoting."""
     problem = step_problem(path, point, parameter)
-    solution = engine.solve(problem, homotopy=False, progress=progress)
+    solution = solve_near(problem, point.displacement, point.normal_force, point.friction_force, progress=progress)
+    if not (solution.solved or solution.status is Status.CANCELLED):
+        solution = engine.solve(problem, homotopy=False, progress=progress)
     if solution.solved or solution.status is Status.CANCELLED or not thorough:
         return solution
     return auto.solve(problem, pivoting=False, progress=progress)
