@@ -241,12 +241,3 @@ def test_a_support_that_sinks_breaks_the_grip_of_the_joint_above_it():
     walked = run_path(model, stages, method="steps", solver="interior-point")
     gap = walked.steps[-1].state.displacement - found.steps[-1].state.displacement
     assert np.abs(gap).max() <= 0.1 * 1e-5
-
-
-def test_steps_where_no_rate_is_found_are_told():
-    """At rest between walls hundreds of states are possible; where none is found the load steps go on, and say so."""
-    model = wall(length=1.0, height=0.5, friction=0.6, mesh_size=0.25, side_walls=True)
-    found = run_path(model, [WEIGHT])
-    assert found.complete
-    assert found.certificate <= 1e-9
-    assert "but a load step does" in found.notes[0]

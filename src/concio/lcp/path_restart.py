@@ -25,7 +25,7 @@ from concio.lcp.near_forces import solve_near
 from concio.lcp.path_state import LinearPath, PathState, plastic_position, state_of, step_problem
 from concio.lcp.solution import ProgressCallback, Solution, Status
 
-SHARES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
+SHARES = (1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 2e-3, 4e-3, 7e-3, 1e-2, 2e-2)
 """Load increments tried in turn, as shares of the present load."""
 
 SHRINKS = 0.3
@@ -60,7 +60,13 @@ class Beyond:
 
 
 def look_beyond(
-    path: LinearPath, point: PathState, sense: float, *, least: float = 0.0, progress: ProgressCallback | None = None
+    path: LinearPath,
+    point: PathState,
+    sense: float,
+    *,
+    end: float = np.inf,
+    least: float = 0.0,
+    progress: ProgressCallback | None = None,
 ) -> Beyond:
     """Look for a certified state slightly beyond a point at which no rates were found.
 
@@ -71,6 +77,8 @@ def look_beyond(
         Last converged state; slip is measured from it.
     sense : float
         +1 or -1: the load parameter grows or falls.
+    end : float
+        Load parameter not to be passed.
     least : float
         Smallest share of the present load worth trying, where restarts have followed one another closely.
     progress : callable, optional
@@ -79,7 +87,7 @@ def look_beyond(
     shares = [share for share in SHARES if share >= least] or [SHARES[-1]]
     proof: Solution | None = None
     for i, share in enumerate(shares):
-        parameter = point.parameter + sense * share * unit
+        parameter = point.parameter + sense * min(share * unit, abs(end - point.parameter))
         solution = solve_step(path, point, parameter, progress, thorough=i in (0, len(shares) - 1))
         if solution.status is Status.CANCELLED:
             return Beyond(None, cancelled=True)
