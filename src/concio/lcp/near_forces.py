@@ -79,7 +79,13 @@ def softened(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> Conta
 
 
 def solve_near(
-    problem: ContactProblem, u: Array, t_n: Array, t_t: Array, *, progress: ProgressCallback | None = None
+    problem: ContactProblem,
+    u: Array,
+    t_n: Array,
+    t_t: Array,
+    *,
+    starts: tuple[float, ...] = engine.STARTS,
+    progress: ProgressCallback | None = None,
 ) -> Solution:
     """Solve one plane load step, taking of all answers it allows the one near to the state given.
 
@@ -90,6 +96,8 @@ def solve_near(
         Displacements of the last state [m].
     t_n, t_t : (m,) arrays
         Its forces [kN].
+    starts : tuple of float
+        Sizes of the interior point's starting points.
     progress : callable, optional
 
     Returns
@@ -97,8 +105,10 @@ def solve_near(
     Solution
         Certified by the problem itself, or GAVE_UP (or CANCELLED).
     """
+    if not needed(problem):
+        return engine.solve(problem, homotopy=False, starts=starts, progress=progress)
     soft = softened(problem, u, t_n, t_t)
-    first = engine.solve(soft, homotopy=False, progress=progress)
+    first = engine.solve(soft, homotopy=False, starts=starts, progress=progress)
     if not first.solved:
         return replace(first, method=NAME)
     s = scale(problem)

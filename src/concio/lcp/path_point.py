@@ -10,7 +10,7 @@ from concio.contact.problem import Array
 from concio.lcp.path_equations import PathEquations
 from concio.lcp.path_rates import Rates, Values, grips
 from concio.lcp.path_scaling import Scaled
-from concio.lcp.path_state import CLOSED, CRUSHED, OPEN, STICK, LinearPath, PathState, energy_of_step
+from concio.lcp.path_state import CLOSED, CRUSHED, OPEN, STICK, LinearPath, PathState, certify_step, energy_of_step
 
 ON_EQUATIONS = 1e-15
 """Residual of the equations of the present states, relative to their largest term, that needs no correction."""
@@ -21,6 +21,10 @@ DUST = 1e-16
 FIRM = 1e-3
 """Compliance lent to hard pairs while the answer of another solver is put on the equations: the rounding of its
 displacements contradicts redundant pairs, and over a small compliance it would turn into forces."""
+
+
+EXACT = 1e-12
+"""Certificate entries below this are rounding."""
 
 
 def states_in_use(path: LinearPath, state: PathState) -> tuple[Array, Array]:
@@ -102,15 +106,23 @@ class PathPoint:
         return np.concatenate([state.displacement / length, forces, [state.parameter]])
 
     def go_to(self, state: PathState) -> PathState:
-        """Take over a certified state and the states of its pairs."""
+        """Take over a certified state and the states of its pairs; return it as put on the exact equations of these.
+
+        The answer as it came is kept where its states turn out not to be exactly those.
+        """
+        before, length = self.state, self.scaled.length
         contact, sliding = states_in_use(self.path, state)
         self.equations.set_states(contact, sliding, lent=FIRM)
         self.x = self.unknowns(state)
-        self.slip, self.offset = state.slip / self.scaled.length, state.offset / self.scaled.length
-        self.state = state
+        self.slip, self.offset = state.slip / length, state.offset / length
         self.put_on_equations()
         self.equations.set_states(contact, sliding)
-        return state
+        exact = self.record()
+        exact = replace(exact, contact=state.contact, sliding=state.sliding)
+        if certify_step(self.path, before, exact).worst > certify_step(self.path, before, state).worst + EXACT:
+            self.x, exact = self.unknowns(state), state
+        self.state = exact
+        return exact
 
     def distance(self, v: Values, r: Rates) -> float:
         """Return how far the control can go until a pair meets the next bound of its state."""

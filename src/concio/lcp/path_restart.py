@@ -21,12 +21,18 @@ import numpy as np
 from concio.contact.problem import Array
 from concio.lcp import auto, engine
 from concio.lcp.certificate import scales
-from concio.lcp.near_forces import solve_near
+from concio.lcp.near_forces import needed, solve_near
 from concio.lcp.path_state import LinearPath, PathState, plastic_position, state_of, step_problem
 from concio.lcp.solution import ProgressCallback, Solution, Status
 
 SHARES = (1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 2e-3, 4e-3, 7e-3, 1e-2, 2e-2)
 """Load increments tried in turn, as shares of the present load."""
+
+QUICK = (10.0,)
+"""Starting points of the quick tries."""
+
+ACCURATE = 1e-10
+"""Largest certificate entry of a state from which a path goes on: its error would stay in the balance of energy."""
 
 SHRINKS = 0.3
 """An answer whose distance shrinks by this factor under a tenth of the increment is no jump."""
@@ -85,16 +91,17 @@ def look_beyond(
     """
     unit = load_unit(path, point)
     shares = [share for share in SHARES if share >= least] or [SHARES[-1]]
+    tries = [(share, False) for share in shares] + [(shares[0], True), (shares[-1], True)]
     proof: Solution | None = None
-    for i, share in enumerate(shares):
+    for share, thorough in tries:
         parameter = point.parameter + sense * min(share * unit, abs(end - point.parameter))
-        solution = solve_step(path, point, parameter, progress, thorough=i in (0, len(shares) - 1))
+        solution = solve_step(path, point, parameter, progress, thorough=thorough)
         if solution.status is Status.CANCELLED:
             return Beyond(None, cancelled=True)
         if solution.status is Status.NO_EQUILIBRIUM:
             proof = solution
             break  # nor is there any at larger increments: the loads that can be carried are convex
-        if not solution.solved:
+        if not solution.solved or solution.certificate.worst > ACCURATE:
             continue
         state = state_of(
             path, parameter, solution.displacement, solution.normal_force, solution.friction_force, before=point
@@ -114,14 +121,15 @@ def load_unit(path: LinearPath, point: PathState) -> float:
 def solve_step(
     path: LinearPath, point: PathState, parameter: float, progress: ProgressCallback | None, *, thorough: bool
 ) -> Solution:
-    """Solve one load step from a point: quickly, and if ``thorough`` by whatever short of pivoting."""
+    """Solve one load step from a point: quickly, or by whatever short of pivoting."""
     problem = step_problem(path, point, parameter)
-    solution = solve_near(problem, point.displacement, point.normal_force, point.friction_force, progress=progress)
-    if not (solution.solved or solution.status is Status.CANCELLED):
-        solution = engine.solve(problem, homotopy=False, progress=progress)
-    if solution.solved or solution.status is Status.CANCELLED or not thorough:
+    if thorough:
+        return auto.solve(problem, pivoting=False, progress=progress)
+    near = (point.displacement, point.normal_force, point.friction_force)
+    solution = solve_near(problem, *near, starts=QUICK, progress=progress)
+    if solution.solved or solution.status is Status.CANCELLED or not needed(problem):
         return solution
-    return auto.solve(problem, pivoting=False, progress=progress)
+    return engine.solve(problem, homotopy=False, starts=QUICK, progress=progress)
 
 
 def is_jump(path: LinearPath, point: PathState, state: PathState, progress: ProgressCallback | None) -> bool:
