@@ -107,12 +107,17 @@ class _Follower(PathPoint):
             if found is None:
                 if self.restarts >= MOST_RESTARTS:
                     return self.finish(states, events, Outcome.TOO_MANY, direction)
-                beyond = self.beyond(progress)
+                motion = self.free_motion(runaway)
+                beyond = self.beyond(progress, free=motion is not None)
                 if beyond.cancelled:
                     return self.finish(states, events, Outcome.CANCELLED, direction)
                 if beyond.state is None:
                     events.extend(self.last_events(v, direction, old, len(states) - 1))
-                    return self.end_of_path(states, events, direction, runaway, beyond)
+                    if motion is not None or beyond.no_equilibrium:
+                        motion = beyond.motion if motion is None else motion
+                        return self.finish(states, events, Outcome.LIMIT, motion)
+                    last = direction if runaway is None else runaway
+                    return self.finish(states, events, Outcome.LOST, last)
                 if self.driven:
                     self.equations.set_control(self.control)
                     self.driven = False
@@ -139,13 +144,20 @@ class _Follower(PathPoint):
                 return self.finish(states, events, Outcome.CANCELLED, direction)
         return self.finish(states, events, Outcome.TOO_MANY, direction)
 
-    def beyond(self, progress: ProgressCallback | None) -> Beyond:
+    def free_motion(self, runaway: Array | None) -> Array | None:
+        """Return the rate (N,) that ran away, if the structure can move so at constant load; else None."""
+        if runaway is None:
+            return None
+        v = runaway[: self.equations.n]
+        return next((way * v for way in (1.0, -1.0) if moves_freely(self.path, self.state, way * v)), None)
+
+    def beyond(self, progress: ProgressCallback | None, *, free: bool) -> Beyond:
         """Look for a certified state at a finite distance, by a growing load (or, asked to go down, a falling one)."""
         point, sense = self.state, self.sense if self.by_load else 1.0
         walked = abs(point.parameter - self.restarted) / load_unit(self.path, point)
         self.share = 10 * self.share if walked <= CLOSE * self.share else SHARES[0]
         end = self.until if self.by_load else np.inf
-        found = look_beyond(self.path, point, sense, end=end, least=self.share, progress=progress)
+        found = look_beyond(self.path, point, sense, end=end, free=free, least=self.share, progress=progress)
         if found.state is None:
             return found
         if not self.by_load and (self.control @ self.unknowns(found.state) - self.given()) * self.sense <= 0:
@@ -160,23 +172,6 @@ class _Follower(PathPoint):
         parameter, given, step = float(self.x[-1]), self.given() * self.unit, len(states) - 1
         first = Event(parameter, given, most, "jumps" if beyond.jump else "restarts", 0, step)
         return [first, *changes(old, PairStates.of(self.equations), parameter, given, step)]
-
-    def end_of_path(
-        self,
-        states: list[PathState],
-        events: list[Event],
-        direction: Array | None,
-        runaway: Array | None,
-        beyond: Beyond,
-    ) -> EventPath:
-        """Finish where nothing continues the path: LIMIT where that is shown, LOST where it is not."""
-        last = direction if runaway is None else runaway
-        for way in (1.0, -1.0):
-            if runaway is not None and moves_freely(self.path, self.state, way * runaway[: self.equations.n]):
-                return self.finish(states, events, Outcome.LIMIT, way * runaway)
-        if beyond.no_equilibrium:
-            return self.finish(states, events, Outcome.LIMIT, beyond.motion)
-        return self.finish(states, events, Outcome.LOST, last)
 
     def direction(self, v: Values, known: Rates | None) -> tuple[Rates | None, Array | None]:
         """Find the way on: under the control; failing that, past a snap-back, driven by a pair that wants to move.

@@ -43,6 +43,9 @@ UPDATES = 48
 SMALL = 1e-15
 """Refinement stops at this residual, relative to the right-hand side."""
 
+SLOW = 0.2
+"""A small residual that a round of refinement does not reduce to this share is rounding."""
+
 
 class PathEquations:
     """The matrix of the current states, its factors and their updates.
@@ -251,8 +254,9 @@ class PathEquations:
             worst = float(np.max(np.abs(r).max(axis=0) / size))
             if not np.isfinite(worst) or worst >= smallest:
                 break
+            slow = worst > SLOW * smallest
             best, smallest, self.creep = x, worst, creep
-            if worst <= SMALL:
+            if worst <= SMALL or (slow and worst <= POOR):
                 break
             change = self.approximate(r)
             x, creep = x + change, creep - change

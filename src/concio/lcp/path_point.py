@@ -12,7 +12,7 @@ from concio.lcp.path_rates import Rates, Values, grips
 from concio.lcp.path_scaling import Scaled
 from concio.lcp.path_state import CLOSED, CRUSHED, OPEN, STICK, LinearPath, PathState, certify_step, energy_of_step
 
-ON_EQUATIONS = 1e-15
+ON_EQUATIONS = 1e-14
 """Residual of the equations of the present states, relative to their largest term, that needs no correction."""
 
 DUST = 1e-16

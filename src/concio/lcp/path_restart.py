@@ -71,6 +71,7 @@ def look_beyond(
     sense: float,
     *,
     end: float = np.inf,
+    free: bool = False,
     least: float = 0.0,
     progress: ProgressCallback | None = None,
 ) -> Beyond:
@@ -85,6 +86,8 @@ def look_beyond(
         +1 or -1: the load parameter grows or falls.
     end : float
         Load parameter not to be passed.
+    free : bool
+        Whether the structure is known to move freely at the point: then only quick tries are made, and fewer.
     least : float
         Smallest share of the present load worth trying, where restarts have followed one another closely.
     progress : callable, optional
@@ -92,6 +95,8 @@ def look_beyond(
     unit = load_unit(path, point)
     shares = [share for share in SHARES if share >= least] or [SHARES[-1]]
     tries = [(share, False) for share in shares] + [(shares[0], True), (shares[-1], True)]
+    if free:
+        tries = [(share, False) for share in shares[::2]]
     proof: Solution | None = None
     for share, thorough in tries:
         parameter = point.parameter + sense * min(share * unit, abs(end - point.parameter))
