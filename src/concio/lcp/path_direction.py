@@ -76,7 +76,7 @@ def find_direction(
         if residual > TRUE:
             stress = self_stress(equations, direction)
             if stress is None:
-                runaway = direction
+                runaway = equations.null_motion(direction)
                 break
             direction, creep = stress, np.zeros_like(stress)
         r = rates(equations, direction, creep)

@@ -40,6 +40,9 @@ POOR = 1e-9
 UPDATES = 48
 """Changed rows after which the matrix is factorised anew."""
 
+INVERSE = 4
+"""Inverse iterations on a runaway rate."""
+
 SMALL = 1e-15
 """Refinement stops at this residual, relative to the right-hand side."""
 
@@ -264,6 +267,22 @@ class PathEquations:
             self.factorise(careful=True)  # under displacement control the matrix should be regular: try harder
             return self.solve(b, rounds)
         return best, smallest
+
+    def null_motion(self, runaway: Array) -> Array:
+        """Return the answer (size,) of a singular matrix cleared, by inverse iteration, of all that is no motion."""
+        n, m = self.n, self.m
+        lent = np.zeros(self.size)
+        lent[:n] = REGULAR
+        lent[n : n + m] = np.where(self.contact == CLOSED, self.lent, 0.0)
+        lent[n + m : -1] = np.where(self.sliding == STICK, self.lent, 0.0)
+        x = runaway / (float(np.abs(runaway).max()) or 1.0)
+        for _ in range(INVERSE):
+            y = self.approximate(lent * x)
+            size = float(np.abs(y).max())
+            if not np.isfinite(size) or size == 0.0:
+                return runaway
+            x = y / size
+        return np.asarray(x if float(x @ runaway) >= 0 else -x)
 
     def slip_of(self, k: int) -> Array:
         """Return the plastic slip of pair k as a functional of the unknowns, (size,)."""

@@ -14,7 +14,10 @@ class Outcome(Enum):
     """How a path ended; the value is the sentence a user reads."""
 
     REACHED = "The end asked for was reached."
-    LIMIT = "The load cannot be increased further: no state continues the path under growing load."
+    LIMIT = (
+        "The load grows no further: the structure moves at this load, or a mechanism proves that it carries no more, "
+        "and no certified state was found beyond."
+    )
     MECHANISM = "A mechanism has formed: the structure moves on without change of load and without further events."
     LOST = (
         "The path was lost: no certified state was found beyond this point, and that there is none was not shown. "

@@ -25,7 +25,7 @@ from concio.lcp.near_forces import needed, solve_near
 from concio.lcp.path_state import LinearPath, PathState, plastic_position, state_of, step_problem
 from concio.lcp.solution import ProgressCallback, Solution, Status
 
-SHARES = (1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 2e-3, 4e-3, 7e-3, 1e-2, 2e-2)
+SHARES = (1e-6, 3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 2e-3, 4e-3, 7e-3, 1e-2, 2e-2)
 """Load increments tried in turn, as shares of the present load."""
 
 QUICK = (10.0,)
@@ -33,6 +33,9 @@ QUICK = (10.0,)
 
 ACCURATE = 1e-10
 """Largest certificate entry of a state from which a path goes on: its error would stay in the balance of energy."""
+
+NEXT = 1e-4
+"""Increment up to which the proof that there is no equilibrium counts for the point itself."""
 
 SHRINKS = 0.3
 """An answer whose distance shrinks by this factor under a tenth of the increment is no jump."""
@@ -87,16 +90,16 @@ def look_beyond(
     end : float
         Load parameter not to be passed.
     free : bool
-        Whether the structure is known to move freely at the point: then only quick tries are made, and fewer.
+        Whether the structure is known to move freely at the point: then only quick tries are made.
     least : float
         Smallest share of the present load worth trying, where restarts have followed one another closely.
     progress : callable, optional
     """
     unit = load_unit(path, point)
     shares = [share for share in SHARES if share >= least] or [SHARES[-1]]
-    tries = [(share, False) for share in shares] + [(shares[0], True), (shares[-1], True)]
+    tries = [(share, False) for share in shares] + [(shares[0], True)]
     if free:
-        tries = [(share, False) for share in shares[::2]]
+        tries.pop()
     proof: Solution | None = None
     for share, thorough in tries:
         parameter = point.parameter + sense * min(share * unit, abs(end - point.parameter))
@@ -104,8 +107,8 @@ def look_beyond(
         if solution.status is Status.CANCELLED:
             return Beyond(None, cancelled=True)
         if solution.status is Status.NO_EQUILIBRIUM:
-            proof = solution
-            break  # nor is there any at larger increments: the loads that can be carried are convex
+            proof = solution if share <= NEXT else None  # further off it says nothing of the loads between
+            break  # there is none at larger increments either: the loads that can be carried are convex
         if not solution.solved or solution.certificate.worst > ACCURATE:
             continue
         state = state_of(
