@@ -96,7 +96,7 @@ def test_load_that_cannot_be_carried(small):
     assert found.outcomes[-1] is Outcome.LIMIT
     assert len(found.outcomes) == 2
     assert not found.complete
-    assert "cannot be increased" in found.notes[-1]
+    assert "grows no further" in found.notes[-1]
     assert found.events[-1].step == len(found.steps) - 1
 
 
