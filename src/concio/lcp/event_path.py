@@ -43,6 +43,7 @@ from concio.lcp.path_state import (
     STICK,
     LinearPath,
     PathState,
+    certify_step,
     plastic_position,
     state_of,
     step_problem,
@@ -51,6 +52,9 @@ from concio.lcp.solution import Progress, ProgressCallback
 
 MOST_RESTARTS = 200
 """Finite steps (jumps and restarts) taken on one path before these count as too many events."""
+
+AT_REST = 1e-9
+"""A structure that has come back to this share of its displacement rests."""
 
 CLOSE = 20.0
 """A restart within this many increments of the one before takes a ten times larger increment."""
@@ -104,45 +108,57 @@ class _Follower(PathPoint):
             v = values(self.equations, self.x, self.slip, self.offset)
             old = PairStates.of(self.equations)
             found, runaway = self.direction(v, known)
-            if found is None:
-                if self.restarts >= MOST_RESTARTS:
-                    return self.finish(states, events, Outcome.TOO_MANY, direction)
-                motion = self.free_motion(runaway)
-                beyond = self.beyond(progress, free=motion is not None)
-                if beyond.cancelled:
-                    return self.finish(states, events, Outcome.CANCELLED, direction)
-                if beyond.state is None:
-                    events.extend(self.last_events(v, direction, old, len(states) - 1))
-                    if motion is not None or beyond.no_equilibrium:
-                        motion = beyond.motion if motion is None else motion
-                        return self.finish(states, events, Outcome.LIMIT, motion)
-                    last = direction if runaway is None else runaway
-                    return self.finish(states, events, Outcome.LOST, last)
-                if self.driven:
-                    self.equations.set_control(self.control)
-                    self.driven = False
-                states.append(self.go_to(beyond.state))
-                events.extend(self.name_step(old, beyond, states))
-                known, direction = None, None
-                if (self.until - self.given()) * self.sense <= 0:
-                    return self.finish(states, events, Outcome.REACHED, direction)
-                continue
-            events.extend(self.name_events(old, len(states) - 1))
-            known, direction = found, found.direction
-            rate = float(self.control @ direction) * self.sense
-            left = (self.until - self.given()) * self.sense / rate if rate > found.still else np.inf
-            length = self.distance(v, found)
-            reached = left <= length
-            if not np.isfinite(min(left, length)):
-                return self.finish(states, events, Outcome.MECHANISM, direction)
-            self.advance(found, min(left, length))
-            states.append(self.record())
-            if reached or (stop is not None and stop(states[-1])):
-                return self.finish(states, events, Outcome.REACHED, direction)
-            note = Progress("event-path", corner, 0.0, f"parameter {self.x[-1]:.6g}, {len(events)} events")
-            if progress is not None and progress(note):
+            if found is not None:
+                named = self.name_events(old, len(states) - 1)
+                rate = float(self.control @ found.direction) * self.sense
+                left = (self.until - self.given()) * self.sense / rate if rate > found.still else np.inf
+                length = self.distance(v, found)
+                if not np.isfinite(min(left, length)):
+                    return self.finish(states, events + named, Outcome.MECHANISM, found.direction)
+                self.advance(found, min(left, length))
+                after = self.record()
+                if self.sound(states, after):
+                    states.append(after)
+                    events.extend(named)
+                    known, direction = found, found.direction
+                    if left <= length or (stop is not None and stop(after)):
+                        return self.finish(states, events, Outcome.REACHED, direction)
+                    note = Progress("event-path", corner, 0.0, f"parameter {self.x[-1]:.6g}, {len(events)} events")
+                    if progress is not None and progress(note):
+                        return self.finish(states, events, Outcome.CANCELLED, direction)
+                    continue
+                self.state = states[-1]  # rounding has carried it off: a finite step from the last certified state
+            if self.restarts >= MOST_RESTARTS:
+                return self.finish(states, events, Outcome.TOO_MANY, direction)
+            motion = self.free_motion(runaway)
+            beyond = self.beyond(progress, free=motion is not None)
+            if beyond.cancelled:
                 return self.finish(states, events, Outcome.CANCELLED, direction)
+            if beyond.state is None:
+                events.extend(self.last_events(v, direction, old, len(states) - 1))
+                if motion is not None or beyond.no_equilibrium:
+                    motion = beyond.motion if motion is None else motion
+                    return self.finish(states, events, Outcome.LIMIT, motion)
+                last = direction if runaway is None else runaway
+                return self.finish(states, events, Outcome.LOST, last)
+            if self.driven:
+                self.equations.set_control(self.control)
+                self.driven = False
+            states.append(self.go_to(beyond.state))
+            events.extend(self.name_step(old, beyond, states))
+            known, direction = None, None
+            if (self.until - self.given()) * self.sense <= 0:
+                return self.finish(states, events, Outcome.REACHED, direction)
         return self.finish(states, events, Outcome.TOO_MANY, direction)
+
+    def sound(self, states: list[PathState], after: PathState) -> bool:
+        """Tell whether a corner is certified as a step from the one before.
+
+        Where the structure has come back to rest, rounding is not measured against itself.
+        """
+        if certify_step(self.path, states[-1], after).certified:
+            return True
+        return float(np.abs(after.displacement).max()) <= AT_REST * float(np.abs(states[-1].displacement).max())
 
     def free_motion(self, runaway: Array | None) -> Array | None:
         """Return the rate (N,) that ran away, if the structure can move so at constant load; else None."""
