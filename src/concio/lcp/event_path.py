@@ -54,7 +54,7 @@ MOST_RESTARTS = 200
 """Finite steps (jumps and restarts) taken on one path before these count as too many events."""
 
 AT_REST = 1e-9
-"""A structure that has come back to this share of its displacement rests."""
+"""A structure displaced by less than this share of a typical, or of its last, displacement rests."""
 
 CLOSE = 20.0
 """A restart within this many increments of the one before takes a ten times larger increment."""
@@ -158,7 +158,8 @@ class _Follower(PathPoint):
         """
         if certify_step(self.path, states[-1], after).certified:
             return True
-        return float(np.abs(after.displacement).max()) <= AT_REST * float(np.abs(states[-1].displacement).max())
+        most = max(self.scaled.length, float(np.abs(states[-1].displacement).max()))
+        return float(np.abs(after.displacement).max()) <= AT_REST * most
 
     def free_motion(self, runaway: Array | None) -> Array | None:
         """Return the rate (N,) that ran away, if the structure can move so at constant load; else None."""

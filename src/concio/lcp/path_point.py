@@ -18,6 +18,9 @@ ON_EQUATIONS = 1e-14
 DUST = 1e-16
 """Scaled displacements below this are rounding of zero and are recorded as zero."""
 
+ALL_DUST = 1e-13
+"""Where all scaled displacements are below this, nothing has moved."""
+
 FIRM = 1e-3
 """Compliance lent to hard pairs while the answer of another solver is put on the equations: the rounding of its
 displacements contradicts redundant pairs, and over a small compliance it would turn into forces."""
@@ -152,9 +155,11 @@ class PathPoint:
         e, force, length = self.equations, self.scaled.force, self.scaled.length
         n, m = e.n, e.m
         slip, offset = self.moved()
+        u = self.x[:n]
+        dust = np.abs(u) < (DUST if float(np.abs(u).max(initial=0.0)) > ALL_DUST else ALL_DUST)
         after = PathState(
             parameter=float(self.x[-1]),
-            displacement=np.where(np.abs(self.x[:n]) < DUST, 0.0, self.x[:n]) * length,
+            displacement=np.where(dust, 0.0, u) * length,
             normal_force=self.x[n : n + m] * force,
             friction_force=self.x[n + m : -1] * force,
             contact=e.contact.copy(),
