@@ -49,7 +49,8 @@ def test_events_are_named(exact):
     for event in exact.events:
         assert set(event.bodies) <= names
         assert event.kind in ("opens", "closes", "slips", "sticks")
-        assert exact.steps[event.step].parameter == pytest.approx(event.parameter)
+        step = exact.steps[event.step]  # the stage begins where the one before ended
+        assert event.parameter == pytest.approx(step.parameter if step.stage == event.stage else 0.0)
         assert event.bodies[0] in str(event)
 
 
@@ -95,7 +96,7 @@ def test_load_that_cannot_be_carried(small):
     assert found.outcomes[-1] is Outcome.LIMIT
     assert len(found.outcomes) == 2
     assert not found.complete
-    assert "cannot be increased" in found.notes[-1]
+    assert "grows no further" in found.notes[-1]
     assert found.events[-1].step == len(found.steps) - 1
 
 
@@ -217,8 +218,8 @@ def test_a_support_that_sinks_breaks_the_grip_of_the_joint_above_it():
     """Redundant hard pairs forbid the motion until their self-stress has grown to the sliding strength.
 
     The blocks of a course that meet above the step of the ground touch it and each other: not one of the three pairs
-    of that corner can stay as it is. The path goes on much as steps do, which know nothing of rates; not exactly so,
-    whatever their size, because the forces of redundant pairs are not unique and friction remembers them.
+    of that corner can stay as it is. The path goes on as steps do, which know nothing of rates. One block of the top
+    course balances on a single point: its rotation is left open, so that displacements agree less well than forces.
     """
     ground = [Body(n, np.array([[x, -0.2], [x + 0.5, -0.2], [x + 0.5, 0.0], [x, 0.0]]), kind="fixed")
               for n, x in (("left", 0.0), ("right", 0.5))]  # fmt: skip
@@ -240,12 +241,5 @@ def test_a_support_that_sinks_breaks_the_grip_of_the_joint_above_it():
     walked = run_path(model, stages, method="steps", solver="interior-point")
     gap = walked.steps[-1].state.displacement - found.steps[-1].state.displacement
     assert np.abs(gap).max() <= 0.1 * 1e-5
-
-
-def test_steps_where_no_rate_is_found_are_told():
-    """At rest between walls hundreds of states are possible; where none is found the load steps go on, and say so."""
-    model = wall(length=1.0, height=0.5, friction=0.6, mesh_size=0.25, side_walls=True)
-    found = run_path(model, [WEIGHT])
-    assert found.complete
-    assert found.certificate <= 1e-9
-    assert "but a load step does" in found.notes[0]
+    forces = found.steps[-1].state.normal_force
+    assert np.abs(walked.steps[-1].state.normal_force - forces).max() <= 1e-4 * np.abs(forces).max()

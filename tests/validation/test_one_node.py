@@ -1,4 +1,4 @@
-"""One node, large friction (Klarbring 1990): several solutions, and a path that ends."""
+"""One node, large friction (Klarbring 1990): several solutions, and a path that jumps."""
 
 from __future__ import annotations
 
@@ -25,6 +25,10 @@ def test_an_answer_is_always_one_of_the_solutions(mu, load):
     assert one_node.distance(mu, load, "auto") <= 1e-8 * (1 + abs(load)) / abs(1 - mu)
 
 
-def test_the_path_says_that_it_ends():
-    assert one_node.path(2.0, 5.0).outcome is Outcome.LIMIT
-    assert one_node.path(0.5, 5.0).outcome is Outcome.REACHED
+def test_the_path_jumps_where_only_a_distant_state_is_left():
+    """From stick to open at large friction; at small friction it slips, then opens, without a jump."""
+    rough, fair = one_node.path(2.0, 5.0), one_node.path(0.5, 5.0)
+    assert rough.outcome is Outcome.REACHED
+    assert [(e.kind, e.step) for e in rough.events] == [("jumps", 2), ("opens", 2)]
+    assert fair.outcome is Outcome.REACHED
+    assert not fair.jumps

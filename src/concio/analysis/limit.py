@@ -61,7 +61,12 @@ class LimitResult:
     search : str
         What the search for collapse states did, or why it was not tried.
     first_limit : float
-        Multiplier at which the path under growing load first finds no way on; ``nan`` without a path.
+        Multiplier at which the path under growing load first finds no continuous way on: that of its first jump, or
+        its end; ``nan`` without a path.
+    collapse_shown : bool
+        Whether the largest multiplier of the path is shown to be that of its collapse: the structure can move at it,
+        or a mechanism proves that it carries no more, or the load falls as the structure moves far beyond it. A path
+        that was lost shows only what the structure carries.
     lent_compliance : float
         Normal compliance lent to hard joints of rigid blocks [m/kN]; 0 where none was needed.
     """
@@ -71,19 +76,28 @@ class LimitResult:
     path: EventPath | None
     collapse_state: CollapseState | None
     first_limit: float
+    collapse_shown: bool
     lent_compliance: float
     search: str = "not asked for"
 
     @property
-    def coulomb(self) -> float:
-        """Largest multiplier met on the Coulomb path; ``nan`` without a path."""
+    def carried(self) -> float:
+        """Largest multiplier met on the Coulomb path, collapse or not; ``nan`` without a path."""
         return self.path.peak if self.path is not None else float("nan")
 
     @property
+    def coulomb(self) -> float:
+        """Collapse multiplier of the Coulomb path; ``nan`` without a path and where none was shown."""
+        return self.carried if self.collapse_shown else float("nan")
+
+    @property
     def bracket(self) -> tuple[float, float]:
-        """(least Coulomb multiplier found, associated multiplier): path peak or collapse state, whichever is less."""
+        """(least Coulomb multiplier found, associated multiplier): path peak or collapse state, whichever is less.
+
+        The peak of a path that was lost counts: the structure carries it, and collapses at it or above.
+        """
         state = self.collapse_state.multiplier if self.collapse_state is not None else np.inf
-        path = self.coulomb if self.path is not None else np.inf
+        path = self.carried if self.path is not None else np.inf
         low = min(path, state)
         return (low if np.isfinite(low) else float("nan")), self.associated.multiplier
 
@@ -111,12 +125,14 @@ class LimitResult:
             "static_residual": a.residual,
             "mechanism_violation": None if a.mechanism is None else a.mechanism.violation,
             "checked": a.checked,
-            "coulomb_path_multiplier": None if self.path is None else self.coulomb,
+            "coulomb_path_multiplier": self.coulomb if self.collapse_shown else None,
+            "coulomb_path_carries": None if self.path is None else self.carried,
             "collapse_state_multiplier": None if self.collapse_state is None else self.collapse_state.multiplier,
             "collapse_state_search": self.search,
             "coulomb_first_limit": None if self.path is None else self.first_limit,
             "path_outcome": None if self.path is None else self.path.outcome.name.lower(),
             "path_events": None if self.path is None else len(self.path.events),
+            "path_jumps": None if self.path is None else len(self.path.jumps),
             "lent_compliance": self.lent_compliance,
         }
 
@@ -157,13 +173,15 @@ def limit(
         raise NoEquilibriumError(msg, hint="solve the model with the live load factor 0 and look at the mechanism")
     bound = associated_limit(dead, load)
     if not np.isfinite(bound.multiplier):
-        return LimitResult(assembly, bound, None, None, float("nan"), 0.0, "not tried: no load is the last")
-    first, found, lent = float("nan"), None, 0.0
+        none = "not tried: no load is the last"
+        return LimitResult(assembly, bound, None, None, float("nan"), False, 0.0, search=none)
+    first, found, shown, lent = float("nan"), None, False, 0.0
     if path:
         problem, lent = with_compliance(dead, load)
-        first, found = coulomb_path(problem, load, progress=progress)
+        found, shown = coulomb_path(problem, load, progress=progress)
+        first = min((e.parameter for e in found.jumps), default=found.peak)
     state, said = search_collapse(dead, load) if (path if search is None else search) else (None, "not asked for")
-    return LimitResult(assembly, bound, found, state, first, lent, said)
+    return LimitResult(assembly, bound, found, state, first, shown, lent, search=said)
 
 
 def search_collapse(dead: ContactProblem, live: Array) -> tuple[CollapseState | None, str]:
@@ -211,8 +229,11 @@ def dead_and_live(assembly: Assembly, live: str | Sequence[str]) -> tuple[Contac
 
 def coulomb_path(
     problem: ContactProblem, live: Array, *, progress: ProgressCallback | None = None
-) -> tuple[float, EventPath]:
-    """Follow dead load, then live load, to collapse; return the first limit under growing load, and the whole path.
+) -> tuple[EventPath, bool]:
+    """Follow dead load, then live load, to collapse; return the path, and whether its peak is shown to be collapse.
+
+    Under growing load the path goes as far as certified states go, over jumps; from there the displacement that the
+    load works on is controlled, to see the structure move.
 
     Parameters
     ----------
@@ -236,10 +257,11 @@ def coulomb_path(
     path = LinearPath(problem, live)
     start = replace(weight.end, parameter=0.0, work=0.0, dissipation=0.0)
     growing = follow(path, start, until=1e6, progress=progress)
+    shown = growing.outcome is Outcome.LIMIT
     control = live / float(np.abs(live).sum())
     moved = float(control @ (growing.end.displacement - start.displacement))
-    if growing.outcome is not Outcome.LIMIT or not moved > 0:
-        return growing.peak, growing
+    if growing.outcome not in (Outcome.LIMIT, Outcome.LOST) or not moved > 0:
+        return growing, shown or growing.outcome is Outcome.MECHANISM
     until = float(control @ start.displacement) + FAR * moved
     falling = follow(path, growing.end, until=until, control=control, progress=progress)
     whole = EventPath(
@@ -249,4 +271,5 @@ def coulomb_path(
         falling.direction,
         growing.factorisations + falling.factorisations,
     )
-    return growing.peak, whole
+    higher = falling.peak > growing.peak * (1 + 1e-9)
+    return whole, falling.outcome in (Outcome.REACHED, Outcome.MECHANISM) or (shown and not higher)

@@ -140,15 +140,14 @@ def limit_lines(found: LimitResult, groups: list[str]) -> list[str]:
     state_line = collapse_line(found)
     if found.path is None:
         return [*lines, state_line] if state_line else lines
-    lines += [
-        f"  Coulomb load path    {found.coulomb:.6g} at its peak, {len(found.path.events):,} events; the first point "
-        f"with no way on under growing load is {found.first_limit:.6g}",
-        f"  it ended             {found.path.outcome.value}",
-    ]
+    lines += path_lines(found)
     if state_line:
         lines.append(state_line)
-    low = min(found.first_limit, found.bracket[0])
-    lines.append(f"  in short             between {low:.6g} and {bound.multiplier:.6g} times the load of '{named}'")
+    least = "" if found.collapse_shown else ", the path having been lost there"
+    lines.append(
+        f"  in short             between {found.bracket[0]:.6g}{least} and {bound.multiplier:.6g} times the load of "
+        f"'{named}'"
+    )
     if found.lent_compliance:
         lines.append(f"  rigid joints         were lent a compliance of {found.lent_compliance:.1e} m/kN for the path")
     return lines
@@ -160,3 +159,28 @@ def collapse_line(found: LimitResult) -> str:
         number = found.collapse_state.multiplier
         return f"  collapse state       {number:.6g}: there Coulomb friction lets it begin to move ({found.search})"
     return "" if found.search == "not asked for" else f"  collapse state       {found.search}"
+
+
+def path_lines(found: LimitResult) -> list[str]:
+    """Return the Coulomb path in words: a collapse multiplier where one is shown, else what is carried at least."""
+    path = found.path
+    assert path is not None
+    end = {
+        "REACHED": "followed on, its load no longer growing, until it had moved far",
+        "MECHANISM": "a mechanism has formed that moves on without change of load",
+        "LIMIT": "no certified state carries more, and the structure can move at that load or provably not carry it",
+        "CANCELLED": "stopped on request",
+        "TOO_MANY": "stopped after more events than allowed",
+    }.get(path.outcome.name, "lost: no certified state was found further on")
+    if found.collapse_shown:
+        lines = [f"  Coulomb load path    collapses at {found.coulomb:.6g}, {len(path.events):,} events"]
+    else:
+        known = f"carries at least {found.carried:.6g}, {len(path.events):,} events; its collapse was not met"
+        lines = [f"  Coulomb load path    {known}"]
+    lines.append(f"                       {end}")
+    if path.jumps:
+        first = path.jumps[0].parameter
+        lines.append(
+            f"                       parts of the structure snap {len(path.jumps)} times, first at {first:.6g}"
+        )
+    return lines

@@ -30,7 +30,8 @@ def write_limit(found: LimitResult, groups: list[str], told: dict[str, Any], pla
         written += _draw(found, found.collapse_state.velocity, title, "joints that slide stay closed",
                          place / "collapse_state")  # fmt: skip
     if found.path is not None and np.abs(found.path.direction).any():
-        title = f"Motion at the end of the Coulomb path, peak {found.coulomb:.6g} times the load of '{named}'"
+        end = "end of the Coulomb path" if found.collapse_shown else "point where the Coulomb path was lost"
+        title = f"Motion at the {end}, peak {found.carried:.6g} times the load of '{named}'"
         written += _draw(found, found.path.direction, title, "joints that slide stay closed", place / "path_mechanism")
     return written
 

@@ -17,6 +17,8 @@ from concio.report.page import write_report
 Array = np.ndarray
 MOST_STEPS = 40
 """Steps the slider of the report shows."""
+SLIGHT = 1e-9
+"""Components of a direction below this are rounding."""
 MOST_EVENTS = 30
 """More events than this are counted, unless all are asked for."""
 
@@ -50,7 +52,8 @@ def curve_point(found: PathResult) -> ControlPoint:
         size = np.linalg.norm(motion, axis=1)
         k = int(size.argmax())
         if best is None or size[k] > best[0]:
-            at, u = end.nodes(b)[k], motion[k] if size[k] > 0 else np.array([0.0, 1.0])
+            at, u = end.nodes(b)[k], motion[k] / size[k] if size[k] > 0 else np.array([0.0, 1.0])
+            u = np.where(np.abs(u) > SLIGHT, u, 0.0)
             best = float(size[k]), ControlPoint(body.name, (float(at[0]), float(at[1])), (float(u[0]), float(u[1])))
     assert best is not None  # a model without free bodies is not assembled
     return best[1]

@@ -41,6 +41,7 @@ def solve(
     progress: ProgressCallback | None = None,
     engine: Engine = "superlu",
     homotopy: bool = True,
+    starts: tuple[float, ...] = STARTS,
     **options: Any,
 ) -> Solution:
     """Solve one load step.
@@ -53,6 +54,8 @@ def solve(
         Sparse factorisation.
     homotopy : bool
         Walk from associated flow where the plain iteration fails.
+    starts : tuple of float
+        Sizes of the starting points tried in turn.
 
     Returns
     -------
@@ -66,7 +69,7 @@ def solve(
     run = Run(scaled, progress)
     try:
         found = None
-        for start in STARTS:
+        for start in starts:
             found = found or run.plain(start)
         if found is None and homotopy and scaled.rough.any():
             found = run.homotopy()

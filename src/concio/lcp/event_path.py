@@ -8,19 +8,22 @@ the limit of incremental analyses as their steps shrink.
 
 Control is by the load parameter, which ends at the limit point, or by a functional of the displacements (the motion
 of a control point), which passes it and follows the falling branch.
+
+Where no rates continue the path it goes on from a certified state at a finite distance, if there is one, and the step
+is named as what it is: a jump or a restart (:mod:`concio.lcp.path_restart`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
 from concio.contact.problem import Array
-from concio.lcp.methods import find
+from concio.lcp.near_forces import solve_near
 from concio.lcp.path_direction import LARGEST_VERTEX, find_direction
-from concio.lcp.path_equations import PathEquations, Scaled
+from concio.lcp.path_events import PairStates, changes
+from concio.lcp.path_point import PathPoint
 from concio.lcp.path_rates import (
     Rates,
     Values,
@@ -33,25 +36,28 @@ from concio.lcp.path_rates import (
     wrong,
 )
 from concio.lcp.path_record import Event, EventPath, Outcome
+from concio.lcp.path_restart import SHARES, Beyond, load_unit, look_beyond, moves_freely
 from concio.lcp.path_state import (
     CLOSED,
-    CRUSHED,
     OPEN,
     STICK,
     LinearPath,
     PathState,
-    energy_of_step,
+    certify_step,
+    plastic_position,
     state_of,
     step_problem,
 )
 from concio.lcp.solution import Progress, ProgressCallback
 
-ON_EQUATIONS = 1e-15
-"""Residual of the equations of the present states, relative to their largest term, that needs no correction."""
+MOST_RESTARTS = 200
+"""Finite steps (jumps and restarts) taken on one path before these count as too many events."""
 
+AT_REST = 1e-9
+"""A structure displaced by less than this share of a typical, or of its last, displacement rests."""
 
-DUST = 1e-16
-"""Scaled displacements below this are rounding of zero and are recorded as zero."""
+CLOSE = 20.0
+"""A restart within this many increments of the one before takes a ten times larger increment."""
 
 
 def follow(
@@ -84,107 +90,114 @@ def follow(
     return _Follower(path, start, until, control).run(max_events, progress, stop)
 
 
-class _Follower:
+class _Follower(PathPoint):
     def __init__(self, path: LinearPath, start: PathState, until: float, control: Array | None) -> None:
-        self.path, self.state = path, start
-        self.scaled = Scaled.of(path)
-        functional = None if control is None else np.asarray(control, dtype=float)
-        spare = path.problem.laws.cohesion - path.problem.laws.friction * path.problem.laws.tension
-        rough = (path.problem.laws.friction > 0) | (path.problem.laws.cohesion > 0)
-        contact, sliding = start.contact.astype(np.int8), start.sliding.astype(np.int8)
-        sliding = np.where(~rough | ((contact == OPEN) & (spare <= 0)), 1, sliding).astype(np.int8)
-        self.by_load = functional is None
-        self.unit = 1.0 if functional is None else self.scaled.length
-        self.control = np.zeros(path.problem.unknowns + 2 * path.problem.pairs + 1)
-        if functional is None:
-            self.control[-1] = 1.0
-        else:
-            self.control[: functional.size] = functional
-        self.equations = PathEquations(self.scaled, contact, sliding, self.control)
+        super().__init__(path, start, until, control)
         self.driven = False  # a pair's slip or opening stands in for the control
-        self.slip, self.offset = start.slip / self.scaled.length, start.offset / self.scaled.length
-        self.x = np.concatenate(
-            [
-                start.displacement / self.scaled.length,
-                start.normal_force / self.scaled.force,
-                start.friction_force / self.scaled.force,
-                [start.parameter],
-            ]
-        )
-        self.until = until / self.unit
-        self.sense = 1.0 if self.until >= self.given() else -1.0
-
-    def given(self) -> float:
-        """Return the present value of what is controlled."""
-        return float(self.control @ self.x)
+        self.restarts, self.restarted, self.share = 0, -np.inf, SHARES[0]
 
     def run(
         self, max_events: int, progress: ProgressCallback | None, stop: Callable[[PathState], bool] | None
     ) -> EventPath:
         states, events = [self.state], list[Event]()
+        known: Rates | None = None
         direction: Array | None = None
         self.put_on_equations()
         for corner in range(max_events):
             self.settle()
             v = values(self.equations, self.x, self.slip, self.offset)
-            old = (self.equations.contact.copy(), self.equations.sliding.copy(), grips(self.equations))
-            found, runaway = self.direction(v, direction)
-            if found is None:
-                events.extend(self.last_events(v, direction, old, len(states) - 1))
-                outcome = Outcome.LIMIT if self.by_load else Outcome.LOST
-                return self.finish(states, events, outcome, direction if runaway is None else runaway)
-            events.extend(self.name_events(old, len(states) - 1))
-            direction = found.direction
-            rate = float(self.control @ direction) * self.sense
-            left = (self.until - self.given()) * self.sense / rate if rate > found.still else np.inf
-            length = self.distance(v, found)
-            reached = left <= length
-            if not np.isfinite(min(left, length)):
-                return self.finish(states, events, Outcome.MECHANISM, direction)
-            self.advance(found, min(left, length))
-            states.append(self.record())
-            if reached or (stop is not None and stop(states[-1])):
-                return self.finish(states, events, Outcome.REACHED, direction)
-            note = Progress("event-path", corner, 0.0, f"parameter {self.x[-1]:.6g}, {len(events)} events")
-            if progress is not None and progress(note):
+            old = PairStates.of(self.equations)
+            found, runaway = self.direction(v, known)
+            if found is not None:
+                named = self.name_events(old, len(states) - 1)
+                rate = float(self.control @ found.direction) * self.sense
+                left = (self.until - self.given()) * self.sense / rate if rate > found.still else np.inf
+                length = self.distance(v, found)
+                if not np.isfinite(min(left, length)):
+                    return self.finish(states, events + named, Outcome.MECHANISM, found.direction)
+                self.advance(found, min(left, length))
+                after = self.record()
+                if self.sound(states, after):
+                    states.append(after)
+                    events.extend(named)
+                    known, direction = found, found.direction
+                    if left <= length or (stop is not None and stop(after)):
+                        return self.finish(states, events, Outcome.REACHED, direction)
+                    note = Progress("event-path", corner, 0.0, f"parameter {self.x[-1]:.6g}, {len(events)} events")
+                    if progress is not None and progress(note):
+                        return self.finish(states, events, Outcome.CANCELLED, direction)
+                    continue
+                self.state = states[-1]  # rounding has carried it off: a finite step from the last certified state
+            if self.restarts >= MOST_RESTARTS:
+                return self.finish(states, events, Outcome.TOO_MANY, direction)
+            motion = self.free_motion(runaway)
+            beyond = self.beyond(progress, free=motion is not None)
+            if beyond.cancelled:
                 return self.finish(states, events, Outcome.CANCELLED, direction)
+            if beyond.state is None:
+                events.extend(self.last_events(v, direction, old, len(states) - 1))
+                if motion is not None or beyond.no_equilibrium:
+                    motion = beyond.motion if motion is None else motion
+                    return self.finish(states, events, Outcome.LIMIT, motion)
+                last = direction if runaway is None else runaway
+                return self.finish(states, events, Outcome.LOST, last)
+            if self.driven:
+                self.equations.set_control(self.control)
+                self.driven = False
+            states.append(self.go_to(beyond.state))
+            events.extend(self.name_step(old, beyond, states))
+            known, direction = None, None
+            if (self.until - self.given()) * self.sense <= 0:
+                return self.finish(states, events, Outcome.REACHED, direction)
         return self.finish(states, events, Outcome.TOO_MANY, direction)
 
-    def put_on_equations(self) -> None:
-        """Correct the point where rounding has carried it off the equations of its states (little, or not at all)."""
-        b = self.right_hand_side()
-        size = float(np.abs(self.x).max(initial=0.0)) + float(np.abs(b).max(initial=0.0))
-        left = b - self.equations.multiply(self.x)
-        if float(np.abs(left).max()) <= ON_EQUATIONS * size:
-            return
-        change, _ = self.equations.solve(left)  # of least size where forces are not unique
-        if np.abs(change).max() <= 1e-6 * size:
-            self.x = self.x + change
+    def sound(self, states: list[PathState], after: PathState) -> bool:
+        """Tell whether a corner is certified as a step from the one before.
 
-    def right_hand_side(self) -> Array:
-        return self.equations.right_hand_side(self.slip, self.offset, float(self.equations.control @ self.x))
+        Where the structure has come back to rest, rounding is not measured against itself.
+        """
+        if certify_step(self.path, states[-1], after).certified:
+            return True
+        most = max(self.scaled.length, float(np.abs(states[-1].displacement).max()))
+        return float(np.abs(after.displacement).max()) <= AT_REST * most
 
-    def settle(self) -> None:
-        """Let slip and offset follow what has slipped or been crushed."""
-        self.slip, self.offset = self.moved()
+    def free_motion(self, runaway: Array | None) -> Array | None:
+        """Return the rate (N,) that ran away, if the structure can move so at constant load; else None."""
+        if runaway is None:
+            return None
+        v = runaway[: self.equations.n]
+        return next((way * v for way in (1.0, -1.0) if moves_freely(self.path, self.state, way * v)), None)
 
-    def moved(self) -> tuple[Array, Array]:
-        """Return slip and offset at the present point, scaled: dilatancy lifts wherever a pair slips, open or not."""
-        e = self.equations
-        opening, position = e.positions(self.x)
-        moving = e.sliding != STICK
-        offset = self.offset - np.where(moving, e.data["psi"] * np.abs(position - self.slip), 0.0)
-        exact = (e.contact == CRUSHED) | ((e.contact == CLOSED) & moving & (e.data["psi"] > 0))
-        return np.where(moving, position, self.slip), np.where(exact, -opening, offset)
+    def beyond(self, progress: ProgressCallback | None, *, free: bool) -> Beyond:
+        """Look for a certified state at a finite distance, by a growing load (or, asked to go down, a falling one)."""
+        point, sense = self.state, self.sense if self.by_load else 1.0
+        walked = abs(point.parameter - self.restarted) / load_unit(self.path, point)
+        self.share = 10 * self.share if walked <= CLOSE * self.share else SHARES[0]
+        end = self.until if self.by_load else np.inf
+        found = look_beyond(self.path, point, sense, end=end, free=free, least=self.share, progress=progress)
+        if found.state is None:
+            return found
+        if not self.by_load and (self.control @ self.unknowns(found.state) - self.given()) * self.sense <= 0:
+            return Beyond(None)  # the control point would go back
+        self.restarts, self.restarted = self.restarts + 1, found.state.parameter
+        return found
 
-    def direction(self, v: Values, known: Array | None) -> tuple[Rates | None, Array | None]:
+    def name_step(self, old: PairStates, beyond: Beyond, states: list[PathState]) -> list[Event]:
+        """Name a finite step after the pair that moves most in it, and what changed in it."""
+        (n0, t0), (n1, t1) = (plastic_position(self.path, s) for s in states[-2:])
+        most = int(np.argmax(np.abs(n1 - n0) + np.abs(t1 - t0)))
+        parameter, given, step = float(self.x[-1]), self.given() * self.unit, len(states) - 1
+        first = Event(parameter, given, most, "jumps" if beyond.jump else "restarts", 0, step)
+        return [first, *changes(old, PairStates.of(self.equations), parameter, given, step)]
+
+    def direction(self, v: Values, known: Rates | None) -> tuple[Rates | None, Array | None]:
         """Find the way on: under the control; failing that, past a snap-back, driven by a pair that wants to move.
 
         Under displacement control the structure may snap back: no state continues the path while the control point
         advances, but one does while load and control point retreat and a pair slips or opens on. That pair's motion
         is then prescribed until the control point advances again.
         """
-        if self.driven and known is not None and float(self.control @ known) * self.sense > 0:
+        if self.driven and known is not None and float(self.control @ known.direction) * self.sense > 0:
             self.equations.set_control(self.control)
             self.driven, known = False, None
         sense = 1.0 if self.driven else self.sense
@@ -194,7 +207,7 @@ class _Follower:
         if found is not None or self.by_load or known is None:
             return found, runaway
         driver = self.equations.control
-        for row in self.drivers(v, known):
+        for row in self.drivers(v, known.direction):
             self.equations.set_control(row)
             found, _ = find_direction(self.equations, v)
             if found is not None:
@@ -215,7 +228,9 @@ class _Follower:
         before = (e.contact.copy(), e.sliding.copy())
         for share in (1e-3, 1e-5):
             parameter = self.state.parameter + share * unit * sense
-            solution = find("interior-point")(step_problem(self.path, self.state, parameter))
+            point = self.state
+            problem = step_problem(self.path, point, parameter)
+            solution = solve_near(problem, point.displacement, point.normal_force, point.friction_force)
             if not solution.solved:
                 continue
             u, t_n, t_t = solution.displacement, solution.normal_force, solution.friction_force
@@ -242,51 +257,7 @@ class _Follower:
         rows.extend(e.sliding[k] * e.slip_of(int(k)) for k in slipping[np.argsort(-speed)][:5])
         return rows
 
-    def distance(self, v: Values, r: Rates) -> float:
-        """Return how far the control can go until a pair meets the next bound of its state."""
-        e = self.equations
-        grip = grips(e)
-        ways = [
-            (v.gap, r.opening, e.contact == OPEN, r.still),
-            (v.force, r.force, e.contact == CLOSED, r.calm),
-            (v.room, -r.force, e.contact == CLOSED, r.calm),
-            (v.plus, r.plus, (e.sliding == STICK) & grip, r.calm),
-            (v.minus, r.minus, (e.sliding == STICK) & grip, r.calm),
-        ]
-        best = np.inf
-        for value, rate, mask, still in ways:
-            use = mask & (rate < -still) & np.isfinite(value)
-            if use.any():
-                best = min(best, float((np.maximum(value[use], 0.0) / -rate[use]).min()))
-        return best
-
-    def advance(self, r: Rates, length: float) -> None:
-        """Go along the direction and put the point back on the exact equations."""
-        self.x = self.x + length * r.direction
-        self.put_on_equations()
-
-    def record(self) -> PathState:
-        e, force, length = self.equations, self.scaled.force, self.scaled.length
-        n, m = e.n, e.m
-        slip, offset = self.moved()
-        after = PathState(
-            parameter=float(self.x[-1]),
-            displacement=np.where(np.abs(self.x[:n]) < DUST, 0.0, self.x[:n]) * length,
-            normal_force=self.x[n : n + m] * force,
-            friction_force=self.x[n + m : -1] * force,
-            contact=e.contact.copy(),
-            sliding=e.sliding.copy(),
-            slip=slip * length,
-            offset=offset * length,
-        )
-        work, dissipation = energy_of_step(self.path, self.state, after)
-        after = replace(after, work=self.state.work + work, dissipation=self.state.dissipation + dissipation)
-        self.state = after
-        return after
-
-    def last_events(
-        self, v: Values, direction: Array | None, old: tuple[Array, Array, Array], step: int
-    ) -> list[Event]:
+    def last_events(self, v: Values, direction: Array | None, old: PairStates, step: int) -> list[Event]:
         """Name what the pairs at their bounds were about to do where the path ends."""
         if direction is None:
             return []
@@ -294,33 +265,13 @@ class _Follower:
             self.equations.set_state(k, contact, sliding)
         return self.name_events(old, step)
 
-    def name_events(self, old: tuple[Array, Array, Array], step: int) -> list[Event]:
-        e = self.equations
-        contact, sliding, grip = old
-        now = grips(e)
-        given = self.given() * self.unit
-        found = []
-        for k in np.flatnonzero((contact != e.contact) | (sliding != e.sliding)):
-            if contact[k] != e.contact[k]:
-                kind = {
-                    (CLOSED, OPEN): "opens",
-                    (OPEN, CLOSED): "closes",
-                    (CLOSED, CRUSHED): "crushes",
-                    (CRUSHED, CLOSED): "recovers",
-                }.get((int(contact[k]), int(e.contact[k])), "changes")
-                found.append(Event(float(self.x[-1]), given, int(k), kind, 0, step))
-            side = int(e.sliding[k]) if now[k] else 0
-            before = int(sliding[k]) if grip[k] else 0
-            if side != before and now[k]:
-                kind = "slips" if side != STICK else "sticks"
-                if not (kind == "sticks" and contact[k] != e.contact[k]):
-                    found.append(Event(float(self.x[-1]), given, int(k), kind, side, step))
-        return found
+    def name_events(self, old: PairStates, step: int) -> list[Event]:
+        return changes(old, PairStates.of(self.equations), float(self.x[-1]), self.given() * self.unit, step)
 
     def finish(self, states: list[PathState], events: list[Event], outcome: Outcome, last: Array | None) -> EventPath:
         n = self.equations.n
         direction = np.zeros(n) if last is None else last[:n]
-        if outcome is Outcome.LIMIT and float(self.path.load_rate @ direction) * self.sense < 0:
+        if outcome is Outcome.LOST and self.by_load and float(self.path.load_rate @ direction) * self.sense < 0:
             direction = -direction  # the runaway rate of a nearly singular matrix has either sign
         top = float(np.abs(direction).max(initial=0.0)) or 1.0
         return EventPath(tuple(states), tuple(events), outcome, direction / top, self.equations.factorisations)

@@ -216,7 +216,16 @@ def _least_norm(s: Scaled, found: Finished) -> Finished:
     return found
 
 
-def finish(s: Scaled, u: Array, t_n: Array, t_t: Array, rounds: int = 12, states: States | None = None) -> Finished:
+def finish(
+    s: Scaled,
+    u: Array,
+    t_n: Array,
+    t_t: Array,
+    rounds: int = 12,
+    states: States | None = None,
+    *,
+    least: bool = True,
+) -> Finished:
     """Turn a point close to a solution into the solution, if its states can be settled.
 
     Parameters
@@ -228,6 +237,8 @@ def finish(s: Scaled, u: Array, t_n: Array, t_t: Array, rounds: int = 12, states
         Largest number of active-set rounds.
     states : States, optional
         States to begin with; default are those the point suggests.
+    least : bool
+        Whether forces that are not unique are those of least norm; otherwise those near to the point.
     """
     states = states or read_states(s, u, t_n, t_t)
     anchor = u
@@ -251,7 +262,7 @@ def finish(s: Scaled, u: Array, t_n: Array, t_t: Array, rounds: int = 12, states
         if best is None or error < best.error:
             best = Finished(u, t_n, t_t, states, error, solves, undecided)
         if error < SETTLED:
-            best = _least_norm(s, best)
+            best = _least_norm(s, best) if least else best
             break
         if new.key() in seen:
             break

@@ -34,7 +34,7 @@ LARGEST_VERTEX = 400
 
 
 def find_direction(
-    equations: PathEquations, v: Values, first: Array | None = None, sense: float = 1.0, *, vertex: bool = True
+    equations: PathEquations, v: Values, first: Rates | None = None, sense: float = 1.0, *, vertex: bool = True
 ) -> tuple[Rates | None, Array | None]:
     """Return consistent rates for a control that changes at the rate ``sense`` (+1 or -1).
 
@@ -45,7 +45,7 @@ def find_direction(
     equations : PathEquations
     v : Values
         Distances from the bounds at the point.
-    first : (size,) array, optional
+    first : Rates, optional
         Direction of the present states, where it is known already.
     sense : float
     vertex : bool
@@ -68,17 +68,18 @@ def find_direction(
     for round_ in range(ROUNDS_ALL + ROUNDS_ONE):
         if round_ or first is None:
             direction, residual = equations.solve(unit)
+            creep = equations.creep
         else:
-            direction, residual = first, 0.0
+            direction, creep, residual = first.direction, first.creep, 0.0
         if not np.isfinite(direction).all():
             break
         if residual > TRUE:
             stress = self_stress(equations, direction)
             if stress is None:
-                runaway = direction
+                runaway = equations.null_motion(direction)
                 break
-            direction = stress
-        r = rates(equations, direction)
+            direction, creep = stress, np.zeros_like(stress)
+        r = rates(equations, direction, creep)
         bad = wrong(equations, v, r)
         if not bad:
             return r, None
@@ -222,7 +223,8 @@ def by_lemke(
 def consistent(equations: PathEquations, unit: Array) -> Rates | None:
     """Return the rates of the present states, or their self-stress; None where they admit neither."""
     direction, residual = equations.solve(unit)
+    creep = equations.creep
     if residual > TRUE:
         stress = self_stress(equations, direction)
         return None if stress is None else rates(equations, stress)
-    return rates(equations, direction) if np.isfinite(direction).all() else None
+    return rates(equations, direction, creep) if np.isfinite(direction).all() else None

@@ -23,15 +23,13 @@ error out, and what remains undetermined is changed as little as possible (proxi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
-
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from concio.contact.problem import Array
-from concio.lcp.path_state import CLOSED, CRUSHED, OPEN, STICK, LinearPath
+from concio.lcp.path_scaling import Scaled
+from concio.lcp.path_state import CLOSED, CRUSHED, OPEN, STICK
 
 REGULAR = 1e-8
 """Compliance and stiffness lent to the factors, in scaled units."""
@@ -42,61 +40,14 @@ POOR = 1e-9
 UPDATES = 48
 """Changed rows after which the matrix is factorised anew."""
 
+INVERSE = 4
+"""Inverse iterations on a runaway rate."""
+
 SMALL = 1e-15
 """Refinement stops at this residual, relative to the right-hand side."""
 
-
-@dataclass(frozen=True, eq=False)
-class Scaled:
-    """The path in scaled units: displacement unit ``length``, force unit ``force``; tau as it is.
-
-    Parameters
-    ----------
-    path : LinearPath
-    force, length : float
-        Units [kN], [m].
-    """
-
-    path: LinearPath
-    force: float
-    length: float
-
-    @classmethod
-    def of(cls, path: LinearPath) -> Scaled:
-        """Choose the units: a typical nodal or joint force, and the displacement it causes."""
-        problem = path.problem
-        loads = np.abs(np.concatenate([problem.f, path.load_rate]))
-        force = float(loads[loads > 0].mean()) if loads.any() else 1.0
-        diagonal = problem.K.diagonal()
-        compliance = problem.laws.normal_compliance
-        if (diagonal > 0).any():
-            length = force / float(np.median(diagonal[diagonal > 0]))
-        elif (compliance > 0).any():
-            length = force * float(np.median(compliance[compliance > 0]))
-        else:
-            length = 1.0
-        return cls(path, force, length)
-
-    @cached_property
-    def arrays(self) -> dict[str, Array]:
-        """Laws, rates and gaps in scaled units, by name."""
-        problem, law = self.path.problem, self.path.problem.laws
-        soft = self.force / self.length
-        return {
-            "mu": law.friction,
-            "psi": law.dilatancy,
-            "c": law.cohesion / self.force,
-            "T": law.tension / self.force,
-            "N": law.cap / self.force,
-            "a_n": law.normal_compliance * soft,
-            "a_t": law.tangential_compliance * soft,
-            "x": problem.gap / self.length,
-            "x_t": problem.slip_origin[:, 0] / self.length,
-            "x_rate": self.path.gap_rate / self.length,
-            "t_rate": self.path.tangent_rate / self.length,
-            "f": problem.f / self.force,
-            "g": self.path.load_rate / self.force,
-        }
+SLOW = 0.2
+"""A small residual that a round of refinement does not reduce to this share is rounding."""
 
 
 class PathEquations:
@@ -120,6 +71,8 @@ class PathEquations:
         self.K = sp.csr_array(problem.K * (scaled.length / scaled.force))
         self.control = control
         self.contact, self.sliding = contact.copy(), sliding.copy()
+        self.share = np.clip(problem.area / problem.area.mean(), 0.05, 20.0) if self.m else np.ones(0)
+        self.lent = REGULAR / self.share
         self.factorisations = 0
         self.factorise()
 
@@ -162,8 +115,8 @@ class PathEquations:
         if row < n:
             return REGULAR
         if row < n + m:
-            return REGULAR if self.contact[row - n] == CLOSED else 0.0
-        return REGULAR if row < n + 2 * m and self.sliding[row - n - m] == STICK else 0.0
+            return float(self.lent[row - n]) if self.contact[row - n] == CLOSED else 0.0
+        return float(self.lent[row - n - m]) if row < n + 2 * m and self.sliding[row - n - m] == STICK else 0.0
 
     # -- factors --------------------------------------------------------------------------------------------------
 
@@ -200,8 +153,8 @@ class PathEquations:
         n, m = self.n, self.m
         lent = np.zeros(self.size)
         lent[:n] = REGULAR
-        lent[n : n + m] = np.where(self.contact == CLOSED, REGULAR, 0.0)
-        lent[n + m : -1] = np.where(self.sliding == STICK, REGULAR, 0.0)
+        lent[n : n + m] = np.where(self.contact == CLOSED, self.lent, 0.0)
+        lent[n + m : -1] = np.where(self.sliding == STICK, self.lent, 0.0)
         self.base_lent = lent
         self.factors = splu(  # the lent terms make it quasidefinite: pivots stay on the diagonal, fill stays small
             sp.csc_matrix(self.base + sp.diags_array(lent)),
@@ -224,6 +177,12 @@ class PathEquations:
             new = np.zeros(self.size)
             np.add.at(new, entries[0], entries[1])
             self._replace(row, new)
+
+    def set_states(self, contact: Array, sliding: Array, lent: float = REGULAR) -> None:
+        """Give all pairs other states (m,) at once, and perhaps the factors another compliance of hard pairs."""
+        self.contact, self.sliding = contact.copy(), sliding.copy()
+        self.lent = lent / self.share
+        self.factorise()
 
     def set_control(self, control: Array) -> None:
         """Prescribe another functional (size,) of the scaled unknowns."""
@@ -278,6 +237,9 @@ class PathEquations:
     def solve(self, b: Array, rounds: int = 8) -> tuple[Array, float]:
         """Solve with the true matrix by refinement; b (size,) or (size, k).
 
+        What the lent compliance adds to the answer is kept in ``creep`` (like b): where redundant pairs do not move at
+        all, it tells which way they would, were they a little compliant.
+
         Returns
         -------
         x : array like b
@@ -286,7 +248,8 @@ class PathEquations:
             mechanism that the right-hand side drives.
         """
         x = self.approximate(b)
-        best, smallest = x, np.inf
+        creep = np.zeros_like(x)
+        best, smallest, self.creep = x, np.inf, creep
         size = np.abs(b).max(axis=0, initial=0.0)
         size = np.where(size > 0, size, 1.0)
         for _ in range(rounds):
@@ -294,14 +257,32 @@ class PathEquations:
             worst = float(np.max(np.abs(r).max(axis=0) / size))
             if not np.isfinite(worst) or worst >= smallest:
                 break
-            best, smallest = x, worst
-            if worst <= SMALL:
+            slow = worst > SLOW * smallest
+            best, smallest, self.creep = x, worst, creep
+            if worst <= SMALL or (slow and worst <= POOR):
                 break
-            x = x + self.approximate(r)
+            change = self.approximate(r)
+            x, creep = x + change, creep - change
         if smallest > POOR and not self.careful and self.control[-1] != 1.0:
             self.factorise(careful=True)  # under displacement control the matrix should be regular: try harder
             return self.solve(b, rounds)
         return best, smallest
+
+    def null_motion(self, runaway: Array) -> Array:
+        """Return the answer (size,) of a singular matrix cleared, by inverse iteration, of all that is no motion."""
+        n, m = self.n, self.m
+        lent = np.zeros(self.size)
+        lent[:n] = REGULAR
+        lent[n : n + m] = np.where(self.contact == CLOSED, self.lent, 0.0)
+        lent[n + m : -1] = np.where(self.sliding == STICK, self.lent, 0.0)
+        x = runaway / (float(np.abs(runaway).max()) or 1.0)
+        for _ in range(INVERSE):
+            y = self.approximate(lent * x)
+            size = float(np.abs(y).max())
+            if not np.isfinite(size) or size == 0.0:
+                return runaway
+            x = y / size
+        return np.asarray(x if float(x @ runaway) >= 0 else -x)
 
     def slip_of(self, k: int) -> Array:
         """Return the plastic slip of pair k as a functional of the unknowns, (size,)."""

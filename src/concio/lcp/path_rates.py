@@ -8,6 +8,11 @@ The rates must satisfy, at critical pairs only,
           0 \le \dot y^\pm \perp \mu\dot t_n \pm \dot t_t \ge 0, \qquad \dot y_t = \dot y^+ - \dot y^-,
 
 everything else being linear: a linear complementarity problem, solved in :mod:`concio.lcp.path_direction`.
+
+Pairs that their neighbours forbid to move (hard redundant pairs at a corner) have no rate of their own that could be of
+the wrong sign. Were all hard pairs a little compliant they would *creep*, the more slowly the stiffer they are; a pair
+that creeps against its state has another one, however stiff it is. So the forces of redundant pairs are those of a
+vanishing compliance, the same that load steps take (:mod:`concio.lcp.near_forces`).
 """
 
 from __future__ import annotations
@@ -25,6 +30,9 @@ ZERO = 1e-9
 
 STILL = 1e-10
 """Rates below this share of the largest rate count as zero."""
+
+CREEPING = 1e-5
+"""Creep below this share of what the most loaded pair yields (a thousandth of it: of all creep) is rounding."""
 
 ROUNDING = 1e-13
 """Rates of forces below this share of the rates of displacements are rounding, and the other way round (scaled)."""
@@ -63,9 +71,16 @@ class Rates:
     ----------
     direction : (size,) array
         Rate of all unknowns.
+    creep : (size,) array
+        What a small compliance lent to hard pairs would add to it.
+    creep_opening, creep_slip : (m,) arrays
+        Rates of opening and plastic slip that it would bring where there are none; zero elsewhere.
     """
 
     direction: Array
+    creep: Array
+    creep_opening: Array
+    creep_slip: Array
     opening: Array
     slip: Array
     force: Array
@@ -97,8 +112,8 @@ def values(equations: PathEquations, x: Array, slip: Array, offset: Array) -> Va
     )  # fmt: skip
 
 
-def rates(equations: PathEquations, direction: Array) -> Rates:
-    """Return the rates of the pairs that go with a rate of the unknowns (size,)."""
+def rates(equations: PathEquations, direction: Array, creep: Array | None = None) -> Rates:
+    """Return the rates of the pairs that go with a rate of the unknowns (size,), and those of its creep."""
     d, n, m = equations.data, equations.n, equations.m
     opening, slip = equations.positions(direction, rate=True)
     t_n, t_t = direction[n : n + m], direction[n + m : -1]
@@ -107,7 +122,15 @@ def rates(equations: PathEquations, direction: Array) -> Rates:
     loading = float(np.abs(direction[n:-1]).max(initial=0.0))
     still = max(STILL * moving, ROUNDING * loading)
     calm = max(STILL * loading, ROUNDING * moving)
-    return Rates(direction, gap, slip, t_n, d["mu"] * t_n + t_t, d["mu"] * t_n - t_t, still, calm)
+    creep = np.zeros_like(direction) if creep is None else creep
+    yielding = float((equations.lent * np.maximum(np.abs(t_n), np.abs(t_t))).max(initial=0.0))
+    small = max(CREEPING * yielding, 1e-3 * CREEPING * float(np.abs(creep[:n]).max(initial=0.0)))
+    away, along = equations.positions(creep, rate=True)
+    away, along = away + equations.lent * t_n, along + equations.lent * t_t
+    away = np.where((np.abs(gap) <= still) & (np.abs(away) > small), away, 0.0)
+    along = np.where((np.abs(slip) <= still) & (np.abs(along) > small), along, 0.0)
+    plus, minus = d["mu"] * t_n + t_t, d["mu"] * t_n - t_t
+    return Rates(direction, creep, away, along, gap, slip, t_n, plus, minus, still, calm)
 
 
 def wrong(equations: PathEquations, v: Values, r: Rates) -> list[tuple[float, int, int, int]]:
@@ -121,8 +144,8 @@ def wrong(equations: PathEquations, v: Values, r: Rates) -> list[tuple[float, in
         side = np.broadcast_to(new_sliding, mask.shape)
         found.extend((float(size[k]), int(k), new_contact, int(side[k])) for k in np.flatnonzero(mask))
 
-    closing = (contact == OPEN) & (v.gap <= v.gap_zero) & (r.opening < -still)
-    report(closing, -r.opening, CLOSED, np.where(rough, STICK, 1))
+    closing = (contact == OPEN) & (v.gap <= v.gap_zero) & ((r.opening < -still) | (r.creep_opening < 0))
+    report(closing, -r.opening - r.creep_opening, CLOSED, np.where(rough, STICK, 1))
     opening = (contact == CLOSED) & (v.force <= zero) & (r.force < -calm)
     report(opening, -r.force, OPEN, np.where(grip & (v.plus + v.minus > 4 * zero), sliding, 1))
     crushing = (contact == CLOSED) & (v.room <= zero) & (r.force > calm)
@@ -135,8 +158,8 @@ def wrong(equations: PathEquations, v: Values, r: Rates) -> list[tuple[float, in
     minus = stuck & (v.minus <= zero) & (r.minus < -calm)
     side = np.where(plus & ~(minus & (r.minus < r.plus)), 1, -1)
     report(plus | minus, np.maximum(-r.plus * plus, -r.minus * minus), -1, side)
-    back = (sliding != STICK) & ~done & (sliding * r.slip < -still)
-    report(back, -sliding * r.slip, -1, STICK)
+    back = (sliding != STICK) & ~done & ((sliding * r.slip < -still) | (sliding * r.creep_slip < 0))
+    report(back, -sliding * (r.slip + r.creep_slip), -1, STICK)
     return [(size, k, int(contact[k]) if c < 0 else c, s) for size, k, c, s in found]
 
 

@@ -14,9 +14,15 @@ class Outcome(Enum):
     """How a path ended; the value is the sentence a user reads."""
 
     REACHED = "The end asked for was reached."
-    LIMIT = "The load cannot be increased further: no state continues the path under growing load."
+    LIMIT = (
+        "The load grows no further: the structure moves at this load, or a mechanism proves that it carries no more, "
+        "and no certified state was found beyond."
+    )
     MECHANISM = "A mechanism has formed: the structure moves on without change of load and without further events."
-    LOST = "No state was found that continues the path: none of the critical pairs' states gives consistent rates."
+    LOST = (
+        "The path was lost: no certified state was found beyond this point, and that there is none was not shown. "
+        "The structure carries at least this much."
+    )
     TOO_MANY = "There were more events than allowed."
     CANCELLED = "Stopped on request."
 
@@ -33,7 +39,9 @@ class Event:
         Displacement of the control point, or the parameter where there is none.
     pair : int
     kind : str
-        "opens", "closes", "slips", "sticks", "crushes" or "recovers".
+        "opens", "closes", "slips", "sticks", "crushes" or "recovers"; "jumps" where the structure snaps to a state a
+        finite distance away, "restarts" where the path goes on from a finite step (named after the pair that moves
+        most).
     direction : int
         Of the slip, +1 or -1; else 0.
     step : int
@@ -73,6 +81,11 @@ class EventPath:
     def peak(self) -> float:
         """Largest load parameter met."""
         return max(state.parameter for state in self.states)
+
+    @property
+    def jumps(self) -> tuple[Event, ...]:
+        """The jumps, in order: each named after the pair that moves most in it."""
+        return tuple(e for e in self.events if e.kind == "jumps")
 
     @property
     def end(self) -> PathState:

@@ -14,9 +14,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from concio.contact.problem import Array
+from concio.lcp import near_forces
 from concio.lcp.path_record import Event, Outcome
 from concio.lcp.path_state import CLOSED, CRUSHED, OPEN, STICK, LinearPath, PathState, exceeded, state_of, step_problem
-from concio.lcp.solution import Progress, ProgressCallback, Solver, Status
+from concio.lcp.solution import Progress, ProgressCallback, Solution, Solver, Status
 
 CHANGES = 0.1
 """Share of the pairs that may change state in one step before it is halved."""
@@ -81,7 +82,7 @@ def follow_in_steps(
         size = np.sign(whole) * min(abs(size), abs(left)) if not breaking else size
         parameter = until if abs(size) >= abs(left) * (1 - 1e-12) else before.parameter + size
         parameter = before.parameter if breaking else parameter
-        solution = solver(step_problem(path, before, parameter))
+        solution = _step(path, before, parameter, solver)
         smallest = abs(size) <= SMALLEST * abs(whole)
         if not solution.solved:
             if not smallest and not breaking:
@@ -114,6 +115,15 @@ def follow_in_steps(
             break
     last = states[-1].displacement - states[-2].displacement if len(states) > 1 else np.zeros(path.problem.unknowns)
     return StepPath(tuple(states), tuple(events), outcome, last / (float(np.abs(last).max(initial=0.0)) or 1.0))
+
+
+def _step(path: LinearPath, before: PathState, parameter: float, solver: Solver) -> Solution:
+    """Solve one step, keeping redundant forces near the last ones if that succeeds."""
+    problem = step_problem(path, before, parameter)
+    if not near_forces.needed(problem):
+        return solver(problem)
+    solution = near_forces.solve_near(problem, before.displacement, before.normal_force, before.friction_force)
+    return solution if solution.solved else solver(problem)
 
 
 def _broken(path: LinearPath, before: PathState, after: PathState) -> tuple[PathState, Array]:

@@ -45,6 +45,8 @@ MARKS: dict[str, tuple[str, str, str]] = {
     "crushes": ("X", style.TENSION.colour, "crushes"),
     "breaks": ("*", style.TENSION.colour, "breaks"),
     "recovers": ("P", style.COMPRESSION.colour, "recovers"),
+    "jumps": (">", style.INK, "jumps"),
+    "restarts": (".", style.INK, "restarts the path"),
 }
 """Marker, colour and word of each kind of event."""
 

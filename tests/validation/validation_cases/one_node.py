@@ -10,7 +10,7 @@ Stiffness [[k_tt, k_tn], [k_tn, k_nn]] with k_tn = -c, loads (f_t, -q) with q > 
 For mu < k_tt / c there is exactly one solution. For mu > k_tt / c and (k_tt / c) q < f_t < mu q three coexist: stick,
 slip and open. All are equilibria; the certificate proves that an answer is one, not that it is the only one. Along a
 path from f_t = 0 the node sticks until f_t = mu q; there the rate problem has *no* solution: slip would have to go
-backwards. The true structure jumps; a quasi-static path ends, and concio says so.
+backwards. The structure jumps to the only state there is beyond, the open one; concio's path names the jump.
 
 Make the stiffness singular, k_nn = c^2 / k_tt: the node floats along (c, k_tt). Then open needs k_tt q = c f_t exactly,
 and for mu > k_tt / c and f_t > mu q there is *no* solution in the first step either, although forces within the cone
@@ -132,7 +132,13 @@ def rows() -> list[Row]:
         Row(f"distance to the nearest solution, mu = 2, {name}", 0.0, distance(rough, load, name), 1e-12, exact)
         for name in METHODS
     ]
-    found.append(Row("load at which the path ends, mu = 2", rough * Q, path(rough, 5.0).end.parameter, 1e-12, exact))
+    walked = path(rough, 5.0)
+    left = walked.states[walked.jumps[0].step - 1].parameter if walked.jumps else np.nan
+    opened = float(np.abs(walked.end.displacement - by_hand(rough, 5.0)["open"][0]).max())
+    found += [
+        Row("load at which the path jumps, mu = 2", rough * Q, left, 1e-12, exact),
+        Row("distance of the path's end at f_t = 5 from the open state", 0.0, opened, 1e-12, exact),
+    ]
     none = floating(rough, 2.5)
     verdict, proof = find("auto")(none).status, find("exhaustive")(none).status
     honest = verdict in (Status.UNDECIDED, Status.NO_COULOMB_STATE)

@@ -1,0 +1,96 @@
+"""Forces of redundant corners: load steps and exact path make the same choice."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import concio
+from concio.analysis.path import Stage, run_path
+from concio.lcp import engine
+from concio.lcp.near_forces import needed, solve_near
+
+PUSH = 0.4
+
+
+@pytest.fixture(scope="module")
+def panel():
+    """Running bond with three pairs at every inner corner, for the two motions a corner has."""
+    model = concio.running_bond_panel(
+        courses=5,
+        blocks=4,
+        block_size=(1.0, 0.5),
+        thickness=1.0,
+        block=concio.Elastic(E=1e5, nu=0.15, unit_weight=20.0),
+        friction=0.6,
+        side_walls=False,
+        horizontal=1.0,
+        elements_per_block=(2, 2),
+    )
+    return concio.assemble(model)
+
+
+def stages(steps: int) -> list[Stage]:
+    return [Stage("weight", {"dead": 1.0}, steps=1), Stage("push", {"horizontal": PUSH}, steps=steps)]
+
+
+@pytest.fixture(scope="module")
+def exact(panel):
+    found = run_path(panel, stages(1))
+    assert found.complete
+    assert found.certificate <= 1e-9
+    assert found.energy_error <= 1e-9
+    return found.steps[-1].state
+
+
+def test_corner_pairs_are_redundant(panel):
+    problem = panel.problem()
+    assert needed(problem)
+    assert np.linalg.matrix_rank(problem.C.toarray()) < 2 * problem.pairs
+
+
+def test_steps_go_to_the_exact_path_as_they_shrink(panel, exact):
+    """Displacements and forces, those of the redundant pairs too; least-norm forces stay 2 % away at any step."""
+    apart = []
+    for steps in (4, 16, 64):
+        state = run_path(panel, stages(steps), method="steps", solver="interior-point").steps[-1].state
+        forces = np.abs(state.normal_force - exact.normal_force).max() / np.abs(exact.normal_force).max()
+        motions = np.abs(state.displacement - exact.displacement).max() / np.abs(exact.displacement).max()
+        apart.append((forces, motions))
+    (f4, u4), (f16, u16), (f64, u64) = apart
+    assert f64 < f16 < 0.3 * f4
+    assert u64 < u16 < 0.3 * u4
+    assert f64 < 1e-4
+    assert u64 < 2e-5
+
+
+def self_stress(panel, problem, t_n, t_t):
+    """Forces in equilibrium with themselves at a corner whose three pairs all stick, largest 1."""
+    m, points = problem.pairs, panel.pairs.point
+    for point in np.unique(points.round(9), axis=0):
+        pairs = np.flatnonzero(np.abs(points - point).max(axis=1) < 1e-6)
+        if pairs.size < 3 or (0.6 * t_n[pairs] - np.abs(t_t[pairs])).min() < 0.04:
+            continue
+        rows = np.concatenate([pairs, m + pairs])
+        null = np.linalg.svd(problem.C.toarray()[rows].T)[2][-1]
+        stress = np.zeros(2 * m)
+        stress[rows] = null / np.abs(null).max()
+        return stress
+    pytest.fail("no corner sticks with all its pairs")
+    return None
+
+
+def test_a_step_without_change_changes_no_forces(panel, exact):
+    problem = panel.problem({"dead": 1.0, "horizontal": PUSH})
+    first = engine.solve(problem)
+    assert first.solved
+    t_n, t_t = first.normal_force, first.friction_force[:, 0]
+    m, stress = problem.pairs, self_stress(panel, problem, t_n, t_t)
+    assert np.abs(problem.C.T @ stress).max() <= 1e-12  # no force on any body
+    given_n, given_t = t_n + 0.02 * stress[:m], t_t + 0.02 * stress[m:]
+    assert ((0.6 * given_n > np.abs(given_t)) | (stress[:m] == 0)).all()
+    near = solve_near(problem, first.displacement, given_n, given_t)
+    assert near.solved
+    assert np.abs(near.normal_force - given_n).max() <= 1e-8
+    assert np.abs(near.friction_force[:, 0] - given_t).max() <= 1e-8
+    assert np.abs(near.normal_force - t_n).max() >= 1e-3

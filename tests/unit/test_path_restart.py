@@ -1,0 +1,69 @@
+"""Jumps and restarts of load paths: where no rates continue them, and what shows that they are at their end."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import concio
+from concio.analysis.limit import limit
+from concio.cli.limit import limit_lines
+from concio.lcp.path_record import Outcome
+from concio.lcp.path_restart import look_beyond, moves_freely
+from path_helpers import energy_error, least_dissipation, weight_then, worst_certificate
+from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, wall
+
+
+def test_jumps_under_growing_load_lead_to_the_peak_that_controlled_displacement_finds():
+    """Two ways of control, the second without any jump, meet in the same collapse."""
+    a = wall(FERRIS_TIN_LOI["wall 3"])
+    push = a.load(1, 0)
+    path, grown = weight_then(a, MU, push, compliance=1e-4, until=1e6)
+    assert grown.outcome is Outcome.LIMIT
+    assert grown.jumps
+    assert worst_certificate(path, grown) <= 1e-9
+    assert energy_error(path, grown) <= 1e-9
+    assert least_dissipation(path, grown) >= -1e-12
+    _, driven = weight_then(a, MU, push, compliance=1e-4, until=0.1, control=push / push.sum())
+    assert not driven.jumps
+    assert grown.peak == pytest.approx(driven.peak, rel=1e-9)
+    jump = grown.jumps[0]
+    before, after = grown.states[jump.step - 1], grown.states[jump.step]
+    moved = float(np.abs(after.displacement - before.displacement).max())
+    assert after.parameter - before.parameter <= 1e-4
+    assert moved > 1e-3 * float(np.abs(before.displacement).max())
+    least = look_beyond(path, before, 1.0).state  # the next load, however near, has its answer as far away
+    assert np.abs(least.displacement - before.displacement).max() == pytest.approx(moved, rel=1e-2)
+
+
+def test_motions_that_need_no_change_of_forces():
+    """A block about to slide slides, along the push only; it neither lifts nor turns."""
+    block = block_on_incline(0.4, 1.0, 0.0)
+    path, found = weight_then(block, 0.3, block.load(1, 0), compliance=1e-3)
+    end = found.end
+    assert moves_freely(path, end, np.array([1.0, 0.0, 0.0]))
+    for motion in ([-1.0, 0, 0], [0, 1.0, 0], [0, -1.0, 0], [0, 0, 1.0], [0.5, 0.2, -1.0], [0, 0, 0]):
+        assert not moves_freely(path, end, np.array(motion))
+    assert not moves_freely(path, found.states[0], np.array([1.0, 0.0, 0.0]))
+    nothing = look_beyond(path, end, 1.0)
+    assert nothing.state is None
+    assert nothing.no_equilibrium
+
+
+def test_a_lost_path_is_no_collapse_multiplier():
+    model = concio.column(width=0.4, height=1.0, blocks=1, friction=0.9, block=concio.Rigid(20.0))
+    model = replace(model, loads=(*model.loads, concio.Load("body", (20.0, 0.0), group="live")))
+    found = limit(model)
+    assert found.collapse_shown
+    assert found.coulomb == pytest.approx(0.4, rel=1e-9)
+    assert "collapses at 0.4" in "\n".join(limit_lines(found, ["live"]))
+    assert "asked for" not in "\n".join(limit_lines(found, ["live"]))
+    lost = replace(found, collapse_shown=False, path=replace(found.path, outcome=Outcome.LOST))
+    assert np.isnan(lost.coulomb)
+    assert lost.carried == found.coulomb
+    assert lost.summary()["coulomb_path_multiplier"] is None
+    text = "\n".join(limit_lines(lost, ["live"]))
+    assert "at least 0.4" in text
+    assert "collapses at" not in text
