@@ -9,8 +9,8 @@ The order is fixed, so that the same problem always goes the same way:
 3. interior point from further out still, then the dilatancy homotopy;
 4. release: the structure is let go and followed in slow motion, from rest and from the state in which associated flow
    jams; it comes to rest, which is an equilibrium, or settles into a motion without end, which is kept;
-5. pivoting from nothing, sparse and dense, where the problem is small enough; what it finds comes before a motion;
-6. the motion kept from step 4 is the answer; without one, release with pivoting in each step;
+5. pivoting from nothing, dense and sparse, where the problem is small enough; what it finds comes before a motion;
+6. the motion kept from step 4, if there is one, is the answer;
 7. on small problems, exhaustive search over the states of the pairs, which finds one or proves that there is none.
 
 What was tried is the solution's trace. An answer is called solved by its certificate alone, a collapse by its mechanism
@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from concio.contact.problem import ContactProblem
+from concio.contact.problem import Array, ContactProblem
 from concio.errors import MethodError
 from concio.lcp import exhaustive, lemke, sparse_lemke
 from concio.lcp.engine import STARTS, Cancelled, Run, at_rest
@@ -69,7 +69,7 @@ def solve(
     progress : callable, optional
     engine : {"superlu", "pardiso"}
     pivoting : bool
-        Whether steps 5 and 7, and step 6 with pivoting, are tried.
+        Whether steps 5 and 7 are tried.
 
     Returns
     -------
@@ -112,18 +112,30 @@ def last_resorts(run: Run, progress: ProgressCallback | None, pivoting: bool) ->
     ended = release(run) or release(run, associated_state(run))
     if isinstance(ended, Finished):
         return run.solution(ended)
-    small = pivoting and run.scaled.problem.pairs <= SPARSE
-    if small:
-        answer = pivot(run, progress)
-        if answer is None and ended is None:
-            ended = release(run, pivoting=True)
-        if answer is not None:
-            return answer
-    if isinstance(ended, Finished):
-        return run.solution(ended)
-    if ended is not None:
+    answer = pivot(run, progress) if pivoting else None
+    if answer is None and ended is not None:
         return moves_away(run, ended)
-    return exhaust(run, progress) if pivoting else None
+    return answer or (exhaust(run, progress) if pivoting else None)
+
+
+def let_go(problem: ContactProblem, u: Array, progress: ProgressCallback | None = None) -> Solution:
+    """Follow the slow motion from given displacements: the answer where it comes to rest, or COLLAPSES, or UNDECIDED.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    u : (N,) array
+        Displacements from which the structure is let go [m].
+    progress : callable, optional
+    """
+    run = Run(scale(problem), progress)
+    try:
+        ended = release(run, u / run.scaled.length)
+    except Cancelled:
+        return run.solution(None, Status.CANCELLED)
+    if isinstance(ended, Departure):
+        return moves_away(run, ended)
+    return run.solution(ended, Status.UNDECIDED, method="release")
 
 
 def moves_away(run: Run, motion: Departure) -> Solution:

@@ -204,6 +204,8 @@ class InteriorPoint:
             h_tn = mu * (big_p - big_q)
             h_tt = np.where(r, big_p + big_q + s.a_t, 1.0)
             det = h_nn * h_tt - h_nt * h_tn
+            if not det.all():
+                break  # the path turns back: no direction
             d_nn, d_nt, d_tn, d_tt = h_tt / det, -h_nt / det, -h_tn / det, np.where(r, h_nn / det, 0.0)
             try:
                 s.factor.factorise(np.concatenate([d_nn, d_nt, d_tn, d_tt]), PROXIMAL)

@@ -9,7 +9,8 @@ rest again). Then the path goes on from there: the one-step problem, slip measur
 * a *restart* where it does: rates exist, though they were not found (vertices with hundreds of critical pairs).
 
 Where no increment has a certified answer the path is at its end, and why is told: a mechanism proves that the load
-beyond has no equilibrium; or the structure can move at the very load, friction being what it is; or neither is shown.
+beyond has no equilibrium; or the structure, let go under slightly more load, moves away without end
+(:mod:`concio.lcp.release`); or it can move at the very load, friction being what it is; or none of these is shown.
 """
 
 from __future__ import annotations
@@ -21,9 +22,10 @@ import numpy as np
 from concio.contact.problem import Array
 from concio.lcp import auto, engine
 from concio.lcp.certificate import scales
+from concio.lcp.existence import find_mechanism
 from concio.lcp.near_forces import needed, solve_near
 from concio.lcp.path_state import LinearPath, PathState, plastic_position, state_of, step_problem
-from concio.lcp.solution import ProgressCallback, Solution, Status
+from concio.lcp.solution import ProgressCallback, Solution, Status, failed
 
 SHARES = (1e-6, 3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 2e-3, 4e-3, 7e-3, 1e-2, 2e-2)
 """Load increments tried in turn, as shares of the present load."""
@@ -55,9 +57,10 @@ class Beyond:
     jump : bool
         Whether it is a finite distance away, however small the increment.
     no_equilibrium : bool
-        Where there is no state: whether a mechanism proves that the load beyond cannot be carried.
+        Where there is no state: whether a mechanism proves that the load beyond cannot be carried, or a motion without
+        end that the structure, let go at the point under slightly more load, does not come to rest.
     motion : (N,) array or None
-        That mechanism.
+        That mechanism or motion.
     cancelled : bool
     """
 
@@ -106,9 +109,9 @@ def look_beyond(
         solution = solve_step(path, point, parameter, progress, thorough=thorough)
         if solution.status is Status.CANCELLED:
             return Beyond(None, cancelled=True)
-        if solution.status is Status.NO_EQUILIBRIUM:
+        if solution.status in (Status.NO_EQUILIBRIUM, Status.COLLAPSES):
             proof = solution if share <= NEXT else None  # further off it says nothing of the loads between
-            break  # there is none at larger increments either: the loads that can be carried are convex
+            break
         if not solution.solved or solution.certificate.worst > ACCURATE:
             continue
         state = state_of(
@@ -129,10 +132,13 @@ def load_unit(path: LinearPath, point: PathState) -> float:
 def solve_step(
     path: LinearPath, point: PathState, parameter: float, progress: ProgressCallback | None, *, thorough: bool
 ) -> Solution:
-    """Solve one load step from a point: quickly, or by whatever short of pivoting."""
+    """Solve one load step from a point: quickly, or by a proof of collapse or by letting the structure go."""
     problem = step_problem(path, point, parameter)
     if thorough:
-        return auto.solve(problem, pivoting=False, progress=progress)
+        mechanism = find_mechanism(problem)
+        if mechanism is not None:
+            return failed(problem, Status.NO_EQUILIBRIUM, method="mechanism", mechanism=mechanism)
+        return auto.let_go(problem, point.displacement, progress)
     near = (point.displacement, point.normal_force, point.friction_force)
     solution = solve_near(problem, *near, starts=QUICK, progress=progress)
     if solution.solved or solution.status is Status.CANCELLED or not needed(problem):

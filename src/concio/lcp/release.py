@@ -31,9 +31,6 @@ from concio.lcp.solution import Departure
 FIRST = 1e-2
 """Resistance e of the first step, scaled units."""
 
-PIVOTED = 1e-3
-"""Resistance e of the first step where pivoting solves it."""
-
 LEAST = 1e-8
 """Least resistance e."""
 
@@ -46,11 +43,17 @@ MOST = 60
 TRIES = 3
 """Covers that pivoting tries for one step."""
 
+PIVOTS = 3000
+"""Largest number of pivots in one step."""
+
+COLD = 3000
+"""Largest number of pairs for which the first step is tried by pivoting from nothing."""
+
 FAILURES = 8
 """Largest number of steps that may fail."""
 
 
-def release(run: Run, u: Array | None = None, *, pivoting: bool = False) -> Finished | Departure | None:
+def release(run: Run, u: Array | None = None) -> Finished | Departure | None:
     """Follow the slow motion from ``u`` (N,), scaled, or from rest; return where it ends, or None.
 
     Parameters
@@ -59,19 +62,16 @@ def release(run: Run, u: Array | None = None, *, pivoting: bool = False) -> Fini
         Keeps count and trace.
     u : (N,) array, optional
         Displacements at the beginning.
-    pivoting : bool
-        Begin with a long step, and solve by pivoting from nothing the steps that the interior point does not solve.
     """
     s = run.scaled
-    begin = "rest" if u is None else "the associated state"
     u = np.zeros(len(s.f)) if u is None else u
-    e, good, failures, taken = (PIVOTED if pivoting else FIRST), 0, 0, 0
+    e, good, failures, taken = FIRST, 0, 0, 0
     here: Finished | None = None
     shift = np.zeros_like(u)
     ended: Finished | Departure | None = None
     for _ in range(MOST):
         step = s.step_from(u, e)
-        new = _solve(run, step, u, shift, here, pivoting)
+        new = _solve(run, step, u, shift, here)
         if new is None:
             failures, good, e = failures + 1, 0, 10 * e
             if failures >= FAILURES:
@@ -88,7 +88,7 @@ def release(run: Run, u: Array | None = None, *, pivoting: bool = False) -> Fini
         if good >= 2:
             e = max(0.3 * e, LEAST)
     outcome = {Finished: "comes to rest", Departure: "moves away", type(None): "no end found"}[type(ended)]
-    run.trace.append(f"released from {begin}: {taken} steps of slow motion, {failures} failed, {outcome}")
+    run.trace.append(f"release: {taken} steps of slow motion, {failures} failed, {outcome}")
     return ended
 
 
@@ -108,14 +108,15 @@ def _steady(s: Scaled, a: Array, now: Finished) -> Departure | None:
     return found if found.certified else None
 
 
-def _solve(run: Run, step: Scaled, u: Array, shift: Array, here: Finished | None, pivoting: bool) -> Finished | None:
-    """Solve one step: from the states of the last one, then by interior point or pivoting."""
+def _solve(run: Run, step: Scaled, u: Array, shift: Array, here: Finished | None) -> Finished | None:
+    """Solve one step: from the states of the last one by exact finish or pivoting, then from nothing."""
     if here is not None:
         for guess, states in ((u + shift, here.states), (u, None)):
             new = finish(step, guess, here.t_n, here.t_t, rounds=20, states=states)
             if new.error <= STEP:
                 return new
-    return _pivot(run, step, here) if pivoting else _iterate(run, step)
+        return _pivot(run, step, here) or _iterate(run, step)
+    return _iterate(run, step) or (_pivot(run, step, None) if step.pairs <= COLD else None)
 
 
 def _iterate(run: Run, step: Scaled) -> Finished | None:
@@ -143,7 +144,7 @@ def _pivot(run: Run, step: Scaled, here: Finished | None) -> Finished | None:
     if here is not None:
         u, t_n, t_t = step.restore(here.u, here.t_n, here.t_t)
         known = {"tries": 0, "start_states": here.states.codes(), "start": (u, t_n, t_t[:, None])}
-    answer = sparse_lemke.solve(held, progress=run.progress, limit=p.pairs + 500, **known)
+    answer = sparse_lemke.solve(held, progress=run.progress, limit=min(p.pairs + 500, PIVOTS), **known)
     run.iterations += answer.iterations
     if not answer.solved:
         return None

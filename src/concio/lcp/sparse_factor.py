@@ -93,7 +93,7 @@ class PatternFactor:
         self._indptr = np.searchsorted(keys, np.arange(n + 1, dtype=np.int64) * n).astype(np.int32)
         k_nnz = K_coo.nnz
         self.nnz = len(keys)
-        self._base = np.bincount(slot[:k_nnz], weights=K_coo.data, minlength=self.nnz)
+        self._base = np.bincount(slot[:k_nnz], weights=K_coo.data, minlength=self.nnz).astype(float)
         self._diagonal = slot[k_nnz : k_nnz + n]
         self._terms = sp.csr_array((values, (slot[k_nnz + n :], terms)), shape=(self.nnz, len(couples)))
         self.count = 0

@@ -88,7 +88,7 @@ def follow_in_steps(
             if not smallest and not breaking:
                 size *= 0.5
                 continue
-            outcome = Outcome.LIMIT if solution.status is Status.NO_EQUILIBRIUM else Outcome.LOST
+            outcome = Outcome.LIMIT if solution.status in (Status.NO_EQUILIBRIUM, Status.COLLAPSES) else Outcome.LOST
             break
         after = state_of(
             path, parameter, solution.displacement, solution.normal_force, solution.friction_force, before=before
