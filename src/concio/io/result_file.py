@@ -31,7 +31,7 @@ from concio.fem.discretisation import Discretisation
 from concio.fem.elements import Elements
 from concio.io.codec import Decoder, Encoder
 from concio.lcp.certificate import Certificate, Kinematics
-from concio.lcp.solution import Mechanism, Solution, Status
+from concio.lcp.solution import Departure, Mechanism, Solution, Status
 from concio.model.detect import Detection, Interface
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Body, JointRule, Load, Model, Support, Tie
@@ -46,8 +46,8 @@ CLASSES: dict[str, type] = {
     cls.__name__: cls
     for cls in (
         Assembly, Body, Certificate, Detection, Discretisation, Elastic, Elements, Interface, JointLaw, JointRule,
-        ControlPoint, Kinematics, Laws, Load, Mechanism, Model, NearMiss, Overlap, Pairs, Result, Rigid, Shape,
-        Solution, Stage, Status, Support, Supported, Tie,
+        ControlPoint, Departure, Kinematics, Laws, Load, Mechanism, Model, NearMiss, Overlap, Pairs, Result, Rigid,
+        Shape, Solution, Stage, Status, Support, Supported, Tie,
     )
 }  # fmt: skip
 """Classes that may appear in a file, by the names they have there. A renamed class keeps its name here."""
