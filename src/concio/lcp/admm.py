@@ -46,7 +46,7 @@ from concio.errors import MethodError
 from concio.lcp.de_saxce import isotropic
 from concio.lcp.dimensionless import PROXIMAL, Dimensionless, dimensionless
 from concio.lcp.friction_cone import return_map
-from concio.lcp.iteration import GOAL, Record, Stopped, answer
+from concio.lcp.iteration import GOAL, Record, Stopped, answer, require_positive
 from concio.lcp.solution import ProgressCallback, Solution
 
 BALANCE_EVERY = 50
@@ -79,10 +79,10 @@ def solve(
     MethodError
         An option is not usable.
     """
-    if not augmentation > 0:
-        raise MethodError(f"augmentation {augmentation} is not positive", hint="try 1")  # noqa: EM102
+    require_positive("augmentation", augmentation, "try 1")
     if not 0 < relaxation < 2:
-        raise MethodError(f"relaxation {relaxation} is not between 0 and 2", hint="try 1")  # noqa: EM102
+        msg = f"relaxation {relaxation} is not between 0 and 2"
+        raise MethodError(msg, hint="try 1")
     s = dimensionless(problem)
     record = Record("admm", s, progress)
     record.info["unknowns"] = s.f.size + 2 * s.t.size

@@ -36,11 +36,10 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.contact.problem import Array, ContactProblem
-from concio.errors import MethodError
 from concio.lcp.augmented import block_diagonal, proximal
 from concio.lcp.dimensionless import Dimensionless, dimensionless
 from concio.lcp.friction_cone import return_map, return_map_derivative
-from concio.lcp.iteration import GOAL, Record, Stopped, answer
+from concio.lcp.iteration import GOAL, Record, Stopped, answer, require_positive
 from concio.lcp.solution import ProgressCallback, Solution
 
 SHIFT = 1e-7
@@ -82,8 +81,7 @@ def solve(
     MethodError
         ``augmentation`` is not positive.
     """
-    if not augmentation > 0:
-        raise MethodError(f"augmentation {augmentation} is not positive", hint="try 1")  # noqa: EM102
+    require_positive("augmentation", augmentation, "try 1")
     s = dimensionless(problem)
     record = Record("alart-curnier", s, progress)
     record.info["unknowns"] = s.f.size + s.t.size

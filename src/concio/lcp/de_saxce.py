@@ -33,10 +33,9 @@ from dataclasses import replace
 import numpy as np
 
 from concio.contact.problem import ContactProblem
-from concio.errors import MethodError
 from concio.lcp.augmented import Augmented, multipliers
 from concio.lcp.dimensionless import dimensionless
-from concio.lcp.iteration import GOAL, Record, Stopped, answer
+from concio.lcp.iteration import GOAL, Record, Stopped, answer, require_positive
 from concio.lcp.solution import ProgressCallback, Solution
 
 LOOSE = 1e-4
@@ -69,8 +68,7 @@ def solve(
     MethodError
         ``augmentation`` is not positive.
     """
-    if not augmentation > 0:
-        raise MethodError(f"augmentation {augmentation} is not positive", hint="try 10")  # noqa: EM102
+    require_positive("augmentation", augmentation, "try 10")
     s = dimensionless(problem)
     record = Record("de-saxce", s, progress, budget=steps)
     record.info["unknowns"] = s.f.size

@@ -67,15 +67,11 @@ def solve(
         An option is not usable, or ``inertia=0`` meets floating bodies.
     """
     if inertia < 0 or sweeps < 1:
-        raise MethodError(
-            f"inertia {inertia} must not be negative and sweeps {sweeps} at least 1",  # noqa: EM102
-            hint="try inertia=0.03, sweeps=3",
-        )
+        msg = f"inertia {inertia} must not be negative and sweeps {sweeps} at least 1"
+        raise MethodError(msg, hint="try inertia=0.03, sweeps=3")
     if inertia == 0 and problem.rigid_motions:
-        raise MethodError(
-            f"the Delassus operator C K^-1 C' does not exist: {problem.rigid_motions} rigid motions are free",  # noqa: EM102
-            hint="leave inertia at its default, or take admm or interior-point",
-        )
+        msg = f"the Delassus operator C K^-1 C' does not exist: {problem.rigid_motions} rigid motions are free"
+        raise MethodError(msg, hint="leave inertia at its default, or take admm or interior-point")
     s = dimensionless(problem)
     record = Record("gauss-seidel", s, progress)
     record.info["unknowns"] = s.t.size

@@ -46,7 +46,7 @@ from concio.errors import MethodError
 from concio.lcp.augmented import Augmented, multipliers
 from concio.lcp.de_saxce import LOOSE, change_stalls, inexact, isotropic
 from concio.lcp.dimensionless import Dimensionless, dimensionless
-from concio.lcp.iteration import GOAL, Record, Stopped, answer
+from concio.lcp.iteration import GOAL, Record, Stopped, answer, require_positive
 from concio.lcp.solution import ProgressCallback, Solution
 
 
@@ -83,15 +83,15 @@ def solve(
         An option is not usable, or ``form="alternating"`` meets floating bodies.
     """
     if form not in ("tresca", "alternating"):
-        raise MethodError(f"unknown form '{form}'", hint="one of: tresca, alternating")  # noqa: EM102
-    if not augmentation > 0:
-        raise MethodError(f"augmentation {augmentation} is not positive", hint="try 10")  # noqa: EM102
+        msg = f"unknown form '{form}'"
+        raise MethodError(msg, hint="one of: tresca, alternating")
+    require_positive("augmentation", augmentation, "try 10")
     if form == "alternating" and problem.rigid_motions:
-        raise MethodError(
-            f"alternating normal and friction problems need K positive definite, {problem.rigid_motions} rigid motions "  # noqa: EM102
-            "are free",
-            hint="form='tresca' keeps them, so do the methods simo-laursen and interior-point",
+        msg = (
+            f"alternating normal and friction problems need K positive definite, {problem.rigid_motions} rigid motions "
+            "are free"
         )
+        raise MethodError(msg, hint="form='tresca' keeps them, so do the methods simo-laursen and interior-point")
     s = dimensionless(problem)
     record = Record("panagiotopoulos", s, progress, budget=steps)
     record.info["unknowns"] = s.f.size

@@ -33,10 +33,9 @@ from dataclasses import replace
 import numpy as np
 
 from concio.contact.problem import ContactProblem
-from concio.errors import MethodError
 from concio.lcp.alart_curnier import newton
 from concio.lcp.dimensionless import dimensionless
-from concio.lcp.iteration import GOAL, Record, Stopped, answer
+from concio.lcp.iteration import GOAL, Record, Stopped, answer, require_positive
 from concio.lcp.solution import ProgressCallback, Solution
 
 
@@ -63,8 +62,7 @@ def solve(
     MethodError
         ``stiffness`` is not positive.
     """
-    if not stiffness > 0:
-        raise MethodError(f"penalty stiffness {stiffness} is not positive", hint="try 1e4")  # noqa: EM102
+    require_positive("penalty stiffness", stiffness, "try 1e4")
     s = dimensionless(problem)
     record = Record("penalty", s, progress)
     record.info["unknowns"] = s.f.size + s.t.size

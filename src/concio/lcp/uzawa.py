@@ -71,10 +71,8 @@ def solve(
         An option is not usable.
     """
     if not inertia > 0 or drag < 0:
-        raise MethodError(
-            f"inertia {inertia} must be positive and drag {drag} not negative",  # noqa: EM102
-            hint="try inertia=0.1, drag=0.3",
-        )
+        msg = f"inertia {inertia} must be positive and drag {drag} not negative"
+        raise MethodError(msg, hint="try inertia=0.1, drag=0.3")
     s = dimensionless(problem)
     record = Record("uzawa", s, progress)
     record.info["unknowns"] = s.f.size + s.t.size
