@@ -181,7 +181,8 @@ class Decoder:
                 make = sp.csc_array if kind == "csc" else sp.csr_array
                 return make(tuple(self.decode(v) for v in (data, indices, indptr)), shape=tuple(shape))
             case {"$enum": [cls, member]}:
-                return self._class(cls)[member]  # type: ignore[index]
+                enumeration: Any = self._class(cls)
+                return enumeration[member]
             case {"$dict": items}:
                 return {k: self.decode(v) for k, v in items}
             case {"$tuple": items}:

@@ -86,8 +86,9 @@ def save_result(result: Result, directory: Path) -> list[Path]:
     }
     text, arrays = directory / "result.json", directory / "result.npz"
     text.write_text(json.dumps(tree, allow_nan=False, separators=(",", ":")) + "\n", encoding="utf-8")
+    named: dict[str, Any] = dict(encoder.arrays)
     with arrays.open("wb") as file:
-        np.savez_compressed(file, **encoder.arrays)  # type: ignore[arg-type]
+        np.savez_compressed(file, **named)
     return [text, arrays]
 
 

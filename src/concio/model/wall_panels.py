@@ -53,7 +53,7 @@ def checked_panels(
             if value is None:
                 msg = f"{name} is missing"
                 raise InputError(msg, where=where, hint="give length and height of the wall in m")
-        panels = [Panel(length, height, openings=openings)]  # type: ignore[arg-type]
+        panels = [{"length": length, "height": height, "openings": openings}]
     known = [f.name for f in fields(Panel)]
     result = []
     for number, item in enumerate(panels, 1):
