@@ -11,10 +11,9 @@ from pathlib import Path
 
 import pytest
 import typer
-from typer.testing import CliRunner
 
 import concio
-from concio.cli.main import app
+from commands import run
 from concio.cli.outcome import fail
 from concio.cli.run import factors_of, where_written
 from concio.lcp.solution import Progress
@@ -34,12 +33,6 @@ def panel(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     path = tmp_path / "panel.toml"
     path.write_text(SMALL)
     return path
-
-
-def run(*arguments: object) -> tuple[int, str, str]:
-    """Return exit code, standard output and standard error of a command."""
-    found = CliRunner().invoke(app, [str(a) for a in arguments])
-    return found.exit_code, found.stdout, found.stderr
 
 
 def test_run_says_what_was_found(panel: Path) -> None:
