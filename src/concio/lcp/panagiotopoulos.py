@@ -45,7 +45,7 @@ from concio.contact.problem import Array, ContactProblem
 from concio.errors import MethodError
 from concio.lcp.augmented import Augmented, multipliers
 from concio.lcp.de_saxce import LOOSE, change_stalls, inexact, isotropic
-from concio.lcp.dimensionless import Dimensionless, dimensionless
+from concio.lcp.dimensionless import dimensionless
 from concio.lcp.iteration import GOAL, Record, Stopped, answer, require_positive
 from concio.lcp.solution import ProgressCallback, Solution
 
@@ -97,7 +97,7 @@ def solve(
     record.info["unknowns"] = s.f.size
     cycle = _tresca if form == "tresca" else _alternating
     prox = prox if problem.rigid_motions else 0.0
-    rho = np.full_like(s.t, augmentation)
+    rho, zero = np.full_like(s.t, augmentation), np.zeros(s.pairs)
     u, relax, before, outer = s.u, 1.0, np.inf, 0
     slip = np.zeros(s.pairs)
     changes: list[float] = []
@@ -106,7 +106,8 @@ def solve(
         u, t, _ = multipliers(associated, u, record, goal=1e-3)
         held = t
         for outer in range(1, limit + 1):
-            u, t = cycle(s, record, u, t, held, s.dilatancy * slip, rho, prox, inexact(before, LOOSE))
+            law = Augmented(s, s.cone, rho, t, flow=zero, shift=-s.dilatancy * slip, anchor=u, prox=prox)
+            u, t = cycle(law, record, u, held, inexact(before, LOOSE))
             if record.note(u, t, f"alternation {outer}") <= 10.0 * GOAL:
                 break
             change = float(np.abs(t - held).max(initial=0.0))
@@ -126,47 +127,21 @@ def solve(
     return answer(problem, record)
 
 
-def _tresca(
-    s: Dimensionless,
-    record: Record,
-    u: Array,
-    t: Array,
-    held: Array,
-    opening: Array,
-    rho: Array,
-    prox: float,
-    goal: float,
-) -> tuple[Array, Array]:
+def _tresca(law: Augmented, record: Record, u: Array, held: Array, goal: float) -> tuple[Array, Array]:
     """One Tresca problem with the sliding strength of the normal forces held."""
-    cone = s.cone.tresca(s.cone.radius(held[:, 0]))
-    law = Augmented(s, cone, rho, t, np.zeros(s.pairs), shift=-opening, anchor=u, prox=prox)
-    u, t, _ = multipliers(law, u, record, goal=goal)
+    cone = law.scaled.cone
+    u, t, _ = multipliers(replace(law, cone=cone.tresca(cone.radius(held[:, 0]))), u, record, goal=goal)
     return u, t
 
 
-def _alternating(
-    s: Dimensionless,
-    record: Record,
-    u: Array,
-    t: Array,
-    held: Array,
-    opening: Array,
-    rho: Array,
-    prox: float,
-    goal: float,
-) -> tuple[Array, Array]:
-    """One normal problem with friction held, one friction problem with the normal forces found held (prox unused)."""
-    zero = np.zeros(s.pairs)
-    normal, tangential = t.copy(), held.copy()
+def _alternating(law: Augmented, record: Record, u: Array, held: Array, goal: float) -> tuple[Array, Array]:
+    """One normal problem with friction held, one friction problem with the normal forces found held."""
+    cone, zero = law.scaled.cone, law.flow
+    normal, tangential = law.lam.copy(), held.copy()
     normal[:, 1:], tangential[:, 0] = 0.0, 0.0
-    frictionless = s.cone.tresca(zero)
-    law = Augmented(s, frictionless, rho, normal, zero, shift=-opening, fixed=tangential)
-    u, t, _ = multipliers(law, u, record, goal=goal)
+    u, t, _ = multipliers(replace(law, cone=cone.tresca(zero), lam=normal, fixed=tangential), u, record, goal=goal)
     pressed = t.copy()
     pressed[:, 1:] = 0.0
-    bound = replace(s.cone.tresca(s.cone.radius(t[:, 0])), lower=zero, upper=zero)
-    start = held.copy()
-    start[:, 0] = 0.0
-    law = Augmented(s, bound, rho, start, zero, fixed=pressed)
-    u, t, _ = multipliers(law, u, record, goal=goal)
+    bound = replace(cone.tresca(cone.radius(t[:, 0])), lower=zero, upper=zero)
+    u, t, _ = multipliers(replace(law, cone=bound, lam=tangential, shift=0.0, fixed=pressed), u, record, goal=goal)
     return u, t
