@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any, Literal
 
 from concio.analysis.result import Result
-from concio.contact.assembly import Assembly, assemble
+from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import NoEquilibriumError, SolverError
 from concio.lcp.methods import find
 from concio.lcp.solution import ProgressCallback, Status
@@ -55,7 +55,7 @@ def solve(
     """
     solver = find(method)
     begin = time.perf_counter()
-    assembly = model if isinstance(model, Assembly) else assemble(model)
+    assembly = as_assembly(model)
     problem = assembly.problem(factors)
     assembled = time.perf_counter()
     solution = solver(problem, progress=progress, **options)

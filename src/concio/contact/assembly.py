@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from os import PathLike, fspath
 
 import numpy as np
 import scipy.sparse as sp
@@ -139,6 +140,31 @@ def detect(model: Model) -> Detection:
     return detect_interfaces(model.bodies, tolerance=default_tolerance(model), reach=model.gap_reach)
 
 
+def require_model(thing: object) -> None:
+    """Refuse anything that is not a model.
+
+    Raises
+    ------
+    InputError
+        It is something else, the name of a file for example.
+    """
+    if not isinstance(thing, Model):
+        what = f"the name '{fspath(thing)}'" if isinstance(thing, str | PathLike) else type(thing).__name__
+        msg = f"a model is needed, {what} was given"
+        raise InputError(msg, hint="concio.load reads a model from a file")
+
+
+def as_assembly(model: Model | Assembly) -> Assembly:
+    """Return the assembly of a model; an assembly as it is.
+
+    Raises
+    ------
+    GeometryError, InputError
+        As :func:`assemble`.
+    """
+    return model if isinstance(model, Assembly) else assemble(model)
+
+
 def assemble(model: Model) -> Assembly:
     """Return the arrays of a model.
 
@@ -147,8 +173,10 @@ def assemble(model: Model) -> Assembly:
     GeometryError
         Bodies overlap.
     InputError
-        Nothing holds the model, nothing touches, a load or support is not usable.
+        What is given is no model (the name of a file, for example); nothing holds the model, nothing touches, a load
+        or support is not usable.
     """
+    require_model(model)
     if not any(b.kind == "fixed" for b in model.bodies) and not model.supports:
         msg = "nothing holds the structure: there is no fixed body and no support"
         raise InputError(msg, hint="add a fixed body such as the ground, or a [[supports]] entry")
