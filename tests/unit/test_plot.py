@@ -289,6 +289,17 @@ def test_path_figure_shows_events_and_peak() -> None:
     assert "bound 1.1" in text
 
 
+@pytest.mark.parametrize(("largest", "unit", "told"), [(0.01, "[mm]", "10"), (0.4, "[m]", "0.4")])
+def test_path_figure_tells_small_motions_in_mm(largest: float, unit: str, told: str) -> None:
+    curve = SimpleNamespace(parameter=[0.0, 1.0], control=[0.0, -largest], events=[])
+    ax = plot_path(curve)
+    ax.figure.canvas.draw()
+    assert ax.get_xlabel().endswith(unit)
+    ticks = [label.get_text().replace("\N{MINUS SIGN}", "-") for label in ax.get_xticklabels()]
+    assert f"-{told}" in [tick.rstrip("0") if "." in tick else tick for tick in ticks]
+    np.testing.assert_array_equal(ax.lines[0].get_xdata(), curve.control)
+
+
 @pytest.mark.parametrize(
     ("largest", "size", "scale"), [(1e-3, 1.0, 50.0), (3.9e-3, 1.4, 10.0), (1.0, 1.0, 0.05), (0.0, 1.0, 1.0)]
 )
