@@ -69,7 +69,9 @@ class Encoder:
         if sp.issparse(value):
             return self._sparse(value, path)
         if isinstance(value, Mapping):
-            return {"$dict": [[str(k), self.encode(v, f"{path}.{k}")] for k, v in value.items()]}
+            return {
+                "$dict": [[k if type(k) is int else str(k), self.encode(v, f"{path}.{k}")] for k, v in value.items()]
+            }
         if isinstance(value, list | tuple):
             return self._sequence(value, path)
         if is_dataclass(value) and not isinstance(value, type):

@@ -24,14 +24,14 @@ from concio.analysis.result import Result
 from concio.contact.assembly import Assembly
 from concio.contact.pairs import Pairs
 from concio.contact.problem import Laws
-from concio.contact.supports import Supported
+from concio.contact.supports import Condition, Supported
 from concio.errors import InputError
 from concio.fem.body import Shape
 from concio.fem.discretisation import Discretisation
 from concio.fem.elements import Elements
 from concio.io.codec import Decoder, Encoder
 from concio.lcp.certificate import Certificate, Kinematics
-from concio.lcp.solution import Mechanism, Solution, Status
+from concio.lcp.solution import Departure, Mechanism, Solution, Status
 from concio.model.detect import Detection, Interface
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Body, JointRule, Load, Model, Support, Tie
@@ -45,9 +45,9 @@ VERSION = 1
 CLASSES: dict[str, type] = {
     cls.__name__: cls
     for cls in (
-        Assembly, Body, Certificate, Detection, Discretisation, Elastic, Elements, Interface, JointLaw, JointRule,
-        ControlPoint, Kinematics, Laws, Load, Mechanism, Model, NearMiss, Overlap, Pairs, Result, Rigid, Shape,
-        Solution, Stage, Status, Support, Supported, Tie,
+        Assembly, Body, Certificate, Condition, Departure, Detection, Discretisation, Elastic, Elements, Interface,
+        JointLaw, JointRule, ControlPoint, Kinematics, Laws, Load, Mechanism, Model, NearMiss, Overlap, Pairs, Result,
+        Rigid, Shape, Solution, Stage, Status, Support, Supported, Tie,
     )
 }  # fmt: skip
 """Classes that may appear in a file, by the names they have there. A renamed class keeps its name here."""
