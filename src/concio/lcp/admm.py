@@ -25,15 +25,6 @@ V. Acary, M. Brémond, O. Huber, On solving contact problems with Coulomb fricti
 comparisons, in *Advanced Topics in Nonsmooth Dynamics*, Springer, 2018. S. Boyd et al., Distributed optimization and
 statistical learning via the alternating direction method of multipliers, *Found. Trends Mach. Learn.* 3 (2011) 1-122
 (balancing of rho, over-relaxation).
-
-Parameters of :func:`solve`
----------------------------
-augmentation : float, default 1
-    First rho in multiples of the typical stiffness.
-relaxation : float, default 1
-    omega, between 0 and 2. Above 1 it speeds convex problems up, and makes the moving shift oscillate.
-limit : int, default 5000
-    Iterations.
 """
 
 from __future__ import annotations
@@ -70,7 +61,7 @@ def solve(
     augmentation : float
         First rho in multiples of the typical stiffness, positive.
     relaxation : float
-        Over-relaxation, 0 < omega < 2.
+        Over-relaxation, 0 < omega < 2. Above 1 it speeds convex problems up, and makes the moving shift oscillate.
     limit : int
         Iterations.
 

@@ -20,14 +20,6 @@ References
 ----------
 P. Alart, A. Curnier, A mixed formulation for frictional contact problems prone to Newton like solution methods,
 *Comput. Methods Appl. Mech. Engrg.* 92 (1991) 353-375.
-
-Parameters of :func:`solve`
----------------------------
-augmentation : float, default 1
-    rho in multiples of the typical stiffness: scales the two residuals against each other and decides how early
-    states change.
-line_search : bool, default True
-    Off: plain Newton steps.
 """
 
 from __future__ import annotations
@@ -70,9 +62,10 @@ def solve(
     problem : ContactProblem
     progress : callable, optional
     augmentation : float
-        rho in multiples of the typical stiffness, positive.
+        rho in multiples of the typical stiffness, positive: scales the two residuals against each other and decides
+        how early states change.
     line_search : bool
-        Whether steps are shortened until the residual falls.
+        Whether steps are shortened until the residual falls; off: plain Newton steps.
     limit : int
         Newton steps.
 

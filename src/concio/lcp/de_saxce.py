@@ -17,13 +17,6 @@ References
 G. De Saxcé, Z.-Q. Feng, New inequation and functional for contact with friction: the implicit standard material
 approach, *Mech. Struct. Mach.* 19 (1991) 301-325. V. Acary, F. Cadoux, C. Lemaréchal, J. Malick, A formulation of the
 linear discrete Coulomb friction problem via convex optimization, *ZAMM* 91 (2011) 155-175 (the fixed point).
-
-Parameters of :func:`solve`
----------------------------
-augmentation : float, default 10
-    rho of the convex problems, in multiples of the typical stiffness.
-limit, steps : int, default 300 and 3000
-    Convex problems, and Newton steps in all.
 """
 
 from __future__ import annotations

@@ -15,15 +15,6 @@ reported as what it is.
 References
 ----------
 M. Jean, The non-smooth contact dynamics method, *Comput. Methods Appl. Mech. Engrg.* 177 (1999) 235-257.
-
-Parameters of :func:`solve`
----------------------------
-inertia : float, default 0.03
-    tau in multiples of the typical stiffness; 0 where K is regular is the plain method on W = C K^-1 C'.
-sweeps : int, default 3
-    Sweeps between two updates of the proximal term.
-limit : int, default 3000
-    Sweeps in all.
 """
 
 from __future__ import annotations
@@ -55,7 +46,8 @@ def solve(
     problem : ContactProblem
     progress : callable, optional
     inertia : float
-        Proximal weight in multiples of the typical stiffness, positive; zero only where no body floats.
+        Proximal weight tau in multiples of the typical stiffness, positive; zero, the plain method on
+        ``W = C K^-1 C'``, only where no body floats.
     sweeps : int
         Sweeps between two updates of the proximal term.
     limit : int

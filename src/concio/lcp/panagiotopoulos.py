@@ -23,16 +23,6 @@ References
 ----------
 P. D. Panagiotopoulos, A nonlinear programming approach to the unilateral contact- and friction-boundary value problem
 in the theory of elasticity, *Ingenieur-Archiv* 44 (1975) 421-432.
-
-Parameters of :func:`solve`
----------------------------
-form : {"tresca", "alternating"}, default "tresca"
-augmentation : float, default 10
-    rho of the convex problems, in multiples of the typical stiffness.
-prox : float, default 1e-3
-    Proximal weight of the Tresca form, in multiples of the typical stiffness.
-limit, steps : int, default 150 and 3000
-    Alternations, and Newton steps in all.
 """
 
 from __future__ import annotations

@@ -19,11 +19,6 @@ Floating bodies are no obstacle: ``K + r C' P' C`` is regular where contacts hol
 References
 ----------
 N. Kikuchi, J. T. Oden, *Contact Problems in Elasticity*, SIAM, 1988.
-
-Parameters of :func:`solve`
----------------------------
-stiffness : float, default 1e4
-    r in multiples of the typical stiffness of the structure.
 """
 
 from __future__ import annotations
@@ -53,7 +48,7 @@ def solve(
     problem : ContactProblem
     progress : callable, optional
     stiffness : float
-        Spring stiffness in multiples of the typical stiffness, positive.
+        Spring stiffness r in multiples of the typical stiffness of the structure, positive.
     limit : int
         Newton steps at each stiffness.
 

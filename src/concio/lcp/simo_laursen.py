@@ -14,12 +14,6 @@ References
 ----------
 J. C. Simo, T. A. Laursen, An augmented Lagrangian treatment of contact problems involving friction, *Computers &
 Structures* 42 (1992) 97-116.
-
-Parameters of :func:`solve`
----------------------------
-updates : {"nested", "simultaneous"}, default "nested"
-augmentation : float, default 10
-    rho in multiples of the typical stiffness.
 """
 
 from __future__ import annotations

@@ -19,15 +19,6 @@ References
 ----------
 K. Arrow, L. Hurwicz, H. Uzawa, *Studies in Linear and Non-Linear Programming*, Stanford, 1958. A. Chambolle, T. Pock,
 A first-order primal-dual algorithm for convex problems, *J. Math. Imaging Vision* 40 (2011) 120-145.
-
-Parameters of :func:`solve`
----------------------------
-inertia : float, default 0.1
-    tau in multiples of the typical stiffness.
-drag : float, default 0.3
-    theta; 0 where K is regular is Uzawa's own method with extrapolation.
-limit : int, default 5000
-    Iterations.
 """
 
 from __future__ import annotations
@@ -61,7 +52,8 @@ def solve(
     inertia : float
         Proximal weight tau in multiples of the typical stiffness, positive.
     drag : float
-        Share theta of K in the proximal metric, not negative.
+        Share theta of K in the proximal metric, not negative; 0 where K is regular is Uzawa's own method with
+        extrapolation.
     limit : int
         Iterations.
 
