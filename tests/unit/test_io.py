@@ -24,6 +24,7 @@ from concio.io.vtu import VERTEX, Grid, write_vtu
 from concio.lcp.certificate import certify
 from concio.lcp.solution import Status
 from concio.model.model import Load, Model, Tie
+from models import sliding_panel
 
 
 def _panel(**changes: object) -> Model:
@@ -68,10 +69,7 @@ def mixed() -> Result:
 
 @pytest.fixture(scope="module")
 def collapse() -> Result:
-    model = concio.running_bond_panel(
-        courses=2, blocks=2, friction=0.3, base="full", side_walls=False, unit_weight=20.0, horizontal=0.6
-    )
-    return concio.solve(model, on_failure="return")
+    return concio.solve(sliding_panel(), on_failure="return")
 
 
 @pytest.mark.parametrize("name", ["panel", "mixed", "collapse"])

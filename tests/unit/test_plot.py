@@ -27,13 +27,12 @@ from concio.post.motion import body_motions
 from concio.post.outlines import display_scale, outlines
 from concio.post.pressure import pressure_diagrams
 from concio.post.thrust import thrust_lines
+from models import bearing_panel, sliding_panel
 
 
 @pytest.fixture(scope="module")
 def panel() -> Result:
-    return concio.solve(
-        concio.running_bond_panel(courses=2, blocks=3, joint=0.02, friction=0.6, base="bearings", top_pressure=10.0)
-    )
+    return concio.solve(bearing_panel())
 
 
 @pytest.fixture(scope="module")
@@ -43,10 +42,7 @@ def ring() -> Result:
 
 @pytest.fixture(scope="module")
 def collapse() -> Result:
-    model = concio.running_bond_panel(
-        courses=2, blocks=2, friction=0.3, base="full", side_walls=False, unit_weight=20.0, horizontal=0.6
-    )
-    return concio.solve(model, on_failure="return")
+    return concio.solve(sliding_panel(), on_failure="return")
 
 
 def test_outlines_are_the_blocks(panel: Result) -> None:
