@@ -24,8 +24,14 @@ def summary(bodies, found):
     rows = []
     for f in found.interfaces:
         names = tuple(sorted((bodies[f.a].name, bodies[f.b].name)))
-        rows.append((*names, round(f.length, 6), round(float(f.gap.max()), 6)))
+        rows.append((*names, f.length, float(f.gap.max())))
     return sorted(rows)
+
+
+def same(first, second):
+    """Same names, and lengths and gaps equal to a millionth (rounded numbers may differ in the last figure)."""
+    assert [row[:2] for row in first] == [row[:2] for row in second]
+    np.testing.assert_allclose([row[2:] for row in first], [row[2:] for row in second], rtol=0, atol=1e-6)
 
 
 @st.composite
@@ -46,7 +52,7 @@ def test_rigid_motion_changes_nothing(bodies, angle, move, reach):
     turned = copies(bodies, lambda x: x @ np.array([[c, s], [-s, c]]) + move)
     first = detect_interfaces(bodies, tolerance=1e-5, reach=reach)
     second = detect_interfaces(turned, tolerance=1e-5, reach=reach)
-    assert summary(bodies, first) == summary(turned, second)
+    same(summary(bodies, first), summary(turned, second))
     for f in second.interfaces:  # the frame turns with the wall
         along = (f.end - f.start) / f.length
         np.testing.assert_allclose(along, [-f.normal[1], f.normal[0]], atol=1e-2)
@@ -58,7 +64,7 @@ def test_renumbering_and_mirror_change_nothing(bodies, seed):
     order = np.random.default_rng(seed).permutation(len(bodies))
     first = detect_interfaces(bodies, tolerance=1e-5, reach=5e-3)
     for other in (copies(bodies, lambda x: x, order), copies(bodies, lambda x: (x * [-1, 1])[::-1])):
-        assert summary(bodies, first) == summary(other, detect_interfaces(other, tolerance=1e-5, reach=5e-3))
+        same(summary(bodies, first), summary(other, detect_interfaces(other, tolerance=1e-5, reach=5e-3)))
 
 
 @pytest.mark.parametrize(
@@ -72,7 +78,7 @@ def test_a_stone_does_not_hide_its_own_edge(stones, gaps, names):
     bodies = [Body(b.name, b.outline + rng.choice([0, 0, 2e-3]) * np.array([0, 1]), kind=b.kind) for b in model.bodies]
     mirrored = copies(bodies, lambda x: (x * [-1, 1])[::-1])
     found = [summary(b, detect_interfaces(b, tolerance=1e-5, reach=5e-3)) for b in (bodies, mirrored)]
-    assert found[0] == found[1]
+    same(*found)
     assert names in [row[:2] for row in found[0]]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,8 +11,10 @@ import scipy.sparse as sp
 
 import concio
 from concio import Body, Elastic, JointLaw, Load, Model, Rigid, Status
+from concio.cli.lines import result_lines
 from concio.contact.inertia import GRAVITY, lumped_masses
 from concio.contact.problem import ContactProblem
+from concio.io import load_result, save_result
 from concio.lcp.departure import departure, verify_departure
 from concio.lcp.engine import Run
 from concio.lcp.exact_finish import States
@@ -19,6 +22,7 @@ from concio.lcp.methods import find
 from concio.lcp.release import associated_state, release
 from concio.lcp.scaled import scale
 from concio.lcp.solution import Departure
+from concio.report.wording import certificate_sentence, verdict
 
 BRICK = Elastic(E=1e6, nu=0.2, unit_weight=20.0)
 
@@ -182,3 +186,14 @@ def test_verdict_of_a_motion_reaches_the_result() -> None:
     assert result.mechanism.power == pytest.approx(10.0)
     assert "moves away" in str(result) or "moves away" in result.status.value
     result.plot.mechanism()
+
+
+def test_verdict_of_a_motion_is_stored_and_told(tmp_path: Path) -> None:
+    result = concio.solve(between_walls(), on_failure="return")
+    save_result(result, tmp_path)
+    again = load_result(tmp_path)
+    assert again.status is Status.COLLAPSES
+    np.testing.assert_array_equal(again.solution.departure.acceleration, result.solution.departure.acceleration)
+    assert "moves away" in verdict(again).headline
+    assert "mass" in certificate_sentence(again)
+    assert any(line.startswith("  motion") for line in result_lines(again))

@@ -109,24 +109,6 @@ def test_supports_of_blocks_are_kept(tmp_path: Path) -> None:
     assert concio.solve(again.assembly).reactions["top"] == pytest.approx(result.reactions["top"], rel=1e-9)
 
 
-def test_a_motion_without_end_is_kept(tmp_path: Path) -> None:
-    """A block between two walls, which nothing but friction would hold, falls."""
-    square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
-    bodies = (
-        concio.Body("left", square - [1, 0], kind="fixed"),
-        concio.Body("block", square, material="brick"),
-        concio.Body("right", square - [-1, 0], kind="fixed"),
-    )
-    brick = {"brick": concio.Elastic(1e6, 0.2, 20.0)}
-    model = Model(bodies, brick, {"joint": concio.JointLaw(0.5)}, loads=(Load("weight", (0.0, -1.0)),))
-    result = concio.solve(model, on_failure="return")
-    assert result.status is Status.COLLAPSES
-    save_result(result, tmp_path)
-    again = load_result(tmp_path)
-    assert again.status is Status.COLLAPSES
-    np.testing.assert_array_equal(again.solution.departure.acceleration, result.solution.departure.acceleration)
-
-
 def test_the_load_stages_of_the_model_are_kept(tmp_path: Path) -> None:
     point = concio.ControlPoint("c01-b01", (0.0, 0.1))
     stages = (concio.Stage("weight", {"dead": 1.0}), concio.Stage("push", {"live": 0.5}, point, 0.01, 7))

@@ -45,8 +45,8 @@ VERSION = 1
 CLASSES: dict[str, type] = {
     cls.__name__: cls
     for cls in (
-        Assembly, Body, Certificate, Condition, Departure, Detection, Discretisation, Elastic, Elements, Interface,
-        JointLaw, JointRule, ControlPoint, Kinematics, Laws, Load, Mechanism, Model, NearMiss, Overlap, Pairs, Result,
+        Assembly, Body, Certificate, Detection, Discretisation, Elastic, Elements, Interface, JointLaw, JointRule,
+        Condition, ControlPoint, Departure, Kinematics, Laws, Load, Mechanism, Model, NearMiss, Overlap, Pairs, Result,
         Rigid, Shape, Solution, Stage, Status, Support, Supported, Tie,
     )
 }  # fmt: skip

@@ -43,8 +43,8 @@ MOST = 60
 TRIES = 3
 """Covers that pivoting tries for one step."""
 
-PIVOTS = 3000
-"""Largest number of pivots in one step."""
+WORK = 3_000_000
+"""Largest number of pivots in one step times the number of pairs."""
 
 COLD = 3000
 """Largest number of pairs for which the first step is tried by pivoting from nothing."""
@@ -144,7 +144,7 @@ def _pivot(run: Run, step: Scaled, here: Finished | None) -> Finished | None:
     if here is not None:
         u, t_n, t_t = step.restore(here.u, here.t_n, here.t_t)
         known = {"tries": 0, "start_states": here.states.codes(), "start": (u, t_n, t_t[:, None])}
-    answer = sparse_lemke.solve(held, progress=run.progress, limit=min(p.pairs + 500, PIVOTS), **known)
+    answer = sparse_lemke.solve(held, progress=run.progress, limit=min(p.pairs + 500, WORK // p.pairs), **known)
     run.iterations += answer.iterations
     if not answer.solved:
         return None
