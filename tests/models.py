@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+import concio
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Body, JointRule, Load, Model, Support
 
@@ -31,6 +32,18 @@ def on_ground(*bodies, **options):
 
 def weight(x=0.0, y=-1.0, group="dead"):
     return Load("weight", (x, y), group=group)
+
+
+def bearing_panel():
+    """A mortared panel between walls that spans two bearings under pressure: it stands as a flat arch."""
+    return concio.running_bond_panel(courses=2, blocks=3, joint=0.02, friction=0.6, base="bearings", top_pressure=10.0)
+
+
+def sliding_panel():
+    """A dry panel pushed sideways by more than friction holds: a mechanism."""
+    return concio.running_bond_panel(
+        courses=2, blocks=2, friction=0.3, base="full", side_walls=False, unit_weight=20.0, horizontal=0.6
+    )
 
 
 def mapped(model, point, vector, turn=1.0):

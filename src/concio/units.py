@@ -92,7 +92,8 @@ def quantity(value: float | str, kind: str, *, where: str | None = None) -> floa
         try:
             value = float(value)
         except (TypeError, ValueError):
-            raise InputError(f"{value!r} is not a number", where=where) from None  # noqa: EM102
+            msg = f"{value!r} is not a number"
+            raise InputError(msg, where=where) from None
     if not isinstance(value, str):
         number, unit = float(value), ""
     else:

@@ -11,10 +11,9 @@ from pathlib import Path
 
 import pytest
 import typer
-from typer.testing import CliRunner
 
 import concio
-from concio.cli.main import app
+from commands import run
 from concio.cli.outcome import fail
 from concio.cli.run import factors_of, where_written
 from concio.lcp.solution import Progress
@@ -34,12 +33,6 @@ def panel(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     path = tmp_path / "panel.toml"
     path.write_text(SMALL)
     return path
-
-
-def run(*arguments: object) -> tuple[int, str, str]:
-    """Return exit code, standard output and standard error of a command."""
-    found = CliRunner().invoke(app, [str(a) for a in arguments])
-    return found.exit_code, found.stdout, found.stderr
 
 
 def test_run_says_what_was_found(panel: Path) -> None:
@@ -242,8 +235,13 @@ def test_check_reports_what_detection_noticed(tmp_path: Path, monkeypatch: pytes
     path.write_text(text.replace("1.001", "0.9"))
     code, out, err = run("check", path)
     assert code == 2
-    assert "overlap" in out
     assert err.startswith("Error: 'b01' and 'floating' overlap at ")
+    assert (out + err).count("overlap at ") == 1, "the error tells it, the list above need not"
+    assert "no overlaps" not in out
+    path.write_text(text.replace("1.001", "0.9") + "[[blocks]]\nname='third'\nrectangle=[[0.2,1.9],[0.4,2.5]]\n")
+    code, out, err = run("check", path)
+    assert "and 1 more overlap" in err
+    assert sorted((out.count("overlap at "), err.count("overlap at "))) == [1, 1]
     code, _, err = run("check", path, "--out", "near.txt")
     assert code == 2
     assert "'.txt'" in err

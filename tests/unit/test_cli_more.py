@@ -8,11 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import concio
+from commands import run
 from concio.analysis.path import ControlPoint, Stage, run_path
-from concio.cli.main import app
 
 TOPPLES = """
 [column]
@@ -33,11 +32,6 @@ def slender(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     path = tmp_path / "slender.toml"
     path.write_text(TOPPLES)
     return path
-
-
-def run(*arguments: object) -> tuple[int, str, str]:
-    found = CliRunner().invoke(app, [str(a) for a in arguments])
-    return found.exit_code, found.stdout, found.stderr
 
 
 def test_limit_of_a_slender_block(slender: Path) -> None:

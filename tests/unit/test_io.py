@@ -24,6 +24,7 @@ from concio.io.vtu import VERTEX, Grid, write_vtu
 from concio.lcp.certificate import certify
 from concio.lcp.solution import Status
 from concio.model.model import Load, Model, Tie
+from models import sliding_panel
 
 
 def _panel(**changes: object) -> Model:
@@ -68,10 +69,7 @@ def mixed() -> Result:
 
 @pytest.fixture(scope="module")
 def collapse() -> Result:
-    model = concio.running_bond_panel(
-        courses=2, blocks=2, friction=0.3, base="full", side_walls=False, unit_weight=20.0, horizontal=0.6
-    )
-    return concio.solve(model, on_failure="return")
+    return concio.solve(sliding_panel(), on_failure="return")
 
 
 @pytest.mark.parametrize("name", ["panel", "mixed", "collapse"])
@@ -98,6 +96,17 @@ def test_result_reloads_to_the_same_object(name: str, request: pytest.FixtureReq
     assert again.assembly.disc.model is again.assembly.model  # shared objects stay shared
     if result.mechanism is not None:
         np.testing.assert_array_equal(again.mechanism.velocity, result.mechanism.velocity)
+
+
+def test_supports_of_blocks_are_kept(tmp_path: Path) -> None:
+    top = concio.Support("top", "c2-b2", edge=((0.1, 0.2), (0.3, 0.2)))
+    result = concio.solve(replace(_panel(joint=0.0), supports=(top,)))
+    assert result.assembly.supported.held
+    save_result(result, tmp_path)
+    again = load_result(tmp_path)
+    assert again.reactions == result.reactions
+    assert "top" in again.reactions
+    assert concio.solve(again.assembly).reactions["top"] == pytest.approx(result.reactions["top"], rel=1e-9)
 
 
 def test_the_load_stages_of_the_model_are_kept(tmp_path: Path) -> None:

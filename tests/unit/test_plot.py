@@ -27,13 +27,12 @@ from concio.post.motion import body_motions
 from concio.post.outlines import display_scale, outlines
 from concio.post.pressure import pressure_diagrams
 from concio.post.thrust import thrust_lines
+from models import bearing_panel, sliding_panel
 
 
 @pytest.fixture(scope="module")
 def panel() -> Result:
-    return concio.solve(
-        concio.running_bond_panel(courses=2, blocks=3, joint=0.02, friction=0.6, base="bearings", top_pressure=10.0)
-    )
+    return concio.solve(bearing_panel())
 
 
 @pytest.fixture(scope="module")
@@ -43,10 +42,7 @@ def ring() -> Result:
 
 @pytest.fixture(scope="module")
 def collapse() -> Result:
-    model = concio.running_bond_panel(
-        courses=2, blocks=2, friction=0.3, base="full", side_walls=False, unit_weight=20.0, horizontal=0.6
-    )
-    return concio.solve(model, on_failure="return")
+    return concio.solve(sliding_panel(), on_failure="return")
 
 
 def test_outlines_are_the_blocks(panel: Result) -> None:
@@ -287,6 +283,17 @@ def test_path_figure_shows_events_and_peak() -> None:
     assert "a joint opens (1)" in text
     assert "a joint slips (1)" in text
     assert "bound 1.1" in text
+
+
+@pytest.mark.parametrize(("largest", "unit", "told"), [(0.01, "[mm]", "10"), (0.4, "[m]", "0.4")])
+def test_path_figure_tells_small_motions_in_mm(largest: float, unit: str, told: str) -> None:
+    curve = SimpleNamespace(parameter=[0.0, 1.0], control=[0.0, -largest], events=[])
+    ax = plot_path(curve)
+    ax.figure.canvas.draw()
+    assert ax.get_xlabel().endswith(unit)
+    ticks = [label.get_text().replace("\N{MINUS SIGN}", "-") for label in ax.get_xticklabels()]
+    assert f"-{told}" in [tick.rstrip("0") if "." in tick else tick for tick in ticks]
+    np.testing.assert_array_equal(ax.lines[0].get_xdata(), curve.control)
 
 
 @pytest.mark.parametrize(

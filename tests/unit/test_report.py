@@ -20,23 +20,19 @@ from concio.lcp.solution import Status
 from concio.report.page import report_html, write_report
 from concio.report.view_data import unpack
 from concio.report.wording import VERDICTS, certificate_sentence, checks, verdict
+from models import bearing_panel, sliding_panel
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
 
 @pytest.fixture(scope="module")
 def arched() -> Result:
-    return concio.solve(
-        concio.running_bond_panel(courses=2, blocks=3, joint=0.02, friction=0.6, base="bearings", top_pressure=10.0)
-    )
+    return concio.solve(bearing_panel())
 
 
 @pytest.fixture(scope="module")
 def sliding() -> Result:
-    model = concio.running_bond_panel(
-        courses=2, blocks=2, friction=0.3, base="full", side_walls=False, unit_weight=20.0, horizontal=0.6
-    )
-    return concio.solve(model, on_failure="return")
+    return concio.solve(sliding_panel(), on_failure="return")
 
 
 def embedded(page: str) -> dict:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from decimal import Decimal
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -206,6 +207,13 @@ def test_failures_raise_or_return_and_names_are_checked():
     good = concio.solve(on_ground(box("b", 0, 1, 0, 0.2, **STONE), loads=(weight(),)))
     with pytest.raises(InputError, match="no body called 'c'"):
         good.nodes("c")
+
+
+@pytest.mark.parametrize("call", [concio.solve, concio.assemble, concio.limit, concio.run_path, concio.rock])
+@pytest.mark.parametrize(("given", "told"), [("w.toml", "'w.toml'"), (Path("w.toml"), "'w.toml'"), (3, "int")])
+def test_what_is_no_model_is_refused_in_one_sentence(call, given, told):
+    with pytest.raises(InputError, match=f"a model is needed, .*{told} was given .*concio.load"):
+        call(given)
 
 
 def test_stress_at_points_and_nodes_of_a_uniform_state():

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from concio.analysis.lent_compliance import with_compliance
-from concio.contact.assembly import Assembly, assemble
+from concio.contact.assembly import Assembly, as_assembly
 from concio.contact.problem import ContactProblem
 from concio.errors import InputError, NoEquilibriumError
 from concio.lcp.collapse_state import CollapseState, find_collapse_state
@@ -165,7 +165,7 @@ def limit(
     NoEquilibriumError
         The dead load alone cannot be carried.
     """
-    assembly = model if isinstance(model, Assembly) else assemble(model)
+    assembly = as_assembly(model)
     dead, load = dead_and_live(assembly, live)
     mechanism = find_mechanism(dead)
     if mechanism is not None:
@@ -207,7 +207,7 @@ def friction_margin(model: Model | Assembly, live: str | Sequence[str] = "live",
     factor : float
         Load factor of the live groups; all others have 1.
     """
-    assembly = model if isinstance(model, Assembly) else assemble(model)
+    assembly = as_assembly(model)
     dead, load = dead_and_live(assembly, live)
     return smallest_friction(dead.with_loads(dead.f + factor * load))
 

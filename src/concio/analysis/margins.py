@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.analysis.limit import dead_and_live
-from concio.contact.assembly import Assembly, assemble
+from concio.contact.assembly import Assembly, as_assembly
 from concio.contact.problem import ContactProblem
 from concio.lcp.auto import solve as solve_step
 from concio.lcp.limit import associated_limit, scaled_friction, smallest_friction
@@ -72,7 +72,7 @@ def load_margin(model: Model | Assembly, live: str | Sequence[str] = "live", tol
     InputError
         A group does not exist, or the live groups hold no load.
     """
-    assembly = model if isinstance(model, Assembly) else assemble(model)
+    assembly = as_assembly(model)
     dead, load = dead_and_live(assembly, live)
     limit = associated_limit(dead, load).multiplier
     if not (limit < FAR):
@@ -99,7 +99,7 @@ def friction_by_solving(
     InputError
         A group does not exist, or the live groups hold no load.
     """
-    assembly = model if isinstance(model, Assembly) else assemble(model)
+    assembly = as_assembly(model)
     dead, load = dead_and_live(assembly, live)
     loaded = dead.with_loads(dead.f + factor * load)
     least = smallest_friction(loaded).factor

@@ -20,7 +20,7 @@ import numpy as np
 
 from concio.analysis.lent_compliance import SHEAR_TO_NORMAL, assembly_with_compliance
 from concio.analysis.path_result import NamedEvent, PathResult, PathStep, control_functional, named_event
-from concio.contact.assembly import Assembly, assemble
+from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import InputError, SolverError
 from concio.lcp.event_path import follow
 from concio.lcp.methods import find
@@ -73,14 +73,15 @@ def run_path(
     SolverError
         A stage could not even be begun.
     """
-    stages = stages or (model.model if isinstance(model, Assembly) else model).stages
+    assembly = as_assembly(model)
+    stages = stages or assembly.model.stages
     if not stages:
         msg = "a load path needs at least one stage"
         raise InputError(msg, hint="for example Stage('weight', {'dead': 1.0})")
     if brittle and method != "steps":
         msg = "joints that break are followed in steps only"
         raise InputError(msg, hint="use method='steps'")
-    assembly, lent = assembly_with_compliance(model if isinstance(model, Assembly) else assemble(model))
+    assembly, lent = assembly_with_compliance(assembly)
     factors = dict.fromkeys(assembly.groups, 0.0)
     state: PathState | None = None
     if restart is not None:

@@ -77,7 +77,7 @@ class Result:
 
     @property
     def mechanism(self) -> Mechanism | None:
-        """The proof that there is no equilibrium, where that is the outcome."""
+        """The motion that proves that the loads are not carried; None for other outcomes and proofs."""
         return self.solution.mechanism
 
     @cached_property

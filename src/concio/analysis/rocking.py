@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
+from concio.contact.assembly import require_model
 from concio.contact.problem import ContactProblem, Laws
 from concio.errors import InputError, SolverError
 from concio.lcp.limit import associated_limit
@@ -157,6 +158,7 @@ def rock(model: Model, *, direction: float = 1.0, step: float = 0.005, smallest:
     SolverError
         The structure does not stand under its own weight to begin with.
     """
+    require_model(model)
     blocks, names = _read(model)
     multiplier: list[float] = []
     rotation, centroid = [], []

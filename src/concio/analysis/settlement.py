@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from concio.analysis.path import PathResult, Stage, run_path
-from concio.contact.assembly import Assembly, assemble
+from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import InputError
 from concio.lcp.solution import ProgressCallback
 from concio.model.model import Model
@@ -66,7 +66,7 @@ def settle(
     InputError
         No support of that group moves.
     """
-    assembly = model if isinstance(model, Assembly) else assemble(model)
+    assembly = as_assembly(model)
     if group not in assembly.groups:
         msg = f"no support is moved by the load group '{group}'"
         raise InputError(msg, hint="give a [[supports]] entry a displacement or a rotation")

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from typing import Any, Literal
 
 from concio.analysis.result import Result
-from concio.contact.assembly import Assembly, assemble
+from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import NoEquilibriumError, SolverError
 from concio.lcp.methods import find
-from concio.lcp.solution import ProgressCallback, Status
+from concio.lcp.solution import ProgressCallback, Solver, Status
 from concio.model.model import Model
 
 
@@ -30,7 +30,8 @@ def solve(
     model : Model or Assembly
         An assembly saves meshing again.
     method : str
-        Name of a method, see :data:`concio.lcp.methods.METHODS`.
+        Name of a method, see :data:`concio.lcp.methods.METHODS`. A model without joints and ties is solved directly
+        (by "sparse-lemke", with nothing to pivot on), whichever is named.
     factors : mapping of str to float, optional
         Factors of load groups; groups not named have 1.
     on_failure : {"raise", "return"}
@@ -53,10 +54,12 @@ def solve(
     SolverError
         The solver stopped without an answer.
     """
-    solver = find(method)
+    solver: Solver = find(method)
     begin = time.perf_counter()
-    assembly = model if isinstance(model, Assembly) else assemble(model)
+    assembly = as_assembly(model, jointless=True)
     problem = assembly.problem(factors)
+    if not problem.pairs:  # K u = f: there are no states to find, whatever the method
+        solver, options = find("sparse-lemke"), {}
     assembled = time.perf_counter()
     solution = solver(problem, progress=progress, **options)
     end = time.perf_counter()

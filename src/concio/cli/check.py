@@ -52,7 +52,7 @@ def check(
     if out is not None:
         _draw(model, detection, out)
     if not json:
-        for line in check_lines(model, detection, facts, every=every):
+        for line in check_lines(model, detection, facts, every=every, fault=fault.what if fault else ""):
             say(line)
         if out is not None:
             say(f"picture      {out}")

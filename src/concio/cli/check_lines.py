@@ -31,8 +31,22 @@ def check_facts(model: Model, detection: Detection) -> dict[str, Any]:
     }
 
 
-def check_lines(model: Model, detection: Detection, facts: Mapping[str, Any], *, every: bool) -> list[str]:
-    """Return what a model holds as lines of text: sizes, parts, loads, and every finding of interface detection."""
+def check_lines(
+    model: Model, detection: Detection, facts: Mapping[str, Any], *, every: bool, fault: str = ""
+) -> list[str]:
+    """Return what a model holds as lines of text: sizes, parts, loads, and every finding of interface detection.
+
+    Parameters
+    ----------
+    model : Model
+    detection : Detection
+    facts : mapping
+        Numbers of the assembly, empty where there is none.
+    every : bool
+        Whether all bodies and findings are listed, however many.
+    fault : str
+        The error that will be told after these lines; an overlap that it names is not listed.
+    """
     width, height = np.ptp(np.vstack([body.outline for body in model.bodies]), axis=0)
     lines = [
         model.title or "model without a title",
@@ -56,14 +70,14 @@ def check_lines(model: Model, detection: Detection, facts: Mapping[str, Any], *,
         lines.append("attention    there are no loads and nothing is moved: everything stays as it is")
     for tie in model.ties:
         lines.append(f"tie          {tie.name}: {tie.body_a} to {tie.body_b or 'a fixed point'}")
-    findings = [f"overlap      {o.sentence}" for o in detection.overlaps]
+    findings = [f"overlap      {o.sentence}" for o in detection.overlaps if o.sentence not in fault]
     findings += [f"attention    {fault}" for fault in _drawing_faults(model)]
     findings += [f"near miss    {m.sentence}" for m in detection.near_misses]
     shown = findings if every else findings[:MOST_LINES]
     lines += shown
     if len(findings) > len(shown):
         lines.append(f"             ... and {len(findings) - len(shown)} more (--all lists them)")
-    if not findings:
+    if not findings and not detection.overlaps:
         lines.append("geometry     no overlaps and no near misses")
     return lines
 

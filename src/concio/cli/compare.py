@@ -26,12 +26,13 @@ def compare(
     Example: concio compare panel.toml --methods lemke,uzawa,admm
     """
     import concio
+    from concio.contact.assembly import as_assembly
     from concio.study.compare import compare as compared
     from concio.study.compare import format_table
 
     names = None if methods is None else [name.strip() for name in methods.split(",") if name.strip()]
     model = concio.load(file)
-    problem = concio.assemble(model).problem(factors_of(factor))
+    problem = as_assembly(model).problem(factors_of(factor))
     with progress_bar(shown=not json) as progress:
         table = compared(problem, names, time_limit=time_limit, progress=progress, title=model.title or str(file))
     if json:

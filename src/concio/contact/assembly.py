@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from os import PathLike, fspath
 
 import numpy as np
 import scipy.sparse as sp
@@ -122,6 +123,16 @@ class Assembly:
         return u
 
 
+def _no_pairs(disc: Discretisation) -> Pairs:
+    """Return the pairs of a model in which no two bodies touch and supports or ties hold the blocks: none."""
+    number, value, vector = np.zeros(0, dtype=int), np.zeros(0), np.zeros((0, 2))
+    operator = sp.csr_array((0, disc.unknowns))
+    return Pairs(
+        body_a=number, body_b=number, interface=number, point=vector, normal=vector, tangent=vector, length=value,
+        area=value, gap=value, law=number, law_names=tuple(disc.model.laws), C_n=operator, C_t=operator,
+    )  # fmt: skip
+
+
 def _factor(factors: Mapping[str, float] | None, group: str) -> float:
     return 1.0 if factors is None else float(factors.get(group, 1.0))
 
@@ -139,6 +150,41 @@ def detect(model: Model) -> Detection:
     return detect_interfaces(model.bodies, tolerance=default_tolerance(model), reach=model.gap_reach)
 
 
+def require_model(thing: object) -> None:
+    """Refuse anything that is not a model.
+
+    Raises
+    ------
+    InputError
+        It is something else, the name of a file for example.
+    """
+    if not isinstance(thing, Model):
+        what = f"the name '{fspath(thing)}'" if isinstance(thing, str | PathLike) else type(thing).__name__
+        msg = f"a model is needed, {what} was given"
+        raise InputError(msg, hint="concio.load reads a model from a file")
+
+
+def as_assembly(model: Model | Assembly, *, jointless: bool = False) -> Assembly:
+    """Return the assembly of a model; an assembly as it is.
+
+    Parameters
+    ----------
+    model : Model or Assembly
+    jointless : bool
+        Whether a model in which nothing can open, slip or go slack will do.
+
+    Raises
+    ------
+    GeometryError, InputError
+        As :func:`assemble`; or there is no joint and no tie.
+    """
+    assembly = model if isinstance(model, Assembly) else assemble(model)
+    if not jointless and not len(assembly.pairs):
+        msg = "there is no joint and no tie: nothing can open or slip, and the answer is linear in the loads"
+        raise InputError(msg, hint="solve one load step, with concio.solve or 'concio run'")
+    return assembly
+
+
 def assemble(model: Model) -> Assembly:
     """Return the arrays of a model.
 
@@ -147,10 +193,13 @@ def assemble(model: Model) -> Assembly:
     GeometryError
         Bodies overlap.
     InputError
-        Nothing holds the model, nothing touches, a load or support is not usable.
+        What is given is no model (the name of a file, for example); nothing holds the model; no two bodies touch and
+        no support or tie holds a block; a load or support is not usable.
     """
-    if not any(b.kind == "fixed" for b in model.bodies) and not model.supports:
-        msg = "nothing holds the structure: there is no fixed body and no support"
+    require_model(model)
+    fixed = {"", *(b.name for b in model.bodies if b.kind == "fixed")}  # a tie without a body ends at a fixed point
+    if len(fixed) == 1 and not model.supports and not any({t.body_a, t.body_b} & fixed for t in model.ties):
+        msg = "nothing holds the structure: there is no fixed body, no support and no tie to a fixed point"
         raise InputError(msg, hint="add a fixed body such as the ground, or a [[supports]] entry")
     if not model.free_bodies:
         msg = "every body is fixed: there is nothing to compute"
@@ -162,7 +211,8 @@ def assemble(model: Model) -> Assembly:
         msg = first.sentence + (f", and {others} more overlap{'s' if others > 1 else ''}" if others else "")
         raise GeometryError(msg, hint="raise gap_tolerance only where the overlap is no more than inaccurate drawing")
     disc = discretise(model, interface_breaks(model, detection.interfaces))
-    pairs = make_pairs(disc, detection.interfaces)
+    held = bool(model.ties) or bool({s.body for s in model.supports} & {b.name for b in model.free_bodies})
+    pairs = make_pairs(disc, detection.interfaces) if detection.interfaces or not held else _no_pairs(disc)
     laws = pair_laws(model, pairs)
     pairs, laws = add_ties(disc, pairs, laws)
     return Assembly(

@@ -161,11 +161,9 @@ def _mortar(slave: Line, master: Line | None, length: float) -> tuple[Array, Arr
             other[nodes] += (psi * ws) @ _interpolation(master, xs).T
     used = weight > 1e-12 * length
     position = moment[used] / weight[used]
-    sides = [_entries(own[used] / weight[used, None], slave.nodes)]
-    sides.append(_entries(other[used] / weight[used, None], master.nodes) if master is not None else None)  # type: ignore[arg-type]
-    first = sides[0]
-    assert first is not None
-    return position, weight[used], first, sides[1]
+    first = _entries(own[used] / weight[used, None], slave.nodes)
+    second = None if master is None else _entries(other[used] / weight[used, None], master.nodes)
+    return position, weight[used], first, second
 
 
 def _interpolation(line: Line, x: Array) -> Array:

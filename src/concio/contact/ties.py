@@ -41,7 +41,8 @@ def add_ties(disc: Discretisation, pairs: Pairs, laws: Laws) -> tuple[Pairs, Law
         a, b = np.array(tie.at_a, dtype=float), np.array(tie.at_b, dtype=float)
         length = float(np.linalg.norm(b - a))
         if not length > 0:
-            raise InputError("its ends coincide", where=where, hint="give two different points")  # noqa: EM101
+            msg = "its ends coincide"
+            raise InputError(msg, where=where, hint="give two different points")
         if not (0 < tie.stiffness < np.inf) or not (0 <= tie.prestress < np.inf):
             msg = f"stiffness {tie.stiffness:g} must be positive and prestress {tie.prestress:g} not negative"
             raise InputError(msg, where=where)

@@ -69,7 +69,9 @@ class Encoder:
         if sp.issparse(value):
             return self._sparse(value, path)
         if isinstance(value, Mapping):
-            return {"$dict": [[str(k), self.encode(v, f"{path}.{k}")] for k, v in value.items()]}
+            return {
+                "$dict": [[k if type(k) is int else str(k), self.encode(v, f"{path}.{k}")] for k, v in value.items()]
+            }
         if isinstance(value, list | tuple):
             return self._sequence(value, path)
         if is_dataclass(value) and not isinstance(value, type):
@@ -181,7 +183,8 @@ class Decoder:
                 make = sp.csc_array if kind == "csc" else sp.csr_array
                 return make(tuple(self.decode(v) for v in (data, indices, indptr)), shape=tuple(shape))
             case {"$enum": [cls, member]}:
-                return self._class(cls)[member]  # type: ignore[index]
+                enumeration: Any = self._class(cls)
+                return enumeration[member]
             case {"$dict": items}:
                 return {k: self.decode(v) for k, v in items}
             case {"$tuple": items}:

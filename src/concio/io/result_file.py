@@ -24,7 +24,7 @@ from concio.analysis.result import Result
 from concio.contact.assembly import Assembly
 from concio.contact.pairs import Pairs
 from concio.contact.problem import Laws
-from concio.contact.supports import Supported
+from concio.contact.supports import Condition, Supported
 from concio.errors import InputError
 from concio.fem.body import Shape
 from concio.fem.discretisation import Discretisation
@@ -46,8 +46,8 @@ CLASSES: dict[str, type] = {
     cls.__name__: cls
     for cls in (
         Assembly, Body, Certificate, Detection, Discretisation, Elastic, Elements, Interface, JointLaw, JointRule,
-        ControlPoint, Departure, Kinematics, Laws, Load, Mechanism, Model, NearMiss, Overlap, Pairs, Result, Rigid,
-        Shape, Solution, Stage, Status, Support, Supported, Tie,
+        Condition, ControlPoint, Departure, Kinematics, Laws, Load, Mechanism, Model, NearMiss, Overlap, Pairs, Result,
+        Rigid, Shape, Solution, Stage, Status, Support, Supported, Tie,
     )
 }  # fmt: skip
 """Classes that may appear in a file, by the names they have there. A renamed class keeps its name here."""
@@ -86,8 +86,9 @@ def save_result(result: Result, directory: Path) -> list[Path]:
     }
     text, arrays = directory / "result.json", directory / "result.npz"
     text.write_text(json.dumps(tree, allow_nan=False, separators=(",", ":")) + "\n", encoding="utf-8")
+    named: dict[str, Any] = dict(encoder.arrays)
     with arrays.open("wb") as file:
-        np.savez_compressed(file, **encoder.arrays)  # type: ignore[arg-type]
+        np.savez_compressed(file, **named)
     return [text, arrays]
 
 

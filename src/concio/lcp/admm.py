@@ -25,15 +25,6 @@ V. Acary, M. Brémond, O. Huber, On solving contact problems with Coulomb fricti
 comparisons, in *Advanced Topics in Nonsmooth Dynamics*, Springer, 2018. S. Boyd et al., Distributed optimization and
 statistical learning via the alternating direction method of multipliers, *Found. Trends Mach. Learn.* 3 (2011) 1-122
 (balancing of rho, over-relaxation).
-
-Parameters of :func:`solve`
----------------------------
-augmentation : float, default 1
-    First rho in multiples of the typical stiffness.
-relaxation : float, default 1
-    omega, between 0 and 2. Above 1 it speeds convex problems up, and makes the moving shift oscillate.
-limit : int, default 5000
-    Iterations.
 """
 
 from __future__ import annotations
@@ -46,7 +37,7 @@ from concio.errors import MethodError
 from concio.lcp.de_saxce import isotropic
 from concio.lcp.dimensionless import PROXIMAL, Dimensionless, dimensionless
 from concio.lcp.friction_cone import return_map
-from concio.lcp.iteration import GOAL, Record, Stopped, answer
+from concio.lcp.iteration import GOAL, Record, Stopped, answer, require_positive
 from concio.lcp.solution import ProgressCallback, Solution
 
 BALANCE_EVERY = 50
@@ -70,7 +61,7 @@ def solve(
     augmentation : float
         First rho in multiples of the typical stiffness, positive.
     relaxation : float
-        Over-relaxation, 0 < omega < 2.
+        Over-relaxation, 0 < omega < 2. Above 1 it speeds convex problems up, and makes the moving shift oscillate.
     limit : int
         Iterations.
 
@@ -79,10 +70,10 @@ def solve(
     MethodError
         An option is not usable.
     """
-    if not augmentation > 0:
-        raise MethodError(f"augmentation {augmentation} is not positive", hint="try 1")  # noqa: EM102
+    require_positive("augmentation", augmentation, "try 1")
     if not 0 < relaxation < 2:
-        raise MethodError(f"relaxation {relaxation} is not between 0 and 2", hint="try 1")  # noqa: EM102
+        msg = f"relaxation {relaxation} is not between 0 and 2"
+        raise MethodError(msg, hint="try 1")
     s = dimensionless(problem)
     record = Record("admm", s, progress)
     record.info["unknowns"] = s.f.size + 2 * s.t.size

@@ -20,14 +20,6 @@ References
 ----------
 P. Alart, A. Curnier, A mixed formulation for frictional contact problems prone to Newton like solution methods,
 *Comput. Methods Appl. Mech. Engrg.* 92 (1991) 353-375.
-
-Parameters of :func:`solve`
----------------------------
-augmentation : float, default 1
-    rho in multiples of the typical stiffness: scales the two residuals against each other and decides how early
-    states change.
-line_search : bool, default True
-    Off: plain Newton steps.
 """
 
 from __future__ import annotations
@@ -36,11 +28,10 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.contact.problem import Array, ContactProblem
-from concio.errors import MethodError
 from concio.lcp.augmented import block_diagonal, proximal
 from concio.lcp.dimensionless import Dimensionless, dimensionless
 from concio.lcp.friction_cone import return_map, return_map_derivative
-from concio.lcp.iteration import GOAL, Record, Stopped, answer
+from concio.lcp.iteration import GOAL, Record, Stopped, answer, require_positive
 from concio.lcp.solution import ProgressCallback, Solution
 
 SHIFT = 1e-7
@@ -71,9 +62,10 @@ def solve(
     problem : ContactProblem
     progress : callable, optional
     augmentation : float
-        rho in multiples of the typical stiffness, positive.
+        rho in multiples of the typical stiffness, positive: scales the two residuals against each other and decides
+        how early states change.
     line_search : bool
-        Whether steps are shortened until the residual falls.
+        Whether steps are shortened until the residual falls; off: plain Newton steps.
     limit : int
         Newton steps.
 
@@ -82,8 +74,7 @@ def solve(
     MethodError
         ``augmentation`` is not positive.
     """
-    if not augmentation > 0:
-        raise MethodError(f"augmentation {augmentation} is not positive", hint="try 1")  # noqa: EM102
+    require_positive("augmentation", augmentation, "try 1")
     s = dimensionless(problem)
     record = Record("alart-curnier", s, progress)
     record.info["unknowns"] = s.f.size + s.t.size

@@ -79,7 +79,8 @@ def kinematics(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> Kin
     """Return gaps, slips and crushing of displacements ``u`` (N,) and forces ``t_n`` (m,), ``t_t`` (m, d-1)."""
     law = problem.laws
     m = problem.pairs
-    slip = (problem.C_t @ u).reshape(m, -1) - problem.slip_origin + law.tangential_compliance[:, None] * t_t
+    slip = (problem.C_t @ u).reshape(m, problem.dim - 1) - problem.slip_origin
+    slip += law.tangential_compliance[:, None] * t_t
     sliding = (law.friction > 0) | (law.cohesion > 0)
     size = np.linalg.norm(slip, axis=1)
     gap = problem.gap + problem.C_n @ u + law.normal_compliance * t_n - np.where(sliding, law.dilatancy * size, 0.0)
@@ -114,7 +115,7 @@ def certify(
         F to measure forces by, where the problem's own loads are not the measure [kN].
     """
     law = problem.laws
-    t_t = t_t.reshape(problem.pairs, -1)
+    t_t = t_t.reshape(problem.pairs, problem.dim - 1)
     if not (np.isfinite(u).all() and np.isfinite(t_n).all() and np.isfinite(t_t).all()):
         return Certificate(*([np.inf] * 5))
     force, length = scales(problem, u, t_n, t_t)

@@ -17,13 +17,6 @@ References
 G. De Saxcé, Z.-Q. Feng, New inequation and functional for contact with friction: the implicit standard material
 approach, *Mech. Struct. Mach.* 19 (1991) 301-325. V. Acary, F. Cadoux, C. Lemaréchal, J. Malick, A formulation of the
 linear discrete Coulomb friction problem via convex optimization, *ZAMM* 91 (2011) 155-175 (the fixed point).
-
-Parameters of :func:`solve`
----------------------------
-augmentation : float, default 10
-    rho of the convex problems, in multiples of the typical stiffness.
-limit, steps : int, default 300 and 3000
-    Convex problems, and Newton steps in all.
 """
 
 from __future__ import annotations
@@ -33,10 +26,9 @@ from dataclasses import replace
 import numpy as np
 
 from concio.contact.problem import ContactProblem
-from concio.errors import MethodError
 from concio.lcp.augmented import Augmented, multipliers
 from concio.lcp.dimensionless import dimensionless
-from concio.lcp.iteration import GOAL, Record, Stopped, answer
+from concio.lcp.iteration import GOAL, Record, Stopped, answer, require_positive
 from concio.lcp.solution import ProgressCallback, Solution
 
 LOOSE = 1e-4
@@ -69,8 +61,7 @@ def solve(
     MethodError
         ``augmentation`` is not positive.
     """
-    if not augmentation > 0:
-        raise MethodError(f"augmentation {augmentation} is not positive", hint="try 10")  # noqa: EM102
+    require_positive("augmentation", augmentation, "try 10")
     s = dimensionless(problem)
     record = Record("de-saxce", s, progress, budget=steps)
     record.info["unknowns"] = s.f.size

@@ -29,6 +29,7 @@ costs are drawn once, so that it does not stall, and are not perturbed by the so
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import highspy
 import numpy as np
@@ -98,7 +99,8 @@ class Relaxation:
         b = np.concatenate([red.y0, -red.e0 * self.unit])
         A[np.abs(A) < 1e-14 * np.abs(A).max(initial=1.0)] = 0.0
         self.tangents: list[tuple[Array, Array, float]] = []
-        self.highs = highs = highspy.Highs()  # type: ignore[no-untyped-call]
+        solver: Any = highspy.Highs  # its stubs leave out the constructor and getDualRay
+        self.highs = highs = solver()
         for name, value in (
             ("output_flag", False),
             ("presolve", "off"),
@@ -171,7 +173,7 @@ class Relaxation:
             return Point(values[: self.n], self.B @ values[:c], values[self.n :] * self.unit)
         if status != highspy.HighsModelStatus.kInfeasible:
             return None
-        _, exists, ray = self.highs.getDualRay()  # type: ignore[attr-defined]
+        _, exists, ray = self.highs.getDualRay()
         if not exists:
             return None
         ray = np.asarray(ray)

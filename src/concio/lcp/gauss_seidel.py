@@ -15,15 +15,6 @@ reported as what it is.
 References
 ----------
 M. Jean, The non-smooth contact dynamics method, *Comput. Methods Appl. Mech. Engrg.* 177 (1999) 235-257.
-
-Parameters of :func:`solve`
----------------------------
-inertia : float, default 0.03
-    tau in multiples of the typical stiffness; 0 where K is regular is the plain method on W = C K^-1 C'.
-sweeps : int, default 3
-    Sweeps between two updates of the proximal term.
-limit : int, default 3000
-    Sweeps in all.
 """
 
 from __future__ import annotations
@@ -55,7 +46,8 @@ def solve(
     problem : ContactProblem
     progress : callable, optional
     inertia : float
-        Proximal weight in multiples of the typical stiffness, positive; zero only where no body floats.
+        Proximal weight tau in multiples of the typical stiffness, positive; zero, the plain method on
+        ``W = C K^-1 C'``, only where no body floats.
     sweeps : int
         Sweeps between two updates of the proximal term.
     limit : int
@@ -67,15 +59,11 @@ def solve(
         An option is not usable, or ``inertia=0`` meets floating bodies.
     """
     if inertia < 0 or sweeps < 1:
-        raise MethodError(
-            f"inertia {inertia} must not be negative and sweeps {sweeps} at least 1",  # noqa: EM102
-            hint="try inertia=0.03, sweeps=3",
-        )
+        msg = f"inertia {inertia} must not be negative and sweeps {sweeps} at least 1"
+        raise MethodError(msg, hint="try inertia=0.03, sweeps=3")
     if inertia == 0 and problem.rigid_motions:
-        raise MethodError(
-            f"the Delassus operator C K^-1 C' does not exist: {problem.rigid_motions} rigid motions are free",  # noqa: EM102
-            hint="leave inertia at its default, or take admm or interior-point",
-        )
+        msg = f"the Delassus operator C K^-1 C' does not exist: {problem.rigid_motions} rigid motions are free"
+        raise MethodError(msg, hint="leave inertia at its default, or take admm or interior-point")
     s = dimensionless(problem)
     record = Record("gauss-seidel", s, progress)
     record.info["unknowns"] = s.t.size

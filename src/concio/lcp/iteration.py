@@ -15,6 +15,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import SuperLU
 
 from concio.contact.problem import Array, ContactProblem
+from concio.errors import MethodError
 from concio.lcp.certificate import CERTIFIED
 from concio.lcp.dimensionless import Dimensionless, factorise
 from concio.lcp.solution import Progress, ProgressCallback, Solution, Status, judge
@@ -113,6 +114,26 @@ class Record:
         if len(self.history) <= 2 * window:
             return False
         return min(self.history[-window:]) > factor * min(self.history[:-window])
+
+
+def require_positive(name: str, value: float, hint: str) -> None:
+    """Refuse an option of a method that is not above zero.
+
+    Parameters
+    ----------
+    name, value
+        What the option is called in the message, and what was given.
+    hint : str
+        What to do.
+
+    Raises
+    ------
+    MethodError
+        ``value`` is zero, negative or not a number.
+    """
+    if not value > 0:
+        msg = f"{name} {value} is not positive"
+        raise MethodError(msg, hint=hint)
 
 
 def answer(problem: ContactProblem, record: Record, *, cancelled: bool = False) -> Solution:

@@ -22,11 +22,6 @@ References
 G. Strang, *Introduction to Applied Mathematics*, 1986, section 8 (active sets). N. Kikuchi, J. T. Oden, *Contact
 Problems in Elasticity*, SIAM, 1988 (multipliers in contact). M. Hintermüller, K. Ito, K. Kunisch, The primal-dual
 active set strategy as a semismooth Newton method, *SIAM J. Optim.* 13 (2003) 865-888.
-
-Parameters of :func:`solve`
----------------------------
-limit : int, default 600
-    State corrections, one factorisation each.
 """
 
 from __future__ import annotations
@@ -81,7 +76,7 @@ def solve(problem: ContactProblem, *, progress: ProgressCallback | None = None, 
         In two dimensions.
     progress : callable, optional
     limit : int
-        State corrections.
+        State corrections, one factorisation each.
 
     Raises
     ------

@@ -39,6 +39,7 @@ def find(name: str) -> Solver:
         There is no method of that name.
     """
     if name not in METHODS:
-        raise MethodError(f"unknown method '{name}'", hint="one of: " + ", ".join(METHODS))  # noqa: EM102
+        msg = f"unknown method '{name}'"
+        raise MethodError(msg, hint="one of: " + ", ".join(METHODS))
     solver: Solver = import_module(METHODS[name]).solve
     return solver

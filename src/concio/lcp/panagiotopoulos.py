@@ -23,16 +23,6 @@ References
 ----------
 P. D. Panagiotopoulos, A nonlinear programming approach to the unilateral contact- and friction-boundary value problem
 in the theory of elasticity, *Ingenieur-Archiv* 44 (1975) 421-432.
-
-Parameters of :func:`solve`
----------------------------
-form : {"tresca", "alternating"}, default "tresca"
-augmentation : float, default 10
-    rho of the convex problems, in multiples of the typical stiffness.
-prox : float, default 1e-3
-    Proximal weight of the Tresca form, in multiples of the typical stiffness.
-limit, steps : int, default 150 and 3000
-    Alternations, and Newton steps in all.
 """
 
 from __future__ import annotations
@@ -45,8 +35,8 @@ from concio.contact.problem import Array, ContactProblem
 from concio.errors import MethodError
 from concio.lcp.augmented import Augmented, multipliers
 from concio.lcp.de_saxce import LOOSE, change_stalls, inexact, isotropic
-from concio.lcp.dimensionless import Dimensionless, dimensionless
-from concio.lcp.iteration import GOAL, Record, Stopped, answer
+from concio.lcp.dimensionless import dimensionless
+from concio.lcp.iteration import GOAL, Record, Stopped, answer, require_positive
 from concio.lcp.solution import ProgressCallback, Solution
 
 
@@ -83,21 +73,21 @@ def solve(
         An option is not usable, or ``form="alternating"`` meets floating bodies.
     """
     if form not in ("tresca", "alternating"):
-        raise MethodError(f"unknown form '{form}'", hint="one of: tresca, alternating")  # noqa: EM102
-    if not augmentation > 0:
-        raise MethodError(f"augmentation {augmentation} is not positive", hint="try 10")  # noqa: EM102
+        msg = f"unknown form '{form}'"
+        raise MethodError(msg, hint="one of: tresca, alternating")
+    require_positive("augmentation", augmentation, "try 10")
     if form == "alternating" and problem.rigid_motions:
-        raise MethodError(
-            f"alternating normal and friction problems need K positive definite, {problem.rigid_motions} rigid motions "  # noqa: EM102
-            "are free",
-            hint="form='tresca' keeps them, so do the methods simo-laursen and interior-point",
+        msg = (
+            f"alternating normal and friction problems need K positive definite, {problem.rigid_motions} rigid motions "
+            "are free"
         )
+        raise MethodError(msg, hint="form='tresca' keeps them, so do the methods simo-laursen and interior-point")
     s = dimensionless(problem)
     record = Record("panagiotopoulos", s, progress, budget=steps)
     record.info["unknowns"] = s.f.size
     cycle = _tresca if form == "tresca" else _alternating
     prox = prox if problem.rigid_motions else 0.0
-    rho = np.full_like(s.t, augmentation)
+    rho, zero = np.full_like(s.t, augmentation), np.zeros(s.pairs)
     u, relax, before, outer = s.u, 1.0, np.inf, 0
     slip = np.zeros(s.pairs)
     changes: list[float] = []
@@ -106,7 +96,8 @@ def solve(
         u, t, _ = multipliers(associated, u, record, goal=1e-3)
         held = t
         for outer in range(1, limit + 1):
-            u, t = cycle(s, record, u, t, held, s.dilatancy * slip, rho, prox, inexact(before, LOOSE))
+            law = Augmented(s, s.cone, rho, t, flow=zero, shift=-s.dilatancy * slip, anchor=u, prox=prox)
+            u, t = cycle(law, record, u, held, inexact(before, LOOSE))
             if record.note(u, t, f"alternation {outer}") <= 10.0 * GOAL:
                 break
             change = float(np.abs(t - held).max(initial=0.0))
@@ -126,47 +117,21 @@ def solve(
     return answer(problem, record)
 
 
-def _tresca(
-    s: Dimensionless,
-    record: Record,
-    u: Array,
-    t: Array,
-    held: Array,
-    opening: Array,
-    rho: Array,
-    prox: float,
-    goal: float,
-) -> tuple[Array, Array]:
+def _tresca(law: Augmented, record: Record, u: Array, held: Array, goal: float) -> tuple[Array, Array]:
     """One Tresca problem with the sliding strength of the normal forces held."""
-    cone = s.cone.tresca(s.cone.radius(held[:, 0]))
-    law = Augmented(s, cone, rho, t, np.zeros(s.pairs), shift=-opening, anchor=u, prox=prox)
-    u, t, _ = multipliers(law, u, record, goal=goal)
+    cone = law.scaled.cone
+    u, t, _ = multipliers(replace(law, cone=cone.tresca(cone.radius(held[:, 0]))), u, record, goal=goal)
     return u, t
 
 
-def _alternating(
-    s: Dimensionless,
-    record: Record,
-    u: Array,
-    t: Array,
-    held: Array,
-    opening: Array,
-    rho: Array,
-    prox: float,
-    goal: float,
-) -> tuple[Array, Array]:
-    """One normal problem with friction held, one friction problem with the normal forces found held (prox unused)."""
-    zero = np.zeros(s.pairs)
-    normal, tangential = t.copy(), held.copy()
+def _alternating(law: Augmented, record: Record, u: Array, held: Array, goal: float) -> tuple[Array, Array]:
+    """One normal problem with friction held, one friction problem with the normal forces found held."""
+    cone, zero = law.scaled.cone, law.flow
+    normal, tangential = law.lam.copy(), held.copy()
     normal[:, 1:], tangential[:, 0] = 0.0, 0.0
-    frictionless = s.cone.tresca(zero)
-    law = Augmented(s, frictionless, rho, normal, zero, shift=-opening, fixed=tangential)
-    u, t, _ = multipliers(law, u, record, goal=goal)
+    u, t, _ = multipliers(replace(law, cone=cone.tresca(zero), lam=normal, fixed=tangential), u, record, goal=goal)
     pressed = t.copy()
     pressed[:, 1:] = 0.0
-    bound = replace(s.cone.tresca(s.cone.radius(t[:, 0])), lower=zero, upper=zero)
-    start = held.copy()
-    start[:, 0] = 0.0
-    law = Augmented(s, bound, rho, start, zero, fixed=pressed)
-    u, t, _ = multipliers(law, u, record, goal=goal)
+    bound = replace(cone.tresca(cone.radius(t[:, 0])), lower=zero, upper=zero)
+    u, t, _ = multipliers(replace(law, cone=bound, lam=tangential, shift=0.0, fixed=pressed), u, record, goal=goal)
     return u, t

@@ -19,11 +19,6 @@ Floating bodies are no obstacle: ``K + r C' P' C`` is regular where contacts hol
 References
 ----------
 N. Kikuchi, J. T. Oden, *Contact Problems in Elasticity*, SIAM, 1988.
-
-Parameters of :func:`solve`
----------------------------
-stiffness : float, default 1e4
-    r in multiples of the typical stiffness of the structure.
 """
 
 from __future__ import annotations
@@ -33,10 +28,9 @@ from dataclasses import replace
 import numpy as np
 
 from concio.contact.problem import ContactProblem
-from concio.errors import MethodError
 from concio.lcp.alart_curnier import newton
 from concio.lcp.dimensionless import dimensionless
-from concio.lcp.iteration import GOAL, Record, Stopped, answer
+from concio.lcp.iteration import GOAL, Record, Stopped, answer, require_positive
 from concio.lcp.solution import ProgressCallback, Solution
 
 
@@ -54,7 +48,7 @@ def solve(
     problem : ContactProblem
     progress : callable, optional
     stiffness : float
-        Spring stiffness in multiples of the typical stiffness, positive.
+        Spring stiffness r in multiples of the typical stiffness of the structure, positive.
     limit : int
         Newton steps at each stiffness.
 
@@ -63,8 +57,7 @@ def solve(
     MethodError
         ``stiffness`` is not positive.
     """
-    if not stiffness > 0:
-        raise MethodError(f"penalty stiffness {stiffness} is not positive", hint="try 1e4")  # noqa: EM102
+    require_positive("penalty stiffness", stiffness, "try 1e4")
     s = dimensionless(problem)
     record = Record("penalty", s, progress)
     record.info["unknowns"] = s.f.size + s.t.size

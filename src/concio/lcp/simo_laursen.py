@@ -14,12 +14,6 @@ References
 ----------
 J. C. Simo, T. A. Laursen, An augmented Lagrangian treatment of contact problems involving friction, *Computers &
 Structures* 42 (1992) 97-116.
-
-Parameters of :func:`solve`
----------------------------
-updates : {"nested", "simultaneous"}, default "nested"
-augmentation : float, default 10
-    rho in multiples of the typical stiffness.
 """
 
 from __future__ import annotations
@@ -32,7 +26,7 @@ from concio.contact.problem import ContactProblem
 from concio.errors import MethodError
 from concio.lcp.alart_curnier import newton
 from concio.lcp.dimensionless import dimensionless
-from concio.lcp.iteration import GOAL, Record, Stopped, answer
+from concio.lcp.iteration import GOAL, Record, Stopped, answer, require_positive
 from concio.lcp.solution import ProgressCallback, Solution
 
 LARGEST = 1e5
@@ -65,9 +59,9 @@ def solve(
         An option is not usable.
     """
     if updates not in ("nested", "simultaneous"):
-        raise MethodError(f"unknown updates '{updates}'", hint="one of: nested, simultaneous")  # noqa: EM102
-    if not augmentation > 0:
-        raise MethodError(f"augmentation {augmentation} is not positive", hint="try 10")  # noqa: EM102
+        msg = f"unknown updates '{updates}'"
+        raise MethodError(msg, hint="one of: nested, simultaneous")
+    require_positive("augmentation", augmentation, "try 10")
     s = dimensionless(problem)
     record = Record("simo-laursen", s, progress)
     record.info["unknowns"] = s.f.size + s.t.size

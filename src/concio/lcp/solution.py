@@ -212,7 +212,7 @@ def judge(
     **extra
         Further fields of :class:`Solution`.
     """
-    t_t = np.asarray(t_t, dtype=float).reshape(problem.pairs, -1)
+    t_t = np.asarray(t_t, dtype=float).reshape(problem.pairs, problem.dim - 1)
     certificate = certify(problem, u, t_n, t_t)
     status = Status.SOLVED if certificate.certified else failure
     return Solution(status, u, t_n, t_t, kinematics(problem, u, t_n, t_t), certificate, method, **extra)

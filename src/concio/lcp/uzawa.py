@@ -19,15 +19,6 @@ References
 ----------
 K. Arrow, L. Hurwicz, H. Uzawa, *Studies in Linear and Non-Linear Programming*, Stanford, 1958. A. Chambolle, T. Pock,
 A first-order primal-dual algorithm for convex problems, *J. Math. Imaging Vision* 40 (2011) 120-145.
-
-Parameters of :func:`solve`
----------------------------
-inertia : float, default 0.1
-    tau in multiples of the typical stiffness.
-drag : float, default 0.3
-    theta; 0 where K is regular is Uzawa's own method with extrapolation.
-limit : int, default 5000
-    Iterations.
 """
 
 from __future__ import annotations
@@ -61,7 +52,8 @@ def solve(
     inertia : float
         Proximal weight tau in multiples of the typical stiffness, positive.
     drag : float
-        Share theta of K in the proximal metric, not negative.
+        Share theta of K in the proximal metric, not negative; 0 where K is regular is Uzawa's own method with
+        extrapolation.
     limit : int
         Iterations.
 
@@ -71,10 +63,8 @@ def solve(
         An option is not usable.
     """
     if not inertia > 0 or drag < 0:
-        raise MethodError(
-            f"inertia {inertia} must be positive and drag {drag} not negative",  # noqa: EM102
-            hint="try inertia=0.1, drag=0.3",
-        )
+        msg = f"inertia {inertia} must be positive and drag {drag} not negative"
+        raise MethodError(msg, hint="try inertia=0.1, drag=0.3")
     s = dimensionless(problem)
     record = Record("uzawa", s, progress)
     record.info["unknowns"] = s.f.size + s.t.size

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from typing import Any, Literal, TypedDict
 
 import numpy as np
@@ -166,6 +166,21 @@ def count(where: str, name: str, value: object, least: int = 1) -> int:
         msg = f"{name} = {value} must be at least {least}"
         raise InputError(msg, where=where)
     return int(value)
+
+
+def check_keys(where: str, given: Iterable[str], kind: type) -> None:
+    """Refuse keys that are no fields of the dataclass ``kind``.
+
+    Raises
+    ------
+    InputError
+        A key is not known.
+    """
+    known = [f.name for f in fields(kind)]
+    for key in given:
+        if key not in known:
+            msg = f"unknown key '{key}'"
+            raise InputError(msg, where=where, hint="known: " + ", ".join(known))
 
 
 def two(where: str, name: str, value: Sequence[Any]) -> tuple[Any, Any]:

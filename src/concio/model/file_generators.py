@@ -10,7 +10,7 @@ import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
-from types import NoneType, UnionType
+from types import GenericAlias, NoneType, UnionType
 from typing import Any, Literal, Union, Unpack, get_args, get_origin, get_type_hints
 
 from pydantic import Field, StrictBool, StrictInt, StrictStr, create_model
@@ -73,7 +73,7 @@ def field_type(name: str, hint: Any) -> Any:
     if any(p is float for p in parts):
         return TYPES[KINDS.get(name, "number")]
     if name in ("openings", "panels"):
-        return list[_table_of(Opening if name == "openings" else Panel)]  # type: ignore[misc]
+        return GenericAlias(list, (_table_of(Opening if name == "openings" else Panel),))
     if name == "bond":
         return Bond
     return list[list[Number]]
@@ -89,26 +89,26 @@ def _table_of(kind: type) -> type[Table]:
     if not is_dataclass(kind):  # pragma: no cover
         raise TypeError(kind)
     hints = get_type_hints(kind)
-    members = {f.name: (field_type(f.name, hints[f.name]), Field(None)) for f in fields(kind)}
-    return create_model(kind.__name__, __base__=Table, __doc__=_first_line(kind), **members)  # type: ignore[call-overload,no-any-return]
+    members: dict[str, Any] = {f.name: (field_type(f.name, hints[f.name]), Field(None)) for f in fields(kind)}
+    return create_model(kind.__name__, __base__=Table, __doc__=_first_line(kind), **members)
 
 
 @cache
 def generator_table(name: str) -> type[Table]:
     """Return the table of a generator; keys that are left out take the defaults of the function."""
     function = GENERATORS[name]
-    members = {}
+    members: dict[str, Any] = {}
     for key, (hint, default) in hints_of(function).items():
         kind = field_type(key, hint)
         members[key] = (kind, Field(...)) if default is ... else (kind, Field(None))
-    return create_model(name, __base__=Table, __doc__=_first_line(function), **members)  # type: ignore[call-overload,no-any-return]
+    return create_model(name, __base__=Table, __doc__=_first_line(function), **members)
 
 
 @cache
 def file_table() -> type[FileTable]:
     """Return the table of a whole model file, generators included."""
-    members = {name: (generator_table(name), Field(None)) for name in GENERATORS}
-    return create_model("concio model", __base__=FileTable, __doc__=FileTable.__doc__, **members)  # type: ignore[call-overload,no-any-return]
+    members: dict[str, Any] = {name: (generator_table(name), Field(None)) for name in GENERATORS}
+    return create_model("concio model", __base__=FileTable, __doc__=FileTable.__doc__, **members)
 
 
 def json_schema() -> dict[str, Any]:

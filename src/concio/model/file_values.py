@@ -107,7 +107,8 @@ SMALLEST, LARGEST = 1e-9, 1e7
 
 def _size(value: float) -> float:
     if value != 0 and not (SMALLEST <= abs(value) <= LARGEST):
-        raise _fault(f"{value:g} m is no size of a structure", f"sizes lie between {SMALLEST:g} and {LARGEST:g} m")  # noqa: EM102
+        msg = f"{value:g} m is no size of a structure"
+        raise _fault(msg, f"sizes lie between {SMALLEST:g} and {LARGEST:g} m")
     return value
 
 

@@ -17,6 +17,12 @@ def _number(value: float | str, kind: str, name: str) -> float:
     return number
 
 
+def _check_weight(unit_weight: float) -> None:
+    if not (0 <= unit_weight < math.inf):
+        msg = f"unit_weight = {unit_weight:g} must be zero or positive"
+        raise InputError(msg, hint="weight acts downwards by itself; give it as a positive number")
+
+
 @dataclass(frozen=True)
 class Elastic:
     """Isotropic linear elastic material.
@@ -50,9 +56,7 @@ class Elastic:
         if not (-1 < self.nu < 0.5):
             msg = f"Poisson's ratio nu = {self.nu:g} must lie between -1 and 0.5"
             raise InputError(msg, hint="masonry lies near 0.15 to 0.25; nu = 0.5 is incompressible")
-        if not (0 <= self.unit_weight < math.inf):
-            msg = f"unit_weight = {self.unit_weight:g} must be zero or positive"
-            raise InputError(msg, hint="weight acts downwards by itself; give it as a positive number")
+        _check_weight(self.unit_weight)
 
 
 @dataclass(frozen=True)
@@ -69,9 +73,7 @@ class Rigid:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "unit_weight", _number(self.unit_weight, "unit weight", "unit_weight"))
-        if not (0 <= self.unit_weight < math.inf):
-            msg = f"unit_weight = {self.unit_weight:g} must be zero or positive"
-            raise InputError(msg, hint="weight acts downwards by itself; give it as a positive number")
+        _check_weight(self.unit_weight)
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 from concio.errors import InputError
-from concio.model.arguments import finite, not_negative, positive
+from concio.model.arguments import check_keys, finite, not_negative, positive
 
 
 @dataclass(frozen=True)
@@ -64,15 +64,11 @@ def checked_openings(
     InputError
         Unknown key, an opening or its lintel beyond the wall, or two openings that overlap.
     """
-    known = [f.name for f in fields(Opening)]
     result: list[Opening] = []
     for number, item in enumerate(openings, 1):
         place = f"{where}, opening {number}"
         if not isinstance(item, Opening):
-            for key in item:
-                if key not in known:
-                    msg = f"unknown key '{key}'"
-                    raise InputError(msg, where=place, hint="known: " + ", ".join(known))
+            check_keys(place, item, Opening)
             missing = [name for name in ("x", "y", "width", "height") if name not in item]
             if missing:
                 msg = f"{missing[0]} is missing"

@@ -120,7 +120,8 @@ def running_bond_panel(
             msg = f"{name} = {value:g} must be {'positive' if least else 'zero or positive'} and finite"
             raise InputError(msg, where=where)
     if not np.isfinite(pressure) or not np.isfinite(horizontal):
-        raise InputError("top_pressure and horizontal must be finite", where=where)  # noqa: EM101
+        msg = "top_pressure and horizontal must be finite"
+        raise InputError(msg, where=where)
     if t_m >= length:
         msg = f"the joint ({t_m:g} m) is not thinner than a block is long ({length:g} m)"
         raise InputError(msg, where=where, hint="joint and block_size are lengths in m")

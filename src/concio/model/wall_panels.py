@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 from concio.errors import InputError
-from concio.model.arguments import finite, positive, two
+from concio.model.arguments import check_keys, finite, positive, two
 from concio.model.bonds import Course
 from concio.model.openings import Opening
 
@@ -53,16 +53,12 @@ def checked_panels(
             if value is None:
                 msg = f"{name} is missing"
                 raise InputError(msg, where=where, hint="give length and height of the wall in m")
-        panels = [Panel(length, height, openings=openings)]  # type: ignore[arg-type]
-    known = [f.name for f in fields(Panel)]
+        panels = [{"length": length, "height": height, "openings": openings}]
     result = []
     for number, item in enumerate(panels, 1):
         place = f"{where}, panel {number}"
         if not isinstance(item, Panel):
-            for key in item:
-                if key not in known:
-                    msg = f"unknown key '{key}'"
-                    raise InputError(msg, where=place, hint="known: " + ", ".join(known))
+            check_keys(place, item, Panel)
             if "length" not in item or "height" not in item:
                 msg = "length or height is missing"
                 raise InputError(msg, where=place)

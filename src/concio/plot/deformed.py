@@ -70,14 +70,11 @@ def plot_slip(result: Result, ax: Axes | None = None) -> Axes:
     -------
     Axes
     """
-    shown = outlines(result)
+    ax, shown, box = style.draw_at_rest(result, ax)
     pieces = joint_lines(result, shown)
     contacts = result.contacts
     gap, slip = np.maximum(contacts.gap[pieces.pair], 0.0), np.abs(contacts.slip[pieces.pair])
     opened = contacts.state[pieces.pair] == 0
-    box = style.box_of(shown.points)
-    ax = style.axes_for(box, ax)
-    style.draw_bodies(ax, result.model, shown)
     widest = max(float(gap[opened].max(initial=0.0)), float(slip[~opened].max(initial=0.0)))
     lines = pieces.ends
     for look, keep, value in ((style.OPEN, opened & (gap > 0), gap), (style.SLIP, ~opened & (slip > 0), slip)):

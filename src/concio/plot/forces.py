@@ -10,7 +10,6 @@ from concio.errors import InputError
 from concio.plot import style
 from concio.post.force_lines import force_chains
 from concio.post.joint_lines import joint_lines
-from concio.post.outlines import outlines
 from concio.post.pressure import pressure_diagrams
 from concio.post.thrust import thrust_lines
 
@@ -39,16 +38,13 @@ def plot_pressure(result: Result, ax: Axes | None = None, *, scale: float | None
     """
     from matplotlib.collections import PolyCollection
 
-    shown = outlines(result)
+    ax, shown, box = style.draw_at_rest(result, ax)
     pieces = joint_lines(result, shown)
     contacts = result.contacts
     pressure = contacts.pressure[pieces.pair]
     largest = float(pressure.max(initial=0.0))
     typical = float(np.sqrt(np.median([b.area for b in result.model.free_bodies if b.role != "mortar"] or [1.0])))
     scale = (0.8 * typical / largest if largest > 0 else 1.0) if scale is None else scale
-    box = style.box_of(shown.points)
-    ax = style.axes_for(box, ax)
-    style.draw_bodies(ax, result.model, shown)
     diagrams = pressure_diagrams(result, pieces, scale)
     ax.add_collection(
         PolyCollection(diagrams, facecolors=style.COMPRESSION.colour, alpha=0.42, edgecolors="none", zorder=3)
@@ -85,10 +81,7 @@ def plot_forces(result: Result, ax: Axes | None = None, *, chains: bool = True, 
     -------
     Axes
     """
-    shown = outlines(result)
-    box = style.box_of(shown.points)
-    ax = style.axes_for(box, ax)
-    style.draw_bodies(ax, result.model, shown)
+    ax, _, box = style.draw_at_rest(result, ax)
     handles: list[Any] = []
     if chains:
         found = force_chains(result)
@@ -144,10 +137,7 @@ def plot_thrust(result: Result, ax: Axes | None = None) -> Axes:
         raise InputError(msg, hint="draw result.plot.forces() instead")
     from matplotlib.lines import Line2D
 
-    shown = outlines(result)
-    box = style.box_of(shown.points)
-    ax = style.axes_for(box, ax)
-    style.draw_bodies(ax, result.model, shown)
+    ax, _, box = style.draw_at_rest(result, ax)
     hinges = 0
     for line in lines:
         ax.plot(*line.points.T, color=style.THRUST.colour, lw=style.THRUST.width, zorder=4)

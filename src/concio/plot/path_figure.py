@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 
 Array = np.ndarray
 
+SMALL = 0.1
+"""Motions that all stay below this are told in mm [m]."""
+
 
 class PathEvent(Protocol):
     """An event on a curve: :class:`concio.lcp.event_path.Event` has it."""
@@ -69,7 +72,7 @@ def plot_path(
     ax : Axes, optional
         Where to draw; default a new figure.
     control_label, parameter_label, title : str
-        Words of the axes, with units.
+        Words of the axes, with units; an axis in [m] of which only the first 0.1 m are used is written in mm.
     bound : float, optional
         A bound on the load factor to draw beside it, such as the associated limit.
 
@@ -104,6 +107,9 @@ def plot_path(
         line = ax.axhline(bound, color=style.COMPRESSION.colour, ls="--", lw=1.1, label=f"bound {style.number(bound)}")
         handles.append(line)
     ax.margins(0.05, 0.1)
+    if control_label.endswith("[m]") and np.abs(motion).max(initial=0.0) < SMALL:
+        control_label = control_label.removesuffix("[m]") + "[mm]"
+        ax.xaxis.set_major_formatter(lambda value, _: f"{1e3 * value:g}")
     ax.set_xlabel(control_label, fontsize=9)
     ax.set_ylabel(parameter_label, fontsize=9)
     ax.tick_params(labelsize=8)

@@ -8,7 +8,6 @@ import numpy as np
 
 from concio.plot import style
 from concio.post.crosses import crosses
-from concio.post.outlines import outlines
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,14 +44,11 @@ def plot_principal(
     Axes
     """
     found = crosses(result, of)
-    shown = outlines(result)
-    box = style.box_of(shown.points)
-    ax = style.axes_for(box, ax)
+    ax, _, box = style.draw_at_rest(result, ax, face=_shades(result) if shade else None)
     largest = found.largest
     typical = float(np.median(found.size[found.size >= np.median(found.size)])) if len(found.size) else 1.0
     longest = typical * (1.25 if of == "bodies" else 1.8)
     scale = (longest / largest if largest > 0 else 1.0) if scale is None else scale
-    style.draw_bodies(ax, result.model, shown, face=_shades(result) if shade else None)
     lines, value = found.arms(scale)
     size = np.abs(value) / (largest or 1.0)
     many = len(found.s1) > 1500

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from concio.post.outlines import Outlines
+from concio.post.outlines import Outlines, outlines
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from concio.analysis.result import Result
     from concio.model.model import Model
 
 Array = np.ndarray
@@ -73,6 +74,23 @@ def axes_for(box: Array, ax: Axes | None) -> Axes:
     FigureCanvasAgg(figure)
     axes: Axes = figure.add_axes((left / size[0], bottom / size[1], wide / size[0], tall / size[1]))
     return axes
+
+
+def draw_at_rest(result: Result, ax: Axes | None, *, face: Sequence[Any] | None = None) -> tuple[Axes, Outlines, Array]:
+    """Draw the bodies where they were before loading, in axes of their own shape where none are given.
+
+    Returns
+    -------
+    ax : Axes
+    shown : Outlines
+    box : (2, 2) array
+        Corners of the drawing [m].
+    """
+    shown = outlines(result)
+    box = box_of(shown.points)
+    ax = axes_for(box, ax)
+    draw_bodies(ax, result.model, shown, face=face)
+    return ax, shown, box
 
 
 def box_of(*points: Array, margin: float = 0.04) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import fields
 from html import escape
 from importlib.resources import files
 from pathlib import Path
@@ -21,6 +22,7 @@ from concio.report.wording import certificate_sentence, checks, verdict
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
+    from concio.model.materials import Elastic, JointLaw, Rigid
 
 ROWS = 250
 """Longest table; of longer ones the rows that matter most are shown."""
@@ -153,11 +155,11 @@ _UNIT = {
 }  # fmt: skip
 
 
-def _values(thing: object) -> str:
+def _values(thing: Elastic | Rigid | JointLaw) -> str:
     """Return the constants of a material or a law that are not zero."""
     texts = []
-    for name in thing.__dataclass_fields__:  # type: ignore[attr-defined]
-        value = getattr(thing, name)
+    for constant in fields(thing):
+        name, value = constant.name, getattr(thing, constant.name)
         if value or name in ("friction", "nu"):
             texts.append(f"{name.replace('_', ' ')} {number(value, _UNIT.get(name, ''))}")
     return ", ".join(texts) or "rigid"
