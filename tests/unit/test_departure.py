@@ -197,3 +197,17 @@ def test_verdict_of_a_motion_is_stored_and_told(tmp_path: Path) -> None:
     assert "moves away" in verdict(again).headline
     assert "mass" in certificate_sentence(again)
     assert any(line.startswith("  motion") for line in result_lines(again))
+
+
+def test_a_problem_without_pairs_is_linear_or_falls() -> None:
+    problem = falling()
+    nothing = np.zeros(problem.pairs, bool)
+    alone = replace(
+        problem, C_n=problem.C_n[nothing], C_t=problem.C_t[nothing], gap=problem.gap[nothing],
+        laws=problem.laws[nothing], slip_origin=problem.slip_origin[nothing], area=problem.area[nothing],
+    )  # fmt: skip
+    assert find("auto")(alone).status is Status.NO_EQUILIBRIUM
+    held = replace(alone, K=sp.csr_array(alone.K + sp.eye_array(alone.unknowns)), R=alone.R[:, :0])
+    answer = find("auto")(held)
+    assert answer.solved
+    np.testing.assert_allclose(held.K @ answer.displacement, held.f, rtol=0, atol=1e-9 * 10.0)

@@ -77,6 +77,8 @@ def solve(
         SOLVED, NO_EQUILIBRIUM with its mechanism, COLLAPSES with its motion, NO_COULOMB_STATE, or UNDECIDED with
         what was tried.
     """
+    if not problem.pairs:
+        return sparse_lemke.solve(problem, progress=progress)  # linear, or a mechanism
     rest = at_rest(problem)
     if rest is not None:
         return rest
