@@ -31,6 +31,9 @@ from concio.lcp.solution import Departure
 FIRST = 1e-2
 """Resistance e of the first step, scaled units."""
 
+GROWTH = 10.0
+"""Factor by which steps grow after two that succeeded, and shrink after one that failed."""
+
 LEAST = 1e-8
 """Least resistance e."""
 
@@ -70,14 +73,15 @@ def release(run: Run, u: Array | None = None) -> Finished | Departure | None:
     shift = np.zeros_like(u)
     ended: Finished | Departure | None = None
     for _ in range(MOST):
-        step = s.step_from(u, e)
-        new = _solve(run, step, u, shift, here)
-        if new is None:
-            failures, good, e = failures + 1, 0, 10 * e
+        moved = _solve(run, s.step_from(u, e), shift, here)
+        if moved is None:
+            failures, good, e = failures + 1, 0, GROWTH * e
             if failures >= FAILURES:
                 break
             continue
-        shift, u, here, taken, good = new.u - u, new.u, new, taken + 1, good + 1
+        here, shift, taken, good = moved, moved.u, taken + 1, good + 1
+        new = replace(moved, u=u + shift)
+        u = new.u
         rest = finish(s, new.u, new.t_n, new.t_t, rounds=6)
         if rest.error <= EXACT:
             ended = rest
@@ -86,7 +90,7 @@ def release(run: Run, u: Array | None = None) -> Finished | Departure | None:
         if ended is not None:
             break
         if good >= 2:
-            e = max(0.3 * e, LEAST)
+            e = max(e / GROWTH, LEAST)
     outcome = {Finished: "comes to rest", Departure: "moves away", type(None): "no end found"}[type(ended)]
     run.trace.append(f"release: {taken} steps of slow motion, {failures} failed, {outcome}")
     return ended
@@ -108,10 +112,10 @@ def _steady(s: Scaled, a: Array, now: Finished) -> Departure | None:
     return found if found.certified else None
 
 
-def _solve(run: Run, step: Scaled, u: Array, shift: Array, here: Finished | None) -> Finished | None:
+def _solve(run: Run, step: Scaled, shift: Array, here: Finished | None) -> Finished | None:
     """Solve one step: from the states of the last one by exact finish or pivoting, then from nothing."""
     if here is not None:
-        for guess, states in ((u + shift, here.states), (u, None)):
+        for guess, states in ((shift, here.states), (0.0 * shift, None)):
             new = finish(step, guess, here.t_n, here.t_t, rounds=20, states=states)
             if new.error <= STEP:
                 return new

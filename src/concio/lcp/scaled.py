@@ -100,10 +100,26 @@ class Scaled:
         return slip
 
     def step_from(self, u: Array, e: float) -> Scaled:
-        """Return the problem of one step of slow motion from ``u`` (N,): K + e M, f + e M u for K, f."""
+        """Return the problem of one step of slow motion from ``u`` (N,), its unknowns counted from there.
+
+        K + e M stands for K; loads, gaps and slip origins are those left at ``u``.
+        """
         added = e * self.inertia
-        K = sp.csr_array(self.K + sp.diags_array(added))
-        return replace(self, K=K, f=self.f + added * u, factor=self.factor.with_diagonal(added))
+        moved = self.problem.C @ (u * self.length)
+        m = self.pairs
+        return replace(
+            self,
+            problem=replace(
+                self.problem,
+                gap=self.problem.gap + moved[:m],
+                slip_origin=self.problem.slip_origin - moved[m:, None],
+            ),
+            K=sp.csr_array(self.K + sp.diags_array(added)),
+            f=self.f - self.K @ u,
+            gap=self.gap + moved[:m] / self.length,
+            origin=self.origin - moved[m:] / self.length,
+            factor=self.factor.with_diagonal(added),
+        )
 
     def acceleration(self, a: Array) -> Array:
         """Return the accelerations [m/s2] that belong to scaled ones, M a = F m' a'."""
