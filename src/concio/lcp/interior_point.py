@@ -118,7 +118,7 @@ class InteriorPoint:
     def gap(self, z: Iterate) -> float:
         """Return the mean complementarity product."""
         r, c = self.rough, self.capped
-        total = z.t_n @ z.y_n + z.s_p[r] @ z.y_p[r] + z.s_m[r] @ z.y_m[r] + z.q[c] @ z.p[c]
+        total = (z.t_n * z.y_n).sum() + (z.s_p * z.y_p + z.s_m * z.y_m)[r].sum() + (z.q * z.p)[c].sum()
         return float(total / max(self.products, 1))
 
     def residuals(self, z: Iterate, theta: float) -> tuple[Array, Array, Array, Array, Array, Array]:

@@ -9,6 +9,7 @@ Engines, chosen by name and never by what happens to be installed: ``superlu`` (
 
 from __future__ import annotations
 
+import os
 from copy import copy
 from typing import Any, Literal
 
@@ -147,6 +148,8 @@ class PatternFactor:
         first = self._pardiso is None
         if first:
             self._pardiso = pypardiso.PyPardisoSolver(mtype=1)  # structurally symmetric
+            # the library it searched the disk for, so that the next solver of this process need not
+            os.environ.setdefault("PYPARDISO_MKL_RT", self._pardiso.libmkl._name)
             for position, value in ((1, 1), (2, 2), (8, 0), (10, 13), (11, 0), (13, 0), (24, 1)):
                 self._pardiso.set_iparm(position, value)
         self._matrix = matrix
