@@ -42,7 +42,7 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 import numpy as np  # noqa: E402
 import scipy.sparse as sp  # noqa: E402
 from external_calculix import read_displacements, write_input  # noqa: E402
-from wall_family import panel, wall  # noqa: E402
+from wall_family import panel, wall, wall_model  # noqa: E402
 
 import concio  # noqa: E402
 from concio.contact.assembly import Assembly  # noqa: E402
@@ -76,19 +76,7 @@ class Answer:
 def wall_case(units: int, courses: int, alpha: float) -> Case:
     """Return a wall; its meshes are assembled again and compared with the problem's stiffness and loads."""
     problem = wall(units, courses, alpha)
-    assembly = concio.assemble(
-        concio.running_bond_panel(
-            courses=courses,
-            blocks=units,
-            block_size=(1.0, 0.5),
-            thickness=1.0,
-            block=concio.Elastic(E=1e5, nu=0.15, unit_weight=20.0),
-            friction=0.6,
-            side_walls=False,
-            horizontal=alpha,
-            elements_per_block=(2, 2),
-        )
-    )
+    assembly = concio.assemble(wall_model(units, courses, alpha))
     return checked(Case(f"wall {units} x {courses}, {alpha:g}", problem, assembly))
 
 

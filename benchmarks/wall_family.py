@@ -30,9 +30,9 @@ WALLS = ((30, 14, 0.30), (30, 14, 0.40), (30, 14, 0.43), (30, 14, 0.44), (50, 40
 PANELS = ((10, 10, 0.0, 1.0), (20, 20, 0.0, 1.0), (10, 10, 0.02, 1.0), (20, 20, 0.02, 0.6))
 
 
-def wall(units: int, courses: int, alpha: float) -> ContactProblem:
-    """Return a wall of the family: ``units`` blocks long, horizontal share ``alpha``."""
-    model = concio.running_bond_panel(
+def wall_model(units: int, courses: int, alpha: float) -> concio.Model:
+    """Return the model of a wall of the family: ``units`` blocks long, horizontal share ``alpha``."""
+    return concio.running_bond_panel(
         courses=courses,
         blocks=units,
         block_size=(1.0, 0.5),
@@ -43,7 +43,11 @@ def wall(units: int, courses: int, alpha: float) -> ContactProblem:
         horizontal=alpha,
         elements_per_block=(2, 2),
     )
-    assembly = concio.assemble(model)
+
+
+def wall(units: int, courses: int, alpha: float) -> ContactProblem:
+    """Return the arrays of :func:`wall_model`, without the redundant corner pairs of head joints."""
+    assembly = concio.assemble(wall_model(units, courses, alpha))
     problem = assembly.problem()
     pairs = assembly.pairs
     level = pairs.point[:, 1] / 0.5

@@ -6,7 +6,6 @@ Every outline becomes a closed LWPOLYLINE on the layer it is given, its name a T
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -83,7 +82,7 @@ def write_dxf(
     unfinished = path.with_name(path.name + ".part")
     try:
         document.saveas(unfinished)
-        os.replace(unfinished, path)  # noqa: PTH105
+        unfinished.replace(path)
     finally:
         unfinished.unlink(missing_ok=True)
 

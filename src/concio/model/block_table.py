@@ -20,7 +20,6 @@ from __future__ import annotations
 import csv
 import io
 import json
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -109,7 +108,7 @@ def write_blocks(path: str | Path, bodies: Sequence[Body]) -> None:
     unfinished = path.with_name(path.name + ".part")
     try:
         unfinished.write_text(text, encoding="utf-8")
-        os.replace(unfinished, path)  # noqa: PTH105
+        unfinished.replace(path)
     finally:
         unfinished.unlink(missing_ok=True)
 

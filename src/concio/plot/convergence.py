@@ -23,22 +23,32 @@ class Curve(Protocol):
     """What is drawn of a method: a row of :class:`concio.study.compare.ComparisonTable` has it."""
 
     @property
-    def method(self) -> str: ...  # noqa: D102
+    def method(self) -> str:
+        """Name of the method."""
+
     @property
-    def outcome(self) -> str: ...  # noqa: D102
+    def outcome(self) -> str:
+        """What became of it."""
+
     @property
-    def history(self) -> Sequence[float]: ...  # noqa: D102
+    def history(self) -> Sequence[float]:
+        """Residuals, one for each unit of work counted."""
+
     @property
-    def work(self) -> Sequence[float]: ...  # noqa: D102
+    def work(self) -> Sequence[float]:
+        """Work done when each residual was met."""
 
 
 class Table(Protocol):
     """What holds the curves."""
 
     @property
-    def rows(self) -> Sequence[Curve]: ...  # noqa: D102
+    def rows(self) -> Sequence[Curve]:
+        """One curve for each method."""
+
     @property
-    def title(self) -> str: ...  # noqa: D102
+    def title(self) -> str:
+        """Title of the figure."""
 
 
 def plot_convergence(table: Table, ax: Axes | None = None) -> Axes:

@@ -22,22 +22,32 @@ class PathEvent(Protocol):
     """An event on a curve: :class:`concio.lcp.event_path.Event` has it."""
 
     @property
-    def parameter(self) -> float: ...  # noqa: D102
+    def parameter(self) -> float:
+        """Load parameter, at the event or at each corner."""
+
     @property
-    def control(self) -> float: ...  # noqa: D102
+    def control(self) -> float:
+        """Motion of the control point, at the event or at each corner [m]."""
+
     @property
-    def kind(self) -> str: ...  # noqa: D102
+    def kind(self) -> str:
+        """What happens: opens, closes, slips, sticks..."""
 
 
 class PathCurve(Protocol):
     """A load path: load parameters and the motion of a control point at its corners, and its events."""
 
     @property
-    def parameter(self) -> Sequence[float] | Array: ...  # noqa: D102
+    def parameter(self) -> Sequence[float] | Array:
+        """Load parameter, at the event or at each corner."""
+
     @property
-    def control(self) -> Sequence[float] | Array: ...  # noqa: D102
+    def control(self) -> Sequence[float] | Array:
+        """Motion of the control point, at the event or at each corner [m]."""
+
     @property
-    def events(self) -> Sequence[PathEvent]: ...  # noqa: D102
+    def events(self) -> Sequence[PathEvent]:
+        """Events along the curve."""
 
 
 MARKS: dict[str, tuple[str, str, str]] = {
