@@ -181,6 +181,12 @@ class ContactProblem:
         """C_n over C_t, shape (m d, N)."""
         return sp.csr_array(sp.vstack([self.C_n, self.C_t]))
 
+    @cached_property
+    def area_share(self) -> Array:
+        """Area of each pair over the mean, kept between 0.05 and 20: weighs forces where these are not unique (m,)."""
+        share: Array = np.clip(self.area / (self.area.mean() if self.pairs else 1.0), 0.05, 20.0)
+        return share
+
     def with_loads(self, f: Array) -> ContactProblem:
         """Return the same problem under other loads."""
         return replace(self, f=np.asarray(f, dtype=float))

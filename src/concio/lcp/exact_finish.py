@@ -99,7 +99,7 @@ def sizes(u: Array, t_n: Array, t_t: Array) -> tuple[float, float]:
 
 
 def natural_residual(s: Scaled, u: Array, t_n: Array, t_t: Array) -> tuple[float, Array]:
-    """Return the largest relative imbalance, and for each pair the relative distance from the joint laws (m,).
+    """Return the largest relative violation of equilibrium and joint laws, and that of the laws for each pair (m,).
 
     Forces count relative to the largest force, lengths relative to the largest displacement; the natural map
     ``t - P(t - y)`` is taken in these units.
@@ -112,7 +112,8 @@ def natural_residual(s: Scaled, u: Array, t_n: Array, t_t: Array) -> tuple[float
     law_n = np.abs(p_n - np.clip(p_n - gap, 0.0, cap))
     strength = np.where(s.rough, s.cohesion / force + s.mu * np.maximum(p_n, 0.0), 0.0)
     law_t = np.abs(p_t - np.clip(p_t - slip / length, -strength, strength))
-    return imbalance, np.maximum(law_n, law_t)
+    laws: Array = np.maximum(law_n, law_t)
+    return max(imbalance, float(laws.max(initial=0.0))), laws
 
 
 def read_states(s: Scaled, u: Array, t_n: Array, t_t: Array) -> States:
@@ -209,8 +210,7 @@ def _least_norm(s: Scaled, found: Finished) -> Finished:
     zero = np.zeros(s.pairs)
     for start_n, start_t in ((found.t_n, found.t_t), (zero, zero)):
         u, t_n, t_t, _ = solve_states(s, found.states, found.u, start_n, start_t, found.u, again=True)
-        imbalance, laws = natural_residual(s, u, t_n, t_t)
-        error = max(imbalance, float(laws.max(initial=0.0)))
+        error, _ = natural_residual(s, u, t_n, t_t)
         if error <= max(found.error, SETTLED):
             found = replace(found, u=u, t_n=t_n, t_t=t_t, error=error)
     return found
@@ -252,8 +252,7 @@ def finish(
         except SingularMatrixError:
             break
         solves += 1
-        imbalance, laws = natural_residual(s, u, t_n, t_t)
-        error = max(imbalance, float(laws.max(initial=0.0)))
+        error, laws = natural_residual(s, u, t_n, t_t)
         new = read_states(s, u, t_n, t_t)
         undecided = np.flatnonzero(
             (laws > 1e-10)
@@ -268,7 +267,6 @@ def finish(
             break
         states = new
     if best is None:
-        imbalance, laws = natural_residual(s, u, t_n, t_t)
-        error = max(imbalance, float(laws.max(initial=0.0)))
+        error, laws = natural_residual(s, u, t_n, t_t)
         return Finished(u, t_n, t_t, states, error, solves, np.flatnonzero(laws > 1e-10))
     return Finished(best.u, best.t_n, best.t_t, best.states, best.error, solves, best.undecided)

@@ -58,8 +58,7 @@ def softened(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> Conta
         [kN].
     """
     law = problem.laws
-    share = np.clip(problem.area / problem.area.mean(), 0.05, 20.0)
-    lent = SOFT / typical_stiffness(problem) / share
+    lent = SOFT / typical_stiffness(problem) / problem.area_share
     lent_n, lent_t = (np.where(a > 0, 0.0, lent) for a in (law.normal_compliance, law.tangential_compliance))
     laws = replace(
         law,

@@ -71,7 +71,7 @@ class PathEquations:
         self.K = sp.csr_array(problem.K * (scaled.length / scaled.force))
         self.control = control
         self.contact, self.sliding = contact.copy(), sliding.copy()
-        self.share = np.clip(problem.area / problem.area.mean(), 0.05, 20.0) if self.m else np.ones(0)
+        self.share = problem.area_share
         self.lent = REGULAR / self.share
         self.factorisations = 0
         self.factorise()

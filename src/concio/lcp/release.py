@@ -154,7 +154,6 @@ def _pivot(run: Run, step: Scaled, here: Finished | None) -> Finished | None:
         return None
     u, t_n = answer.displacement / step.length, answer.normal_force / step.force + step.tension
     t_t = answer.friction_force[:, 0] / step.force
-    imbalance, laws = natural_residual(step, u, t_n, t_t)
-    error = max(imbalance, float(laws.max(initial=0.0)))
+    error, _ = natural_residual(step, u, t_n, t_t)
     found = Finished(u, t_n, t_t, read_states(step, u, t_n, t_t), error, 0, np.zeros(0, dtype=int))
     return found if error <= STEP else None

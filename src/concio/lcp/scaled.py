@@ -178,7 +178,7 @@ def scale(problem: ContactProblem, engine: Engine = "superlu") -> Scaled:
         a_t=law.tangential_compliance * stiffness,
         cap=(law.cap + law.tension) / force,
         rough=(law.friction > SMOOTH) | (law.cohesion > 0),
-        share=np.clip(problem.area / (problem.area.mean() if m else 1.0), 0.05, 20.0),
+        share=problem.area_share,
         inertia=problem.inertia / problem.inertia.mean(),
         factor=factor,
     )
