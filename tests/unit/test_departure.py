@@ -98,9 +98,7 @@ def test_block_on_an_incline_accelerates_as_galileo_says() -> None:
         replace(b, outline=b.outline @ rotate.T)
         for b in (box("ground", -1.0, -0.2, 4.0, 0.2, "fixed"), box("block", 1.0, 0.0, 0.8, 0.2))
     )
-    model = Model(
-        bodies, {"brick": BRICK}, {"joint": JointLaw(mu)}, loads=(Load("weight", (0.0, -1.0)),)
-    )
+    model = Model(bodies, {"brick": BRICK}, {"joint": JointLaw(mu)}, loads=(Load("weight", (0.0, -1.0)),))
     problem = concio.assemble(model).problem()
     s = scale(problem)
     m = problem.pairs

@@ -8,8 +8,13 @@ import numpy as np
 import pytest
 
 import concio
+from concio.contact.problem import ContactProblem
+from concio.lcp.engine import Run
+from concio.lcp.exact_finish import finish
 from concio.lcp.existence import find_mechanism
+from concio.lcp.friction_neighbours import from_neighbours
 from concio.lcp.methods import find
+from concio.lcp.scaled import scale
 from concio.lcp.solution import Status
 from concio.model.materials import Elastic, Rigid
 from concio.model.model import Load
@@ -155,3 +160,36 @@ def test_jammed_panel_without_base():
     low = concio.solve(concio.running_bond_panel(friction=0.2, **panel), on_failure="return")
     assert low.status is not Status.NO_EQUILIBRIUM
     assert find_mechanism(low.assembly.problem()) is None
+
+
+def _arch(friction: float, courses: int = 3, blocks: int = 6) -> ContactProblem:
+    panel = concio.running_bond_panel(
+        courses=courses, blocks=blocks, joint=0.02, friction=friction, base="none", top_pressure=10.0
+    )
+    return concio.assemble(panel).problem()
+
+
+@pytest.mark.parametrize("begin", ["rest", "the other way", "far off"])
+def test_exact_finish_forgets_where_it_began(begin):
+    """An arch is hardly stiffer than the springs that hold weightless pieces: they must not pull in the end."""
+    run = Run(scale(_arch(1.0)))
+    found = run.plain(10.0)
+    start = {"rest": 0.0 * found.u, "the other way": -3.0 * found.u, "far off": found.u + 1e4}[begin]
+    again = finish(run.scaled, start, found.t_n, found.t_t, rounds=2, states=found.states)
+    assert again.error <= 1e-11
+    assert again.u == pytest.approx(found.u, abs=1e-8 * np.abs(found.u).max())
+
+
+@pytest.mark.parametrize(("friction", "courses", "blocks"), [(0.9, 3, 6), (1.0, 5, 10)])
+def test_neighbours_in_friction_lead_to_the_same_state(friction, courses, blocks):
+    problem = _arch(friction, courses, blocks)
+    plain = Run(scale(problem))
+    straight = plain.solution(plain.plain(10.0))
+    carried = from_neighbours(Run(scale(problem)))
+    assert carried.solved
+    assert carried.certificate.worst <= 1e-10
+    assert carried.displacement == pytest.approx(straight.displacement, abs=1e-8 * np.abs(straight.displacement).max())
+
+
+def test_neighbours_in_friction_of_a_smooth_structure_are_not_tried():
+    assert from_neighbours(Run(scale(_arch(0.0)))) is None

@@ -43,6 +43,19 @@ def test_rows_replaced_one_by_one_give_the_inverse_of_the_new_matrix() -> None:
     np.testing.assert_array_equal(factor.matrix().toarray(), dense)
 
 
+def test_digits_survive_a_nearly_singular_matrix_on_the_way() -> None:
+    rng = np.random.default_rng(1)
+    n = 30
+    dense = rng.normal(size=(n, n))
+    good = dense[7].copy()
+    dense[7] = dense[8] + 1e-12 * good  # singular but for the last digits
+    everything = np.arange(n)
+    factor = UpdatedFactor([(everything, row.copy()) for row in dense])
+    factor.replace(7, (everything, good))
+    dense[7] = good
+    np.testing.assert_allclose(factor.column(8), np.linalg.solve(dense, np.eye(n)[8]), rtol=0, atol=1e-11)
+
+
 @settings(max_examples=25, deadline=None)
 @given(
     st.integers(0, 1000),
@@ -80,6 +93,18 @@ def test_warm_start_from_the_answer_needs_no_pivot() -> None:
     assert warm.solved
     assert warm.iterations == 0
     np.testing.assert_allclose(warm.displacement, cold.displacement, atol=1e-12 * np.abs(cold.displacement).max())
+
+
+def test_a_state_is_carried_to_another_load() -> None:
+    """From the answer under a smaller push: the loads between fade in, fewer pairs change than from the glued wall."""
+    near, problem = solve(wall(5, 5, alpha=0.2)), wall(5, 5, alpha=0.3)
+    cold = solve(problem)
+    start = near.displacement, near.normal_force, near.friction_force
+    warm = solve(problem, start_states=pair_states(wall(5, 5, alpha=0.2), near), start=start, tries=0)
+    assert warm.solved
+    assert warm.info["start"] == "given point"
+    assert 0 < warm.iterations < cold.iterations
+    np.testing.assert_allclose(warm.displacement, cold.displacement, atol=1e-9 * np.abs(cold.displacement).max())
 
 
 @settings(max_examples=15, deadline=None)

@@ -6,7 +6,8 @@ The order is fixed, so that the same problem always goes the same way:
    it); where the finish leaves a few pairs undecided, pivoting from its states settles them (crossover);
 2. a linear programme: either a mechanism, rechecked, proves that there is no equilibrium, or there are statically
    admissible forces; where no body has to move under them (rigid blocks), they are the answer;
-3. interior point from further out still, then the dilatancy homotopy;
+3. interior point from other starts; the same structure with a little more or less friction, its state carried over
+   (:mod:`concio.lcp.friction_neighbours`); then the dilatancy homotopy;
 4. release: the structure is let go and followed in slow motion, from rest and from the state in which associated flow
    jams; it comes to rest, which is an equilibrium, or settles into a motion without end, which is kept;
 5. pivoting from nothing, dense and sparse, where the problem is small enough; what it finds comes before a motion;
@@ -29,10 +30,14 @@ from concio.lcp import exhaustive, lemke, sparse_lemke
 from concio.lcp.engine import STARTS, Cancelled, Run, at_rest
 from concio.lcp.exact_finish import Finished
 from concio.lcp.existence import mechanism_from, statically_admissible
+from concio.lcp.friction_neighbours import from_neighbours
 from concio.lcp.release import associated_state, release
 from concio.lcp.scaled import scale
 from concio.lcp.solution import Departure, Mechanism, ProgressCallback, Solution, Status, failed, judge
 from concio.lcp.sparse_factor import Engine
+
+OTHERS = (3.0, 30.0, 300.0)
+"""Sizes of starting points tried before anything slower: jammed structures have several states, and none suits all."""
 
 DENSE = 450
 """Largest number of pairs for which the dense method of Lemke is tried."""
@@ -94,14 +99,16 @@ def solve(
         decided = statics(run)
         if decided is not None:
             return decided
-        for start in STARTS[2:]:
+        for start in (*STARTS[2:], *OTHERS):
             found = found or run.plain(start)
-        found = found or run.homotopy()
         if found is not None:
             return run.solution(found)
-        crossed = crossover(run, progress)
+        crossed = crossover(run, progress) or carried(run, progress)
         if crossed is None:
-            crossed = last_resorts(run, progress, pivoting)
+            found = run.homotopy()
+            if found is not None:
+                return run.solution(found)
+            crossed = crossover(run, progress) or last_resorts(run, progress, pivoting)
         if crossed is not None:
             return crossed
     except Cancelled:
@@ -165,6 +172,12 @@ def crossover(run: Run, progress: ProgressCallback | None) -> Solution | None:
     )
     run.trace.append(f"crossover by pivoting: {answer.iterations} pivots, {answer.status.name.lower()}")
     return merged(run, answer, "interior-point + pivoting") if answer.solved else None
+
+
+def carried(run: Run, progress: ProgressCallback | None) -> Solution | None:
+    """Take part of step 3: solve with a little more or less friction and carry the state over; None where that fails."""
+    answer = from_neighbours(run, progress)
+    return None if answer is None else merged(run, answer, "interior-point + pivoting")
 
 
 def statics(run: Run) -> Solution | None:

@@ -1,8 +1,14 @@
 r"""Where a path starts: states of the pairs, and a cover that makes them right at z0 = 1.
 
-The states are solved for as they stand (one sparse factorisation). Every slack that comes out negative is then covered:
-a closed pair by a prestress, an open one by a gap, a slipping one by a slip that earlier steps would have left. The
-covers are chosen so that u and the contact forces do not change along the first piece: only the slacks do.
+From states alone (:func:`cover_states`), these are solved for as they stand (one sparse factorisation). Every slack
+that comes out negative is then covered: a closed pair by a prestress, an open one by a gap, a slipping one by a slip
+that earlier steps would have left. The covers are chosen so that u and the contact forces do not change along the first
+piece: only the slacks do.
+
+From a point near the answer (:func:`cover_point`), displacements and forces stay what they are, brought to exact
+complementarity; the loads, gaps and slips that are missing for it are the cover. On the way every joint keeps its own
+law: it is the same structure under other loads, with other gaps, and where the point is an earlier state of the
+structure, the path is its way from there.
 """
 
 from __future__ import annotations
@@ -18,6 +24,9 @@ from concio.lcp.state_solution import state_solution
 
 USED = 1e-10
 """Distance from the sliding strength, relative to the largest normal force, at which friction counts as used up."""
+
+NEAR = 1e-7
+"""Least slack of a pair at the start from a point, relative to the largest force or displacement."""
 
 BASE = 0.01
 """Least cover of a pair, in units of the typical pair force."""
@@ -58,6 +67,47 @@ def named_states(system: PairSystem, states: Array, start: tuple[Array, Array, A
     return normal, np.where(sticks, Tangential.STICK, side)
 
 
+def cover_point(
+    system: PairSystem, normal: Array, tangential: Array, u: Array, p: Array, r: Array
+) -> tuple[Array, Array]:
+    """Set the cover of ``system`` that makes a point the answer; return the states, open pairs turned as they slid.
+
+    Parameters
+    ----------
+    system : PairSystem
+    normal, tangential : (m,) integer arrays
+    u, p, r : (N,), (m,), (m,) arrays
+        The point, in the units of ``system``; p is shifted by the tensile strength. The weak springs of ``system``
+        are anchored there.
+    """
+    system.cover = Cover.none(system.m, system.n)
+    closed, stick = normal == Normal.CLOSED, tangential == Tangential.STICK
+    size = 1.0 + float(np.abs(np.concatenate([p, r])).max(initial=0.0))
+    far = 1.0 + float(np.abs(u).max(initial=0.0))
+    least = NEAR * np.random.default_rng(0).uniform(0.5, 1.5, system.m)
+    room = np.where(np.isfinite(system.cap), system.cap, np.inf)
+    p = np.where(closed, np.clip(p, least * size, np.maximum(room - least * size, 0.0)), 0.0)
+    p = np.where(normal == Normal.CRUSHED, system.cap, p)
+    strength = system.cohesion + system.mu * p
+    y = (system.C @ u).reshape(-1, 2) + system.x
+    free = (normal == Normal.OPEN) & system.weak & ~system.frictionless
+    tangential = np.where(free & ~stick, np.where(y[:, 1] < 0, Tangential.MINUS, Tangential.PLUS), tangential)
+    sign = SIGN[tangential]
+    r = np.where(stick, np.clip(r, -(1.0 - least) * strength, (1.0 - least) * strength), -sign * strength)
+    soft = system.a + system.delta
+    y += soft * np.column_stack([p, r])
+    slid = np.where(stick, 0.0, sign * np.maximum(sign * y[:, 1], least * far))
+    slid = np.where(system.frictionless, y[:, 1], slid)
+    dilated = sign * system.dilatancy * slid
+    opened = np.where(normal == Normal.OPEN, np.maximum(y[:, 0] - dilated, least * far), 0.0)
+    opened = np.where(normal == Normal.CRUSHED, np.minimum(y[:, 0] - dilated, -least * far), opened)
+    t = np.column_stack([p, r])
+    system.anchored = system.proximal * u
+    loads = system.load + system.anchored - system.K @ u + system.C.T @ t.ravel()
+    system.cover = replace(system.cover, g=opened + dilated - y[:, 0], h=slid - y[:, 1], load=loads)
+    return normal, tangential
+
+
 def cover_states(
     system: PairSystem,
     normal: Array,
@@ -89,7 +139,7 @@ def cover_states(
         The states leave a body loose.
     """
     m = system.m
-    system.cover = Cover.none(m)
+    system.cover = Cover.none(m, system.n)
     v = state_solution(system, normal, tangential, swelling=swelling)
     y_t = system.slacks(v, SIGN[tangential])["y_t"]
     loose = (normal == Normal.OPEN) & system.weak & ~system.frictionless & (tangential != Tangential.STICK)

@@ -35,6 +35,9 @@ LOOSE = 1e-9
 SETTLED = 1e-11
 """Natural-map residual below which states are taken as settled."""
 
+ANCHORS = 8
+"""Largest number of times the springs of loose unknowns are anchored anew."""
+
 EXACT = 1e-14
 """Relative residual at which refinement stops; it stops before where it no longer halves the residual."""
 
@@ -58,7 +61,6 @@ class States:
     def key(self) -> bytes:
         """Return bytes that identify the states."""
         return np.packbits(self.closed).tobytes() + self.slip.astype(np.int8).tobytes() + self.crushed.tobytes()
-
 
     def codes(self) -> Array:
         """Return the states as :class:`concio.lcp.solution.PairState` (m,), for pivoting to begin with."""
@@ -216,6 +218,24 @@ def _least_norm(s: Scaled, found: Finished) -> Finished:
     return found
 
 
+def _far_from_anchor(
+    s: Scaled, states: States, u: Array, t_n: Array, t_t: Array, error: float, laws: Array
+) -> tuple[Array, Array, Array, float, Array]:
+    """Anchor the springs of loose unknowns anew, as long as that lowers the error of settled states.
+
+    A slender arch is hardly stiffer than these springs: where it goes far, they pull, and less at each new anchor.
+    """
+    for _ in range(ANCHORS):
+        new_u, new_n, new_t, _ = solve_states(s, states, u, t_n, t_t, u, again=True)
+        new_error, new_laws = natural_residual(s, new_u, new_n, new_t)
+        if not new_error < 0.5 * error:
+            break
+        u, t_n, t_t, error, laws = new_u, new_n, new_t, new_error, new_laws
+        if error < SETTLED:
+            break
+    return u, t_n, t_t, error, laws
+
+
 def finish(
     s: Scaled,
     u: Array,
@@ -254,6 +274,9 @@ def finish(
         solves += 1
         error, laws = natural_residual(s, u, t_n, t_t)
         new = read_states(s, u, t_n, t_t)
+        if error >= SETTLED and new.key() == states.key():
+            u, t_n, t_t, error, laws = _far_from_anchor(s, states, u, t_n, t_t, error, laws)
+            new = read_states(s, u, t_n, t_t)
         undecided = np.flatnonzero(
             (laws > 1e-10)
             & ((new.closed != states.closed) | (new.slip != states.slip) | (new.crushed != states.crushed))

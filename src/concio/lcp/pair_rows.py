@@ -6,17 +6,17 @@ Unknowns: u, the forces p, r of each pair, and the homotopy parameter z0. In uni
 =====================  ==============================================================  =================
 row                    equation                                                        belongs to
 =====================  ==============================================================  =================
-equilibrium            K u - C'(p, r) + z0 C'(P, Q) = f - C_n' T                       every node
+equilibrium            K u - C'(p, r) + z0 (C'(P, Q) + l) = f - C_n' T                 every node
 closed                 y_n = x + C_n u + a_n (p - z0 P) - sigma tan(psi) y_t + z0 g = 0         normal CLOSED
 open, crushed          p = 0,    p = N + T + z0 X                                      OPEN, CRUSHED
 stick                  y_t = C_t u - s + a_t (r - z0 Q) + z0 h = 0                          tangential STICK
 slip +, slip -         r + sigma (c' + mu p + z0 c) = 0,  sigma = +1, -1               PLUS, MINUS
 =====================  ==============================================================  =================
 
-so that (P, Q) shifts the strength domain of a pair (a prestress), g and h shift its gap and slip. Each state keeps some
-slacks positive: p and N - p when closed, y_n when open, -y_n when crushed, the two distances to slipping when it
-sticks, sigma y_t when it slips. Where a slack reaches zero, the pair passes to the neighbouring state, in which the
-row it gives up becomes the slack. That exchange of one row is a complementary pivot.
+so that (P, Q) shifts the strength domain of a pair (a prestress), g and h shift its gap and slip, and l is a load. Each
+state keeps some slacks positive: p and N - p when closed, y_n when open, -y_n when crushed, the two distances to
+slipping when it sticks, sigma y_t when it slips. Where a slack reaches zero, the pair passes to the neighbouring state,
+in which the row it gives up becomes the slack. That exchange of one row is a complementary pivot.
 
 A pair that is open and has no strength left (c' = 0) is free tangentially; a pair without friction always is.
 """
@@ -59,7 +59,7 @@ COMPLIANCE = 1e-5
 
 @dataclass(frozen=True, eq=False)
 class Cover:
-    """Terms in z0 of each pair, all (m,): prestress P, Q, gap g, slip h, cohesion c and cap X."""
+    """Terms in z0, (m,): prestress P, Q, gap g, slip h, cohesion c and cap X of each pair; load l (N,)."""
 
     P: Array
     Q: Array
@@ -67,11 +67,13 @@ class Cover:
     h: Array
     c: Array
     X: Array
+    load: Array
 
     @classmethod
-    def none(cls, m: int) -> Cover:
+    def none(cls, m: int, n: int) -> Cover:
         """Return the cover that is zero."""
-        return cls(*(np.zeros(m) for _ in range(6)))
+        P, Q, g, h, c, X = np.zeros((6, m))
+        return cls(P, Q, g, h, c, X, np.zeros(n))
 
 
 class PairSystem:
@@ -115,13 +117,14 @@ class PairSystem:
         self.load = s.f - s.C.T @ shift.ravel()
         self.size = n + 2 * m + 1
         self.K = sp.csr_array(s.K + proximal * sp.eye_array(n)) if proximal else sp.csr_array(s.K)
+        self.proximal, self.anchored = proximal, np.zeros(n)
         self.C = sp.csr_array(s.C)
         self.C.sort_indices()
         self.delta = COMPLIANCE
         self.ground = 0
         if ground:
             self._add_ground()
-        self.cover = Cover.none(self.m)
+        self.cover = Cover.none(self.m, self.n)
 
     def _add_ground(self) -> None:
         """Add the pairs that hold the rigid motions: no normal direction, the motion itself as tangent."""
@@ -150,7 +153,7 @@ class PairSystem:
         """Return the N rows of equilibrium."""
         n, cover = self.n, self.cover
         prestress = np.column_stack([cover.P, cover.Q]).ravel()
-        block = sp.csr_array(sp.hstack([self.K, -self.C.T, sp.csr_array((self.C.T @ prestress)[:, None])]))
+        block = sp.csr_array(sp.hstack([self.K, -self.C.T, sp.csr_array((self.C.T @ prestress + cover.load)[:, None])]))
         return [_row(block, i) for i in range(n)]
 
     def normal_row(self, k: int, state: int, sigma: float) -> Row:

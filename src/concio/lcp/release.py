@@ -24,15 +24,15 @@ from concio.contact.problem import Array
 from concio.lcp import sparse_lemke
 from concio.lcp.departure import departure, verify_departure
 from concio.lcp.engine import EXACT, STARTS, Run
-from concio.lcp.exact_finish import Finished, finish, natural_residual, read_states
+from concio.lcp.exact_finish import Finished, States, finish, natural_residual, read_states
 from concio.lcp.scaled import Scaled
-from concio.lcp.solution import Departure
+from concio.lcp.solution import Departure, ProgressCallback
 
 FIRST = 1e-2
 """Resistance e of the first step, scaled units."""
 
 GROWTH = 10.0
-"""Factor by which steps grow after two that succeeded, and shrink after one that failed."""
+"""Largest factor by which steps grow after two that succeeded; where a step fails, the factor becomes its root."""
 
 LEAST = 1e-8
 """Least resistance e."""
@@ -40,11 +40,11 @@ LEAST = 1e-8
 STEP = 1e-10
 """Natural-map residual up to which a step counts as solved."""
 
-MOST = 60
+MOST = 120
 """Largest number of steps tried."""
 
 TRIES = 3
-"""Covers that pivoting tries for one step."""
+"""Covers that pivoting tries for the first step."""
 
 WORK = 3_000_000
 """Largest number of pivots in one step times the number of pairs."""
@@ -52,8 +52,11 @@ WORK = 3_000_000
 COLD = 3000
 """Largest number of pairs for which the first step is tried by pivoting from nothing."""
 
-FAILURES = 8
+FAILURES = 12
 """Largest number of steps that may fail."""
+
+SLOW = 1e-3
+"""Natural-map residual without resistance from which on a crossover to rest is tried, and again at each hundredth."""
 
 
 def release(run: Run, u: Array | None = None) -> Finished | Departure | None:
@@ -68,32 +71,46 @@ def release(run: Run, u: Array | None = None) -> Finished | Departure | None:
     """
     s = run.scaled
     u = np.zeros(len(s.f)) if u is None else u
-    e, good, failures, taken = FIRST, 0, 0, 0
+    e, growth, good, failures, taken, close = FIRST, GROWTH, 0, 0, 0, SLOW
     here: Finished | None = None
     shift = np.zeros_like(u)
     ended: Finished | Departure | None = None
-    for _ in range(MOST):
+    while taken + failures < MOST and failures < FAILURES:
         moved = _solve(run, s.step_from(u, e), shift, here)
         if moved is None:
-            failures, good, e = failures + 1, 0, GROWTH * e
-            if failures >= FAILURES:
-                break
+            failures, good = failures + 1, 0
+            e, growth = growth * e, max(np.sqrt(growth), 1.5)
             continue
         here, shift, taken, good = moved, moved.u, taken + 1, good + 1
         new = replace(moved, u=u + shift)
         u = new.u
-        rest = finish(s, new.u, new.t_n, new.t_t, rounds=6)
-        if rest.error <= EXACT:
-            ended = rest
-        else:
-            ended = _steady(s, e * shift, new) or departure(s, new.states, new.u, new.t_n, new.t_t)
+        ended = _rest(s, new) or _steady(s, e * shift, new) or departure(s, new.states, u, new.t_n, new.t_t)
+        error, _ = natural_residual(s, u, new.t_n, new.t_t)
+        if ended is None and error < close:
+            close, ended = 0.01 * error, _cross(run, s, new)
         if ended is not None:
             break
         if good >= 2:
-            e = max(e / GROWTH, LEAST)
+            e, growth = max(e / growth, LEAST), min(growth * 1.2, GROWTH)
     outcome = {Finished: "comes to rest", Departure: "moves away", type(None): "no end found"}[type(ended)]
     run.trace.append(f"release: {taken} steps of slow motion, {failures} failed, {outcome}")
     return ended
+
+
+def _rest(s: Scaled, now: Finished) -> Finished | None:
+    """Return the equilibrium that the states of a step belong to, if there is one."""
+    rest = finish(s, now.u, now.t_n, now.t_t, rounds=6)
+    return rest if rest.error <= EXACT else None
+
+
+def _cross(run: Run, s: Scaled, now: Finished) -> Finished | None:
+    """Pivot to an equilibrium from where the motion is about to stop.
+
+    Friction on the way remembers: the place of rest may be one that a structure loaded in one step knows only nearly.
+    """
+    found = pivot_from(s, read_states(s, now.u, now.t_n, now.t_t), now, limit=_most(s), progress=run.progress)
+    run.iterations += found[1]
+    return found[0]
 
 
 def associated_state(run: Run) -> Array:
@@ -142,18 +159,37 @@ def _pivot(run: Run, step: Scaled, here: Finished | None) -> Finished | None:
     """Solve one step by sparse pivoting, from the states of the last one or, at the beginning, from nothing."""
     p = step.problem
     held = replace(
-        p, K=sp.csr_array(step.K * (step.force / step.length)), f=step.f * step.force, R=sp.csc_array((p.unknowns, 0))
+        step,
+        problem=replace(
+            p,
+            K=sp.csr_array(step.K * (step.force / step.length)),
+            f=step.f * step.force,
+            R=sp.csc_array((p.unknowns, 0)),
+        ),
     )
+    states = None if here is None else here.states
+    found, pivots = pivot_from(held, states, here, limit=_most(step), progress=run.progress)
+    run.iterations += pivots
+    return found if found is not None and found.error <= STEP else None
+
+
+def _most(s: Scaled) -> int:
+    """Return the largest number of pivots of one path."""
+    return min(s.pairs + 500, WORK // s.pairs)
+
+
+def pivot_from(
+    s: Scaled, states: States | None, point: Finished | None, *, limit: int, progress: ProgressCallback | None = None
+) -> tuple[Finished | None, int]:
+    """Pivot from a point in given states, or from nothing; return the answer, scaled, or None, and the pivots made."""
     known: dict[str, Any] = {"tries": TRIES}
-    if here is not None:
-        u, t_n, t_t = step.restore(here.u, here.t_n, here.t_t)
-        known = {"tries": 0, "start_states": here.states.codes(), "start": (u, t_n, t_t[:, None])}
-    answer = sparse_lemke.solve(held, progress=run.progress, limit=min(p.pairs + 500, WORK // p.pairs), **known)
-    run.iterations += answer.iterations
+    if states is not None and point is not None:
+        u, t_n, t_t = s.restore(point.u, point.t_n, point.t_t)
+        known = {"tries": 0, "start_states": states.codes(), "start": (u, t_n, t_t[:, None])}
+    answer = sparse_lemke.solve(s.problem, progress=progress, limit=limit, **known)
     if not answer.solved:
-        return None
-    u, t_n = answer.displacement / step.length, answer.normal_force / step.force + step.tension
-    t_t = answer.friction_force[:, 0] / step.force
-    error, _ = natural_residual(step, u, t_n, t_t)
-    found = Finished(u, t_n, t_t, read_states(step, u, t_n, t_t), error, 0, np.zeros(0, dtype=int))
-    return found if error <= STEP else None
+        return None, answer.iterations
+    u, t_n = answer.displacement / s.length, answer.normal_force / s.force + s.tension
+    t_t = answer.friction_force[:, 0] / s.force
+    error, _ = natural_residual(s, u, t_n, t_t)
+    return Finished(u, t_n, t_t, read_states(s, u, t_n, t_t), error, 0, np.zeros(0, dtype=int)), answer.iterations

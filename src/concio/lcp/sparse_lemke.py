@@ -6,8 +6,10 @@ every pair (:mod:`concio.lcp.pair_rows`), factorised sparsely and updated by sin
 with what its joint cannot carry. The prestress is then driven to zero along a piecewise linear path
 (:mod:`concio.lcp.state_path`); there are as many pivots as pairs change state, not as there are unknowns.
 
-Given ``start_states``, the path starts there instead, with shifts that cover just what is violated: a cheap and exact
-crossover from an approximate answer. Without violations there is nothing to do but one linear solve.
+Given ``start_states``, the path starts there instead: a cheap and exact crossover from an approximate answer. Without
+violations there is nothing to do but one linear solve. Where the answer near is given too (``start``), the path leads
+from it through loads and gaps that make it exact and fade away; if that fails, or without it, from the states with
+shifts that cover what is violated (:mod:`concio.lcp.covering`).
 
 The compliance that keeps redundant corner pairs regular is taken out at the end by iterative refinement, and the answer
 is judged by the certificate as always. Where a path fails, others are tried: more and other prestress,
@@ -28,14 +30,14 @@ refresh : int, default 74
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from concio.contact.problem import Array, ContactProblem
 from concio.errors import InputError
-from concio.lcp.covering import cold_states, cover_states, named_states, open_states
+from concio.lcp.covering import cold_states, cover_point, cover_states, named_states, open_states
 from concio.lcp.lemke_basis import SingularBasisError
 from concio.lcp.lemke_outcome import no_solution
 from concio.lcp.pair_rows import PairSystem
@@ -59,12 +61,23 @@ COLD: tuple[tuple[str, dict[str, Any]], ...] = (
 )
 """Starts tried in this order: how the joints are covered."""
 
+ANCHOR = 1e-9
+"""Stiffness of the springs that hold what is loose near a given point, in units of the typical stiffness."""
+
+
+AGAIN = 3
+"""Times a path that ended near the answer is followed by another from there, its springs anchored anew."""
+
 
 @dataclass(frozen=True)
 class _Attempt:
+    """Where a path starts: states (of a cold start if None), and for a start from a point u, p, r in system units."""
+
     name: str
     options: dict[str, Any]
     states: tuple[Array, Array] | None = None
+    point: Start | None = None
+    again: int = 0
 
 
 @dataclass
@@ -117,22 +130,19 @@ def solve(
         if solution is not None and solution.solved:
             return solution
         attempts.insert(0, _Attempt("given states", {}, named))
-    for attempt in attempts:
-        name, states = attempt.name, attempt.states or cold_states(system)
-        options = dict(attempt.options)
-        proximal = options.pop("proximal", 0.0)
-        if proximal:
-            if work.velocity is not None:
-                break
-            system = PairSystem(problem, proximal)
-        if options.pop("ground", False):
-            held = PairSystem(problem, ground=True)
-            states = open_states(held)
-        else:
-            held = system
+        if start is not None:
+            u, t_n, t_t = start
+            force = system.s.force
+            point = (u / system.s.length, t_n / force + system.tension, np.ravel(t_t) / force)
+            attempts.insert(0, _Attempt("given point", {"proximal": ANCHOR}, named, point))
+    while attempts:
+        attempt = attempts.pop(0)
+        name = attempt.name
+        if "proximal" in attempt.options and attempt.point is None and work.velocity is not None:
+            break
         try:
-            start_of_path = cover_states(held, *states, **options)
-            path = StatePath(held, *start_of_path, refresh=refresh)
+            held, states = _covered(system, attempt)
+            path = StatePath(held, *states, refresh=refresh)
         except SingularBasisError:
             work.trace.append(f"{name}: the starting states leave a body loose.")
             continue
@@ -143,14 +153,20 @@ def solve(
         if end.outcome == "cancelled":
             return failed(problem, Status.CANCELLED, method=METHOD, **work.extra())
         if end.outcome == "solution":
+            ends = end.normal[:m], end.tangential[:m]
             try:
-                solution = finish(system, end.normal[:m], end.tangential[:m], method=METHOD, **work.extra(start=name))
+                solution = finish(system if held.ground else held, *ends, method=METHOD, **work.extra(start=name))
             except SingularBasisError:
                 work.trace.append(f"{name}: its final states leave a body loose.")
                 continue
             if solution.solved:
                 return solution
             work.trace.append(f"{name}: its end is exact only to {solution.certificate.worst:.1e}.")
+            if attempt.point is not None and attempt.again < AGAIN:
+                p, r = end.unknowns[held.n : -1].reshape(-1, 2).T
+                point = (end.unknowns[: held.n], p, r)
+                again = replace(attempt, name="from there", states=ends, point=point, again=attempt.again + 1)
+                attempts.insert(0, again)
         elif end.outcome == "ray":
             first = work.velocity is None
             work.velocity = _velocity(end, problem.unknowns)
@@ -159,6 +175,21 @@ def solve(
                 if verdict.status is Status.NO_EQUILIBRIUM:
                     return verdict
     return no_solution(problem, METHOD, velocity=work.velocity, **work.extra())
+
+
+def _covered(system: PairSystem, attempt: _Attempt) -> tuple[PairSystem, tuple[Array, Array]]:
+    """Return the covered system of an attempt, and its states."""
+    options = dict(attempt.options)
+    proximal = options.pop("proximal", 0.0)
+    states = attempt.states or cold_states(system)
+    if options.pop("ground", False):
+        system = PairSystem(system.problem, ground=True)
+        states = open_states(system)
+    elif proximal:
+        system = PairSystem(system.problem, proximal)
+    if attempt.point is not None:
+        return system, cover_point(system, *states, *attempt.point)
+    return system, cover_states(system, *states, **options)
 
 
 def _as_given(system: PairSystem, states: tuple[Array, Array], work: _Work) -> Solution | None:

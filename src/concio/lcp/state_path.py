@@ -94,7 +94,7 @@ class StatePath:
             rows.append(system.tangential_row(k, int(tangential[k])))
         rows.append((np.array([system.size - 1]), np.array([1.0])))  # z0 = 1, the row given up at the start
         b_n, b_t = system.right_hand_side(normal, tangential)
-        self.b = np.concatenate([system.load, np.column_stack([b_n, b_t]).ravel(), [1.0]])
+        self.b = np.concatenate([system.load + system.anchored, np.column_stack([b_n, b_t]).ravel(), [1.0]])
         self.place_n = n + 2 * np.arange(m)  # where the row of each pair stands
         self.place_t = self.place_n + 1
         self.float = n + 2 * m

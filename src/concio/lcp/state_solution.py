@@ -45,7 +45,7 @@ def state_matrix(system: PairSystem, normal: Array, tangential: Array) -> tuple[
     )
     b_n, b_t = system.right_hand_side(normal, tangential)
     assert matrix.shape[0] == n + 2 * m
-    return sp.csr_array(matrix), np.concatenate([system.load, b_n, b_t])
+    return sp.csr_array(matrix), np.concatenate([system.load + system.anchored, b_n, b_t])
 
 
 def state_solution(
@@ -75,10 +75,10 @@ def state_solution(
         raise SingularBasisError(str(error)) from error
     target = matrix
     if hard:
-        held, system.delta, springs = system.delta, 0.0, system.K
-        system.K = sp.csr_array(system.s.K)
+        held, springs, anchored = system.delta, system.K, system.anchored
+        system.delta, system.K, system.anchored = 0.0, sp.csr_array(system.s.K), np.zeros(n)
         target, b = state_matrix(system, normal, tangential)
-        system.delta, system.K = held, springs
+        system.delta, system.K, system.anchored = held, springs, anchored
     x = lu.solve(b)
     if not np.isfinite(x).all() or np.abs(x).max(initial=0.0) > 1e13:
         msg = "the states leave a body loose"

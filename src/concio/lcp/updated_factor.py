@@ -18,6 +18,9 @@ from scipy.sparse.linalg import SuperLU, splu
 from concio.contact.problem import Array
 from concio.lcp.lemke_basis import SingularBasisError
 
+CANCELLED = 1e5
+"""Ratio of a column to its updated one beyond which digits are lost: the factorised matrix was nearly singular."""
+
 Row = tuple[Array, Array]
 """Column numbers and values of a sparse row."""
 
@@ -75,8 +78,13 @@ class UpdatedFactor:
         self._changes: list[Row] = []
 
     def column(self, place: int) -> Array:
-        """Return F^-1 e_place, (n,)."""
-        return self._correct(self._base_column(place).copy())
+        """Return F^-1 e_place, (n,); factorises anew first where the update would cancel too many digits."""
+        base = self._base_column(place)
+        column = self._correct(base.copy())
+        if self._places and float(np.abs(base).max()) > CANCELLED * float(np.abs(column).max()):
+            self.factorise()
+            column = self._base_column(place).copy()
+        return column
 
     def solve(self, b: Array) -> Array:
         """Return F^-1 b, (n,)."""
