@@ -11,11 +11,13 @@ import numpy as np
 import pytest
 
 import concio
+from concio.cli.lines import result_lines
 from concio.errors import InputError, NoEquilibriumError, SolverError
 from concio.lcp.existence import proves, verify_mechanism
 from concio.lcp.solution import Status
 from concio.model.materials import Elastic, JointLaw
 from concio.model.model import Load
+from concio.report.wording import verdict
 from models import box, on_ground, weight
 
 STONE = {"kind": "rigid", "material": "stone"}
@@ -194,6 +196,26 @@ def test_summary_holds_plain_numbers():
     assert failed["mechanism"]["power"] > 0
     assert "max_settlement" not in failed
     json.dumps(failed)
+
+
+@pytest.mark.parametrize(("free", "large"), [(0.03, False), (0.05, True)])
+def test_joint_that_moves_most_beside_its_length_is_named(free, large):
+    """A block pushed harder than friction holds slides until it meets a stop, and the ground is what it slid on."""
+    stone = {"kind": "rigid", "material": "stone"}
+    model = on_ground(
+        box("block", 0.0, 0.4, 0.0, 0.2, **stone), box("stop", 0.4 + free, 0.6, 0.0, 0.2, kind="fixed"),
+        loads=(weight(), Load("weight", (0.7, 0.0))), gap_reach=0.1,
+    )  # fmt: skip
+    result = concio.solve(model)
+    moved = result.joint_motion
+    assert moved.joint == "ground|block"
+    assert moved.motion == pytest.approx(free, rel=1e-9)
+    assert moved.share == pytest.approx(free / 0.4, rel=1e-9)
+    assert moved.large is large
+    assert result.summary()["joint_motion"]["share"] == moved.share
+    told = "\n".join(result_lines(result))
+    assert ("attention    joint ground|block opens or slides by 50 mm, 12.5 % of its length" in told) is large
+    assert ("Joint ground|block opens or slides" in verdict(result).next_steps[0]) is large
 
 
 def test_failures_raise_or_return_and_names_are_checked():

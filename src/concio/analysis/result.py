@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +27,42 @@ Array = np.ndarray
 
 EXISTENCE = 2000
 """Largest number of pairs for which summaries report the paper's sufficient condition (a linear programme)."""
+
+
+LARGE = 0.1
+"""Share of a joint's length from which on its motion is called large."""
+
+
+@dataclass(frozen=True)
+class JointMotion:
+    """How far the joint that moves most beside its length has opened or slid.
+
+    Parameters
+    ----------
+    joint : str
+        The names of its bodies, "a|b"; empty where nothing moves.
+    motion : float
+        Opening beyond the initial gap or slip, whichever is larger [m].
+    share : float
+        The same over the length of the joint.
+    """
+
+    joint: str
+    motion: float
+    share: float
+
+    @property
+    def large(self) -> bool:
+        """Whether small displacements, on which the analysis rests, can no longer be meant."""
+        return self.share > LARGE
+
+    @property
+    def sentence(self) -> str:
+        """What to think of a large motion, in one sentence."""
+        return (
+            f"joint {self.joint} opens or slides by {1e3 * self.motion:.4g} mm, {100 * self.share:.3g} % of its "
+            "length: too far for small displacements, in which contacts stay where they were"
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +135,21 @@ class Result:
         s = self.solution
         state = pair_states(self.assembly.problem(self.factors), s)
         return Contacts(self.assembly.pairs, s.normal_force, s.friction_force[:, 0], s.gap, s.slip[:, 0], state)
+
+    @cached_property
+    def joint_motion(self) -> JointMotion:
+        """The joint that opens or slides most beside its own length."""
+        pairs, interfaces = self.assembly.pairs, self.assembly.detection.interfaces
+        real = np.flatnonzero(pairs.interface >= 0)
+        if not real.size:
+            return JointMotion("", 0.0, 0.0)
+        contacts = self.contacts
+        motion = np.maximum(contacts.gap - pairs.gap, np.abs(contacts.slip))[real]
+        length = np.array([face.length for face in interfaces])[pairs.interface[real]]
+        worst = int(np.argmax(motion / length))
+        face = interfaces[int(pairs.interface[real[worst]])]
+        names = [self.model.bodies[b].name for b in (face.a, face.b)]
+        return JointMotion("|".join(names), float(motion[worst]), float(motion[worst] / length[worst]))
 
     @cached_property
     def joints(self) -> JointResultants:
@@ -236,6 +287,7 @@ class Result:
         }
         if contacts is not None:
             data["max_settlement"] = self.max_settlement
+            data["joint_motion"] = asdict(self.joint_motion)
             data["reactions"] = {name: list(force) for name, force in self.reactions.items()}
             data["pairs"] = {name: contacts.count(name) for name in ("open", "stick", "slip")}
         if len(self.assembly.pairs) <= EXISTENCE:

@@ -48,6 +48,8 @@ def result_lines(result: Result) -> list[str]:
         if len(reactions) > len(shown):
             lines.append(f"  {'':<12} ... and {len(reactions) - len(shown)} more")
         lines += _ties(result)
+        if result.joint_motion.large:
+            lines.append(f"  attention    {result.joint_motion.sentence}")
     elif result.mechanism is not None:
         word = "motion" if result.status is Status.COLLAPSES else "mechanism"
         moving = [f"'{name}'" for name, speed in moving_bodies(result) if speed > SLOW]

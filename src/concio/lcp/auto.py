@@ -175,7 +175,7 @@ def crossover(run: Run, progress: ProgressCallback | None) -> Solution | None:
 
 
 def carried(run: Run, progress: ProgressCallback | None) -> Solution | None:
-    """Take part of step 3: solve with a little more or less friction and carry the state over; None where that fails."""
+    """Take part of step 3: solve with a little more or less friction and carry the state over; None if that fails."""
     answer = from_neighbours(run, progress)
     return None if answer is None else merged(run, answer, "interior-point + pivoting")
 

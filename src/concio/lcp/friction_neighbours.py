@@ -30,7 +30,13 @@ HALVINGS = 6
 """Times the way back to the structure's own friction may be halved."""
 
 PIVOTS = 500
-"""Largest number of pivots of one path, beside one for every four pairs."""
+"""Largest number of pivots of one path, beside one for every ten pairs."""
+
+BUDGET = 10_000
+"""Largest number of pivots of all paths."""
+
+WORK = 40_000_000
+"""Largest number of pivots of all paths times the number of pairs."""
 
 
 def from_neighbours(run: Run, progress: ProgressCallback | None = None) -> Solution | None:
@@ -45,6 +51,7 @@ def from_neighbours(run: Run, progress: ProgressCallback | None = None) -> Solut
     problem, engine = run.scaled.problem, run.scaled.factor.engine
     if not problem.laws.friction.any():
         return None
+    left = min(BUDGET, WORK // problem.pairs)
     for factor in FACTORS:
         near = Run(scale(with_friction(problem, factor), engine), progress)
         found = None
@@ -54,10 +61,11 @@ def from_neighbours(run: Run, progress: ProgressCallback | None = None) -> Solut
         run.history.extend(near.history)
         if found is None:
             continue
-        answer, ways, pivots = _carry(problem, near.solution(found), factor, progress)
+        answer, ways, pivots = _carry(problem, near.solution(found), factor, left, progress)
+        left -= pivots
         reached = "solved" if answer else "lost on the way back"
         run.trace.append(f"friction times {factor:g}: solved; carried over in {ways} paths, {pivots} pivots: {reached}")
-        if answer is not None:
+        if answer is not None or left <= 0:
             return answer
     return None
 
@@ -68,17 +76,16 @@ def with_friction(problem: ContactProblem, factor: float) -> ContactProblem:
 
 
 def _carry(
-    problem: ContactProblem, near: Solution, factor: float, progress: ProgressCallback | None
+    problem: ContactProblem, near: Solution, factor: float, left: int, progress: ProgressCallback | None
 ) -> tuple[Solution | None, int, int]:
     """Carry the state of a neighbour to the friction of ``problem``; return the answer, the paths and the pivots."""
     to, ways, pivots, failures = 1.0, 0, 0, 0
-    limit = PIVOTS + problem.pairs // 4
-    while failures <= HALVINGS:
+    while failures <= HALVINGS and pivots < left:
         answer = sparse_lemke.solve(
             with_friction(problem, to) if to != 1.0 else problem,
             start_states=pair_states(with_friction(problem, factor), near),
             start=(near.displacement, near.normal_force, near.friction_force),
-            limit=limit,
+            limit=min(PIVOTS + problem.pairs // 10, left - pivots),
             tries=0,
             progress=progress,
         )

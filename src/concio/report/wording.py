@@ -130,14 +130,19 @@ class Check:
 
 
 def verdict(result: Result) -> Verdict:
-    """Return the outcome of a result in words; joints that were nearly made come first of what to do next."""
+    """Return the outcome of a result in words; what needs attention comes first of what to do next."""
     words = VERDICTS[result.status]
+    steps = []
     missed = len(result.assembly.detection.near_misses)
-    if not missed:
-        return words
-    places = f"At {missed:,} place{'s' if missed > 1 else ''}"
-    step = f"{places} bodies nearly touch and have no joint: 'concio check' names them. Is that what you meant?"
-    return replace(words, next_steps=(step, *words.next_steps))
+    if missed:
+        places = f"At {missed:,} place{'s' if missed > 1 else ''}"
+        steps.append(
+            f"{places} bodies nearly touch and have no joint: 'concio check' names them. Is that what you meant?"
+        )
+    if result.solved and result.joint_motion.large:
+        told = result.joint_motion.sentence
+        steps.append(f"{told[0].upper()}{told[1:]}. Read it as a warning, not as a place of rest.")
+    return replace(words, next_steps=(*steps, *words.next_steps))
 
 
 def checks(result: Result) -> list[Check]:
