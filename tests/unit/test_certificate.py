@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -124,3 +126,44 @@ def test_problems_that_make_no_sense():
         one_pair(gap=np.inf)
     with pytest.raises(InputError, match="f has shape"):
         one_pair((1.0, 2.0, 3.0))
+
+
+def floating_bar(stiffness=1.0, motion=(1.0, 1.0)):
+    """Two nodes on a line, joined by a spring and floating; the first is pressed on a wall at its left."""
+    k = stiffness * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    R = np.array(motion)[:, None] / np.linalg.norm(motion)
+    return ContactProblem(
+        K=sp.csr_array(k),
+        f=np.array([0.0, -1.0]),
+        C_n=sp.csr_array([[1.0, 0.0]]),
+        C_t=sp.csr_array([[0.0, 0.0]]),
+        gap=np.zeros(1),
+        laws=Laws(*(np.array([v]) for v in (0.5, 0.0, 0.0, 0.0, 0.0, 0.0, np.inf))),
+        R=sp.csc_array(R),
+        bodies=np.array([0, 2]),
+    )
+
+
+def test_rounding_excuses_no_resultant():
+    """A force on a floating body that nothing balances is an error, however far the body has gone."""
+    problem = floating_bar(1e12)
+    right = entries(problem, (0.0, -1e-12), 1.0, 0.0)
+    assert right.worst <= 1e-16
+    far = entries(problem.with_loads(np.array([0.0, -1.0])), (1e6, 1e6 - 1e-12), 0.999, 0.0)
+    assert far.equilibrium == pytest.approx(0.5e-3, rel=1e-9)  # spread over both nodes
+
+
+def test_rounding_excuses_what_rounding_does_and_no_more():
+    """A spring of 1e12 kN/m, its ends known to an eps of 1 m: some 1e-4 kN of its force are anybody's guess."""
+    load = {"gap": np.array([-0.7]), "f": np.array([0.0, -0.3])}
+    stiff, soft = (replace(floating_bar(k), **load) for k in (1e12, 1.0))
+    u = np.array([0.7, 0.7 - 0.3e-12])
+    assert 1e-6 < np.abs(stiff.K @ u - [0.3, -0.3]).max() < 1e-3
+    assert entries(stiff, u, 0.3, 0.0).worst <= CERTIFIED
+    assert entries(stiff, (0.7, 0.7 - 0.28e-12), 0.3, 0.0).equilibrium == pytest.approx(0.02 / 0.3, rel=0.1)
+    assert entries(soft, u, 0.3, 0.0).equilibrium == pytest.approx(1.0)
+
+
+def test_motions_that_deform_a_body_are_refused():
+    with pytest.raises(InputError, match="K R is not zero"):
+        floating_bar(1.0, motion=(1.0, 0.9))

@@ -193,3 +193,22 @@ def test_neighbours_in_friction_lead_to_the_same_state(friction, courses, blocks
 
 def test_neighbours_in_friction_of_a_smooth_structure_are_not_tried():
     assert from_neighbours(Run(scale(_arch(0.0)))) is None
+
+
+def test_blocks_ten_million_times_stiffer_than_their_joints():
+    """Rounding of displacements must hide neither that the answer is found nor what it is: forces tend to a limit."""
+
+    def settled(E):
+        model = concio.running_bond_panel(
+            courses=4, blocks=4, block=Elastic(E=E, nu=0.2, unit_weight=20.0), friction=0.6, side_walls=False,
+            horizontal=0.2,
+        )  # fmt: skip
+        joints = {k: replace(j, normal_stiffness=1e4, tangential_stiffness=1e4) for k, j in model.laws.items()}
+        result = concio.solve(replace(model, laws=joints), method="interior-point")
+        assert result.certificate.worst <= 1e-9
+        return result.joints.N
+
+    soft, stiff, stiffer = settled(1e8), settled(1e10), settled(1e12)
+    size = np.abs(stiff).max()
+    assert np.abs(soft - stiff).max() <= 1e-4 * size
+    assert np.abs(stiffer - stiff).max() <= 1.1e-2 * np.abs(soft - stiff).max() + 1e-8 * size

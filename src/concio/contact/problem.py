@@ -149,6 +149,10 @@ class ContactProblem:
             if not np.isfinite(getattr(self, name)).all():
                 msg = f"{name} holds a value that is not finite"
                 raise InputError(msg)
+        moved = self.R @ np.cos(np.arange(self.R.shape[1]) + 1.0)  # some mixture of all rigid motions
+        if (np.abs(self.K @ moved) > 1e-6 * (abs(self.K) @ np.abs(moved))).any():
+            msg = "R holds motions that deform a body: K R is not zero"
+            raise InputError(msg, hint="leave the motions out that supports or springs resist")
         bound = self.laws.friction * self.laws.tension - self.laws.cohesion
         if (bound > 1e-12 * (1.0 + self.laws.cohesion)).any():
             k = int(np.argmax(bound))

@@ -74,6 +74,7 @@ def softened(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> Conta
         slip_origin=origin,
         K=sp.csr_array(problem.K + held * sp.eye_array(problem.unknowns)),
         f=problem.f + held * u,
+        R=sp.csc_array((problem.unknowns, 0)),  # every motion is held now
     )
 
 

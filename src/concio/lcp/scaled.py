@@ -15,6 +15,7 @@ import scipy.sparse as sp
 
 from concio.contact.problem import Array, ContactProblem
 from concio.errors import MethodError
+from concio.lcp.certificate import ROUNDING
 from concio.lcp.sparse_factor import Engine, PatternFactor
 
 SMOOTH = 1e-12
@@ -44,6 +45,8 @@ class Scaled:
         Tributary area of each pair over the mean, kept between 0.05 and 20.
     inertia : (N,) array
         Mass of each unknown over the mean.
+    rigid : (N, r) CSC array
+        Rigid motions K does nothing to, orthonormal; none where K holds them (:meth:`step_from`).
     factor : PatternFactor
         Factorises K + C' D C; couples are (n,n), (n,t), (t,n), (t,t), pair after pair within each.
     """
@@ -67,6 +70,7 @@ class Scaled:
     rough: Array
     share: Array
     inertia: Array
+    rigid: sp.csc_array
     factor: PatternFactor
 
     @property
@@ -84,10 +88,27 @@ class Scaled:
         nodal: Array = self.transposed[0] @ t_n + self.transposed[1] @ t_t
         return nodal
 
+    @cached_property
+    def stiffness_size(self) -> sp.csr_array:
+        """Absolute values of K."""
+        return abs(self.K)
+
+    def elastic(self, u: Array) -> Array:
+        """Return K u (N,), free of the resultants that rounding gives it on bodies that float."""
+        forces: Array = self.K @ u
+        if self.rigid.shape[1]:
+            forces -= self.rigid @ (self.rigid.T @ forces)
+        return forces
+
     def imbalance(self, u: Array, t_n: Array, t_t: Array) -> Array:
         """Return K u - f - C' t with shifted normal forces t_n' (N,)."""
-        rest: Array = self.K @ u - self.f - self.pull(t_n - self.tension, t_t)
+        rest: Array = self.elastic(u) - self.f - self.pull(t_n - self.tension, t_t)
         return rest
+
+    def unbalanced(self, u: Array, t_n: Array, t_t: Array) -> float:
+        """Return the largest imbalance, in units of force, beyond what the rounding of u explains."""
+        size = np.abs(self.imbalance(u, t_n, t_t)) - ROUNDING * (self.stiffness_size @ np.abs(u))
+        return float(size.max(initial=0.0))
 
     def normal_gap(self, u: Array, t_n: Array) -> Array:
         """Return x_n + C_n u + a_n t_n without dilatancy, t_n' shifted (m,)."""
@@ -115,7 +136,8 @@ class Scaled:
                 slip_origin=self.problem.slip_origin - moved[m:, None],
             ),
             K=sp.csr_array(self.K + sp.diags_array(added)),
-            f=self.f - self.K @ u,
+            f=self.f - self.elastic(u),
+            rigid=sp.csc_array((len(u), 0)),
             gap=self.gap + moved[:m] / self.length,
             origin=self.origin - moved[m:] / self.length,
             factor=self.factor.with_diagonal(added),
@@ -180,6 +202,7 @@ def scale(problem: ContactProblem, engine: Engine = "superlu") -> Scaled:
         rough=(law.friction > SMOOTH) | (law.cohesion > 0),
         share=problem.area_share,
         inertia=problem.inertia / problem.inertia.mean(),
+        rigid=problem.R,
         factor=factor,
     )
 
