@@ -1,6 +1,6 @@
 """The engine on walls and panels of growing size, against one sparse factorisation and against Lemke, in one run.
 
-    python benchmarks/wall_family.py [--large] [--huge] [--fast] [--lemke]
+    python benchmarks/wall_family.py [--large] [--huge] [--fast] [--lemke] [--close]
 
 Walls: running bond of dry elastic blocks 2:1, 2 x 2 elements, friction 0.6, own weight and a horizontal share alpha of
 it. Head joints are coupled at the inner nodes of a block's end, bed joints at every node. Panels: 0.2 x 0.1 m blocks,
@@ -16,6 +16,7 @@ import argparse
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -25,9 +26,13 @@ import concio
 from concio.contact.problem import ContactProblem
 from concio.lcp.methods import find
 from concio.lcp.scaled import scale
+from concio.model.panel import Base
 
 WALLS = ((30, 14, 0.30), (30, 14, 0.40), (30, 14, 0.43), (30, 14, 0.44), (50, 40, 0.30), (50, 40, 0.34))
 PANELS = ((10, 10, 0.0, 1.0), (20, 20, 0.0, 1.0), (10, 10, 0.02, 1.0), (20, 20, 0.02, 0.6))
+
+CLOSE = (0.36, 0.37, 0.38, 0.39, 0.40)
+"""Shares of the weight that the wall of 2,020 blocks does not reach by loading (decision 0006)."""
 
 
 def wall_model(units: int, courses: int, alpha: float) -> concio.Model:
@@ -64,10 +69,10 @@ def wall(units: int, courses: int, alpha: float) -> ContactProblem:
     )
 
 
-def panel(courses: int, blocks: int, joint: float, friction: float) -> ContactProblem:
-    """Return a panel between rigid walls on a full base."""
+def panel(courses: int, blocks: int, joint: float, friction: float, base: Base = "full") -> ContactProblem:
+    """Return a panel between rigid walls."""
     model = concio.running_bond_panel(
-        courses=courses, blocks=blocks, joint=joint, friction=friction, top_pressure=10.0
+        courses=courses, blocks=blocks, joint=joint, friction=friction, base=base, top_pressure=10.0
     )
     return concio.assemble(model).problem()
 
@@ -90,8 +95,8 @@ def yardsticks(problem: ContactProblem) -> tuple[float, float]:
     return mmd, nd
 
 
-def report(name: str, problem: ContactProblem, methods: list[tuple[str, dict[str, str]]]) -> None:
-    """Solve by each method and print a row."""
+def report(name: str, problem: ContactProblem, methods: list[tuple[str, dict[str, Any]]], motion: bool = False) -> None:
+    """Solve by each method and print a row; ``motion`` adds the largest displacement."""
     mmd, nd = yardsticks(problem)
     for method, options in methods:
         begin = time.perf_counter()
@@ -101,7 +106,8 @@ def report(name: str, problem: ContactProblem, methods: list[tuple[str, dict[str
         print(
             f"{name:28s}{problem.pairs:8d}{problem.unknowns:9d}  {label:24s}{solution.status.name:15s}"
             f"{solution.certificate.worst:9.1e}{solution.iterations:6d}{solution.factorisations:6d}"
-            f"{seconds:9.2f}{mmd:8.3f}{nd:8.3f}{seconds / mmd:8.1f}{seconds / nd:8.1f}",
+            f"{seconds:9.2f}{mmd:8.3f}{nd:8.3f}{seconds / mmd:8.1f}{seconds / nd:8.1f}"
+            + (f"  moves {np.abs(solution.displacement).max():.4g} m" if motion else ""),
             flush=True,
         )
 
@@ -113,8 +119,9 @@ def main() -> None:
     parser.add_argument("--huge", action="store_true", help="also 100,000 blocks (takes a quarter of an hour)")
     parser.add_argument("--fast", action="store_true", help="also with the engine 'pardiso' (extra: fast)")
     parser.add_argument("--lemke", action="store_true", help="also the pivoting methods on the small walls")
+    parser.add_argument("--close", action="store_true", help="also what loading does not reach, and a jammed panel")
     arguments = parser.parse_args()
-    engine: list[tuple[str, dict[str, str]]] = [("interior-point", {})]
+    engine: list[tuple[str, dict[str, Any]]] = [("interior-point", {})]
     if arguments.fast:
         engine.append(("interior-point", {"engine": "pardiso"}))
     heads = ("pairs", "unknowns", "method", "outcome", "worst", "iter", "fact", "s", "mmd s", "nd s", "/mmd", "/nd")
@@ -122,7 +129,7 @@ def main() -> None:
     titles = zip(heads, widths, strict=True)
     print(f"{'problem':28s}" + "".join(f"{h:>{w}s}" if w > 0 else f"  {h:{-w - 2}s}" for h, w in titles))
     for units, courses, alpha in ((6, 7, 0.15), (10, 10, 0.15)) if arguments.lemke else ():
-        pivoting: list[tuple[str, dict[str, str]]] = [("sparse-lemke", {})]
+        pivoting: list[tuple[str, dict[str, Any]]] = [("sparse-lemke", {})]
         report(f"wall {units} x {courses}, {alpha}", wall(units, courses, alpha), engine + pivoting)
     for units, courses, alpha in WALLS:
         report(f"wall {units} x {courses}, {alpha:.2f}", wall(units, courses, alpha), engine)
@@ -132,6 +139,10 @@ def main() -> None:
         report("wall 100 x 100, 0.30", wall(100, 100, 0.30), engine)
         report("panel 40 x 40 dry, 0.6", panel(40, 40, 0.0, 0.6), engine)
         report("panel 40 x 40 mortar, 0.6", panel(40, 40, 0.02, 0.6), engine)
+    if arguments.close:
+        report("panel 10 x 20 hung, 1", panel(10, 20, 0.02, 1.0, base="none"), [("auto", {})], motion=True)
+        for alpha in CLOSE:
+            report(f"wall 50 x 40, {alpha:.2f}", wall(50, 40, alpha), [("auto", {})], motion=True)
     if arguments.huge:
         report("wall 500 x 200, 0.20", wall(500, 200, 0.20), engine)
 
