@@ -9,7 +9,7 @@ import pytest
 
 import concio
 from concio.contact.problem import ContactProblem
-from concio.lcp.engine import Run
+from concio.lcp.engine import Cancelled, Run
 from concio.lcp.exact_finish import finish
 from concio.lcp.existence import find_mechanism
 from concio.lcp.friction_neighbours import from_neighbours
@@ -189,6 +189,18 @@ def test_neighbours_in_friction_lead_to_the_same_state(friction, courses, blocks
     assert carried.solved
     assert carried.certificate.worst <= 1e-10
     assert carried.displacement == pytest.approx(straight.displacement, abs=1e-8 * np.abs(straight.displacement).max())
+
+
+def test_the_way_from_a_neighbour_can_be_cancelled():
+    seen = []
+
+    def stop(report):
+        seen.append(report.method)
+        return report.method == "sparse-lemke"
+
+    with pytest.raises(Cancelled):
+        from_neighbours(Run(scale(_arch(1.0, 5, 10))), stop)
+    assert seen[-1] == "sparse-lemke"
 
 
 def test_neighbours_in_friction_of_a_smooth_structure_are_not_tried():

@@ -170,6 +170,8 @@ def crossover(run: Run, progress: ProgressCallback | None) -> Solution | None:
     answer = sparse_lemke.solve(
         s.problem, start_states=best.states.codes(), start=(u, t_n, t_t[:, None]), limit=500, tries=0, progress=progress
     )
+    if answer.status is Status.CANCELLED:
+        raise Cancelled
     run.trace.append(f"crossover by pivoting: {answer.iterations} pivots, {answer.status.name.lower()}")
     return merged(run, answer, "interior-point + pivoting") if answer.solved else None
 
@@ -211,6 +213,8 @@ def pivot(run: Run, progress: ProgressCallback | None) -> Solution | None:
             run.trace.append(f"{name}: does not apply, {error.what}")
             continue
         run.trace.append(f"{name}: {answer.iterations} pivots, {answer.status.name.lower()}")
+        if answer.status is Status.CANCELLED:
+            raise Cancelled
         if answer.solved:
             return merged(run, answer, name)
     return None

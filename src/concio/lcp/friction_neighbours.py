@@ -16,9 +16,9 @@ from dataclasses import replace
 
 from concio.contact.problem import ContactProblem
 from concio.lcp import sparse_lemke
-from concio.lcp.engine import Run
+from concio.lcp.engine import Cancelled, Run
 from concio.lcp.scaled import scale
-from concio.lcp.solution import ProgressCallback, Solution, pair_states
+from concio.lcp.solution import ProgressCallback, Solution, Status, pair_states
 
 FACTORS = (0.98, 1.02, 0.95, 1.05, 0.9, 1.1)
 """Multiples of the friction coefficients that are tried, in this order."""
@@ -47,6 +47,11 @@ def from_neighbours(run: Run, progress: ProgressCallback | None = None) -> Solut
     run : Run
         Keeps count and trace.
     progress : callable, optional
+
+    Raises
+    ------
+    Cancelled
+        The callback asked to stop.
     """
     problem, engine = run.scaled.problem, run.scaled.factor.engine
     if not problem.laws.friction.any():
@@ -89,6 +94,8 @@ def _carry(
             tries=0,
             progress=progress,
         )
+        if answer.status is Status.CANCELLED:
+            raise Cancelled
         ways, pivots = ways + 1, pivots + answer.iterations
         if answer.solved:
             if to == 1.0:

@@ -23,10 +23,10 @@ import scipy.sparse as sp
 from concio.contact.problem import Array
 from concio.lcp import sparse_lemke
 from concio.lcp.departure import departure, verify_departure
-from concio.lcp.engine import EXACT, STARTS, Run
+from concio.lcp.engine import EXACT, STARTS, Cancelled, Run
 from concio.lcp.exact_finish import Finished, States, finish, natural_residual, read_states
 from concio.lcp.scaled import Scaled
-from concio.lcp.solution import Departure, ProgressCallback
+from concio.lcp.solution import Departure, ProgressCallback, Status
 
 FIRST = 1e-2
 """Resistance e of the first step, scaled units."""
@@ -187,6 +187,8 @@ def pivot_from(
         u, t_n, t_t = s.restore(point.u, point.t_n, point.t_t)
         known = {"tries": 0, "start_states": states.codes(), "start": (u, t_n, t_t[:, None])}
     answer = sparse_lemke.solve(s.problem, progress=progress, limit=limit, **known)
+    if answer.status is Status.CANCELLED:
+        raise Cancelled
     if not answer.solved:
         return None, answer.iterations
     u, t_n = answer.displacement / s.length, answer.normal_force / s.force + s.tension

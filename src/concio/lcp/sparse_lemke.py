@@ -24,7 +24,7 @@ limit : int, optional
     Largest number of pivots of one path, default 20 m + 500.
 tries : int, default 7
     Cold starts that may be tried.
-refresh : int, default 74
+refresh : int, default 64
     Rows replaced between factorisations.
 """
 
@@ -63,7 +63,6 @@ COLD: tuple[tuple[str, dict[str, Any]], ...] = (
 
 ANCHOR = 1e-9
 """Stiffness of the springs that hold what is loose near a given point, in units of the typical stiffness."""
-
 
 AGAIN = 3
 """Times a path that ended near the answer is followed by another from there, its springs anchored anew."""
