@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
+import concio
 from concio.contact.problem import ContactProblem, Laws
 from concio.errors import InputError
 from concio.lcp.certificate import CERTIFIED, Certificate, certify, kinematics
 from concio.lcp.solution import Status, failed, judge
+from concio.model.materials import Elastic, JointLaw
+from concio.model.model import Body, Load, Model, Support
 
 
 def one_pair(f=(3.0, -10.0), gap=0.0, origin=0.0, **laws):
@@ -144,26 +147,49 @@ def floating_bar(stiffness=1.0, motion=(1.0, 1.0)):
     )
 
 
-def test_rounding_excuses_no_resultant():
+@pytest.mark.parametrize(("stiffness", "far"), [(1.0, 1e3), (1e3, 1e5), (1e12, 1e6)])
+def test_rounding_excuses_no_resultant(stiffness, far):
     """A force on a floating body that nothing balances is an error, however far the body has gone."""
-    problem = floating_bar(1e12)
-    right = entries(problem, (0.0, -1e-12), 1.0, 0.0)
-    assert right.worst <= 1e-16
-    far = entries(problem.with_loads(np.array([0.0, -1.0])), (1e6, 1e6 - 1e-12), 0.999, 0.0)
-    assert far.equilibrium == pytest.approx(0.5e-3, rel=1e-9)  # spread over both nodes
+    problem = floating_bar(stiffness)
+    assert entries(problem, (0.0, -1.0 / stiffness), 1.0, 0.0).worst <= 1e-16
+    gone = entries(problem, (far, far - 1.0 / stiffness), 0.999, 0.0)
+    assert gone.equilibrium >= 1e-3 * (1 - 1e-9)
 
 
 def test_rounding_excuses_what_rounding_does_and_no_more():
-    """A spring of 1e12 kN/m, its ends known to an eps of 1 m: some 1e-4 kN of its force are anybody's guess."""
+    """A spring of 1e8 kN/m, its ends known to an eps of 1 m: some 1e-8 kN of its force are anybody's guess."""
     load = {"gap": np.array([-0.7]), "f": np.array([0.0, -0.3])}
-    stiff, soft = (replace(floating_bar(k), **load) for k in (1e12, 1.0))
-    u = np.array([0.7, 0.7 - 0.3e-12])
-    assert 1e-6 < np.abs(stiff.K @ u - [0.3, -0.3]).max() < 1e-3
+    stiff, soft, stiffest = (replace(floating_bar(k), **load) for k in (1e8, 1.0, 1e12))
+    u = np.array([0.7, 0.7 - 0.3e-8])
+    assert 3e-10 < np.abs(stiff.K @ u - [0.3, -0.3]).max() < 3e-8
     assert entries(stiff, u, 0.3, 0.0).worst <= CERTIFIED
-    assert entries(stiff, (0.7, 0.7 - 0.28e-12), 0.3, 0.0).equilibrium == pytest.approx(0.02 / 0.3, rel=0.1)
+    assert entries(stiff, (0.7, 0.7 - 0.299e-8), 0.3, 0.0).equilibrium == pytest.approx(1e-3 / 0.3, rel=1e-2)
     assert entries(soft, u, 0.3, 0.0).equilibrium == pytest.approx(1.0)
+    assert not entries(stiffest, (0.7, 0.7 - 0.3e-12), 0.3, 0.0).certified  # 1e-4 kN may hide: too much
+
+
+def test_imposed_displacements_are_no_loads():
+    """The springs that push a stiff body where it must go are no measure of the forces that hold it."""
+    block = Body("block", np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 0.5), (0.0, 0.5)]), "stone")
+    top = Body("top", np.array([(0.0, 0.5), (1.0, 0.5), (1.0, 1.0), (0.0, 1.0)]), "stone")
+    model = Model(
+        (block, top), {"stone": Elastic(E=1e7, nu=0.2, unit_weight=20.0)}, {"joint": JointLaw(0.6)},
+        loads=(Load("weight", (0.0, -1.0)),),
+        supports=(Support("sunk", "block", edge=((0.0, 0.0), (1.0, 0.0)), displacement=(0.0, -0.01)),),
+    )  # fmt: skip
+    result = concio.solve(model)
+    problem, s = result.assembly.problem(), result.solution
+    assert np.abs(problem.f).sum() > 1e3 * problem.load
+    assert problem.load == pytest.approx(20.0, rel=0.2)  # without the share of the nodes that are supported
+    assert result.joints.N[0] == pytest.approx(10.0, rel=1e-7)
+    assert certify(problem, s.displacement, 0.999 * s.normal_force, s.friction_force).equilibrium > 1e-5
 
 
 def test_motions_that_deform_a_body_are_refused():
     with pytest.raises(InputError, match="K R is not zero"):
         floating_bar(1.0, motion=(1.0, 0.9))
+
+
+def test_motions_not_of_length_one_are_refused():
+    with pytest.raises(InputError, match="length one"):
+        replace(floating_bar(), R=sp.csc_array(np.array([[1.0], [1.0]])))

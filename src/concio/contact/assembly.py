@@ -95,10 +95,11 @@ class Assembly:
         for group, (normal, tangential) in self.moved.items():
             gap = gap + _factor(factors, group) * normal
             origin = origin - _factor(factors, group) * tangential
-        f = T.T @ (self.load(factors) - self.K @ u0)
+        loads = T.T @ self.load(factors)
         return ContactProblem(
             K=sp.csr_array(T.T @ self.K @ T),
-            f=f,
+            f=loads - T.T @ (self.K @ u0),
+            load=float(np.abs(loads).sum()),
             C_n=sp.csr_array(C_n @ T),
             C_t=sp.csr_array(C_t @ T),
             gap=gap,

@@ -114,6 +114,9 @@ class ContactProblem:
     inertia : (N,) array, optional
         Mass that goes with each unknown [t], all positive; default all one. It does not enter any equilibrium: it
         tells how a structure that has none moves away.
+    load : float, optional
+        Total load by which certificates measure forces [kN], where f holds more than loads: forces -K u0 of imposed
+        displacements. Default 0: the sum of |f|.
     """
 
     K: sp.csr_array
@@ -127,6 +130,7 @@ class ContactProblem:
     slip_origin: Array = field(default_factory=lambda: np.zeros((0, 0)))
     area: Array = field(default_factory=lambda: np.zeros(0))
     inertia: Array = field(default_factory=lambda: np.zeros(0))
+    load: float = 0.0
 
     def __post_init__(self) -> None:
         m, n = self.C_n.shape
@@ -149,6 +153,9 @@ class ContactProblem:
             if not np.isfinite(getattr(self, name)).all():
                 msg = f"{name} holds a value that is not finite"
                 raise InputError(msg)
+        if (np.abs(self.R.multiply(self.R).sum(axis=0) - 1.0) > 1e-6).any():
+            msg = "the rigid motions R are not of length one"
+            raise InputError(msg, hint="make the columns of each body orthonormal")
         moved = self.R @ np.cos(np.arange(self.R.shape[1]) + 1.0)  # some mixture of all rigid motions
         if (np.abs(self.K @ moved) > 1e-6 * (abs(self.K) @ np.abs(moved))).any():
             msg = "R holds motions that deform a body: K R is not zero"
@@ -192,8 +199,8 @@ class ContactProblem:
         return share
 
     def with_loads(self, f: Array) -> ContactProblem:
-        """Return the same problem under other loads."""
-        return replace(self, f=np.asarray(f, dtype=float))
+        """Return the same problem under other loads, all of them loads."""
+        return replace(self, f=np.asarray(f, dtype=float), load=0.0)
 
     def sliding_strength(self, t_n: Array) -> Array:
         """Return c + mu t_n, never below zero, shape (m,)."""

@@ -107,7 +107,7 @@ def natural_residual(s: Scaled, u: Array, t_n: Array, t_t: Array) -> tuple[float
     ``t - P(t - y)`` is taken in these units.
     """
     force, length = sizes(u, t_n, t_t)
-    imbalance = s.unbalanced(u, t_n, t_t) / force
+    imbalance = s.unbalanced(u, t_n, t_t, force)
     slip = np.where(s.rough, s.slip(u, t_t), 0.0)
     gap = (s.normal_gap(u, t_n) - s.dilatancy * np.abs(slip)) / length
     p_n, p_t, cap = t_n / force, t_t / force, s.cap / force

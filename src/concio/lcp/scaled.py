@@ -15,7 +15,7 @@ import scipy.sparse as sp
 
 from concio.contact.problem import Array, ContactProblem
 from concio.errors import MethodError
-from concio.lcp.certificate import ROUNDING
+from concio.lcp.certificate import GRANTED, ROUNDING
 from concio.lcp.sparse_factor import Engine, PatternFactor
 
 SMOOTH = 1e-12
@@ -105,10 +105,10 @@ class Scaled:
         rest: Array = self.elastic(u) - self.f - self.pull(t_n - self.tension, t_t)
         return rest
 
-    def unbalanced(self, u: Array, t_n: Array, t_t: Array) -> float:
-        """Return the largest imbalance, in units of force, beyond what the rounding of u explains."""
-        size = np.abs(self.imbalance(u, t_n, t_t)) - ROUNDING * (self.stiffness_size @ np.abs(u))
-        return float(size.max(initial=0.0))
+    def unbalanced(self, u: Array, t_n: Array, t_t: Array, force: float) -> float:
+        """Return the largest imbalance beyond what the rounding of u explains, over the largest force."""
+        known = np.minimum(ROUNDING * (self.stiffness_size @ np.abs(u)), GRANTED * force)
+        return float((np.abs(self.imbalance(u, t_n, t_t)) - known).max(initial=0.0)) / force
 
     def normal_gap(self, u: Array, t_n: Array) -> Array:
         """Return x_n + C_n u + a_n t_n without dilatancy, t_n' shifted (m,)."""
