@@ -193,7 +193,7 @@ def _target(assembly: Assembly, factors: Mapping[str, float], stage: Stage) -> d
 def _linear(assembly: Assembly, start: Mapping[str, float], end: Mapping[str, float]) -> LinearPath:
     """Return the path of a stage: everything a problem holds is linear in the load factors."""
     a, b = assembly.problem(start), assembly.problem(end)
-    return LinearPath(a, b.f - a.f, b.gap - a.gap, (a.slip_origin - b.slip_origin)[:, 0])
+    return LinearPath(a, b.f - a.f, b.gap - a.gap, (a.slip_origin - b.slip_origin)[:, 0], b.load - a.load)
 
 
 def _at_rest(path: LinearPath) -> PathState:

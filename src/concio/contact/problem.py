@@ -187,6 +187,11 @@ class ContactProblem:
         """Number r of rigid motions."""
         return int(self.R.shape[1])
 
+    @property
+    def total_load(self) -> float:
+        """Total load by which forces are measured [kN]: ``load`` if given, else the sum of |f|."""
+        return self.load or float(np.abs(self.f).sum())
+
     @cached_property
     def C(self) -> sp.csr_array:
         """C_n over C_t, shape (m d, N)."""

@@ -105,7 +105,7 @@ def kinematics(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> Kin
 
 def scales(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> tuple[float, float]:
     """Return (F, U): total load [kN] and largest displacement [m], never zero."""
-    force = problem.load or float(np.abs(problem.f).sum())
+    force = problem.total_load
     if force == 0.0:
         force = float(max(np.abs(t_n).max(initial=0.0), np.abs(t_t).max(initial=0.0)))
     length = float(np.abs(u).max(initial=0.0))

@@ -113,7 +113,7 @@ def verify_departure(problem: ContactProblem, a: Array, u: Array, t_n: Array, t_
         Forces [kN].
     """
     law = problem.laws
-    force, top = float(np.abs(problem.f).sum()) or 1.0, float(np.abs(a).max(initial=0.0)) or 1.0
+    force, top = problem.total_load or 1.0, float(np.abs(a).max(initial=0.0)) or 1.0
     certificate = certify(problem.with_loads(problem.f - problem.inertia * a), u, t_n, t_t, total_load=force)
     stiffness = float(abs(problem.K).max()) if problem.K.nnz else 1.0
     rigid = float(np.abs(problem.K @ a).max(initial=0.0)) / (stiffness * top)

@@ -92,8 +92,8 @@ class StaticState:
 
 
 def total_load(problem: ContactProblem) -> float:
-    """Return the sum of |f_i| [kN], 1 where there is no load."""
-    return float(np.abs(problem.f).sum()) or 1.0
+    """Return the total load [kN], 1 where there is none."""
+    return problem.total_load or 1.0
 
 
 def sufficient_condition(problem: ContactProblem) -> SufficientCondition:

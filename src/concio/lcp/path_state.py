@@ -41,12 +41,16 @@ class LinearPath:
         Loads added for each unit of the parameter [kN].
     gap_rate, tangent_rate : (m,) arrays, optional
         Normal and tangential movement of side b against side a that does not come from u [m].
+    total_rate : float, optional
+        Total load added for each unit of the parameter [kN], where ``load_rate`` holds more than loads; default: the
+        total load is the sum of |f| at each parameter.
     """
 
     problem: ContactProblem
     load_rate: Array
     gap_rate: Array = field(default_factory=lambda: np.zeros(0))
     tangent_rate: Array = field(default_factory=lambda: np.zeros(0))
+    total_rate: float | None = None
 
     def __post_init__(self) -> None:
         m, n = self.problem.pairs, self.problem.unknowns
@@ -67,6 +71,7 @@ class LinearPath:
         return replace(
             self.problem,
             f=self.problem.f + parameter * self.load_rate,
+            load=0.0 if self.total_rate is None else max(self.problem.load + parameter * self.total_rate, 0.0),
             gap=self.problem.gap + parameter * self.gap_rate,
             slip_origin=self.problem.slip_origin - parameter * self.tangent_rate[:, None],
         )
