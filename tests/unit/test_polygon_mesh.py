@@ -107,7 +107,7 @@ def test_faults_of_an_outline_are_named_with_their_place(outline, kinds, place):
     assert {f.kind for f in faults} == kinds
     if place is not None:
         np.testing.assert_allclose(faults[0].at, place)
-        with pytest.raises(GeometryError, match=r"block 'c01-b02'.*\(%g, %g\) m" % place):  # noqa: UP031
+        with pytest.raises(GeometryError, match=rf"block 'c01-b02'.*\({place[0]:g}, {place[1]:g}\) m"):
             check_polygon(np.array(outline, dtype=float), "c01-b02")
 
 

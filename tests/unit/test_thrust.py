@@ -36,7 +36,10 @@ def test_thrust_polygon_closes(ring):
     """Each voussoir is in moment equilibrium: resultants of its joints and its weight meet in a point."""
     line = thrust_line(ring)
     centroids = sorted((b.centroid for b in ring.model.free_bodies), key=lambda c: c[0])
-    cross = lambda a, b: a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]  # noqa: E731
+
+    def cross(a, b):
+        return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
     arm_in, arm_out = line.point[:-1] - centroids, line.point[1:] - centroids
     moment = cross(arm_in, line.force[:-1]) - cross(arm_out, line.force[1:])
     assert np.abs(moment).max() <= 1e-6 * np.abs(line.force).max()

@@ -14,7 +14,10 @@ from concio.model.model import Body, Model
 def block(width=0.2, height=1.0, friction=0.6, tilt=0.0):
     c, s = np.cos(tilt), np.sin(tilt)
     turn = np.array([[c, s], [-s, c]])
-    rectangle = lambda x0, x1, y0, y1: np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]) @ turn  # noqa: E731
+
+    def rectangle(x0, x1, y0, y1):
+        return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]) @ turn
+
     return Model(
         bodies=(
             Body("ground", rectangle(-3, 3, -1, 0), kind="fixed"),
