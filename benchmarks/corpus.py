@@ -17,14 +17,14 @@ from dataclasses import replace
 import numpy as np
 
 import concio
-import concio.lcp.auto
+import concio.solvers.auto.chain
 from concio.contact.assembly import Assembly
-from concio.lcp.certificate import certify
-from concio.lcp.departure import verify_departure
-from concio.lcp.existence import verify_mechanism
-from concio.lcp.limit import associated_limit
-from concio.lcp.methods import find
-from concio.lcp.solution import Solution, Status
+from concio.problem.certificate import certify
+from concio.problem.solution import Solution, Status
+from concio.solvers.methods import find
+from concio.solvers.motion.departure import verify_departure
+from concio.solvers.statics.existence import verify_mechanism
+from concio.solvers.statics.limit import associated_limit
 
 FAMILIES = ("dry wall", "dry panel", "mortar panel", "no base", "gaps", "loose blocks", "rigid wall", "mixed materials")
 
@@ -99,7 +99,7 @@ def draw(rng: np.random.Generator, family: str) -> tuple[Assembly, np.ndarray, d
     return assembly, dead + share * live, note
 
 
-def proven(problem: concio.contact.problem.ContactProblem, solution: Solution) -> bool:
+def proven(problem: concio.problem.contact_problem.ContactProblem, solution: Solution) -> bool:
     """Return whether the verdict's proof holds, recomputed from the arrays of the problem."""
     if solution.status is Status.SOLVED:
         s = solution

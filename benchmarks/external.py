@@ -46,8 +46,8 @@ from wall_family import panel, wall, wall_model  # noqa: E402
 
 import concio  # noqa: E402
 from concio.contact.assembly import Assembly  # noqa: E402
-from concio.contact.problem import Array, ContactProblem  # noqa: E402
-from concio.lcp.methods import find  # noqa: E402
+from concio.problem.contact_problem import Array, ContactProblem  # noqa: E402
+from concio.solvers.methods import find  # noqa: E402
 
 SPRING = 1e-6
 SYSTEM_PYTHON = "/usr/bin/python3"

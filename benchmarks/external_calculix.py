@@ -17,9 +17,9 @@ from pathlib import Path
 import numpy as np
 
 from concio.contact.assembly import Assembly
-from concio.contact.problem import Array
 from concio.model.materials import Elastic
 from concio.model.model import Body
+from concio.problem.contact_problem import Array
 
 STIFFNESS = 100.0
 

@@ -17,16 +17,16 @@ from typing import Any
 import numpy as np
 
 from concio.contact.assembly import assemble
-from concio.contact.problem import ContactProblem
 from concio.errors import MethodError
-from concio.lcp.force_method import force_method
-from concio.lcp.forms import MixedForm, mixed_form
-from concio.lcp.lemke_method import LemkeResult, Outcome, lemke
-from concio.lcp.linear_problem import LinearComplementarity
-from concio.lcp.reduction import reduce
-from concio.lcp.sparse_lemke import solve
-from concio.lcp.split_motions import split
-from concio.model.panel import running_bond_panel
+from concio.model.generate.panel import running_bond_panel
+from concio.problem.contact_problem import ContactProblem
+from concio.solvers.forms.force_method import force_method
+from concio.solvers.forms.forms import MixedForm, mixed_form
+from concio.solvers.forms.lemke_method import LemkeResult, Outcome, lemke
+from concio.solvers.forms.linear_problem import LinearComplementarity
+from concio.solvers.forms.reduction import reduce
+from concio.solvers.forms.split_motions import split
+from concio.solvers.pivoting.sparse_lemke import solve
 
 PANELS: dict[str, dict[str, Any]] = {
     "2 x 2 dry": {"courses": 2, "blocks": 2, "joint": 0.0, "friction": 1.0, "base": "full"},

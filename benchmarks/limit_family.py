@@ -14,9 +14,9 @@ import time
 from wall_family import wall
 
 from concio.analysis.limit import search_collapse
-from concio.lcp import statics
-from concio.lcp.existence import mechanism_from, statically_admissible
-from concio.lcp.limit import associated_limit
+from concio.solvers.statics import programme as statics
+from concio.solvers.statics.existence import mechanism_from, statically_admissible
+from concio.solvers.statics.limit import associated_limit
 
 WALLS = ((30, 14), (50, 40))
 LARGE = ((100, 100),)

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import concio
-from concio.contact.problem import ContactProblem
+from concio.problem.contact_problem import ContactProblem
 from concio.study.compare import compare, format_table
 
 DENSE = ("lemke", "klarbring", "ercolano", "lee", "del-piero")
@@ -35,7 +35,7 @@ def large_wall() -> ContactProblem:
 
 def near_collapse() -> ContactProblem:
     """Return the same bond, ten units by six courses, with 96 % of the associated limit sideways."""
-    from concio.lcp.limit import associated_limit
+    from concio.solvers.statics.limit import associated_limit
 
     still, leaning = _leaning(6, 10, 0.0), _leaning(6, 10, 1.0)
     limit = associated_limit(still, leaning.f - still.f).multiplier
@@ -101,7 +101,7 @@ def main() -> None:
 
 
 def _suitable(problem: ContactProblem) -> list[str]:
-    from concio.lcp.methods import METHODS
+    from concio.solvers.methods import METHODS
 
     dense = problem.pairs > 1000
     return [name for name in METHODS if name != "auto" and not (dense and name in DENSE)]

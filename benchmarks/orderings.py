@@ -14,8 +14,8 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 from wall_family import wall
 
-from concio.lcp.scaled import scale
-from concio.lcp.sparse_factor import nested_dissection
+from concio.solvers.algebra.scaled import scale
+from concio.solvers.algebra.sparse_factor import nested_dissection
 
 
 def factorise(matrix: sp.csc_matrix, spec: str) -> tuple[float, int, sla.SuperLU]:

@@ -23,10 +23,10 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 
 import concio
-from concio.contact.problem import ContactProblem
-from concio.lcp.methods import find
-from concio.lcp.scaled import scale
-from concio.model.panel import Base
+from concio.model.generate.panel import Base
+from concio.problem.contact_problem import ContactProblem
+from concio.solvers.algebra.scaled import scale
+from concio.solvers.methods import find
 
 WALLS = ((30, 14, 0.30), (30, 14, 0.40), (30, 14, 0.43), (30, 14, 0.44), (50, 40, 0.30), (50, 40, 0.34))
 PANELS = ((10, 10, 0.0, 1.0), (20, 20, 0.0, 1.0), (10, 10, 0.02, 1.0), (20, 20, 0.02, 0.6))

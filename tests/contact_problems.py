@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 import scipy.sparse as sp
 
-from concio.contact.problem import ContactProblem, Laws
+from concio.problem.contact_problem import ContactProblem, Laws
 
 MODULUS = 1000.0
 

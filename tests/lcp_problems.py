@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from concio.contact.problem import ContactProblem, Laws
+from concio.problem.contact_problem import ContactProblem, Laws
 from contact_problems import wall
 
 

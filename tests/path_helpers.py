@@ -7,9 +7,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from concio.lcp.event_path import follow
-from concio.lcp.path_record import EventPath
-from concio.lcp.path_state import CLOSED, LinearPath, PathState, certify_step, elastic_energy
+from concio.solvers.path.event_path import follow
+from concio.solvers.path.record import EventPath
+from concio.solvers.path.state import CLOSED, LinearPath, PathState, certify_step, elastic_energy
 from rigid_walls import Assembly
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from concio.contact.problem import ContactProblem, Laws
+from concio.problem.contact_problem import ContactProblem, Laws
 
 GROUND = -1
 

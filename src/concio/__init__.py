@@ -23,17 +23,17 @@ if TYPE_CHECKING:
     from concio.analysis.thrust import thrust_line
     from concio.contact.assembly import Assembly, assemble
     from concio.errors import ConcioError, GeometryError, InputError, MethodError, NoEquilibriumError, SolverError
-    from concio.lcp.solution import Status
-    from concio.model.arches import arch
-    from concio.model.columns import buttress, column
-    from concio.model.drawing import model_from_dxf
-    from concio.model.file import load, loads
-    from concio.model.file_write import dumps, save
+    from concio.model.drawing.drawing import model_from_dxf
+    from concio.model.file.reading import load, loads
+    from concio.model.file.writing import dumps, save
+    from concio.model.generate.arches import arch
+    from concio.model.generate.columns import buttress, column
+    from concio.model.generate.panel import running_bond_panel
+    from concio.model.generate.rubble import rubble
+    from concio.model.generate.walls import wall, wall_of_courses
     from concio.model.materials import Elastic, JointLaw, Rigid
     from concio.model.model import Body, JointRule, Load, Model, Support, Tie
-    from concio.model.panel import running_bond_panel
-    from concio.model.rubble import rubble
-    from concio.model.walls import wall, wall_of_courses
+    from concio.problem.solution import Status
 
 __version__ = "0.1.0"
 
@@ -55,17 +55,17 @@ _HOMES = {
         "NoEquilibriumError",
         "SolverError",
     ),
-    "concio.lcp.solution": ("Status",),
-    "concio.model.arches": ("arch",),
-    "concio.model.columns": ("buttress", "column"),
-    "concio.model.drawing": ("model_from_dxf",),
-    "concio.model.file": ("load", "loads"),
-    "concio.model.file_write": ("dumps", "save"),
+    "concio.problem.solution": ("Status",),
+    "concio.model.generate.arches": ("arch",),
+    "concio.model.generate.columns": ("buttress", "column"),
+    "concio.model.drawing.drawing": ("model_from_dxf",),
+    "concio.model.file.reading": ("load", "loads"),
+    "concio.model.file.writing": ("dumps", "save"),
     "concio.model.materials": ("Elastic", "JointLaw", "Rigid"),
     "concio.model.model": ("Body", "JointRule", "Load", "Model", "Support", "Tie"),
-    "concio.model.panel": ("running_bond_panel",),
-    "concio.model.rubble": ("rubble",),
-    "concio.model.walls": ("wall", "wall_of_courses"),
+    "concio.model.generate.panel": ("running_bond_panel",),
+    "concio.model.generate.rubble": ("rubble",),
+    "concio.model.generate.walls": ("wall", "wall_of_courses"),
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
 

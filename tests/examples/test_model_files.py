@@ -15,8 +15,8 @@ from typer.testing import CliRunner
 
 import concio
 from concio.cli.main import app
-from concio.lcp.solution import Status
-from concio.model.file_generators import json_schema
+from concio.model.file.generator_tables import json_schema
+from concio.problem.solution import Status
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples"
 DRAWINGS = () if find_spec("ezdxf") else ("gate_from_a_drawing.toml",)

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import concio
-from concio.model.file_write import _pairs
+from concio.model.file.writing import _pairs
 
 TEMPLATES = {
     p.name: tomllib.loads(p.read_text(encoding="utf-8")) for p in files("concio.model").joinpath("templates").iterdir()

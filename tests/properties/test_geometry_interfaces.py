@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from concio.model.bonds import Course, head_joints
-from concio.model.detect import detect_interfaces
+from concio.model.generate.bonds import Course, head_joints
+from concio.model.generate.rubble import rubble
+from concio.model.generate.walls import wall
+from concio.model.interfaces.detect import detect_interfaces
 from concio.model.model import Body
-from concio.model.rubble import rubble
-from concio.model.walls import wall
 
 
 def copies(bodies, change, order=None):

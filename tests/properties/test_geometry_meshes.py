@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from concio.fem.polygon_mesh import mesh_polygon
-from concio.model.polygon_check import polygon_faults
+from concio.model.interfaces.polygon_check import polygon_faults
 from meshes import assert_good_mesh
 
 

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 import concio
 from concio.contact.assembly import assemble
-from concio.lcp.certificate import certify
-from concio.lcp.existence import proves, verify_mechanism
+from concio.model.generate.panel import running_bond_panel
 from concio.model.materials import JointLaw, Rigid
 from concio.model.model import JointRule, Load, Tie
-from concio.model.panel import running_bond_panel
+from concio.problem.certificate import certify
+from concio.solvers.statics.existence import proves, verify_mechanism
 from models import box, model_of, on_ground, weight
 
 few = settings(max_examples=12, deadline=None, derandomize=True)

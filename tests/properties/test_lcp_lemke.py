@@ -7,10 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from concio.lcp.complementary_basis import lemke_generalised
-from concio.lcp.decide import infeasibility
-from concio.lcp.lemke_method import Outcome, lemke
-from concio.lcp.linear_problem import GeneralisedComplementarity, LinearComplementarity
+from concio.solvers.forms.complementary_basis import lemke_generalised
+from concio.solvers.forms.decide import infeasibility
+from concio.solvers.forms.lemke_method import Outcome, lemke
+from concio.solvers.forms.linear_problem import GeneralisedComplementarity, LinearComplementarity
 
 small = st.integers(-4, 4).map(float)
 sizes = st.integers(1, 7)

@@ -13,10 +13,10 @@ import numpy as np
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from concio.contact.problem import ContactProblem
-from concio.lcp.certificate import certify
-from concio.lcp.methods import find
-from concio.lcp.solution import Solution
+from concio.problem.certificate import certify
+from concio.problem.contact_problem import ContactProblem
+from concio.problem.solution import Solution
+from concio.solvers.methods import find
 from contact_problems import wall
 
 QUICK: dict[str, dict[str, int]] = {

@@ -6,8 +6,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from concio.lcp.limit import associated_limit
-from concio.lcp.path_record import Outcome
+from concio.solvers.path.record import Outcome
+from concio.solvers.statics.limit import associated_limit
 from path_helpers import energy_error, least_dissipation, weight_then, worst_certificate
 from rigid_walls import running_bond
 

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from concio.contact.assembly import assemble
 from concio.fem.discretisation import FIXED, RIGID
 from concio.fem.elements import FAMILIES
-from concio.model.arches import arch
+from concio.model.generate.arches import arch
+from concio.model.generate.rubble import rubble
+from concio.model.generate.walls import wall
 from concio.model.materials import Elastic, Rigid
-from concio.model.rubble import rubble
-from concio.model.walls import wall
 from models import turned
 
 few = settings(max_examples=15, deadline=None, derandomize=True)

@@ -10,9 +10,9 @@ from concio.fem.constitutive import constitutive_matrix
 from concio.fem.edge_integral import edge_weights, lagrange, pieces
 from concio.fem.elements import FAMILIES, build
 from concio.fem.mesh import is_rectangle, merged, mesh_body, tensor
+from concio.model.generate.spacing import subdivided
 from concio.model.materials import Elastic
 from concio.model.model import Body
-from concio.model.spacing import subdivided
 
 D = constitutive_matrix(Elastic(E=1.0, nu=0.0), "stress")
 TRAPEZIUM = np.array([(0, 0), (2, 0), (1.5, 1), (0.2, 1.0)])

@@ -9,13 +9,13 @@ import pytest
 import scipy.sparse as sp
 
 import concio
-from concio.contact.problem import ContactProblem, Laws
 from concio.errors import InputError
-from concio.lcp.certificate import CERTIFIED, Certificate, certify, kinematics
-from concio.lcp.path_state import LinearPath
-from concio.lcp.solution import Status, failed, judge
 from concio.model.materials import Elastic, JointLaw
 from concio.model.model import Body, Load, Model, Support
+from concio.problem.certificate import CERTIFIED, Certificate, certify, kinematics
+from concio.problem.contact_problem import ContactProblem, Laws
+from concio.problem.solution import Status, failed, judge
+from concio.solvers.path.state import LinearPath
 
 
 def one_pair(f=(3.0, -10.0), gap=0.0, origin=0.0, **laws):

@@ -16,7 +16,7 @@ import concio
 from commands import run
 from concio.cli.outcome import fail
 from concio.cli.run import factors_of, where_written
-from concio.lcp.solution import Progress
+from concio.problem.solution import Progress
 
 SMALL = "[panel]\ncourses = 1\nblocks = 2\ntop_pressure = 10\nelements_per_block = [2, 1]\n"
 SLIDES = "[panel]\nside_walls = false\nfriction = 0.5\nunit_weight = 20\nhorizontal = 1.0\ncourses = 1\n"

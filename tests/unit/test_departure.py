@@ -13,16 +13,16 @@ import concio
 from concio import Body, Elastic, JointLaw, Load, Model, Rigid, Status
 from concio.cli.lines import result_lines
 from concio.contact.inertia import GRAVITY, lumped_masses
-from concio.contact.problem import ContactProblem
 from concio.io import load_result, save_result
-from concio.lcp.departure import departure, verify_departure
-from concio.lcp.engine import Run
-from concio.lcp.exact_finish import States
-from concio.lcp.methods import find
-from concio.lcp.release import associated_state, release
-from concio.lcp.scaled import scale
-from concio.lcp.solution import Departure
+from concio.problem.contact_problem import ContactProblem
+from concio.problem.solution import Departure
 from concio.report.wording import certificate_sentence, verdict
+from concio.solvers.algebra.scaled import scale
+from concio.solvers.interior.engine import Run
+from concio.solvers.interior.exact_finish import States
+from concio.solvers.methods import find
+from concio.solvers.motion.departure import departure, verify_departure
+from concio.solvers.motion.release import associated_state, release
 
 BRICK = Elastic(E=1e6, nu=0.2, unit_weight=20.0)
 
@@ -161,7 +161,7 @@ def test_what_stands_comes_to_rest() -> None:
         assert not isinstance(ended, Departure)
         assert ended is not None
         u, t_n, t_t = run.scaled.restore(ended.u, ended.t_n, ended.t_t)
-        assert concio.lcp.certificate.certify(problem, u, t_n, t_t[:, None]).certified
+        assert concio.problem.certificate.certify(problem, u, t_n, t_t[:, None]).certified
         np.testing.assert_allclose(u, whole.displacement, rtol=0, atol=1e-8 * np.abs(u).max())
 
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from concio.errors import InputError
-from concio.model.detect import default_tolerance, detect_interfaces
+from concio.model.generate.walls import wall, wall_of_courses
+from concio.model.interfaces.detect import default_tolerance, detect_interfaces
 from concio.model.model import Body
-from concio.model.walls import wall, wall_of_courses
 
 
 def box(name, x0, y0, x1, y1, kind="elastic"):

@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 
 import concio
-from concio.contact.problem import ContactProblem
-from concio.lcp.engine import Cancelled, Run
-from concio.lcp.exact_finish import finish
-from concio.lcp.existence import find_mechanism
-from concio.lcp.friction_neighbours import from_neighbours
-from concio.lcp.methods import find
-from concio.lcp.scaled import scale
-from concio.lcp.solution import Status
 from concio.model.materials import Elastic, Rigid
 from concio.model.model import Load
+from concio.problem.contact_problem import ContactProblem
+from concio.problem.solution import Status
+from concio.solvers.algebra.scaled import scale
+from concio.solvers.auto.friction_neighbours import from_neighbours
+from concio.solvers.interior.engine import Cancelled, Run
+from concio.solvers.interior.exact_finish import finish
+from concio.solvers.methods import find
+from concio.solvers.statics.existence import find_mechanism
 from contact_problems import wall as plain_wall
 from models import box, model_of, on_ground, weight
 from rigid_walls import BLOCK, FERRIS_TIN_LOI, MU

@@ -8,7 +8,7 @@ import pytest
 
 import concio
 from concio import errors
-from concio.lcp.solution import Status
+from concio.problem.solution import Status
 
 ALL = [c for _, c in inspect.getmembers(errors, inspect.isclass) if issubclass(c, Exception)]
 

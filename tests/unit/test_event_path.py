@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from concio.contact.problem import ContactProblem, Laws
 from concio.errors import InputError
-from concio.lcp.event_path import follow
-from concio.lcp.path_record import Outcome
-from concio.lcp.path_state import CRUSHED, OPEN, LinearPath, PathState
+from concio.problem.contact_problem import ContactProblem, Laws
+from concio.solvers.path.event_path import follow
+from concio.solvers.path.record import Outcome
+from concio.solvers.path.state import CRUSHED, OPEN, LinearPath, PathState
 from path_helpers import at_rest, energy_error, least_dissipation, weight_then, worst_certificate
 from rigid_walls import block_on_incline
 

@@ -9,14 +9,14 @@ import pytest
 import scipy.sparse as sp
 from scipy.optimize import linprog
 
-from concio.contact.problem import ContactProblem, Laws
 from concio.errors import MethodError
-from concio.lcp.exhaustive import solve
-from concio.lcp.exhaustive_clauses import ClauseSearch
-from concio.lcp.exhaustive_relaxation import Relaxation
-from concio.lcp.exhaustive_states import Empty, StateQuestions
-from concio.lcp.existence import statically_admissible
-from concio.lcp.solution import Status
+from concio.problem.contact_problem import ContactProblem, Laws
+from concio.problem.solution import Status
+from concio.solvers.exhaustive.clauses import ClauseSearch
+from concio.solvers.exhaustive.relaxation import Relaxation
+from concio.solvers.exhaustive.search import solve
+from concio.solvers.exhaustive.states import Empty, StateQuestions
+from concio.solvers.statics.existence import statically_admissible
 from contact_problems import wall
 from lcp_problems import small_wall
 

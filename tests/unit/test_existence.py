@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from concio.contact.problem import ContactProblem, Laws
-from concio.lcp.existence import (
+from concio.problem.contact_problem import ContactProblem, Laws
+from concio.solvers.statics.existence import (
     find_mechanism,
     mechanism_from,
     polish,

@@ -19,11 +19,11 @@ from hypothesis import strategies as st
 import concio
 from concio.errors import GeometryError, InputError
 from concio.fem.elements import FAMILIES
-from concio.model.block_table import write_blocks
-from concio.model.file import LARGEST_FILE
-from concio.model.file_generators import KINDS, file_table, hints_of, json_schema
-from concio.model.file_tables import Element
-from concio.model.generators import GENERATORS
+from concio.model.file.block_table import write_blocks
+from concio.model.file.generator_tables import KINDS, file_table, hints_of, json_schema
+from concio.model.file.reading import LARGEST_FILE
+from concio.model.file.tables import Element
+from concio.model.generate.generators import GENERATORS
 
 BLOCK = """
 [materials.stone]

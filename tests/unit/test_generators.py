@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from concio.errors import GeometryError, InputError
-from concio.model.arches import arch
-from concio.model.bonds import Course, bond_courses, head_joints, without_short_pieces
-from concio.model.columns import buttress, column
-from concio.model.detect import default_tolerance, detect_interfaces
-from concio.model.generators import GENERATORS, arguments_of, generate
+from concio.model.generate.arches import arch
+from concio.model.generate.bonds import Course, bond_courses, head_joints, without_short_pieces
+from concio.model.generate.columns import buttress, column
+from concio.model.generate.generators import GENERATORS, arguments_of, generate
+from concio.model.generate.rubble import rubble
+from concio.model.generate.wall_panels import Panel
+from concio.model.generate.walls import wall, wall_of_courses
+from concio.model.interfaces.detect import default_tolerance, detect_interfaces
 from concio.model.materials import Elastic, JointLaw, Rigid
-from concio.model.rubble import rubble
-from concio.model.wall_panels import Panel
-from concio.model.walls import wall, wall_of_courses
 
 
 def detected(model):

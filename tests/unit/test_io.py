@@ -21,9 +21,9 @@ from concio.io import load_result, save_result, write_paraview, write_result
 from concio.io.codec import Decoder, Encoder
 from concio.io.csv_table import write_csv
 from concio.io.vtu import VERTEX, Grid, write_vtu
-from concio.lcp.certificate import certify
-from concio.lcp.solution import Status
 from concio.model.model import Load, Model, Tie
+from concio.problem.certificate import certify
+from concio.problem.solution import Status
 from models import sliding_panel
 
 

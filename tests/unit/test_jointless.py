@@ -13,11 +13,11 @@ import concio
 from commands import run
 from concio.errors import InputError
 from concio.io import load_result, write_result
-from concio.lcp.methods import METHODS
-from concio.lcp.solution import Status
 from concio.model.materials import Elastic
 from concio.model.model import Load, Model, Support, Tie
 from concio.plot.figures import suitable_figures
+from concio.problem.solution import Status
+from concio.solvers.methods import METHODS
 from models import box, model_of, weight
 
 LEFT, RIGHT, TOP, BASE = ((0, 0), (0, 0)), ((2, 0), (2, 0)), ((0, 1), (2, 1)), ((0, 0), (2, 0))

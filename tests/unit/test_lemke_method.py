@@ -10,10 +10,10 @@ import pytest
 import scipy.sparse as sp
 
 from concio.errors import InputError, MethodError
-from concio.lcp.complementary_basis import complementary_basis, lemke_generalised, standard_form
-from concio.lcp.decide import Verdict, decide, infeasibility
-from concio.lcp.lemke_method import Outcome, equilibrate, lemke
-from concio.lcp.linear_problem import GeneralisedComplementarity, LinearComplementarity
+from concio.solvers.forms.complementary_basis import complementary_basis, lemke_generalised, standard_form
+from concio.solvers.forms.decide import Verdict, decide, infeasibility
+from concio.solvers.forms.lemke_method import Outcome, equilibrate, lemke
+from concio.solvers.forms.linear_problem import GeneralisedComplementarity, LinearComplementarity
 
 CORPUS = Path(os.environ.get("CONCIO_LCP_CORPUS", Path(__file__).parents[3] / "shared" / "data" / "lcp_corpus"))
 

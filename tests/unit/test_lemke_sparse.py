@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 
 from concio.contact.assembly import assemble
 from concio.errors import InputError, MethodError
-from concio.lcp.methods import find
-from concio.lcp.solution import Status, pair_states
-from concio.lcp.sparse_lemke import solve
-from concio.lcp.updated_factor import UpdatedFactor
-from concio.model.panel import running_bond_panel
+from concio.model.generate.panel import running_bond_panel
+from concio.problem.solution import Status, pair_states
+from concio.solvers.algebra.updated_factor import UpdatedFactor
+from concio.solvers.methods import find
+from concio.solvers.pivoting.sparse_lemke import solve
 from contact_problems import rigid, wall
 from lcp_problems import small_wall
 

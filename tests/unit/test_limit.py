@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from concio.contact.problem import ContactProblem, Laws
 from concio.errors import InputError
-from concio.lcp import collapse_state, statics
-from concio.lcp.collapse_state import certify_collapse, find_collapse_state
-from concio.lcp.limit import associated_limit, kinematic_bound, smallest_friction
+from concio.problem.contact_problem import ContactProblem, Laws
+from concio.solvers.statics import collapse_state
+from concio.solvers.statics import programme as statics
+from concio.solvers.statics.collapse_state import certify_collapse, find_collapse_state
+from concio.solvers.statics.limit import associated_limit, kinematic_bound, smallest_friction
 from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, wall
 
 

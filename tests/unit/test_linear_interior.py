@@ -7,9 +7,9 @@ import pytest
 import scipy.sparse as sp
 from scipy.optimize import linprog
 
-from concio.lcp.linear_interior import solve_interior
-from concio.lcp.normal_equations import NormalEquations, rebalance
-from concio.lcp.statics import optimise
+from concio.solvers.algebra.normal_equations import NormalEquations, rebalance
+from concio.solvers.statics.linear_interior import solve_interior
+from concio.solvers.statics.programme import optimise
 from rigid_walls import running_bond
 
 

@@ -11,8 +11,8 @@ import concio
 from concio.analysis import limit as limits
 from concio.analysis.margins import friction_by_solving, load_margin
 from concio.cli.limit import limit_lines
-from concio.lcp.limit import LimitLoad
-from concio.lcp.solution import Mechanism
+from concio.problem.solution import Mechanism
+from concio.solvers.statics.limit import LimitLoad
 
 
 @pytest.fixture(scope="module")

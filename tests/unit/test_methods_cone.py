@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from concio.lcp.friction_cone import Cone, return_map, return_map_derivative
+from concio.problem.cone import Cone, return_map, return_map_derivative
 
 number = st.floats(-5.0, 5.0).map(lambda v: round(v, 3))
 

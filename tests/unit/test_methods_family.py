@@ -9,12 +9,21 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from concio.contact.problem import ContactProblem, Laws
 from concio.errors import MethodError
-from concio.lcp import admm, alart_curnier, gauss_seidel, lagrange, panagiotopoulos, penalty, simo_laursen, uzawa
-from concio.lcp.dimensionless import dimensionless
-from concio.lcp.methods import find
-from concio.lcp.solution import Progress, Status
+from concio.problem.contact_problem import ContactProblem, Laws
+from concio.problem.solution import Progress, Status
+from concio.solvers.algebra.dimensionless import dimensionless
+from concio.solvers.iterative import (
+    admm,
+    alart_curnier,
+    gauss_seidel,
+    lagrange,
+    panagiotopoulos,
+    penalty,
+    simo_laursen,
+    uzawa,
+)
+from concio.solvers.methods import find
 from contact_problems import rigid, wall
 
 FAMILY = ("lagrange", "alart-curnier", "uzawa", "simo-laursen", "de-saxce", "panagiotopoulos", "gauss-seidel", "admm")

@@ -7,8 +7,8 @@ import pytest
 
 import concio
 from concio.analysis.path import Stage, run_path
-from concio.lcp import engine
-from concio.lcp.near_forces import needed, solve_near
+from concio.solvers.interior import engine
+from concio.solvers.path.near_forces import needed, solve_near
 
 PUSH = 0.4
 

@@ -11,9 +11,9 @@ from concio.contact.assembly import assemble
 from concio.contact.loads import _line_load
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID
+from concio.model.generate.walls import wall_of_courses
 from concio.model.materials import Elastic, JointLaw
 from concio.model.model import JointRule
-from concio.model.walls import wall_of_courses
 from models import box, model_of, on_ground, turned
 from rigid_walls import FERRIS_TIN_LOI
 

@@ -7,8 +7,8 @@ import pytest
 
 from concio.contact.assembly import assemble
 from concio.errors import InputError
+from concio.model.generate.panel import running_bond_panel
 from concio.model.materials import Elastic, Rigid
-from concio.model.panel import running_bond_panel
 
 
 def area(model, role):

@@ -13,10 +13,10 @@ from concio.analysis.path import ControlPoint, Stage, run_path
 from concio.analysis.settlement import settle
 from concio.contact.assembly import assemble
 from concio.errors import InputError
-from concio.lcp.path_record import Outcome
+from concio.model.generate.walls import wall
 from concio.model.materials import Elastic
 from concio.model.model import Body, Support
-from concio.model.walls import wall
+from concio.solvers.path.record import Outcome
 
 WEIGHT = Stage("weight", {"dead": 1.0}, steps=1)
 

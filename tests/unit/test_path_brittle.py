@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from concio.contact.problem import ContactProblem, Laws
 from concio.errors import InputError
-from concio.lcp.methods import find
-from concio.lcp.path_record import Outcome
-from concio.lcp.path_state import LinearPath, certify_step, elastic_energy
-from concio.lcp.step_path import StepPath, follow_in_steps
+from concio.problem.contact_problem import ContactProblem, Laws
+from concio.solvers.methods import find
+from concio.solvers.path.record import Outcome
+from concio.solvers.path.state import LinearPath, certify_step, elastic_energy
+from concio.solvers.path.step_path import StepPath, follow_in_steps
 from path_helpers import at_rest
 
 K, T, C, MU = 100.0, 2.0, 1.5, 0.5

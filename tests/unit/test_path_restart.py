@@ -10,8 +10,8 @@ import pytest
 import concio
 from concio.analysis.limit import limit
 from concio.cli.limit import limit_lines
-from concio.lcp.path_record import Outcome
-from concio.lcp.path_restart import look_beyond, moves_freely
+from concio.solvers.path.record import Outcome
+from concio.solvers.path.restart import look_beyond, moves_freely
 from path_helpers import energy_error, least_dissipation, weight_then, worst_certificate
 from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, wall
 

@@ -13,8 +13,7 @@ from matplotlib.figure import Figure
 import concio
 from concio.analysis.result import Result
 from concio.errors import InputError
-from concio.lcp.solution import Status
-from concio.model.arches import arch
+from concio.model.generate.arches import arch
 from concio.model.model import signed_area
 from concio.plot import style
 from concio.plot.figures import TITLES, suitable_figures, write_figures
@@ -27,6 +26,7 @@ from concio.post.motion import body_motions
 from concio.post.outlines import display_scale, outlines
 from concio.post.pressure import pressure_diagrams
 from concio.post.thrust import thrust_lines
+from concio.problem.solution import Status
 from models import bearing_panel, sliding_panel
 
 

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 from concio.errors import MethodError
-from concio.lcp.complementary_basis import lemke_generalised
-from concio.lcp.condensation import condense
-from concio.lcp.force_method import force_method
-from concio.lcp.forms import mixed_form
-from concio.lcp.lemke_method import Outcome, lemke
-from concio.lcp.methods import find
-from concio.lcp.reduction import reduce
-from concio.lcp.solution import Status
-from concio.lcp.split_motions import join, split
+from concio.problem.solution import Status
+from concio.solvers.forms.complementary_basis import lemke_generalised
+from concio.solvers.forms.condensation import condense
+from concio.solvers.forms.force_method import force_method
+from concio.solvers.forms.forms import mixed_form
+from concio.solvers.forms.lemke_method import Outcome, lemke
+from concio.solvers.forms.reduction import reduce
+from concio.solvers.forms.split_motions import join, split
+from concio.solvers.methods import find
 from contact_problems import wall
 from lcp_problems import small_wall
 

@@ -16,7 +16,7 @@ import pytest
 import concio
 from concio.analysis.result import Result
 from concio.errors import InputError
-from concio.lcp.solution import Status
+from concio.problem.solution import Status
 from concio.report.page import report_html, write_report
 from concio.report.view_data import unpack
 from concio.report.wording import VERDICTS, certificate_sentence, checks, verdict

@@ -13,11 +13,11 @@ import pytest
 import concio
 from concio.cli.lines import result_lines
 from concio.errors import InputError, NoEquilibriumError, SolverError
-from concio.lcp.existence import proves, verify_mechanism
-from concio.lcp.solution import Status
 from concio.model.materials import Elastic, JointLaw
 from concio.model.model import Load
+from concio.problem.solution import Status
 from concio.report.wording import verdict
+from concio.solvers.statics.existence import proves, verify_mechanism
 from models import box, on_ground, weight
 
 STONE = {"kind": "rigid", "material": "stone"}

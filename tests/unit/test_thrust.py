@@ -8,8 +8,8 @@ import pytest
 from concio.analysis.step import solve
 from concio.analysis.thrust import course_resultants, hinges, thrust_line
 from concio.errors import InputError
-from concio.model.arches import arch
-from concio.model.walls import wall
+from concio.model.generate.arches import arch
+from concio.model.generate.walls import wall
 
 
 @pytest.fixture(scope="module")

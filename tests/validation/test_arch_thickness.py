@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from concio.lcp.existence import find_mechanism, statically_admissible
+from concio.solvers.statics.existence import find_mechanism, statically_admissible
 from rigid_walls import semicircular_arch
 
 ROUGH = 20.0

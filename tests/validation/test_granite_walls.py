@@ -9,7 +9,7 @@ from validation_cases.row import check
 
 import concio
 from concio.analysis.path import Stage, run_path
-from concio.lcp.path_record import Outcome
+from concio.solvers.path.record import Outcome
 
 
 def test_rows():

@@ -11,9 +11,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from concio.lcp.collapse_state import find_collapse_state
-from concio.lcp.limit import associated_limit
-from concio.lcp.path_record import Outcome
+from concio.solvers.path.record import Outcome
+from concio.solvers.statics.collapse_state import find_collapse_state
+from concio.solvers.statics.limit import associated_limit
 from path_helpers import energy_error, least_dissipation, weight_then, worst_certificate
 from rigid_walls import FERRIS_TIN_LOI, MU, wall
 

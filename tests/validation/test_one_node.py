@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from validation_cases import one_node
 from validation_cases.row import check
 
-from concio.lcp.event_path import Outcome
+from concio.solvers.path.event_path import Outcome
 
 
 def test_rows():

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from concio.contact.assembly import Assembly
-from concio.contact.problem import Array, ContactProblem
+from concio.problem.contact_problem import Array, ContactProblem
 
 SHEAR_TO_NORMAL = 2.5
 """Tangential over normal compliance lent to hard joints of rigid blocks: Poisson's ratio 0.25."""

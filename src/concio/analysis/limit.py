@@ -1,11 +1,13 @@
 """Limit loads of a model: the associated bound and the multiplier its Coulomb load path reaches, as a bracket.
 
-The *associated multiplier* (:mod:`concio.lcp.limit`) bounds every collapse from above and needs no stiffness. The
-*path multiplier* is the largest load met on the exact quasi-static path (:mod:`concio.lcp.event_path`): own weight and
+The *associated multiplier* (:mod:`concio.solvers.statics.limit`) bounds every collapse from above and needs no
+stiffness. The
+*path multiplier* is the largest load met on the exact quasi-static path (:mod:`concio.solvers.path.event_path`): own
+weight and
 whatever else is dead first, then the live load, controlled by the displacement it works on, so that local slips and
 falling branches are passed. It depends on stiffness and history, as friction does. A third number needs neither: the
-multiplier of a certified Coulomb *collapse state* (:mod:`concio.lcp.collapse_state`), at which the wall can begin to
-move; there may be several. None is passed off as another. How far the given load is from all this:
+multiplier of a certified Coulomb *collapse state* (:mod:`concio.solvers.statics.collapse_state`), at which the wall can
+begin to move; there may be several. None is passed off as another. How far the given load is from all this:
 :mod:`concio.analysis.margin`.
 
 Rigid blocks on hard joints have no unique path; their joints are lent a compliance
@@ -22,16 +24,16 @@ import numpy as np
 
 from concio.analysis.lent_compliance import with_compliance
 from concio.contact.assembly import Assembly, as_assembly
-from concio.contact.problem import ContactProblem
 from concio.errors import InputError, NoEquilibriumError
-from concio.lcp.collapse_state import CollapseState, find_collapse_state
-from concio.lcp.event_path import follow
-from concio.lcp.existence import find_mechanism
-from concio.lcp.limit import FrictionMargin, LimitLoad, associated_limit, smallest_friction
-from concio.lcp.path_record import EventPath, Outcome
-from concio.lcp.path_state import CLOSED, OPEN, LinearPath, PathState
-from concio.lcp.solution import ProgressCallback
 from concio.model.model import Model
+from concio.problem.contact_problem import ContactProblem
+from concio.problem.solution import ProgressCallback
+from concio.solvers.path.event_path import follow
+from concio.solvers.path.record import EventPath, Outcome
+from concio.solvers.path.state import CLOSED, OPEN, LinearPath, PathState
+from concio.solvers.statics.collapse_state import CollapseState, find_collapse_state
+from concio.solvers.statics.existence import find_mechanism
+from concio.solvers.statics.limit import FrictionMargin, LimitLoad, associated_limit, smallest_friction
 
 Array = np.ndarray
 

@@ -2,7 +2,8 @@
 
 Two questions, each answered twice. *How much more load?* *How much less friction?* Linear programming answers for
 associated friction: beyond that load, or below that friction, no equilibrium exists, and a mechanism proves it
-(:mod:`concio.lcp.limit`). What Coulomb friction carries may be less. So the same question is put to the solver of a
+(:mod:`concio.solvers.statics.limit`). What Coulomb friction carries may be less. So the same question is put to the
+solver of a
 load step (without its pivoting and exhaustive stages), bisecting between what was found to hold and the proven limit:
 at one end a certified equilibrium, at the other a load step for which none was found. The set of loads that Coulomb
 friction carries need not be an interval, and a solver that finds nothing proves nothing: the pair of numbers is what
@@ -18,11 +19,11 @@ import numpy as np
 
 from concio.analysis.limit import dead_and_live
 from concio.contact.assembly import Assembly, as_assembly
-from concio.contact.problem import ContactProblem
-from concio.lcp.auto import solve as solve_step
-from concio.lcp.limit import associated_limit, scaled_friction, smallest_friction
-from concio.lcp.solution import Status
 from concio.model.model import Model
+from concio.problem.contact_problem import ContactProblem
+from concio.problem.solution import Status
+from concio.solvers.auto.chain import solve as solve_step
+from concio.solvers.statics.limit import associated_limit, scaled_friction, smallest_friction
 
 FAR = 1e6
 """A load that can grow beyond this factor counts as unlimited."""

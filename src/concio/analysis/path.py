@@ -4,8 +4,8 @@ Friction depends on history: own weight first, then vertical load, then horizont
 carries the factors of some load groups from where they are to new values, in proportion; all groups begin at zero.
 Within a stage slip is measured from the last converged state (10, 11).
 
-``method="events"`` follows the exact polygon (:mod:`concio.lcp.event_path`), over jumps where the structure snaps, and
-goes over to steps when there are more events than asked for; the notes of the result tell both.
+``method="events"`` follows the exact polygon (:mod:`concio.solvers.path.event_path`), over jumps where the structure
+snaps, and goes over to steps when there are more events than asked for; the notes of the result tell both.
 ``method="steps"`` takes load steps with the solver named, halving a step that fails or that changes too many states
 at once.
 """
@@ -22,14 +22,14 @@ from concio.analysis.lent_compliance import SHEAR_TO_NORMAL, assembly_with_compl
 from concio.analysis.path_result import NamedEvent, PathResult, PathStep, control_functional, named_event
 from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import InputError, SolverError
-from concio.lcp.event_path import follow
-from concio.lcp.methods import find
-from concio.lcp.path_record import EventPath, Outcome
-from concio.lcp.path_state import OPEN, LinearPath, PathState, certify_step, elastic_energy
-from concio.lcp.solution import ProgressCallback
-from concio.lcp.step_path import StepPath, follow_in_steps
 from concio.model.model import Model
 from concio.model.stages import ControlPoint, Stage
+from concio.problem.solution import ProgressCallback
+from concio.solvers.methods import find
+from concio.solvers.path.event_path import follow
+from concio.solvers.path.record import EventPath, Outcome
+from concio.solvers.path.state import OPEN, LinearPath, PathState, certify_step, elastic_energy
+from concio.solvers.path.step_path import StepPath, follow_in_steps
 
 __all__ = ["ControlPoint", "NamedEvent", "PathResult", "PathStep", "Stage", "control_functional", "run_path"]
 

@@ -11,11 +11,11 @@ import numpy as np
 from concio.analysis.result import Result
 from concio.contact.assembly import Assembly
 from concio.errors import InputError
-from concio.lcp.certificate import Certificate
-from concio.lcp.path_record import Event, Outcome
-from concio.lcp.path_state import PathState, weakened
-from concio.lcp.solution import Status, judge
 from concio.model.stages import ControlPoint, Stage
+from concio.problem.certificate import Certificate
+from concio.problem.solution import Status, judge
+from concio.solvers.path.record import Event, Outcome
+from concio.solvers.path.state import PathState, weakened
 
 Array = np.ndarray
 

@@ -14,10 +14,10 @@ from concio.analysis.stress import Stress
 from concio.contact.assembly import Assembly
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID, rigid_rows
-from concio.lcp.certificate import Certificate
-from concio.lcp.existence import SufficientCondition, sufficient_condition
-from concio.lcp.solution import Mechanism, Solution, Status, pair_states
 from concio.model.model import Model
+from concio.problem.certificate import Certificate
+from concio.problem.solution import Mechanism, Solution, Status, pair_states
+from concio.solvers.statics.existence import SufficientCondition, sufficient_condition
 
 if TYPE_CHECKING:
     from concio.plot.accessor import Plots

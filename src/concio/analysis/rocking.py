@@ -2,8 +2,8 @@ r"""Large displacements of rigid blocks: the load multiplier as the geometry of 
 
 In small displacements a toppling block keeps its multiplier for ever. Here the blocks are moved, contacts are looked
 for again at the displaced corners, and the limit multiplier of the displaced structure is found by the static theorem
-(:mod:`concio.lcp.limit`); its mechanism gives the next movement. A block of width b and height h that rocks about its
-toe falls from b/h to zero as its centroid passes above the toe: lambda = tan(atan(b/h) - theta).
+(:mod:`concio.solvers.statics.limit`); its mechanism gives the next movement. A block of width b and height h that rocks
+about its toe falls from b/h to zero as its centroid passes above the toe: lambda = tan(atan(b/h) - theta).
 
 Every interface of polygons begins and ends at a corner of one of them, so that corners near edges are all the contact
 points rigid blocks need. A step turns each block about the instantaneous centre of its motion (no second-order drift
@@ -18,11 +18,11 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.contact.assembly import require_model
-from concio.contact.problem import ContactProblem, Laws
 from concio.errors import InputError, SolverError
-from concio.lcp.limit import associated_limit
 from concio.model.materials import Rigid
 from concio.model.model import Model
+from concio.problem.contact_problem import ContactProblem, Laws
+from concio.solvers.statics.limit import associated_limit
 
 Array = np.ndarray
 

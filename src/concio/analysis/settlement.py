@@ -11,8 +11,8 @@ import numpy as np
 from concio.analysis.path import PathResult, Stage, run_path
 from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import InputError
-from concio.lcp.solution import ProgressCallback
 from concio.model.model import Model
+from concio.problem.solution import ProgressCallback
 
 Array = np.ndarray
 

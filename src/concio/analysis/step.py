@@ -9,9 +9,9 @@ from typing import Any, Literal
 from concio.analysis.result import Result
 from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import NoEquilibriumError, SolverError
-from concio.lcp.methods import find
-from concio.lcp.solution import ProgressCallback, Solver, Status
 from concio.model.model import Model
+from concio.problem.solution import ProgressCallback, Solver, Status
+from concio.solvers.methods import find
 
 
 def solve(
@@ -30,14 +30,14 @@ def solve(
     model : Model or Assembly
         An assembly saves meshing again.
     method : str
-        Name of a method, see :data:`concio.lcp.methods.METHODS`. A model without joints and ties is solved directly
+        Name of a method, see :data:`concio.solvers.methods.METHODS`. A model without joints and ties is solved directly
         (by "sparse-lemke", with nothing to pivot on), whichever is named.
     factors : mapping of str to float, optional
         Factors of load groups; groups not named have 1.
     on_failure : {"raise", "return"}
         Whether an outcome other than a certified equilibrium raises or is returned as it is.
     progress : callable, optional
-        Called with :class:`concio.lcp.solution.Progress` as the solver works; true stops it.
+        Called with :class:`concio.problem.solution.Progress` as the solver works; true stops it.
     **options
         Options of the method.
 

@@ -12,7 +12,7 @@ from concio.cli.output import check_writable, replaced_file
 from concio.cli.run import File, Json
 
 if TYPE_CHECKING:
-    from concio.model.detect import Detection
+    from concio.model.interfaces.detect import Detection
     from concio.model.model import Model
 
 

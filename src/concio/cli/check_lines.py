@@ -10,7 +10,7 @@ import numpy as np
 
 from concio.contact.assembly import Assembly
 from concio.fem.discretisation import RIGID
-from concio.model.detect import Detection
+from concio.model.interfaces.detect import Detection
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Model
 

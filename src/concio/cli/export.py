@@ -50,7 +50,7 @@ def _write(result: Result, to: str, target: Path, scale: float) -> list[Path]:
         target.mkdir(parents=True, exist_ok=True)
         return [write_csv(table, target / f"{name}.csv") for name, table in Tables(result).all().items()]
     if to == "toml":
-        from concio.model.file_write import save
+        from concio.model.file.writing import save
 
         save(result.model, target)
         return [target]

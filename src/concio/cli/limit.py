@@ -15,7 +15,7 @@ from concio.cli.run import File, Json
 if TYPE_CHECKING:
     from concio.analysis.limit import LimitResult
     from concio.analysis.margins import Margin
-    from concio.lcp.limit import FrictionMargin
+    from concio.solvers.statics.limit import FrictionMargin
 
 LARGEST_MARGIN = 10_000
 """Up to this number of pairs the friction margin is found unasked: it takes some twenty linear programmes."""

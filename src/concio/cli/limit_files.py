@@ -10,7 +10,7 @@ import numpy as np
 
 from concio.analysis.limit import LimitResult
 from concio.analysis.result import Result
-from concio.lcp.solution import Mechanism, Status, failed
+from concio.problem.solution import Mechanism, Status, failed
 
 Array = np.ndarray
 

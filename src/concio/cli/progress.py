@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from concio.lcp.solution import Progress, ProgressCallback
+    from concio.problem.solution import Progress, ProgressCallback
 
 TARGET = 1e-10
 """Residual at which the bar is full."""

@@ -13,14 +13,14 @@ import scipy.sparse as sp
 from concio.contact.inertia import lumped_masses
 from concio.contact.loads import load_vectors
 from concio.contact.pairs import Pairs, make_pairs, pair_laws
-from concio.contact.problem import ContactProblem, Laws
 from concio.contact.sides import interface_breaks
 from concio.contact.supports import Supported, apply_supports, moved_obstacles
 from concio.contact.ties import add_ties
 from concio.errors import GeometryError, InputError
 from concio.fem.discretisation import Discretisation, discretise
-from concio.model.detect import Detection, detect_interfaces
+from concio.model.interfaces.detect import Detection, detect_interfaces
 from concio.model.model import Model
+from concio.problem.contact_problem import ContactProblem, Laws
 
 Array = np.ndarray
 

@@ -14,13 +14,13 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.contact.coupling import Line, Side, couple
-from concio.contact.problem import Laws
 from concio.contact.sides import FacingSides
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, Discretisation
-from concio.model.detect import Interface
+from concio.model.interfaces.detect import Interface
 from concio.model.materials import JointLaw
 from concio.model.model import Model
+from concio.problem.contact_problem import Laws
 
 Array = np.ndarray
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.fem.mesh import merged
-from concio.model.detect import Interface
+from concio.model.interfaces.detect import Interface
 from concio.model.model import Body, Model
 
 Array = np.ndarray

@@ -12,9 +12,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.contact.pairs import Pairs
-from concio.contact.problem import Laws
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, Discretisation
+from concio.problem.contact_problem import Laws
 
 Array = np.ndarray
 

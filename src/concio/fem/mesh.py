@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from concio.model.generate.spacing import subdivided
 from concio.model.model import Body
-from concio.model.spacing import subdivided
 
 Array = np.ndarray
 

@@ -1,7 +1,7 @@
 """Outlines to a DXF drawing: the model as it is, or its deformed shape (needs the ``dxf`` extra).
 
 Every outline becomes a closed LWPOLYLINE on the layer it is given, its name a TEXT at its centroid on the layer
-``CONCIO_NAMES``, so that :mod:`concio.model.dxf` reads the drawing back with its names.
+``CONCIO_NAMES``, so that :mod:`concio.model.drawing.dxf` reads the drawing back with its names.
 """
 
 from __future__ import annotations

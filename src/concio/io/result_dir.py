@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING
 from concio.errors import ConcioError, InputError
 from concio.io.csv_table import write_csv
 from concio.io.result_file import save_result
-from concio.model.file_write import dumps
+from concio.model.file.writing import dumps
 from concio.post.tables import Tables
 
 if TYPE_CHECKING:

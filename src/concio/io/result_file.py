@@ -23,20 +23,20 @@ import concio
 from concio.analysis.result import Result
 from concio.contact.assembly import Assembly
 from concio.contact.pairs import Pairs
-from concio.contact.problem import Laws
 from concio.contact.supports import Condition, Supported
 from concio.errors import InputError
 from concio.fem.body import Shape
 from concio.fem.discretisation import Discretisation
 from concio.fem.elements import Elements
 from concio.io.codec import Decoder, Encoder
-from concio.lcp.certificate import Certificate, Kinematics
-from concio.lcp.solution import Departure, Mechanism, Solution, Status
-from concio.model.detect import Detection, Interface
+from concio.model.interfaces.detect import Detection, Interface
+from concio.model.interfaces.near import NearMiss, Overlap
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Body, JointRule, Load, Model, Support, Tie
-from concio.model.near import NearMiss, Overlap
 from concio.model.stages import ControlPoint, Stage
+from concio.problem.certificate import Certificate, Kinematics
+from concio.problem.contact_problem import Laws
+from concio.problem.solution import Departure, Mechanism, Solution, Status
 
 FORMAT = "concio result"
 VERSION = 1

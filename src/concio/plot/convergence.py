@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from concio.lcp.certificate import CERTIFIED
+from concio.problem.certificate import CERTIFIED
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from concio.errors import InputError
-from concio.lcp.solution import Status
 from concio.plot import style
 from concio.post.joint_lines import JointLines, joint_lines
 from concio.post.mechanism import mechanism_states
 from concio.post.motion import body_motions
 from concio.post.outlines import display_scale, outlines
+from concio.problem.solution import Status
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from concio.lcp.solution import Status
+from concio.problem.solution import Status
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result

@@ -1,6 +1,7 @@
 """One problem, all methods, one certificate: the table of ``concio compare``.
 
-Every method solves the same :class:`~concio.contact.problem.ContactProblem` and is judged by the same certificate. A
+Every method solves the same :class:`~concio.problem.contact_problem.ContactProblem` and is judged by the same
+certificate. A
 method that does not apply, gives up or takes too long is a row of the table like any other: what it reached is
 printed, and it is never called solved. Seconds are given as a ratio to the engine measured in the same run, so that a
 table can be compared with one made on another machine.
@@ -15,10 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from concio.contact.problem import ContactProblem
 from concio.errors import MethodError
-from concio.lcp.methods import METHODS, find
-from concio.lcp.solution import Progress, ProgressCallback, Solution, Status
+from concio.problem.contact_problem import ContactProblem
+from concio.problem.solution import Progress, ProgressCallback, Solution, Status
+from concio.solvers.methods import METHODS, find
 
 ENGINE = "interior-point"
 """The method the seconds of all others are divided by."""
@@ -115,7 +116,7 @@ def compare(
     ----------
     problem : ContactProblem
     methods : iterable of str, optional
-        Names as in :data:`concio.lcp.methods.METHODS`; default all but ``auto``. The engine is always run.
+        Names as in :data:`concio.solvers.methods.METHODS`; default all but ``auto``. The engine is always run.
     engine : str
         Method whose seconds are 1.
     options : mapping, optional

@@ -25,8 +25,8 @@ from typing import Any
 import numpy as np
 
 import concio
-from concio.lcp.collapse_state import find_collapse_state
-from concio.lcp.limit import associated_limit
+from concio.solvers.statics.collapse_state import find_collapse_state
+from concio.solvers.statics.limit import associated_limit
 from validation_cases.row import Row
 
 SOURCE = (

@@ -24,13 +24,13 @@ from dataclasses import replace
 import numpy as np
 import scipy.sparse as sp
 
-from concio.contact.problem import ContactProblem, Laws
-from concio.lcp.certificate import certify
-from concio.lcp.event_path import EventPath, follow
-from concio.lcp.existence import statically_admissible
-from concio.lcp.methods import find
-from concio.lcp.path_state import LinearPath, state_of_solution
-from concio.lcp.solution import Solution, Status
+from concio.problem.certificate import certify
+from concio.problem.contact_problem import ContactProblem, Laws
+from concio.problem.solution import Solution, Status
+from concio.solvers.methods import find
+from concio.solvers.path.event_path import EventPath, follow
+from concio.solvers.path.state import LinearPath, state_of_solution
+from concio.solvers.statics.existence import statically_admissible
 from validation_cases.row import Row
 
 SOURCE = (

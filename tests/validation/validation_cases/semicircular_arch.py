@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 import concio
-from concio.lcp.existence import find_mechanism, statically_admissible
+from concio.solvers.statics.existence import find_mechanism, statically_admissible
 from validation_cases.row import Row
 
 SOURCE = (

@@ -1,0 +1,1 @@
+"""Model files in TOML and tables of blocks, read and written."""

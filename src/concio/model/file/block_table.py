@@ -1,0 +1,207 @@
+"""Tables of blocks beside a model file: JSON or CSV, one row a block, read and written without loss.
+
+JSON::
+
+    {"format": "concio blocks", "version": 1, "unit": "m",
+     "blocks": [{"name": "b1", "outline": [[0, 0], [0.4, 0], [0.4, 0.2], [0, 0.2]], "material": "block"}]}
+
+CSV has a header; an outline is a text of vertices separated by semicolons, in metres::
+
+    name,outline,material,kind,role,layer,thickness
+    b1,0 0; 0.4 0; 0.4 0.2; 0 0.2,block,elastic,block,,1.0
+
+``name`` and ``outline`` must be there; the others, where they are left out or their cell is empty, have the defaults
+of :class:`concio.model.model.Body`. JSON may hold ``mesh_size`` too, and another ``unit`` of its coordinates (thickness
+and mesh size are always in m).
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from concio.errors import InputError
+from concio.model.interfaces.polygon_check import check_polygon
+from concio.model.model import Array, Body
+from concio.units import quantity
+
+FORMAT, VERSION = "concio blocks", 1
+_TEXTS = ("material", "kind", "role", "layer")
+_NUMBERS = ("thickness", "mesh_size")
+_COLUMNS = ("name", "outline", *_TEXTS, *_NUMBERS)
+
+
+def read_blocks(path: str | Path) -> tuple[Body, ...]:
+    """Return the blocks of a table, every outline checked.
+
+    Parameters
+    ----------
+    path : str or Path
+        Ends in ``.json`` or ``.csv``.
+
+    Raises
+    ------
+    InputError
+        The file is missing or not of the form above; the message names row or block and key.
+    GeometryError
+        An outline has a fault.
+    """
+    path = Path(path)
+    text = _text(path)
+    rows: Iterable[tuple[str, Mapping[str, Any]]]
+    if path.suffix.lower() == ".json":
+        rows, factor = _json_rows(text, str(path))
+    elif path.suffix.lower() == ".csv":
+        rows, factor = _csv_rows(text, str(path)), 1.0
+    else:
+        msg = f"a table of blocks ends in .json or .csv, not in '{path.suffix}'"
+        raise InputError(msg, where=str(path))
+    bodies: list[Body] = []
+    seen: set[str] = set()
+    for where, row in rows:
+        body = _body(row, factor, where)
+        if body.name in seen:
+            msg = f"there is another block called '{body.name}'"
+            raise InputError(msg, where=where, hint="give each block a name of its own")
+        seen.add(body.name)
+        bodies.append(body)
+    if not bodies:
+        msg = "the table holds no blocks"
+        raise InputError(msg, where=str(path))
+    return tuple(bodies)
+
+
+def write_blocks(path: str | Path, bodies: Sequence[Body]) -> None:
+    """Write a table of blocks; reading it gives the same bodies to the last bit (their ``grid`` is not kept).
+
+    Parameters
+    ----------
+    path : str or Path
+        Ends in ``.json`` or ``.csv``. An existing file is replaced only when the new one is complete.
+    bodies : sequence of Body
+    """
+    path = Path(path)
+    rows = [
+        {"name": b.name, "outline": b.outline.tolist(), **{k: getattr(b, k) for k in _TEXTS + _NUMBERS}} for b in bodies
+    ]
+    if path.suffix.lower() == ".json":
+        rows = [{k: v for k, v in row.items() if v is not None} for row in rows]
+        blocks = ",\n".join("  " + json.dumps(row, ensure_ascii=False) for row in rows)
+        text = f'{{"format": "{FORMAT}", "version": {VERSION}, "unit": "m", "blocks": [\n{blocks}\n]}}\n'
+    elif path.suffix.lower() == ".csv":
+        stream = io.StringIO()
+        table = csv.DictWriter(stream, _COLUMNS, lineterminator="\n")
+        table.writeheader()
+        for row in rows:
+            row["outline"] = "; ".join(f"{x!r} {y!r}" for x, y in row["outline"])
+        table.writerows(rows)
+        text = stream.getvalue()
+    else:
+        msg = f"a table of blocks ends in .json or .csv, not in '{path.suffix}'"
+        raise InputError(msg, where=str(path))
+    unfinished = path.with_name(path.name + ".part")
+    try:
+        unfinished.write_text(text, encoding="utf-8")
+        unfinished.replace(path)
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        msg = "there is no such file"
+        raise InputError(msg, where=str(path), hint="paths in a model file are relative to it") from None
+    except (OSError, UnicodeDecodeError) as error:
+        msg = f"the file cannot be read: {error}"
+        raise InputError(msg, where=str(path)) from None
+
+
+def _json_rows(text: str, where: str) -> tuple[list[tuple[str, Mapping[str, Any]]], float]:
+    try:
+        data = json.loads(text)
+    except json.JSONDecodeError as error:
+        msg = f"line {error.lineno}, column {error.colno}: {error.msg}"
+        raise InputError(msg, where=where, hint="the file is not valid JSON") from None
+    factor = 1.0
+    if isinstance(data, dict):
+        if data.get("format", FORMAT) != FORMAT or data.get("version", VERSION) != VERSION:
+            msg = f"format '{data.get('format')}' version {data.get('version')} is not '{FORMAT}' version {VERSION}"
+            raise InputError(msg, where=where)
+        factor = quantity(f"1 {data.get('unit', 'm')}", "length", where=f"{where}, unit")
+        data = data.get("blocks")
+    if not isinstance(data, list):
+        msg = "there is no list 'blocks'"
+        raise InputError(msg, where=where, hint='write {"blocks": [{"name": ..., "outline": [[x, y], ...]}]}')
+    rows: list[tuple[str, Mapping[str, Any]]] = []
+    for k, row in enumerate(data, 1):
+        place = f"{where}, block {k}"
+        if not isinstance(row, dict):
+            msg = f"{row!r} is not a table of keys"
+            raise InputError(msg, where=place)
+        rows.append((place, row))
+    return rows, factor
+
+
+def _csv_rows(text: str, where: str) -> Iterable[tuple[str, Mapping[str, Any]]]:
+    reader = csv.DictReader(io.StringIO(text), skipinitialspace=True)
+    header = reader.fieldnames or []
+    for name in ("name", "outline"):
+        if name not in header:
+            msg = f"the header has no column '{name}'"
+            raise InputError(msg, where=where, hint="the first line must name the columns: " + ",".join(_COLUMNS[:-1]))
+    for row in reader:
+        place = f"{where}, line {reader.line_num}"
+        if None in row or None in row.values():
+            msg = f"{len(header)} values were expected"
+            raise InputError(msg, where=place, hint="outlines use spaces and semicolons, not commas")
+        kept = ("name", "outline", "material") if row.get("kind") == "fixed" else ("name", "outline")
+        yield place, {k: v for k, v in row.items() if v != "" or k in kept}
+
+
+def _body(row: Mapping[str, Any], factor: float, where: str) -> Body:
+    for key in row:
+        if key not in _COLUMNS:
+            msg = f"unknown key '{key}'"
+            raise InputError(msg, where=where, hint="known: " + ", ".join(_COLUMNS))
+    name = row.get("name")
+    if not isinstance(name, str) or not name:
+        msg = "the block has no name"
+        raise InputError(msg, where=where)
+    where = f"{where} '{name}'"
+    if "outline" not in row:
+        msg = "outline is missing"
+        raise InputError(msg, where=where, hint="give its vertices, for example [[0, 0], [0.4, 0], [0.4, 0.2]]")
+    outline = factor * _outline(row["outline"], where)
+    check_polygon(outline, name)
+    values: dict[str, Any] = {}
+    for key in _TEXTS:
+        if key in row:
+            if not isinstance(row[key], str):
+                msg = f"{key} = {row[key]!r} is not a text"
+                raise InputError(msg, where=where)
+            values[key] = row[key]
+    for key in _NUMBERS:
+        if row.get(key) is not None:
+            values[key] = quantity(row[key], "length", where=f"{where}, {key}")
+    return Body(name, outline, **values)
+
+
+def _outline(value: Any, where: str) -> Array:
+    try:
+        if isinstance(value, str):
+            value = [vertex.split() for vertex in value.split(";") if vertex.strip()]
+        points = np.array(value, dtype=float)
+    except (TypeError, ValueError):
+        points = np.zeros(0)
+    if points.ndim != 2 or points.shape[1] != 2:
+        msg = "the outline is not a list of vertices with two numbers each"
+        raise InputError(msg, where=where, hint="write 0 0; 0.4 0; 0.4 0.2 in CSV, [[0, 0], [0.4, 0], ...] in JSON")
+    return points

@@ -1,0 +1,303 @@
+"""From the tables of a model file to a :class:`concio.model.model.Model`.
+
+A model is the sum of its parts: at most one generator, the blocks of ``blocks_file`` and those of ``[[blocks]]``, with
+the materials, joints, rules, supports, loads and ties of the file on top of what the generator gave.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from concio.errors import GeometryError, InputError
+from concio.model.drawing.drawing import model_from_dxf
+from concio.model.file.block_table import read_blocks
+from concio.model.file.errors import closest, placed
+from concio.model.file.tables import (
+    BlockTable,
+    CourseTable,
+    FileTable,
+    JointTable,
+    LoadTable,
+    MaterialTable,
+    StageTable,
+    SupportTable,
+    Table,
+    TieTable,
+)
+from concio.model.generate.bonds import Course
+from concio.model.generate.generators import GENERATORS
+from concio.model.interfaces.polygon_check import check_polygon
+from concio.model.materials import Elastic, JointLaw, Rigid
+from concio.model.model import Body, JointRule, Load, Model, Support, Tie
+from concio.model.stages import ControlPoint, Stage
+
+Materials = dict[str, Elastic | Rigid]
+Laws = dict[str, JointLaw]
+
+
+def build(data: FileTable, folder: Path, where: str) -> Model:
+    """Return the model that the tables of a file describe, in kN and m.
+
+    Parameters
+    ----------
+    data : FileTable
+    folder : Path
+        ``blocks_file`` is relative to it.
+    where : str
+        Name of the file, for messages.
+
+    Raises
+    ------
+    InputError
+        The parts of the file do not fit together; the message says where.
+    """
+    with placed(where):
+        materials = {name: _material(table, f"[materials.{name}]") for name, table in data.materials.items()}
+        laws = {name: _law(table, f"[joints.{name}]") for name, table in data.joints.items()}
+        start = _start(data, materials, laws, folder)
+        bodies = [*(start.bodies if start else ()), *_blocks_of_file(data, materials, folder)]
+        bodies += [_body(b, k, materials, data.analysis.thickness) for k, b in enumerate(data.blocks, 1)]
+        if not bodies:
+            msg = "the file describes no blocks"
+            hint = "add [[blocks]], blocks_file = ..., or one of " + ", ".join(f"[{name}]" for name in GENERATORS)
+            raise InputError(msg, hint=hint)
+        parts = _parts(data, bodies, start, materials, laws)
+        model = replace(start, **parts) if start else Model(**parts)
+    with placed(where):
+        _check_names(model)
+    return model
+
+
+def _parts(
+    data: FileTable, bodies: list[Body], start: Model | None, materials: Materials, laws: Laws
+) -> dict[str, Any]:
+    """Return the fields of the model; analysis keys count only where the file states them."""
+    analysis = data.analysis
+    chosen = {k: getattr(analysis, k) for k in analysis.model_fields_set if k != "thickness"}
+    if analysis.refinement < 1:
+        msg = f"refinement = {analysis.refinement} must be at least 1"
+        raise InputError(msg, where="[analysis]")
+    for key in ("mesh_size", "gap_tolerance", "gap_reach"):
+        value = getattr(analysis, key)
+        if value is not None and (value < 0 or (value == 0 and key == "mesh_size")):
+            msg = f"{key} = {value:g} m must be {'positive' if key == 'mesh_size' else 'zero or positive'}"
+            raise InputError(msg, where="[analysis]")
+    for k, load in enumerate(map(_load, data.loads), 1):
+        if start and load.kind == "weight" and load in start.loads:
+            brought = "the drawing" if data.blocks_file else "the table that makes the structure"
+            msg = f"the weight would count twice: {brought} brings it already, in load group '{load.group}'"
+            raise InputError(msg, where=f"[[loads]] {k}", hint="leave this load out, or give it a group of its own")
+    base = start.laws if start else {}
+    every = {**base, **laws}
+    rules = _rules(data, list(start.rules) if start else [], every)
+    given: dict[str, Any] = {
+        "bodies": tuple(bodies),
+        "materials": {**(start.materials if start else {}), **materials},
+        "laws": every,
+        "rules": tuple(rules),
+        "supports": (*(start.supports if start else ()), *(_support(t, k) for k, t in enumerate(data.supports, 1))),
+        "loads": (*(start.loads if start else ()), *(_load(t) for t in data.loads)),
+        "ties": (*(start.ties if start else ()), *(_tie(t) for t in data.ties)),
+        "stages": (*(start.stages if start else ()), *(_stage(t, k) for k, t in enumerate(data.stages, 1))),
+        **chosen,
+    }
+    if data.title or not start:
+        given["title"] = data.title
+    if data.record or not start:
+        given["generator"] = data.record
+    return given
+
+
+def _rules(data: FileTable, before: list[JointRule], laws: Laws) -> list[JointRule]:
+    found = list(before)
+    if data.rules is None and not before:
+        if len(laws) != 1:
+            msg = "there are no joint laws" if not laws else f"there are {len(laws)} joint laws and no [[rules]]"
+            raise InputError(msg, hint="add [joints.joint] with friction = ..., and [[rules]] where there are several")
+        return [JointRule(next(iter(laws)))]
+    for k, table in enumerate(data.rules or (), 1):
+        with placed(f"[[rules]] {k}"):
+            if table.law not in laws:
+                msg = f"joint law '{table.law}' is not defined"
+                raise InputError(msg, hint=closest(table.law, list(laws)) if laws else "add [joints.NAME]")
+            found.append(JointRule(table.law, table.between, table.gap))
+    return found
+
+
+def _start(data: FileTable, materials: Materials, laws: Laws, folder: Path) -> Model | None:
+    """Return the model of the generator or of the drawing, None where there is neither."""
+    named = [name for name in GENERATORS if getattr(data, name, None) is not None]
+    drawing = data.blocks_file is not None and data.blocks_file.lower().endswith(".dxf")
+    if len(named) + drawing > 1:
+        msg = "more than one of " + ", ".join([f"[{n}]" for n in named] + ["a drawing"] * drawing)
+        raise InputError(msg, hint="one file describes one structure; further blocks go into [[blocks]]")
+    if data.drawing is not None and not drawing:
+        msg = "[drawing] is given, but blocks_file is not a .dxf file"
+        raise InputError(msg, hint="add blocks_file = 'wall.dxf' at the top, or leave [drawing] out")
+    if drawing:
+        return _from_drawing(data, materials, laws, folder)
+    if not named:
+        return None
+    name = named[0]
+    table = getattr(data, name)
+    arguments = {key: _argument(getattr(table, key), name, key, materials, laws) for key in table.model_fields_set}
+    own = "wall" if name == "wall_of_courses" else name
+    with placed(f"[{name}]", own=own):
+        model = GENERATORS[name](**arguments)
+    for word in materials:
+        if word in model.materials and word in ("block", "mortar"):
+            msg = f"'{word}' is the name of the material of [{name}] itself"
+            raise InputError(msg, where=f"[materials.{word}]", hint=f"write [{name}.{word}], or choose another name")
+    return model
+
+
+def _argument(value: Any, table: str, key: str, materials: Materials, laws: Laws) -> Any:
+    """Return a value of a generator's table as its function takes it."""
+    if isinstance(value, MaterialTable):
+        return _material(value, f"[{table}.{key}]")
+    if isinstance(value, JointTable):
+        return _law(value, f"[{table}.{key}]")
+    if isinstance(value, CourseTable):
+        return Course(tuple(value.unit), tuple(value.left), tuple(value.right), value.height)
+    if isinstance(value, Table):
+        return {name: _argument(getattr(value, name), table, "", materials, laws) for name in value.model_fields_set}
+    if isinstance(value, list):
+        return [_argument(v, table, "", materials, laws) for v in value]
+    if isinstance(value, str) and key in ("block", "mortar", "lintel"):
+        if value in ("elastic", "rigid") and key == "block" and value not in materials:
+            return value
+        return _named(value, f"[{table}], {key}", materials, "material")
+    if isinstance(value, str) and key == "friction":
+        return _named(value, f"[{table}], {key}", laws, "joint law")
+    return value
+
+
+def _named(word: str, place: str, table: Mapping[str, Any], what: str) -> Any:
+    if word not in table:
+        msg = f"{what} '{word}' is not defined"
+        raise InputError(msg, where=place, hint=closest(word, list(table)) if table else None)
+    return table[word]
+
+
+def _from_drawing(data: FileTable, materials: Materials, laws: Laws, folder: Path) -> Model:
+    table = data.drawing
+    options: dict[str, Any] = {"thickness": data.analysis.thickness}
+    if table is not None:
+        options |= {key: getattr(table, key) for key in table.model_fields_set}
+    if materials:  # the drawing's own default is never meant; blocks that would take it are named below
+        options["block"] = materials.get("block", next(iter(materials.values())))
+    if laws:
+        options["friction"] = next(iter(laws.values()))
+    layers = {name: material for name, material in materials.items() if name != "block"}
+    model = model_from_dxf(folder / str(data.blocks_file), materials=layers, **options)
+    lost = dict.fromkeys(b.layer for b in model.free_bodies if b.material == "block" and "block" not in materials)
+    if lost:
+        names = ", ".join(f"'{layer}'" for layer in lost)
+        msg = f"there is no material for blocks on layer {names}"
+        raise InputError(msg, hint=f"add [materials.{next(iter(lost))}], or [materials.block] for all other layers")
+    used = {b.material for b in model.free_bodies}
+    model = replace(model, materials={name: m for name, m in model.materials.items() if name in used})
+    return replace(model, laws={}, rules=()) if laws else model
+
+
+def _blocks_of_file(data: FileTable, materials: Materials, folder: Path) -> list[Body]:
+    if data.blocks_file is None or data.blocks_file.lower().endswith(".dxf"):
+        return []
+    bodies = read_blocks(folder / data.blocks_file)
+    return [_rigid_where_its_material_is(b, materials) for b in bodies]
+
+
+def _rigid_where_its_material_is(body: Body, materials: Materials) -> Body:
+    rigid = body.kind == "elastic" and isinstance(materials.get(body.material), Rigid)
+    return replace(body, kind="rigid") if rigid else body
+
+
+def _material(table: MaterialTable, place: str) -> Elastic | Rigid:
+    with placed(place):
+        if table.kind == "rigid":
+            if table.E is not None or table.nu is not None:
+                msg = "a rigid material has no E and no nu"
+                raise InputError(msg, hint="leave them out, or set kind = 'elastic'")
+            return Rigid(table.unit_weight)
+        if table.E is None:
+            msg = "'E' is missing"
+            raise InputError(msg, hint="give Young's modulus, or set kind = 'rigid'")
+        given = {} if table.nu is None else {"nu": table.nu}
+        return Elastic(table.E, unit_weight=table.unit_weight, **given)
+
+
+def _law(table: JointTable, place: str) -> JointLaw:
+    with placed(place):
+        return JointLaw(**table.model_dump())
+
+
+def _body(table: BlockTable, number: int, materials: Materials, thickness: float) -> Body:
+    with placed(f"[[blocks]] {number} '{table.name}'", own=f"block '{table.name}'"):
+        if (table.outline is None) == (table.rectangle is None):
+            msg = "give either an outline or a rectangle" + ("" if table.outline is None else ", not both")
+            raise InputError(msg, hint="outline = [[x, y], ...] or rectangle = [[x1, y1], [x2, y2]]")
+        if table.rectangle is not None:
+            (x0, x1), (y0, y1) = (sorted(values) for values in zip(*table.rectangle, strict=True))
+            if x0 == x1 or y0 == y1:
+                msg = "the rectangle has no area"
+                raise GeometryError(msg, hint="give two opposite corners")
+            outline = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+        else:
+            outline = np.array(table.outline, dtype=float).reshape(-1, 2)
+            check_polygon(outline, table.name)
+        kind: Literal["elastic", "rigid", "fixed"]
+        kind = table.kind or ("rigid" if isinstance(materials.get(table.material), Rigid) else "elastic")
+        role = table.role if table.role is not None else "obstacle" if kind == "fixed" else "block"
+        grid = None if table.grid is None else (np.array(table.grid.x), np.array(table.grid.y))
+        depth = thickness if table.thickness is None else table.thickness
+        return Body(table.name, outline, table.material, kind, role, table.layer, depth, grid, table.mesh_size)
+
+
+def _support(table: SupportTable, number: int) -> Support:
+    if table.edge is not None and table.at is not None:
+        msg = "edge and at are given together"
+        raise InputError(msg, where=f"[[supports]] {number} '{table.name}'", hint="a support holds an edge or a point")
+    edge = table.edge if table.at is None else (table.at, table.at)
+    return Support(
+        table.name, table.body, edge, table.directions, table.displacement, table.rotation, table.group
+    )  # fmt: skip
+
+
+def _load(table: LoadTable) -> Load:
+    return Load(table.kind, table.value, tuple(table.bodies), table.edge, table.at, table.group)
+
+
+def _tie(table: TieTable) -> Tie:
+    return Tie(table.name, table.body_a, table.at_a, table.body_b, table.at_b, table.stiffness, table.prestress)
+
+
+def _stage(table: StageTable, number: int) -> Stage:
+    if (table.control is None) != (table.until == 0):
+        msg = "until is the motion of a control point, and one of the two is missing"
+        hint = "give both control = { body = ..., at = [x, y] } and until, or neither"
+        raise InputError(msg, where=f"[[stages]] {number} '{table.name}'", hint=hint)
+    point = table.control
+    control = None if point is None else ControlPoint(point.body, point.at, point.direction)
+    return Stage(table.name, table.factors, control, table.until, table.steps)
+
+
+def _check_names(model: Model) -> None:
+    """Raise where a support, load or tie names a body that does not exist."""
+    names = {b.name for b in model.bodies}
+    sorts = {word for b in model.bodies for word in (b.name, b.role, b.layer) if word}
+    used = [(f"[[supports]] '{s.name}'", s.body, names) for s in model.supports]
+    used += [(f"[[ties]] '{t.name}'", w, names) for t in model.ties for w in (t.body_a, t.body_b) if w]
+    used += [(f"[[stages]] '{s.name}'", s.control.body, names) for s in model.stages if s.control]
+    used += [(f"[[loads]] of kind {load.kind}", w, sorts) for load in model.loads for w in load.bodies]
+    for place, word, known in used:
+        if word not in known:
+            msg = f"there is no body called '{word}'"
+            hint = closest(word, sorted(known))
+            if len(known) > 30 and not hint.startswith("did"):
+                hint = "see the names with 'concio check'"
+            raise InputError(msg, where=place, hint=hint)

@@ -1,0 +1,158 @@
+"""Model files: ``concio.load("panel.toml")``.
+
+A model file is TOML. It states its units, and describes a structure by a generator, by blocks, or by both::
+
+    [panel]                      # or [wall], [arch], [column], [buttress], [rubble]: keys are the function's arguments
+    courses = 3
+    blocks = 6
+    joint = "20 mm"
+    block.E = "100 MPa"
+
+    [materials.stone]            # the general form
+    E = "5 GPa"
+    [joints.dry]
+    friction = 0.6
+    [[blocks]]
+    name = "b1"
+    rectangle = [[0, 0], [0.4, 0.2]]
+    material = "stone"
+
+Large models keep their blocks in a table or a drawing beside the file: ``blocks_file = "blocks.csv"`` (or ``.json``,
+``.dxf``). Every key is checked; the JSON Schema of the file is printed by ``concio schema``.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from concio.errors import InputError
+from concio.model.file.build import build
+from concio.model.file.errors import check_finite, first_fault
+from concio.model.file.generator_tables import file_table
+from concio.model.file.tables import UnitsTable
+from concio.model.file.values import FileUnits
+from concio.model.model import Model
+from concio.units import quantity
+
+LARGEST_FILE = 200_000_000
+"""A larger model file is refused; blocks belong into a table of their own [bytes]."""
+
+
+def load(path: str | os.PathLike[str]) -> Model:
+    """Return the model that a TOML file describes.
+
+    Parameters
+    ----------
+    path : str or Path
+
+    Raises
+    ------
+    InputError
+        The file is missing, not readable, or says something that cannot be used; the message names the key.
+    """
+    path = Path(path)
+    return loads(_read(path), folder=path.parent, name=str(path))
+
+
+def loads(text: str, *, folder: str | os.PathLike[str] = ".", name: str = "model text") -> Model:
+    """Return the model that a TOML text describes.
+
+    Parameters
+    ----------
+    text : str
+    folder : str or Path
+        ``blocks_file`` is relative to it.
+    name : str
+        Used in messages.
+
+    Raises
+    ------
+    InputError
+        As :func:`load`.
+    """
+    data = parse(text, name)
+    units = _units(data, name)
+    try:
+        table = file_table().model_validate(data, context={"units": units})
+    except ValidationError as error:
+        raise first_fault(error, data, file_table(), name) from None
+    return build(table, Path(folder), name)
+
+
+def parse(text: str, name: str) -> dict[str, Any]:
+    """Return the tables of a TOML text, which must not be empty nor hold numbers that are not finite."""
+    if not text.strip():
+        msg = "the file is empty"
+        raise InputError(msg, where=name, hint="start from a commented one: concio new panel")
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise _syntax_error(error, text, name) from None
+    except RecursionError:
+        msg = "the tables are nested too deeply"
+        raise InputError(msg, where=name) from None
+    if not data:
+        msg = "the file holds only comments"
+        raise InputError(msg, where=name, hint="start from a commented one: concio new panel")
+    check_finite(data, name)
+    return data
+
+
+def _syntax_error(error: tomllib.TOMLDecodeError, text: str, name: str) -> InputError:
+    said = str(error)
+    match = re.search(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$", said)
+    place, hint = name, "the file is not valid TOML"
+    if match:
+        said = said[: match.start()]
+        if match.group(1):
+            number = int(match.group(1))
+            line = text.split("\n")[number - 1].strip()
+            place = f"{name}, line {number}, column {match.group(2)}"
+            hint += f"; the line reads: {line[:80]}" if line else ""
+            if re.search(r"[=\[,]\s*[-+]?\.\d", line):
+                hint = "numbers begin with a digit: 0.5, not .5"
+        else:
+            place = f"{name}, last line"
+    return InputError(said[:1].lower() + said[1:], where=place, hint=hint)
+
+
+def _units(data: dict[str, Any], name: str) -> FileUnits:
+    try:
+        table = UnitsTable.model_validate(data.get("units", {}))
+    except ValidationError as error:
+        fault = first_fault(error, data.get("units"), UnitsTable, f"{name}, [units]")
+        raise fault from None
+    return FileUnits(quantity(f"1 {table.force}", "force"), quantity(f"1 {table.length}", "length"))
+
+
+def _read(path: Path) -> str:
+    where = str(path)
+    try:
+        size = path.stat().st_size
+        if size > LARGEST_FILE:
+            msg = f"the file has {size / 1e6:.0f} MB, more than {LARGEST_FILE / 1e6:.0f} MB"
+            raise InputError(
+                msg, where=where, hint="put the blocks into a table of their own: blocks_file = 'blocks.csv'"
+            )
+        raw = path.read_bytes()
+    except FileNotFoundError:
+        msg = "there is no such file"
+        raise InputError(msg, where=where, hint="start one with: concio new panel") from None
+    except IsADirectoryError:
+        msg = "this is a directory, not a model file"
+        raise InputError(msg, where=where) from None
+    except OSError as error:
+        msg = f"the file cannot be read: {error.strerror or error}"
+        raise InputError(msg, where=where) from None
+    try:
+        return raw.decode("utf-8-sig").replace("\r\n", "\n")
+    except UnicodeDecodeError as error:
+        line = raw[: error.start].count(b"\n") + 1
+        msg = f"byte {error.start} (line {line}) is not UTF-8"
+        raise InputError(msg, where=where, hint="save the file with the encoding UTF-8") from None

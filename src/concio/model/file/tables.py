@@ -1,0 +1,265 @@
+"""Tables of a model file: what keys there are and what values they take.
+
+Every table refuses keys it does not know. Values are in kN and m after validation (:mod:`concio.model.file.values`).
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    StrictInt,
+    StrictStr,
+    Tag,
+    ValidationInfo,
+    field_validator,
+)
+
+from concio.model.file.values import (
+    Force,
+    JointStiffness,
+    Length,
+    Number,
+    Stiffness,
+    Stress,
+    UnitWeight,
+    converted,
+    units_of,
+)
+
+Point = tuple[Length, Length]
+Element = Literal["Q4", "Q4I", "Q8", "Q9", "T3", "T6"]
+Name = Annotated[StrictStr, Field(min_length=1)]
+
+LOAD_KINDS: dict[str, tuple[str, int]] = {
+    "weight": ("number", 2),
+    "pressure": ("stress", 1),
+    "traction": ("stress", 2),
+    "point": ("force", 2),
+    "body": ("unit weight", 2),
+}
+"""Kind of quantity and number of entries of ``value`` for each kind of load."""
+
+
+class Table(BaseModel):
+    """A table of a file: unknown keys are an error."""
+
+    model_config = ConfigDict(extra="forbid")
+
+
+class UnitsTable(Table):
+    """The consistent system of the bare numbers of the file."""
+
+    force: Literal["N", "kN", "MN"] = "kN"
+    length: Literal["mm", "cm", "m"] = "m"
+
+
+class MaterialTable(Table):
+    """A material; ``kind = "rigid"`` has a unit weight only."""
+
+    kind: Literal["elastic", "rigid"] = "elastic"
+    E: Stress | None = None
+    nu: Number | None = None
+    unit_weight: UnitWeight = 0.0
+
+
+class JointTable(Table):
+    """A law of joints; see :class:`concio.model.materials.JointLaw`."""
+
+    friction: Number
+    cohesion: Stress = 0.0
+    tensile_strength: Stress = 0.0
+    dilatancy: Number = 0.0
+    normal_stiffness: JointStiffness | None = None
+    tangential_stiffness: JointStiffness | None = None
+    compressive_strength: Stress | None = None
+
+
+def _branch(value: Any) -> str:
+    if isinstance(value, dict | Table):
+        return "<table>"
+    return "<name>" if isinstance(value, str) else "<number>"
+
+
+def _material_branch(value: Any) -> str:
+    return "<table>" if isinstance(value, dict | Table) else "<name>"
+
+
+Friction = Annotated[
+    Annotated[Number, Tag("<number>")] | Annotated[JointTable, Tag("<table>")] | Annotated[StrictStr, Tag("<name>")],
+    Discriminator(_branch),
+]
+"""A coefficient, a table, or the name of a table in ``[joints]``."""
+Material = Annotated[
+    Annotated[MaterialTable, Tag("<table>")] | Annotated[StrictStr, Tag("<name>")], Discriminator(_material_branch)
+]
+"""A table, or the name of a table in ``[materials]``."""
+
+
+class CourseTable(Table):
+    """A course of a bond in block lengths; see :class:`concio.model.generate.bonds.Course`."""
+
+    unit: list[Number]
+    left: list[Number] = Field(default_factory=list)
+    right: list[Number] = Field(default_factory=list)
+    height: Number = 1.0
+
+
+def _bond_branch(value: Any) -> str:
+    return "<list>" if isinstance(value, list | tuple) else "<name>"
+
+
+def _course_branch(value: Any) -> str:
+    return "<table>" if isinstance(value, dict | Table) else "<list>"
+
+
+Course = Annotated[
+    Annotated[CourseTable, Tag("<table>")] | Annotated[list[Number], Tag("<list>")], Discriminator(_course_branch)
+]
+"""A table, or the lengths that repeat from the left end on."""
+Bond = Annotated[
+    Annotated[StrictStr, Tag("<name>")] | Annotated[list[Course], Tag("<list>")], Discriminator(_bond_branch)
+]
+"""The name of a bond, or courses of the file's own from below."""
+
+
+class RuleTable(Table):
+    """Which law the joints between two sorts of bodies have; the last rule that fits wins."""
+
+    law: Name
+    between: tuple[StrictStr, StrictStr] = ("*", "*")
+    gap: Length = 0.0
+
+
+class GridTable(Table):
+    """Mesh lines of a rectangular block."""
+
+    x: list[Length]
+    y: list[Length]
+
+
+class BlockTable(Table):
+    """A block, a mortar film or an obstacle: an outline, or a rectangle by two opposite corners."""
+
+    name: Name
+    outline: list[Point] | None = None
+    rectangle: tuple[Point, Point] | None = None
+    material: StrictStr = "block"
+    kind: Literal["elastic", "rigid", "fixed"] | None = None
+    role: StrictStr | None = None
+    layer: StrictStr = ""
+    thickness: Length | None = None
+    mesh_size: Length | None = None
+    grid: GridTable | None = None
+
+
+class SupportTable(Table):
+    """A support: of a whole body, of an edge, or of the point ``at``."""
+
+    name: Name
+    body: Name
+    edge: tuple[Point, Point] | None = None
+    at: Point | None = None
+    directions: Literal["x", "y", "xy"] = "xy"
+    displacement: Point = (0.0, 0.0)
+    rotation: Number = 0.0
+    group: Name = "settlement"
+
+
+class LoadTable(Table):
+    """A load; the unit of ``value`` follows from its kind."""
+
+    kind: Literal["weight", "pressure", "traction", "point", "body"]
+    value: Annotated[Any, Field(description="a number for pressure, [x, y] otherwise")]
+    bodies: list[StrictStr] = Field(default_factory=list)
+    edge: tuple[Point, Point] | None = None
+    at: Point | None = None
+    group: Name = "dead"
+
+    @field_validator("value", mode="after")
+    @classmethod
+    def _value(cls, value: Any, info: ValidationInfo) -> tuple[float, ...]:
+        if "kind" not in info.data:
+            return ()
+        quantity, entries = LOAD_KINDS[info.data["kind"]]
+        parts = value if isinstance(value, list) else [value]
+        if len(parts) != entries:
+            form = "one number" if entries == 1 else "two numbers [x, y]"
+            msg = f"a {info.data['kind']} load takes {form}, not {len(parts)}"
+            raise ValueError(msg)
+        return tuple(converted(part, quantity, units_of(info)) for part in parts)
+
+
+class TieTable(Table):
+    """A bar that takes tension only; without ``body_b`` it ends at a fixed point."""
+
+    name: Name
+    body_a: Name
+    at_a: Point
+    body_b: StrictStr = ""
+    at_b: Point
+    stiffness: Stiffness
+    prestress: Force = 0.0
+
+
+class ControlTable(Table):
+    """A point whose displacement is controlled; see :class:`concio.model.stages.ControlPoint`."""
+
+    body: Name
+    at: Point
+    direction: tuple[Number, Number] = (1.0, 0.0)
+
+
+class StageTable(Table):
+    """A stage of a load path; see :class:`concio.model.stages.Stage`."""
+
+    name: Name
+    factors: dict[str, Number]
+    control: ControlTable | None = None
+    until: Length = 0.0
+    steps: Annotated[StrictInt, Field(ge=1)] = 20
+
+
+class AnalysisTable(Table):
+    """How the model is meshed and how joints are found; see :class:`concio.model.model.Model`."""
+
+    plane: Literal["stress", "strain"] = "stress"
+    element: Element = "Q4"
+    mesh_size: Length | None = None
+    refinement: StrictInt = 1
+    gap_tolerance: Length | None = None
+    gap_reach: Length = 0.0
+    thickness: Length = 1.0
+
+
+class DrawingTable(Table):
+    """How a DXF drawing is read; see :func:`concio.model.drawing.drawing.model_from_dxf`."""
+
+    mend: Length = 0.0
+    close: Length | None = None
+    on_fault: Literal["raise", "skip"] = "raise"
+    unit: StrictStr | None = None
+    chord_tolerance: Length | None = None
+
+
+class FileTable(Table):
+    """A whole model file, without the tables of generators."""
+
+    title: StrictStr = ""
+    units: UnitsTable = Field(default_factory=UnitsTable)
+    materials: dict[str, MaterialTable] = Field(default_factory=dict)
+    joints: dict[str, JointTable] = Field(default_factory=dict)
+    rules: list[RuleTable] | None = None
+    blocks: list[BlockTable] = Field(default_factory=list)
+    blocks_file: Name | None = None
+    drawing: DrawingTable | None = None
+    supports: list[SupportTable] = Field(default_factory=list)
+    loads: list[LoadTable] = Field(default_factory=list)
+    ties: list[TieTable] = Field(default_factory=list)
+    stages: list[StageTable] = Field(default_factory=list)
+    analysis: AnalysisTable = Field(default_factory=AnalysisTable)
+    record: dict[str, Any] = Field(default_factory=dict, description="how the model was made; not read by concio")

@@ -1,0 +1,157 @@
+"""Writing a model as a file: ``concio.dumps(model)`` and ``concio.save(model, "wall.toml")``.
+
+The text is the general form, in kN and m, and every number is written so that it reads back to the last bit. The table
+of a generator is not restored: the file holds its blocks, and how they were made stands in ``[record]``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from concio.errors import InputError
+from concio.model.file.block_table import write_blocks
+from concio.model.materials import Elastic, Rigid
+from concio.model.model import Body, Load, Model, Support
+from concio.model.stages import Stage
+
+
+def dumps(model: Model, *, blocks_file: str | None = None) -> str:
+    """Return the model as TOML text; :func:`concio.loads` makes an equal model of it.
+
+    Parameters
+    ----------
+    model : Model
+    blocks_file : str, optional
+        Name a table of blocks instead of writing them into the text.
+    """
+    lines = ["# concio model"]
+    lines += _pairs({"title": model.title or None, "blocks_file": blocks_file})
+    if not model.rules:
+        lines.append("rules = []")
+    lines += ["", "[units]", 'force = "kN"', 'length = "m"']
+    lines += _table("analysis", {key: getattr(model, key) for key in _ANALYSIS if getattr(model, key) is not None})
+    for name, material in model.materials.items():
+        lines += _table(f"materials.{_key(name)}", _material(material))
+    for name, law in model.laws.items():
+        lines += _table(f"joints.{_key(name)}", {f.name: getattr(law, f.name) for f in fields(law)})
+    for rule in model.rules:
+        lines += _table("rules", {"law": rule.law, "between": rule.between, "gap": rule.gap or None}, many=True)
+    if blocks_file is None:
+        for body in model.bodies:
+            lines += _table("blocks", _body(body), many=True)
+    for support in model.supports:
+        lines += _table("supports", _support(support), many=True)
+    for load in model.loads:
+        lines += _table("loads", _load(load), many=True)
+    for tie in model.ties:
+        lines += _table("ties", {f.name: getattr(tie, f.name) for f in fields(tie)}, many=True)
+    for stage in model.stages:
+        lines += _table("stages", _stage(stage), many=True)
+    if model.generator:
+        lines += _table("record", model.generator)
+    return "\n".join(lines) + "\n"
+
+
+def save(model: Model, path: str | os.PathLike[str], *, blocks_file: str | None = None) -> None:
+    """Write the model as a TOML file; an existing file is replaced only when the new one is complete.
+
+    Parameters
+    ----------
+    model : Model
+    path : str or Path
+    blocks_file : str, optional
+        Name of a table ``.json`` or ``.csv`` beside the file for the blocks; a table does not keep mesh lines, only a
+        ``.json`` one keeps mesh sizes.
+
+    Raises
+    ------
+    InputError
+        The file cannot be written.
+    """
+    path = Path(path)
+    text = dumps(model, blocks_file=blocks_file)
+    unfinished = path.with_name(path.name + ".part")
+    try:
+        if blocks_file is not None:
+            write_blocks(path.parent / blocks_file, model.bodies)
+        unfinished.write_text(text, encoding="utf-8")
+        unfinished.replace(path)
+    except OSError as error:
+        msg = f"the file cannot be written: {error.strerror or error}"
+        raise InputError(msg, where=str(path)) from None
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+_ANALYSIS = ("plane", "element", "mesh_size", "refinement", "gap_tolerance", "gap_reach")
+
+
+def _material(material: Elastic | Rigid) -> dict[str, Any]:
+    if isinstance(material, Rigid):
+        return {"kind": "rigid", "unit_weight": material.unit_weight}
+    return {"E": material.E, "nu": material.nu, "unit_weight": material.unit_weight}
+
+
+def _body(body: Body) -> dict[str, Any]:
+    grid = None if body.grid is None else {"x": body.grid[0], "y": body.grid[1]}
+    return {
+        "name": body.name,
+        "outline": body.outline,
+        "material": body.material,
+        "kind": body.kind,
+        "role": body.role,
+        "layer": body.layer or None,
+        "thickness": body.thickness,
+        "mesh_size": body.mesh_size,
+        "grid": grid,
+    }
+
+
+def _support(support: Support) -> dict[str, Any]:
+    return {f.name: getattr(support, f.name) for f in fields(support)}
+
+
+def _load(load: Load) -> dict[str, Any]:
+    found = {f.name: getattr(load, f.name) for f in fields(load)}
+    return {key: value for key, value in found.items() if value != ()}
+
+
+def _stage(stage: Stage) -> dict[str, Any]:
+    found = {f.name: getattr(stage, f.name) for f in fields(stage)}
+    if stage.control is None:
+        return {key: value for key, value in found.items() if key not in ("control", "until")}
+    return {**found, "control": {f.name: getattr(stage.control, f.name) for f in fields(stage.control)}}
+
+
+def _table(name: str, values: Mapping[str, Any], *, many: bool = False) -> list[str]:
+    return ["", f"[[{name}]]" if many else f"[{name}]", *_pairs(values)]
+
+
+def _pairs(values: Mapping[str, Any]) -> list[str]:
+    return [f"{_key(key)} = {_value(value)}" for key, value in values.items() if value is not None]
+
+
+def _key(name: str) -> str:
+    bare = name.isascii() and name.replace("_", "").replace("-", "").isalnum()
+    return name if bare else json.dumps(name, ensure_ascii=False)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int | float):
+        return repr(value)
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(_pairs(value)) + " }" if value else "{}"
+    if isinstance(value, Iterable) and not isinstance(value, str):
+        return "[" + ", ".join(_value(v) for v in value if v is not None) + "]"
+    return json.dumps(str(value), ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -1,0 +1,1 @@
+"""Structures by their parameters: panels, walls, arches, columns, rubble."""

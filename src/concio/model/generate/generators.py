@@ -1,0 +1,69 @@
+"""All generators by name, for model files: a table ``[wall]`` becomes ``wall(...)`` with its keys as arguments."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any
+
+from concio.errors import InputError
+from concio.model.generate.arches import arch
+from concio.model.generate.arguments import Common
+from concio.model.generate.columns import buttress, column
+from concio.model.generate.panel import running_bond_panel
+from concio.model.generate.rubble import rubble
+from concio.model.generate.walls import wall, wall_of_courses
+from concio.model.model import Model
+
+GENERATORS: Mapping[str, Callable[..., Model]] = MappingProxyType(
+    {
+        "panel": running_bond_panel,
+        "wall": wall,
+        "wall_of_courses": wall_of_courses,
+        "arch": arch,
+        "column": column,
+        "buttress": buttress,
+        "rubble": rubble,
+    }
+)
+"""Functions that return a model, by the name of their table in a model file."""
+
+
+def arguments_of(kind: str) -> tuple[str, ...]:
+    """Return the names of the arguments of a generator, the common options included.
+
+    Raises
+    ------
+    InputError
+        No generator of that name.
+    """
+    if kind not in GENERATORS:
+        msg = f"there is no generator '{kind}'"
+        raise InputError(msg, hint="known: " + ", ".join(GENERATORS))
+    names: list[str] = []
+    for name, parameter in inspect.signature(GENERATORS[kind]).parameters.items():
+        names += Common.__annotations__ if parameter.kind is inspect.Parameter.VAR_KEYWORD else [name]
+    return tuple(names)
+
+
+def generate(kind: str, arguments: Mapping[str, Any]) -> Model:
+    """Return the model a generator makes of ``arguments``, unknown and missing ones named in the message.
+
+    Raises
+    ------
+    InputError
+        Unknown generator or argument, a missing one, or a value out of range.
+    """
+    known = arguments_of(kind)
+    for name in arguments:
+        if name not in known:
+            msg = f"unknown key '{name}'"
+            raise InputError(msg, where=kind, hint="known: " + ", ".join(known))
+    function = GENERATORS[kind]
+    for name, parameter in inspect.signature(function).parameters.items():
+        needed = parameter.default is inspect.Parameter.empty and parameter.kind is inspect.Parameter.KEYWORD_ONLY
+        if needed and name not in arguments:
+            msg = f"'{name}' is missing"
+            raise InputError(msg, where=kind, hint=f"'{kind}' needs it")
+    return function(**arguments)

@@ -1,0 +1,1 @@
+"""Which faces touch, and what is wrong with outlines."""

@@ -1,0 +1,171 @@
+r"""The certificate: residuals of an answer computed from the original data, never from what a solver kept.
+
+Displacements are divided by the largest displacement ``U``, forces by the total load ``F`` (sum of the absolute nodal
+loads, without those that stand for imposed displacements; where no load acts, the largest contact force). An answer is
+*certified* when the worst entry is at most 1e-9.
+
+Equilibrium is checked in two parts. The resultants on every floating body are sums of loads and contact forces alone:
+displacements have no part in them and rounding hardly any. What is left is the balance at each node, where K u is the
+difference of large numbers if a stiff body rests on soft joints: u, stored in double precision, is known to some
+eps |u|, so that K u is known to eps |K| |u| and no better, whoever solves. :data:`ROUNDING` of that is granted, but
+never more than :data:`GRANTED` of the load: beyond, rounding could hide how a joint shares its force.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from concio.problem.contact_problem import Array, ContactProblem
+
+CERTIFIED = 1e-9
+"""Largest worst entry of an answer that may be called solved."""
+
+
+ROUNDING = 4.0 * float(np.finfo(float).eps)
+"""Share of |K| |u| by which rounding of displacements may put the balance at a node wrong."""
+
+GRANTED = 1e-7
+"""Largest share of the load that is granted to rounding."""
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """Relative residuals of an answer (all dimensionless, 0 is perfect).
+
+    Parameters
+    ----------
+    equilibrium : float
+        max |K u - f - C' t| / F, equation (12), apart from rounding of u; and of the resultants of f + C' t on bodies
+        that float, moments divided by the distance of the farthest node.
+    penetration : float
+        max of -y_n / U over pairs without a cap, equation (5).
+    cone : float
+        max of the excess of |t_t| over c + mu t_n, of -(t_n + T), and of t_n over the cap, / F, equation (6).
+    slip_direction : float
+        max over pairs of min(|y_t| / U, |t_t + (c + mu t_n) y_t / |y_t|| / F), equations (6, 7).
+    complementarity : float
+        max over pairs of min(y_n / U, (t_n + T) / F), and the same for crushing and its cap, equation (5).
+    """
+
+    equilibrium: float
+    penetration: float
+    cone: float
+    slip_direction: float
+    complementarity: float
+
+    @property
+    def worst(self) -> float:
+        """The largest of the five; ``nan`` counts as infinite."""
+        entries = (self.equilibrium, self.penetration, self.cone, self.slip_direction, self.complementarity)
+        return float(max(e if np.isfinite(e) else np.inf for e in entries))
+
+    @property
+    def certified(self) -> bool:
+        """True when the worst entry is at most :data:`CERTIFIED`."""
+        return self.worst <= CERTIFIED
+
+    def as_dict(self) -> dict[str, float]:
+        """Return the five entries and ``worst``."""
+        return {**asdict(self), "worst": self.worst}
+
+
+@dataclass(frozen=True, eq=False)
+class Kinematics:
+    """Gap, slip and crushing that follow from displacements and forces.
+
+    Parameters
+    ----------
+    gap : (m,) array
+        y_n before crushing is taken out [m]; below -0 only by an error, or where the cap is reached.
+    slip : (m, d-1) array
+        y_t [m].
+    crushing : (m,) array
+        p >= 0, plastic approach where the cap is reached [m].
+    """
+
+    gap: Array
+    slip: Array
+    crushing: Array
+
+
+def kinematics(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> Kinematics:
+    """Return gaps, slips and crushing of displacements ``u`` (N,) and forces ``t_n`` (m,), ``t_t`` (m, d-1)."""
+    law = problem.laws
+    m = problem.pairs
+    slip = (problem.C_t @ u).reshape(m, problem.dim - 1) - problem.slip_origin
+    slip += law.tangential_compliance[:, None] * t_t
+    sliding = (law.friction > 0) | (law.cohesion > 0)
+    size = np.linalg.norm(slip, axis=1)
+    gap = problem.gap + problem.C_n @ u + law.normal_compliance * t_n - np.where(sliding, law.dilatancy * size, 0.0)
+    crushing = np.where(np.isfinite(law.cap), np.maximum(-gap, 0.0), 0.0)
+    return Kinematics(gap + crushing, slip, crushing)
+
+
+def scales(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> tuple[float, float]:
+    """Return (F, U): total load [kN] and largest displacement [m], never zero."""
+    force = problem.total_load
+    if force == 0.0:
+        force = float(max(np.abs(t_n).max(initial=0.0), np.abs(t_t).max(initial=0.0)))
+    length = float(np.abs(u).max(initial=0.0))
+    return force or 1.0, length or 1.0
+
+
+def imbalance(problem: ContactProblem, u: Array, t_n: Array, t_t: Array, force: float) -> tuple[Array, Array]:
+    """Return what equation (12) leaves [kN]: resultants of floating bodies (r,), and the rest at every unknown (N,).
+
+    The first is R'(f + C' t), a force, or a moment over the distance of the farthest node; the second the size of what
+    K u does not balance, less what rounding of u explains, at most :data:`GRANTED` of ``force``.
+    """
+    applied = problem.f + problem.C_n.T @ t_n + problem.C_t.T @ t_t.ravel()
+    moved = problem.R.T @ applied
+    rest = problem.K @ u - (applied - problem.R @ moved)
+    rest = rest - problem.R @ (problem.R.T @ rest)
+    known = np.minimum(ROUNDING * (abs(problem.K) @ np.abs(u)), GRANTED * force)
+    farthest = abs(problem.R).max(axis=0).toarray().ravel() if problem.rigid_motions else np.zeros(0)
+    return moved / farthest, np.maximum(np.abs(rest) - known, 0.0)
+
+
+def certify(
+    problem: ContactProblem, u: Array, t_n: Array, t_t: Array, *, total_load: float | None = None
+) -> Certificate:
+    """Compute the certificate of an answer from the original problem.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    u : (N,) array
+        Displacements [m].
+    t_n : (m,) array
+        Normal forces, compression positive [kN].
+    t_t : (m, d-1) array
+        Friction forces on side b along t [kN].
+    total_load : float, optional
+        F to measure forces by, where the problem's own loads are not the measure [kN].
+    """
+    law = problem.laws
+    t_t = t_t.reshape(problem.pairs, problem.dim - 1)
+    if not (np.isfinite(u).all() and np.isfinite(t_n).all() and np.isfinite(t_t).all()):
+        return Certificate(*([np.inf] * 5))
+    force, length = scales(problem, u, t_n, t_t)
+    force = total_load or force
+    kin = kinematics(problem, u, t_n, t_t)
+    equilibrium = max(float(np.abs(part).max(initial=0.0)) for part in imbalance(problem, u, t_n, t_t, force))
+    strength = problem.sliding_strength(t_n)
+    shifted = t_n + law.tension
+    size_t = np.linalg.norm(t_t, axis=1)
+    excess = np.maximum.reduce([size_t - strength, -shifted, t_n - law.cap])
+    size_y = np.linalg.norm(kin.slip, axis=1)
+    direction = kin.slip / np.where(size_y > 0, size_y, 1.0)[:, None]
+    wrong_way = np.linalg.norm(t_t + strength[:, None] * direction, axis=1)
+    crush = np.minimum(kin.crushing / length, np.where(np.isfinite(law.cap), law.cap - t_n, 0.0) / force)
+    return Certificate(
+        equilibrium=equilibrium / force,
+        penetration=float(np.maximum(-kin.gap, 0.0).max(initial=0.0) / length),
+        cone=float(np.maximum(excess, 0.0).max(initial=0.0) / force),
+        slip_direction=float(np.minimum(size_y / length, wrong_way / force).max(initial=0.0)),
+        complementarity=float(
+            max(np.minimum(kin.gap / length, shifted / force).max(initial=0.0), crush.max(initial=0.0))
+        ),
+    )

@@ -1,0 +1,1 @@
+"""Sparse and updated factorisations, and the units in which problems are solved."""

@@ -1,0 +1,96 @@
+"""Matrices A Theta A' of the statics of block structures: ordered once, and what is left unbalanced taken away by them.
+
+The rows of A are the rigid motions of the blocks, its columns the forces of the joints: A Theta A' is the stiffness
+matrix of rigid blocks on springs of stiffness Theta, its graph that of the structure.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as sla
+
+from concio.problem.contact_problem import Array
+from concio.solvers.algebra.sparse_factor import nested_dissection
+
+
+class NormalEquations:
+    """Factorises A Theta A' for changing positive Theta; the rows of A are put in a fill-reducing order once.
+
+    Parameters
+    ----------
+    A : (M, n) sparse array
+    group : int
+        Consecutive rows that belong together: the rigid motions of a block.
+    """
+
+    def __init__(self, A: sp.csc_array, group: int = 3) -> None:
+        pattern = sp.csr_array(abs(A) @ abs(A).T)
+        self.order, self.ordering = nested_dissection(pattern, group)
+        self.A = sp.csr_array(sp.csr_array(A)[self.order])
+        self.At = sp.csr_array(self.A.T)
+
+    def factorise(self, theta: Array) -> None:
+        """Factorise A diag(theta) A', its diagonal lifted by rounding; rows of nothing get a one."""
+        matrix = sp.csc_matrix((self.A @ sp.diags_array(theta)) @ self.At)
+        diagonal = matrix.diagonal()
+        lifted = diagonal * (1.0 + 1e-15) + 1e-14 * float(np.median(diagonal))
+        matrix.setdiag(np.where(lifted > 0, lifted, 1.0))
+        matrix.sort_indices()
+        self.matrix = matrix
+        spec = "MMD_AT_PLUS_A" if self.ordering == "minimum degree" else "NATURAL"
+        splu: Any = sla.splu
+        self.lu = splu(matrix, permc_spec=spec, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+
+    def solve(self, g: Array) -> Array:
+        """Return M^-1 g for g in the order of :attr:`order`, once refined."""
+        x = self.lu.solve(g)
+        refined: Array = x + self.lu.solve(g - self.matrix @ x)
+        return refined
+
+
+def rebalance(A: sp.csc_array, x: Array, target: Array, bounds: Array, rounds: int = 4) -> Array:
+    """Remove what is left of A x + target by changes of x in proportion to the room within the bounds.
+
+    With D the distance to the nearer bound (cut at the largest held x) and free columns F: x - D A'v for the held and
+    x - phi for the free, where A D A'v + F phi = A x + target, F'v = 0; cut at the bounds, repeated while it helps.
+
+    Parameters
+    ----------
+    A : (M, n) CSC array
+    x : (n,) array
+    target : (M,) array
+    bounds : (n, 2) array
+        Columns with two infinite bounds are free.
+    rounds : int
+    """
+    lower, upper = bounds[:, 0], bounds[:, 1]
+    held = np.isfinite(lower) | np.isfinite(upper)
+    x = np.clip(x, lower, upper)
+    residual = A @ x + target
+    if not np.abs(residual).max(initial=0.0) > 0:
+        return x
+    normal = NormalEquations(sp.csc_array(A[:, held]))
+    F = A[:, ~held].toarray()[normal.order]
+    for _ in range(rounds):
+        room = np.minimum(np.minimum(x - lower, upper - x), np.abs(x[held]).max(initial=1e-300))[held]
+        try:
+            normal.factorise(room)
+        except RuntimeError:
+            break
+        v = normal.solve(residual[normal.order])
+        trial = x.copy()
+        if F.shape[1]:
+            solved = np.column_stack([normal.solve(f) for f in F.T])
+            phi = np.linalg.solve(F.T @ solved, F.T @ v)
+            trial[~held] -= phi
+            v -= solved @ phi
+        trial[held] -= room * (normal.At @ v)
+        trial = np.clip(trial, lower, upper)
+        left = A @ trial + target
+        if not np.abs(left).max() < np.abs(residual).max():
+            break
+        x, residual = trial, left
+    return x

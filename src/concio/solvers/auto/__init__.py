@@ -1,0 +1,1 @@
+"""The chain of strategies of method ``auto``."""

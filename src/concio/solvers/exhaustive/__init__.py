@@ -1,0 +1,1 @@
+"""Small structures: every combination of joint states, searched or excluded."""

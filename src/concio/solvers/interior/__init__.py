@@ -1,0 +1,1 @@
+"""The engine: interior point on the Coulomb problem, exact finish, homotopy."""

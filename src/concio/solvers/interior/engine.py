@@ -1,0 +1,187 @@
+"""Method ``interior-point``: interior point on the Coulomb problem, exact finish, and a homotopy for jammed states."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from concio.problem.certificate import CERTIFIED, certify
+from concio.problem.contact_problem import ContactProblem
+from concio.problem.solution import Progress, ProgressCallback, Solution, Status, judge
+from concio.solvers.algebra.scaled import Scaled, scale
+from concio.solvers.algebra.sparse_factor import Engine
+from concio.solvers.interior.exact_finish import Finished, finish
+from concio.solvers.interior.homotopy import walk
+from concio.solvers.interior.interior_point import START, InteriorPoint, Iterate
+
+NAME = "interior-point"
+
+AT_REST = 1e-6
+"""Largest scaled displacement that is tried as zero; elastic bodies under load move by about one."""
+
+TARGETS = (1e-6, 1e-8, 1e-10)
+"""Relative residuals at which the exact finish is tried."""
+
+EXACT = 1e-11
+"""Largest natural-map residual of an exact finish; a structure drifting off may come near, never here."""
+
+STARTS = (10.0, 100.0, 1000.0)
+"""Sizes of the starting points that are tried in turn; jammed structures want the larger."""
+
+
+class Cancelled(Exception):
+    """Raised inside a run when the callback asks to stop."""
+
+
+def solve(
+    problem: ContactProblem,
+    *,
+    progress: ProgressCallback | None = None,
+    engine: Engine = "superlu",
+    homotopy: bool = True,
+    starts: tuple[float, ...] = STARTS,
+    **options: Any,
+) -> Solution:
+    """Solve one load step.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    progress : callable, optional
+    engine : {"superlu", "pardiso"}
+        Sparse factorisation.
+    homotopy : bool
+        Walk from associated flow where the plain iteration fails.
+    starts : tuple of float
+        Sizes of the starting points tried in turn.
+
+    Returns
+    -------
+    Solution
+        SOLVED with its certificate, or GAVE_UP; this method proves no collapse.
+    """
+    rest = at_rest(problem)
+    if rest is not None:
+        return rest
+    scaled = scale(problem, engine)
+    run = Run(scaled, progress)
+    try:
+        found = None
+        for start in starts:
+            found = found or run.plain(start)
+        if found is None and homotopy and scaled.rough.any():
+            found = run.homotopy()
+    except Cancelled:
+        return run.solution(None, Status.CANCELLED)
+    return run.solution(found)
+
+
+def at_rest(problem: ContactProblem) -> Solution | None:
+    """Return the answer without motion and forces where nothing acts: no load, no pushed support, no slip origin."""
+    if problem.f.any() or (problem.gap < 0).any() or problem.slip_origin.any():
+        return None
+    m = problem.pairs
+    rest = judge(problem, np.zeros(problem.unknowns), np.zeros(m), np.zeros((m, problem.dim - 1)), method=NAME)
+    return replace(rest, trace=("nothing acts on the structure: it rests",)) if rest.solved else None
+
+
+class Run:
+    """One run on one problem: keeps count of work and the trace of what was tried.
+
+    Parameters
+    ----------
+    scaled : Scaled
+    progress : callable or None
+    """
+
+    def __init__(self, scaled: Scaled, progress: ProgressCallback | None = None) -> None:
+        self.scaled, self.progress = scaled, progress
+        self.engine = InteriorPoint(scaled)
+        self.iterations = 0
+        self.trace: list[str] = []
+        self.history: list[float] = []
+        self.best: Finished | None = None
+        self.crossed: Finished | None = None
+
+    def watch(self, stage: str) -> Any:
+        """Return the callback of a stage."""
+
+        def report(iteration: int, residual: float) -> bool:
+            self.history.append(residual)
+            if self.progress is not None and self.progress(Progress(NAME, len(self.history), residual, stage)):
+                raise Cancelled
+            return False
+
+        return report
+
+    def plain(self, start: float = START, most: int = 80) -> Finished | None:
+        """Iterate from the standard start of a size; return the exact answer or None."""
+        z = self.engine.start(start)
+        return self.close_in(z, f"interior point from {start:g}", 0.0, most)
+
+    def close_in(self, z: Iterate, stage: str, theta: float = 0.0, most: int = 80) -> Finished | None:
+        """Iterate to ever smaller targets, trying the exact finish at each, until it succeeds or nothing moves."""
+        found = None
+        for target in TARGETS:
+            outcome = self.engine.run(z, theta=theta, target=target, most=most, watch=self.watch(stage))
+            self.iterations += outcome.iterations
+            close = outcome.converged or outcome.residual < 1e-5
+            self.trace.append(
+                f"{stage}: {outcome.iterations} iterations, residual {outcome.residual:.1e}"
+                + ("" if outcome.converged else ", stopped")
+            )
+            if close:
+                found = self.finish(z.u, z.t_n, z.t_t, rounds=3 if outcome.converged else 12)
+            if found is not None or not outcome.converged:
+                break
+        return found
+
+    def homotopy(self) -> Finished | None:
+        """Walk from associated flow; return the exact answer or None."""
+        z, path = walk(self.engine, watch=self.watch("dilatancy homotopy"))
+        self.iterations += path.iterations
+        self.trace.append(
+            f"dilatancy homotopy: {path.iterations} iterations, "
+            + (f"stopped at theta = {path.theta:.3g}" if path.theta > 0 else "reached Coulomb friction")
+        )
+        return self.close_in(z, "interior point from there") if path.theta == 0 else None
+
+    def finish(self, u: np.ndarray, t_n: np.ndarray, t_t: np.ndarray, rounds: int = 12) -> Finished | None:
+        """Exact finish of a point; return it if exact, None (and keep the best) if not."""
+        found = finish(self.scaled, u, t_n, t_t, rounds)
+        exact = found.error <= EXACT
+        self.trace.append(
+            f"exact finish: {found.solves} linear solves, residual {found.error:.1e}"
+            + ("" if exact else f", {len(found.undecided)} pairs undecided")
+        )
+        if self.best is None or found.error < self.best.error:
+            self.best = found
+        return found if exact else None
+
+    def solution(self, found: Finished | None, failure: Status = Status.GAVE_UP, method: str = NAME) -> Solution:
+        """Return the judged solution of what was found, or of the best point met."""
+        s = self.scaled
+        point = found or self.best
+        if point is None:
+            u, t_n, t_t = np.zeros(len(s.f)), s.tension.copy(), np.zeros(s.pairs)
+        else:
+            u, t_n, t_t = point.u, point.t_n, point.t_t
+        small = float(np.abs(u).max(initial=0.0)) < AT_REST
+        u, t_n, t_t = s.restore(u, t_n, t_t)
+        rest = np.zeros_like(u)
+        if small and certify(s.problem, rest, t_n, t_t[:, None]).worst <= CERTIFIED:
+            u = rest  # nothing moves: rounding must not be measured against itself
+        return judge(
+            s.problem,
+            u,
+            t_n,
+            t_t[:, None],
+            method=method,
+            failure=failure,
+            iterations=self.iterations,
+            factorisations=s.factor.count,
+            trace=tuple(self.trace),
+            info={"history": tuple(self.history), "engine": s.factor.engine, "ordering": s.factor.ordering},
+        )

@@ -1,0 +1,1 @@
+"""The iterative methods of contact mechanics: one file a method."""

@@ -1,0 +1,1 @@
+"""Letting a structure go: where it comes to rest, or how it moves away."""

@@ -1,0 +1,138 @@
+r"""Does the structure move away? The limit of vanishing inertia, and the accelerating motion that proves a collapse.
+
+Forces within the cones may exist (no mechanism of :mod:`concio.solvers.statics.existence` proves collapse) and still no
+state that
+obeys Coulomb friction: friction is not associated, and a panel between two smooth-faced walls slides down although
+forces exist that could hold it, had anything pressed it against them. What does it do? It moves. Give the bodies their
+lumped masses M and release them from rest; over one long time step 1/sqrt(e) (implicit Euler) the joint laws hold with
+
+.. math:: (K + e M) u_e = f + C^T t_e, \qquad e > 0.
+
+K + e M is positive definite, and then a Coulomb state exists whatever the friction (Brouwer's theorem on the normal
+forces; Haslinger, Math. Methods Appl. Sci. 5, 1983). As e -> 0 either u_e stays bounded and its limit is an
+equilibrium, or it grows: u_e = a/e + u + O(e). Then a is a rigid motion, and with it
+
+.. math:: K u + M a = f + C^T t, \qquad K a = 0, \qquad \text{(u + s a, t) obeys every joint law for all } s \ge s_0:
+
+constant forces, the whole structure accelerating along a, friction opposing the slip it really has. Multiplied by a,
+
+.. math:: f^T a = a^T M a + \text{(dissipation)} > 0.
+
+That is the proof of :attr:`concio.problem.solution.Status.COLLAPSES`, found from the states of u_e and then recomputed
+from
+the original arrays: the certificate of (u + s_0 a, t) under the loads f - M a, and the laws of the rates along a. It
+shows that the structure, released from rest, moves off; it does not show that no equilibrium exists: another history
+(prestress, wedging) might reach one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from concio.problem.certificate import certify
+from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.solution import Departure
+from concio.solvers.algebra.scaled import Scaled
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
+from concio.solvers.interior.exact_finish import States, solve_states
+
+FINEST = (1e-6, 1e-8)
+"""Values of e, scaled units, at which the acceleration of given states is worked out."""
+
+STEPS = 30
+"""Largest number of steps for it; each cuts what still deforms by e over the least stiffness of the structure."""
+
+STILL = 1e-9
+"""Relative velocities up to this share of the largest velocity count as none."""
+
+
+def departure(s: Scaled, states: States, u: Array, t_n: Array, t_t: Array) -> Departure | None:
+    """Return the certified motion that pairs in given states would follow, or None.
+
+    Parameters
+    ----------
+    s : Scaled
+    states : States
+        States of the pairs during the motion.
+    u, t_n, t_t : arrays
+        Any point in these states, scaled; where the linear solves begin.
+    """
+    if s.problem.rigid_motions == 0:
+        return None
+    for e in FINEST:
+        try:
+            found = _departure(s, states, u, t_n, t_t, e)
+        except SingularMatrixError:
+            continue
+        if found is not None and found.certified:
+            return found
+    return None
+
+
+def _departure(s: Scaled, states: States, u: Array, t_n: Array, t_t: Array, e: float) -> Departure | None:
+    """Let given states move by steps of (K + e M)(u' - u) = f - K u + C't until the step no longer changes."""
+    step, last, size = np.zeros_like(u), np.inf, 0.0
+    for k in range(STEPS):
+        new, t_n, t_t, _ = solve_states(s, states, u, t_n, t_t, u, springs=e * s.inertia, again=k > 0)
+        change = float(np.abs(new - u - step).max())
+        step, u = new - u, new
+        size = float(np.abs(step).max())
+        if not np.isfinite(size) or size < 1.0 or change < 1e-13 * size or (k > 3 and change > 0.5 * last):
+            break
+        last = change
+    if not size > 1.0:
+        return None  # it comes to rest
+    R = s.problem.R
+    a = e * (R @ (R.T @ step))
+    moving = replace(s, f=s.f - s.inertia * a)
+    u = u - step * (float(step @ u) / float(step @ step))
+    u, t_n, t_t, _ = solve_states(moving, states, u, t_n, t_t, u)
+    u, t_n, t_t, _ = solve_states(moving, states, u, t_n, t_t, u, again=True)
+    # far enough along the motion that every opening pair is open and every slipping one has slipped its way
+    rate_n, rate_t = s.C_n @ a, s.C_t @ a
+    top = float(np.abs(a).max())
+    gap, slip = s.normal_gap(u, t_n), s.slip(u, t_t)
+    opening = ~states.closed & (rate_n > STILL * top) & (gap < 0)
+    wrong = states.closed & (states.slip * rate_t > STILL * top) & (states.slip * slip < 0)
+    far = np.concatenate([-gap[opening] / rate_n[opening], -slip[wrong] / rate_t[wrong]]).max(initial=0.0)
+    u, t_n, t_t = s.restore(u + 1.01 * far * a, t_n, t_t)
+    return verify_departure(s.problem, s.acceleration(a), u, t_n, t_t[:, None])
+
+
+def verify_departure(problem: ContactProblem, a: Array, u: Array, t_n: Array, t_t: Array) -> Departure:
+    """Recompute every condition of a departure from the original arrays; none of it is taken from a solver.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    a : (N,) array
+        Accelerations [m/s2].
+    u : (N,) array
+        Displacements on the way [m].
+    t_n, t_t : (m,), (m, d-1) arrays
+        Forces [kN].
+    """
+    law = problem.laws
+    force, top = problem.total_load or 1.0, float(np.abs(a).max(initial=0.0)) or 1.0
+    certificate = certify(problem.with_loads(problem.f - problem.inertia * a), u, t_n, t_t, total_load=force)
+    stiffness = float(abs(problem.K).max()) if problem.K.nnz else 1.0
+    rigid = float(np.abs(problem.K @ a).max(initial=0.0)) / (stiffness * top)
+    w_t = (problem.C_t @ a).reshape(t_t.shape)
+    speed = np.linalg.norm(w_t, axis=1)
+    sliding = (law.friction > 0) | (law.cohesion > 0)
+    w_n = problem.C_n @ a - np.where(sliding, law.dilatancy * speed, 0.0)
+    opening, closing = np.maximum(w_n, 0.0) / top, np.maximum(-w_n, 0.0) / top
+    reserve = np.where(np.isfinite(law.cap), np.maximum(law.cap - t_n, 0.0) / force, np.inf)  # against crushing
+    strength = problem.sliding_strength(t_n)
+    direction = w_t / np.where(speed > 0, speed, 1.0)[:, None]
+    wrong_way = np.linalg.norm(t_t + strength[:, None] * direction, axis=1) / force
+    violation = max(
+        certificate.worst,
+        rigid,
+        float(np.minimum(opening, (t_n + law.tension) / force).max(initial=0.0)),
+        float(np.minimum(closing, reserve).max(initial=0.0)),
+        float(np.minimum(speed / top, wrong_way).max(initial=0.0)),
+    )
+    return Departure(a, problem.inertia, u, t_n, t_t, float(problem.f @ a) / (force * top), violation)

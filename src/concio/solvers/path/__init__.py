@@ -1,0 +1,1 @@
+"""Load paths: event by event, in steps, over jumps."""

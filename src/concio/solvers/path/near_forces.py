@@ -1,0 +1,141 @@
+r"""One load step that keeps the forces of the last state where equilibrium and friction leave them open.
+
+Three hard pairs at a corner for two relative motions leave a self-stress undetermined, and with it which pair slips
+next. Incremental analysis asks for a choice, at each step the same one. Were the pairs a little compliant there would
+be none: a self-stress changes only by what the step strains, so that of all forces the step allows it takes those
+nearest to the last ones. This is the limit of a vanishing compliance (Moreau's sweeping process, one implicit step),
+and the choice that an exact path makes (:mod:`concio.solvers.path.equations`).
+
+The step is therefore solved with a small compliance whose springs are relaxed under the last forces,
+
+.. math:: y_n = x_n + C_n u + (a_n + \delta)\,t_n - \delta\,t_n^0, \qquad
+          y_t = C_t u - s + (a_t + \delta)\,t_t - \delta\,t_t^0,
+
+and the compliance is then taken out by the exact finish of the original problem, which keeps the forces near to where
+it begins. delta goes with the inverse of a pair's area, so that the distance is one of tractions. Very soft springs
+between the bodies and their last place settle likewise what only neutral equilibrium leaves open (a block balancing on
+one point).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from concio.problem.certificate import certify
+from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.solution import ProgressCallback, Solution, judge
+from concio.solvers.algebra.scaled import scale, typical_stiffness
+from concio.solvers.interior import engine
+from concio.solvers.interior.exact_finish import finish, read_states
+
+SOFT = 1e-5
+"""The compliance lent to hard pairs of mean area, over the typical compliance of the bodies."""
+
+TETHER = 1e-8
+"""Stiffness of the springs that hold what nothing else holds, over the typical stiffness of the bodies."""
+
+NAME = "interior-point near the last forces"
+
+
+def needed(problem: ContactProblem) -> bool:
+    """Tell whether a plane problem has hard pairs, whose forces may not be unique."""
+    law = problem.laws
+    return problem.dim == 2 and not ((law.normal_compliance > 0) & (law.tangential_compliance > 0)).all()
+
+
+def softened(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> ContactProblem:
+    """Return the problem with a small compliance, relaxed under the forces given, in its hard pairs.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    u : (N,) array
+        [m].
+    t_n, t_t : (m,) arrays
+        [kN].
+    """
+    law = problem.laws
+    lent = SOFT / typical_stiffness(problem) / problem.area_share
+    lent_n, lent_t = (np.where(a > 0, 0.0, lent) for a in (law.normal_compliance, law.tangential_compliance))
+    laws = replace(
+        law,
+        normal_compliance=law.normal_compliance + lent_n,
+        tangential_compliance=law.tangential_compliance + lent_t,
+    )
+    origin = problem.slip_origin + (lent_t * t_t)[:, None]
+    held = TETHER * typical_stiffness(problem)
+    return replace(
+        problem,
+        laws=laws,
+        gap=problem.gap - lent_n * t_n,
+        slip_origin=origin,
+        K=sp.csr_array(problem.K + held * sp.eye_array(problem.unknowns)),
+        f=problem.f + held * u,
+        R=sp.csc_array((problem.unknowns, 0)),  # every motion is held now
+    )
+
+
+def solve_near(
+    problem: ContactProblem,
+    u: Array,
+    t_n: Array,
+    t_t: Array,
+    *,
+    starts: tuple[float, ...] = engine.STARTS,
+    progress: ProgressCallback | None = None,
+) -> Solution:
+    """Solve one plane load step, taking of all answers it allows the one near to the state given.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    u : (N,) array
+        Displacements of the last state [m].
+    t_n, t_t : (m,) arrays
+        Its forces [kN].
+    starts : tuple of float
+        Sizes of the interior point's starting points.
+    progress : callable, optional
+
+    Returns
+    -------
+    Solution
+        Certified by the problem itself, or GAVE_UP (or CANCELLED).
+    """
+    if not needed(problem):
+        return engine.solve(problem, homotopy=False, starts=starts, progress=progress)
+    soft = softened(problem, u, t_n, t_t)
+    first = engine.solve(soft, homotopy=False, starts=starts, progress=progress)
+    if not first.solved:
+        return replace(first, method=NAME)
+    s = scale(problem)
+    law, unit = soft.laws, s.force / s.length
+    lent = replace(
+        s,
+        a_n=law.normal_compliance * unit,
+        a_t=law.tangential_compliance * unit,
+        gap=(soft.gap - law.normal_compliance * law.tension) / s.length,
+        origin=soft.slip_origin[:, 0] / s.length,
+    )
+    v = first.displacement / s.length
+    p_n, p_t = first.normal_force / s.force + s.tension, first.friction_force[:, 0] / s.force
+    found = finish(s, v, p_n, p_t, states=read_states(lent, v, p_n, p_t), least=False)
+    still = float(np.abs(found.u).max(initial=0.0)) < engine.AT_REST
+    v, p_n, p_t = s.restore(found.u, found.t_n, found.t_t)
+    rest = np.zeros_like(v)
+    if still and certify(problem, rest, p_n, p_t[:, None]).certified:
+        v = rest  # nothing moves: rounding must not be measured against itself
+    return judge(
+        problem,
+        v,
+        p_n,
+        p_t[:, None],
+        method=NAME,
+        iterations=first.iterations,
+        factorisations=first.factorisations + s.factor.count,
+        trace=(*first.trace, f"compliance taken out: {found.solves} linear solves, residual {found.error:.1e}"),
+        info=first.info,
+    )

@@ -1,0 +1,187 @@
+r"""Beyond a point where no rates continue a path: finite steps, jumps, and what proves that there is nothing beyond.
+
+The rate problem of Coulomb friction may have no solution at a point though the structure carries more: at the next
+load, however near, the only states in equilibrium are a finite distance away (a part of the wall snaps and comes to
+rest again). Then the path goes on from there: the one-step problem, slip measured from the last converged state
+(10, 11), is solved at slightly larger loads, the smallest increment first. A certified answer is accepted as
+
+* a *jump* where its distance from the point does not shrink with the increment,
+* a *restart* where it does: rates exist, though they were not found (vertices with hundreds of critical pairs).
+
+Where no increment has a certified answer the path is at its end, and why is told: a mechanism proves that the load
+beyond has no equilibrium; or the structure, let go under slightly more load, moves away without end
+(:mod:`concio.solvers.motion.release`); or it can move at the very load, friction being what it is; or none of these is
+shown.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.problem.certificate import scales
+from concio.problem.contact_problem import Array
+from concio.problem.solution import ProgressCallback, Solution, Status, failed
+from concio.solvers.auto import chain as auto
+from concio.solvers.interior import engine
+from concio.solvers.path.near_forces import needed, solve_near
+from concio.solvers.path.state import LinearPath, PathState, plastic_position, state_of, step_problem
+from concio.solvers.statics.existence import find_mechanism
+
+SHARES = (1e-6, 3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 2e-3, 4e-3, 7e-3, 1e-2, 2e-2)
+"""Load increments tried in turn, as shares of the present load."""
+
+QUICK = (10.0,)
+"""Starting points of the quick tries."""
+
+ACCURATE = 1e-10
+"""Largest certificate entry of a state from which a path goes on: its error would stay in the balance of energy."""
+
+NEXT = 1e-4
+"""Increment up to which the proof that there is no equilibrium counts for the point itself."""
+
+SHRINKS = 0.3
+"""An answer whose distance shrinks by this factor under a tenth of the increment is no jump."""
+
+FREE = 1e-6
+"""Largest relative residual of a motion that needs no change of forces."""
+
+
+@dataclass(frozen=True, eq=False)
+class Beyond:
+    """What lies beyond a point of a path.
+
+    Parameters
+    ----------
+    state : PathState or None
+        Certified state to go on from.
+    jump : bool
+        Whether it is a finite distance away, however small the increment.
+    no_equilibrium : bool
+        Where there is no state: whether a mechanism proves that the load beyond cannot be carried, or a motion without
+        end that the structure, let go at the point under slightly more load, does not come to rest.
+    motion : (N,) array or None
+        That mechanism or motion.
+    cancelled : bool
+    """
+
+    state: PathState | None
+    jump: bool = False
+    no_equilibrium: bool = False
+    motion: Array | None = None
+    cancelled: bool = False
+
+
+def look_beyond(
+    path: LinearPath,
+    point: PathState,
+    sense: float,
+    *,
+    end: float = np.inf,
+    free: bool = False,
+    least: float = 0.0,
+    progress: ProgressCallback | None = None,
+) -> Beyond:
+    """Look for a certified state slightly beyond a point at which no rates were found.
+
+    Parameters
+    ----------
+    path : LinearPath
+    point : PathState
+        Last converged state; slip is measured from it.
+    sense : float
+        +1 or -1: the load parameter grows or falls.
+    end : float
+        Load parameter not to be passed.
+    free : bool
+        Whether the structure is known to move freely at the point: then only quick tries are made.
+    least : float
+        Smallest share of the present load worth trying, where restarts have followed one another closely.
+    progress : callable, optional
+    """
+    unit = load_unit(path, point)
+    shares = [share for share in SHARES if share >= least] or [SHARES[-1]]
+    tries = [(share, False) for share in shares] + [(shares[0], True)]
+    if free:
+        tries.pop()
+    proof: Solution | None = None
+    for share, thorough in tries:
+        parameter = point.parameter + sense * min(share * unit, abs(end - point.parameter))
+        solution = solve_step(path, point, parameter, progress, thorough=thorough)
+        if solution.status is Status.CANCELLED:
+            return Beyond(None, cancelled=True)
+        if solution.status in (Status.NO_EQUILIBRIUM, Status.COLLAPSES):
+            proof = solution if share <= NEXT else None  # further off it says nothing of the loads between
+            break
+        if not solution.solved or solution.certificate.worst > ACCURATE:
+            continue
+        state = state_of(
+            path, parameter, solution.displacement, solution.normal_force, solution.friction_force, before=point
+        )
+        return Beyond(state, is_jump(path, point, state, progress))
+    motion = proof.mechanism.velocity if proof is not None and proof.mechanism is not None else None
+    return Beyond(None, no_equilibrium=proof is not None, motion=motion)
+
+
+def load_unit(path: LinearPath, point: PathState) -> float:
+    """Return the change of the parameter that brings as much load as there is; 1 where no load changes."""
+    changing = float(np.abs(path.load_rate).sum())
+    present = float(np.abs(path.problem.f + point.parameter * path.load_rate).sum())
+    return (present or changing) / changing if changing else 1.0
+
+
+def solve_step(
+    path: LinearPath, point: PathState, parameter: float, progress: ProgressCallback | None, *, thorough: bool
+) -> Solution:
+    """Solve one load step from a point: quickly, or by a proof of collapse or by letting the structure go."""
+    problem = step_problem(path, point, parameter)
+    if thorough:
+        mechanism = find_mechanism(problem)
+        if mechanism is not None:
+            return failed(problem, Status.NO_EQUILIBRIUM, method="mechanism", mechanism=mechanism)
+        return auto.let_go(problem, point.displacement, progress)
+    near = (point.displacement, point.normal_force, point.friction_force)
+    solution = solve_near(problem, *near, starts=QUICK, progress=progress)
+    if solution.solved or solution.status is Status.CANCELLED or not needed(problem):
+        return solution
+    return engine.solve(problem, homotopy=False, starts=QUICK, progress=progress)
+
+
+def is_jump(path: LinearPath, point: PathState, state: PathState, progress: ProgressCallback | None) -> bool:
+    """Tell whether a state stays away from the point when the increment becomes ten times smaller."""
+    nearer = point.parameter + 0.1 * (state.parameter - point.parameter)
+    closer = solve_step(path, point, nearer, progress, thorough=False)
+    far = float(np.abs(state.displacement - point.displacement).max(initial=0.0))
+    near = float(np.abs(closer.displacement - point.displacement).max(initial=0.0))
+    return not (closer.solved and near <= SHRINKS * far)
+
+
+def moves_freely(path: LinearPath, point: PathState, velocity: Array) -> bool:
+    """Tell whether a motion (N,) is possible at constant load and constant forces, friction opposing every slip.
+
+    It must strain no body, pull no closed pair together, open only pairs without force and slide only pairs whose
+    friction is used up against it; and loads that grow must drive it.
+    """
+    problem, law = path.problem, path.problem.laws
+    size = float(np.abs(velocity).max(initial=0.0))
+    if not size > 0 or not np.isfinite(size):
+        return False
+    v = velocity / size
+    stiff = float(np.abs(problem.K.diagonal()).max(initial=0.0))
+    if stiff and float(np.abs(problem.K @ v).max()) > FREE * stiff:
+        return False
+    force, length = scales(path.at(point.parameter), point.displacement, point.normal_force, point.friction)
+    opening, _ = plastic_position(path, point)
+    w_n, w_t = problem.C_n @ v, problem.C_t @ v
+    touching = opening + point.offset <= 1e-9 * length
+    rough = (law.friction > 0) | (law.cohesion > 0)
+    strength = problem.sliding_strength(point.normal_force)
+    lifted = w_n - np.where(rough, law.dilatancy * np.abs(w_t), 0.0)
+    carried = point.normal_force + law.tension > 1e-9 * force
+    crushed = law.cap - point.normal_force <= 1e-9 * force
+    resisting = np.abs(point.friction_force + np.sign(w_t) * strength) > 1e-9 * force
+    wrong = touching & (lifted < -FREE) & ~crushed
+    wrong |= carried & (lifted > FREE)
+    wrong |= rough & carried & (np.abs(w_t) > FREE) & resisting
+    return not wrong.any()

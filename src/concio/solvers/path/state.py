@@ -1,0 +1,252 @@
+r"""A linear load path of a contact problem, and the state of the structure at one of its points.
+
+Along the path, with parameter tau,
+
+.. math:: f(\tau) = f + \tau \dot f, \qquad x_n(\tau) = x_n + \tau \dot x_n, \qquad
+          y_t = C_t u - x_t + \tau \dot x_t + a_t t_t - s,
+
+so that loads grow and obstacles move (settlement). Friction is in rate form: the slip s of a pair is what it has
+slipped up to now, it changes only while the pair slips, and friction opposes its rate. The crushing of a pair whose
+cap is reached and the opening that dilatancy brings stay likewise, as an offset o of the gap,
+y_n = x_n(tau) + C_n u + a_n t_n + o.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from concio.errors import InputError
+from concio.problem.certificate import Certificate, certify, scales
+from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.solution import Solution
+
+OPEN, CLOSED, CRUSHED = 0, 1, 2
+"""Normal states of a pair: at its tensile strength and free to open; in contact; at its cap."""
+
+STICK = 0
+"""Tangential state of a pair; +1 and -1 slip in that direction."""
+
+
+@dataclass(frozen=True, eq=False)
+class LinearPath:
+    """A contact problem whose loads and obstacles move in proportion to a parameter.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+        The problem at parameter 0; two-dimensional.
+    load_rate : (N,) array
+        Loads added for each unit of the parameter [kN].
+    gap_rate, tangent_rate : (m,) arrays, optional
+        Normal and tangential movement of side b against side a that does not come from u [m].
+    total_rate : float, optional
+        Total load added for each unit of the parameter [kN], where ``load_rate`` holds more than loads; default: the
+        total load is the sum of |f| at each parameter.
+    """
+
+    problem: ContactProblem
+    load_rate: Array
+    gap_rate: Array = field(default_factory=lambda: np.zeros(0))
+    tangent_rate: Array = field(default_factory=lambda: np.zeros(0))
+    total_rate: float | None = None
+
+    def __post_init__(self) -> None:
+        m, n = self.problem.pairs, self.problem.unknowns
+        if self.problem.dim != 2:
+            msg = f"event-by-event paths are two-dimensional, the problem has dimension {self.problem.dim}"
+            raise InputError(msg, hint="use load steps")
+        for name, size in (("load_rate", n), ("gap_rate", m), ("tangent_rate", m)):
+            value = np.asarray(getattr(self, name), dtype=float)
+            if not value.size:
+                value = np.zeros(size)
+            if value.shape != (size,):
+                msg = f"{name} has shape {value.shape}, expected ({size},)"
+                raise InputError(msg)
+            object.__setattr__(self, name, value)
+
+    def at(self, parameter: float) -> ContactProblem:
+        """Return the problem with the loads and obstacles at a value of the parameter, slip measured from s = 0."""
+        return replace(
+            self.problem,
+            f=self.problem.f + parameter * self.load_rate,
+            load=0.0 if self.total_rate is None else max(self.problem.load + parameter * self.total_rate, 0.0),
+            gap=self.problem.gap + parameter * self.gap_rate,
+            slip_origin=self.problem.slip_origin - parameter * self.tangent_rate[:, None],
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class PathState:
+    """State of the structure at one point of a path.
+
+    Parameters
+    ----------
+    parameter : float
+    displacement : (N,) array
+        u [m].
+    normal_force, friction_force : (m,) arrays
+        t_n, t_t [kN].
+    contact : (m,) integer array
+        OPEN, CLOSED or CRUSHED.
+    sliding : (m,) integer array
+        STICK, +1 or -1; without meaning where an open pair has no strength.
+    slip : (m,) array
+        s, slip accumulated up to now [m].
+    offset : (m,) array
+        o, crushing less dilatancy accumulated up to now [m].
+    work, dissipation : float
+        Work of loads and obstacles, and energy dissipated, since the path began [kN m].
+    broken : (m,) boolean array, optional
+        Pairs that have lost their tensile strength and cohesion; None where none can.
+    """
+
+    parameter: float
+    displacement: Array
+    normal_force: Array
+    friction_force: Array
+    contact: Array
+    sliding: Array
+    slip: Array
+    offset: Array
+    work: float = 0.0
+    dissipation: float = 0.0
+    broken: Array | None = None
+
+    @property
+    def friction(self) -> Array:
+        """Friction forces as (m, 1) [kN]."""
+        return self.friction_force[:, None]
+
+
+def elastic_energy(problem: ContactProblem, state: PathState) -> float:
+    """Return the energy stored in bodies and compliant joints [kN m]."""
+    u, law = state.displacement, problem.laws
+    joints = law.normal_compliance @ state.normal_force**2 + law.tangential_compliance @ state.friction_force**2
+    return 0.5 * float(u @ (problem.K @ u) + joints)
+
+
+def plastic_position(path: LinearPath, state: PathState) -> tuple[Array, Array]:
+    """Return x_n + C_n u + a_n t_n and C_t u - x_t + tau x_t' + a_t t_t: what opened and slipped for good [m]."""
+    problem, law = path.problem, path.problem.laws
+    u, tau = state.displacement, state.parameter
+    opening = problem.gap + tau * path.gap_rate + problem.C_n @ u + law.normal_compliance * state.normal_force
+    slip = problem.C_t @ u - problem.slip_origin[:, 0] + tau * path.tangent_rate
+    slip = slip + law.tangential_compliance * state.friction_force
+    return opening, slip
+
+
+def energy_of_step(path: LinearPath, before: PathState, after: PathState) -> tuple[float, float]:
+    """Return (work, dissipation) between two states joined by a straight line, exactly (trapezoidal rule) [kN m].
+
+    The work is that of the loads and of the obstacles; the dissipation -sum int (t_n dy_n + t_t dy_t) holds friction,
+    ductile opening at the tensile strength, crushing, and the negative share of dilatancy.
+    """
+    problem = path.problem
+    du = after.displacement - before.displacement
+    dtau = after.parameter - before.parameter
+    t_n = 0.5 * (before.normal_force + after.normal_force)
+    t_t = 0.5 * (before.friction_force + after.friction_force)
+    load = problem.f + 0.5 * (before.parameter + after.parameter) * path.load_rate
+    work = float(load @ du) - dtau * float(t_n @ path.gap_rate + t_t @ path.tangent_rate)
+    (n0, s0), (n1, s1) = plastic_position(path, before), plastic_position(path, after)
+    return work, -float(t_n @ (n1 - n0) + t_t @ (s1 - s0))
+
+
+def weakened(problem: ContactProblem, broken: Array | None) -> ContactProblem:
+    """Return the problem without the tensile strength and the cohesion of broken pairs (m,)."""
+    if broken is None or not broken.any():
+        return problem
+    law = problem.laws
+    tension, cohesion = np.where(broken, 0.0, law.tension), np.where(broken, 0.0, law.cohesion)
+    return replace(problem, laws=replace(law, tension=tension, cohesion=cohesion))
+
+
+def exceeded(path: LinearPath, state: PathState, tolerance: float = 1e-9) -> Array:
+    """Return which pairs (m,) are broken after a state: those that were, and those whose strength it uses up.
+
+    A pair at its tensile strength, or one with cohesion that slips, keeps them in this step and has lost both in
+    the next.
+    """
+    law = path.problem.laws
+    force, _ = scales(path.at(state.parameter), state.displacement, state.normal_force, state.friction)
+    torn = (law.tension > 0) & (state.normal_force + law.tension <= tolerance * force)
+    sheared = (law.cohesion > 0) & (state.sliding != STICK) & (state.contact != OPEN)
+    was = np.zeros(path.problem.pairs, dtype=bool) if state.broken is None else state.broken
+    result: Array = was | torn | sheared
+    return result
+
+
+def step_problem(path: LinearPath, before: PathState, parameter: float) -> ContactProblem:
+    """Return the one-step problem whose slip is measured from the state ``before`` (10, 11).
+
+    Parameters
+    ----------
+    path : LinearPath
+    before : PathState
+        Last converged state: its slip is the origin, its crushing and dilatant opening are part of the gap, and what
+        broke in it has no strength left.
+    parameter : float
+        Load parameter of the end of the step.
+    """
+    problem = weakened(path.at(parameter), before.broken)
+    _, position = plastic_position(path, before)
+    origin = problem.slip_origin + position[:, None]
+    return replace(problem, gap=problem.gap + before.offset, slip_origin=origin)
+
+
+def certify_step(path: LinearPath, before: PathState, after: PathState) -> Certificate:
+    """Certify a state as the answer of the one-step problem that starts from ``before``."""
+    problem = step_problem(path, before, after.parameter)
+    return certify(problem, after.displacement, after.normal_force, after.friction)
+
+
+def state_of(
+    path: LinearPath,
+    parameter: float,
+    u: Array,
+    t_n: Array,
+    t_t: Array,
+    *,
+    before: PathState | None = None,
+    tolerance: float = 1e-9,
+) -> PathState:
+    """Read contact states off an answer u, t_n, t_t at a value of the parameter.
+
+    Parameters
+    ----------
+    path : LinearPath
+    parameter : float
+    u, t_n, t_t : arrays (N,), (m,), (m,) or (m, 1)
+    before : PathState, optional
+        Last converged state; its work and dissipation are carried on, and slip directions are measured from it.
+    tolerance : float
+        Forces below this share of the total load count as zero.
+    """
+    problem = path.problem if before is None else weakened(path.problem, before.broken)
+    law = problem.laws
+    t_t = np.asarray(t_t, dtype=float).reshape(-1)
+    force, length = scales(path.at(parameter), u, t_n, t_t[:, None])
+    contact = np.where(t_n + law.tension > tolerance * force, CLOSED, OPEN)
+    contact = np.where(law.cap - t_n <= tolerance * force, CRUSHED, contact).astype(np.int8)
+    zero = np.zeros(problem.pairs)
+    state = PathState(parameter, u, t_n, t_t, contact, zero.astype(np.int8), zero, zero)
+    opening, position = plastic_position(path, state)
+    start = plastic_position(path, before)[1] if before is not None else zero
+    used = np.abs(t_t) >= problem.sliding_strength(t_n) - tolerance * force
+    moved = np.abs(position - start) > tolerance * length
+    sliding = np.where(used & moved, np.where(t_t > 0, -1, 1), STICK).astype(np.int8)
+    carried = before.offset if before is not None else zero
+    plastic = (contact != OPEN) & ((law.dilatancy > 0) | np.isfinite(law.cap))
+    state = replace(state, sliding=sliding, slip=position, offset=np.where(plastic, -opening, carried))
+    if before is None:
+        return state
+    work, dissipation = energy_of_step(path, before, state)
+    state = replace(state, work=before.work + work, dissipation=before.dissipation + dissipation)
+    return replace(state, broken=before.broken)
+
+
+def state_of_solution(path: LinearPath, parameter: float, solution: Solution) -> PathState:
+    """Return the state of a certified :class:`Solution` of ``path.at(parameter)``."""
+    return state_of(path, parameter, solution.displacement, solution.normal_force, solution.friction_force)

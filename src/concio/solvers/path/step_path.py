@@ -1,0 +1,157 @@
+"""Load paths in steps: one Coulomb problem for each step, slip measured from the last converged state (10, 11).
+
+The step is halved where the solver finds no certified answer or where more than ``CHANGES`` of the pairs change state,
+and doubled again after an easy step, never beyond the one asked for.
+
+Brittle joints lose tensile strength and cohesion in the step after the one that uses either up. So that a loss is not
+put off with the load growing meanwhile, the step after it is repeated at the same load until nothing more breaks.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from concio.problem.contact_problem import Array
+from concio.problem.solution import Progress, ProgressCallback, Solution, Solver, Status
+from concio.solvers.path import near_forces
+from concio.solvers.path.record import Event, Outcome
+from concio.solvers.path.state import (
+    CLOSED,
+    CRUSHED,
+    OPEN,
+    STICK,
+    LinearPath,
+    PathState,
+    exceeded,
+    state_of,
+    step_problem,
+)
+
+CHANGES = 0.1
+"""Share of the pairs that may change state in one step before it is halved."""
+
+SMALLEST = 2.0**-12
+"""Smallest step, as a share of the step asked for."""
+
+
+@dataclass(frozen=True, eq=False)
+class StepPath:
+    """States, events, outcome and last direction of a path, whichever way it was followed.
+
+    Parameters
+    ----------
+    states : tuple of PathState
+    events : tuple of Event
+    outcome : Outcome
+    direction : (N,) array
+    """
+
+    states: tuple[PathState, ...]
+    events: tuple[Event, ...]
+    outcome: Outcome
+    direction: Array
+
+
+def follow_in_steps(
+    path: LinearPath,
+    start: PathState,
+    *,
+    until: float,
+    steps: int,
+    solver: Solver,
+    refine: bool = True,
+    brittle: bool = False,
+    progress: ProgressCallback | None = None,
+) -> StepPath:
+    """Follow a path in load steps.
+
+    Parameters
+    ----------
+    path : LinearPath
+    start : PathState
+    until : float
+        Load parameter to reach.
+    steps : int
+        Steps of equal size to begin with.
+    solver : Solver
+    refine : bool
+        Whether steps are halved at many changes of state (a failed step always is).
+    brittle : bool
+        Whether pairs lose tensile strength and cohesion once these are used up.
+    progress : callable, optional
+    """
+    states, events = [start], list[Event]()
+    whole = (until - start.parameter) / steps
+    size, outcome = whole, Outcome.REACHED
+    breaking = False
+    while breaking or abs(until - states[-1].parameter) > 1e-12 * max(1.0, abs(until)):
+        before = states[-1]
+        left = until - before.parameter
+        size = np.sign(whole) * min(abs(size), abs(left)) if not breaking else size
+        parameter = until if abs(size) >= abs(left) * (1 - 1e-12) else before.parameter + size
+        parameter = before.parameter if breaking else parameter
+        solution = _step(path, before, parameter, solver)
+        smallest = abs(size) <= SMALLEST * abs(whole)
+        if not solution.solved:
+            if not smallest and not breaking:
+                size *= 0.5
+                continue
+            outcome = Outcome.LIMIT if solution.status in (Status.NO_EQUILIBRIUM, Status.COLLAPSES) else Outcome.LOST
+            break
+        after = state_of(
+            path, parameter, solution.displacement, solution.normal_force, solution.friction_force, before=before
+        )
+        changed = np.flatnonzero((before.contact != after.contact) | (before.sliding != after.sliding))
+        if (
+            refine
+            and len(states) > 1
+            and changed.size > max(1.0, CHANGES * path.problem.pairs)
+            and not (smallest or breaking)
+        ):
+            size *= 0.5
+            continue
+        if brittle:
+            after, lost = _broken(path, before, after)
+            breaking = bool(lost.size)
+            events += [Event(parameter, parameter, int(k), "breaks", 0, len(states)) for k in lost]
+        events += [event for k in changed for event in _named(before, after, int(k), len(states))]
+        states.append(after)
+        if abs(size) < abs(whole):
+            size *= 2.0
+        if progress is not None and progress(Progress("steps", len(states), solution.certificate.worst)):
+            outcome = Outcome.CANCELLED
+            break
+    last = states[-1].displacement - states[-2].displacement if len(states) > 1 else np.zeros(path.problem.unknowns)
+    return StepPath(tuple(states), tuple(events), outcome, last / (float(np.abs(last).max(initial=0.0)) or 1.0))
+
+
+def _step(path: LinearPath, before: PathState, parameter: float, solver: Solver) -> Solution:
+    """Solve one step, keeping redundant forces near the last ones if that succeeds."""
+    problem = step_problem(path, before, parameter)
+    if not near_forces.needed(problem):
+        return solver(problem)
+    solution = near_forces.solve_near(problem, before.displacement, before.normal_force, before.friction_force)
+    return solution if solution.solved else solver(problem)
+
+
+def _broken(path: LinearPath, before: PathState, after: PathState) -> tuple[PathState, Array]:
+    """Return the state with what it breaks marked as broken, and those pairs."""
+    broken = exceeded(path, after)
+    was = np.zeros(broken.size, dtype=bool) if before.broken is None else before.broken
+    return replace(after, broken=broken), np.flatnonzero(broken & ~was)
+
+
+def _named(before: PathState, after: PathState, k: int, step: int) -> list[Event]:
+    found = []
+    was, now = int(before.contact[k]), int(after.contact[k])
+    kinds = {(CLOSED, OPEN): "opens", (OPEN, CLOSED): "closes", (CLOSED, CRUSHED): "crushes"}
+    if was != now:
+        kind = kinds.get((was, now), "recovers" if was == CRUSHED else "changes")
+        found.append(Event(after.parameter, after.parameter, k, kind, 0, step))
+    side = int(after.sliding[k])
+    if now != OPEN and side != int(before.sliding[k]):
+        kind = "sticks" if side == STICK else "slips"
+        found.append(Event(after.parameter, after.parameter, k, kind, side, step))
+    return found

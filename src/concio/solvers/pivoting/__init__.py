@@ -1,0 +1,1 @@
+"""Complementary pivoting on the sparse mixed form."""

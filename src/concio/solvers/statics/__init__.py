@@ -1,0 +1,1 @@
+"""Linear programmes of statics: existence, mechanism, limit load, collapse states."""

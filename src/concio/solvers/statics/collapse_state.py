@@ -1,0 +1,228 @@
+r"""Direct search for a collapse state of Coulomb friction without dilatancy.
+
+A *collapse state* is a multiplier lambda, forces t and a rigid motion v with g'v > 0 such that
+
+.. math:: R^T (f + \lambda g + C^T t) = 0,\quad t_k \in S_k,\quad w_n \ge 0,\quad w_n (t_n + T) = 0,\quad
+          t_t = -(c + \mu t_n)\, w_t/|w_t| \text{ where } w_t \ne 0,
+
+with w = C v: the structure can begin to move at lambda with the friction that its joints really have. There may be
+many; the least multiplier among them is a mathematical programme with complementarity constraints (Ferris and Tin-Loi,
+Int. J. Mech. Sci. 43, 2001). The search here is the simple iteration on the sliding strength: with the strength frozen
+at c + mu t_n of the forces found last, flow is associated and dilatancy zero, a linear programme; its forces, averaged
+with the old ones, give the next strength (in the spirit of Gilbert, Casapulla and Ahmed, Comput. Struct. 84, 2006).
+
+Nothing is believed because the iteration stands still: forces of the *true* cones, with every pair in the state that
+the motion asks for, are found by one more linear programme, and the state is rechecked by plain matrix products.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from concio.errors import InputError
+from concio.problem.contact_problem import Array, ContactProblem
+from concio.solvers.statics.existence import pair_velocities
+from concio.solvers.statics.limit import associated_limit, static_residual
+from concio.solvers.statics.programme import LARGE, Method, StaticProgramme, optimise
+
+MOVES = 1e-8
+"""Relative velocities above this share of the largest count as opening or slipping."""
+
+CERTIFIED = 1e-8
+"""Largest residual of a collapse state that is returned."""
+
+NEARLY_STILL = 1e-3
+"""Relative change of the multiplier of frozen strength below which its motion is tried."""
+
+STILL, PATIENCE = 1e-9, 6
+"""The search ends where that change is below ``STILL`` for ``PATIENCE`` iterations in a row."""
+
+
+@dataclass(frozen=True, eq=False)
+class CollapseState:
+    """A certified state in which the structure can begin to move under Coulomb friction.
+
+    Parameters
+    ----------
+    multiplier : float
+    normal_force, friction_force : arrays (m,), (m, 1)
+        [kN].
+    velocity : (N,) array
+        Rigid motion, largest entry 1.
+    statics : float
+        Largest residual of equilibrium and excess over the cones, relative to the total load.
+    flow : float
+        Largest product of a relative velocity with the force that should vanish or the slip that should be opposed,
+        relative to the largest velocity and the total load; and penetration rate relative to the largest velocity.
+    iterations : int
+        Linear programmes until it was found.
+    """
+
+    multiplier: float
+    normal_force: Array
+    friction_force: Array
+    velocity: Array
+    statics: float
+    flow: float
+    iterations: int
+
+    @property
+    def certified(self) -> bool:
+        """True when all residuals are rounding."""
+        return max(self.statics, self.flow) <= CERTIFIED
+
+
+def find_collapse_state(
+    problem: ContactProblem, live: Array, *, iterations: int = 60, average: float = 0.5
+) -> CollapseState | None:
+    """Search a Coulomb collapse state and return the certified one of least multiplier met, or None.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+        With its dead load; two-dimensional.
+    live : (N,) array
+    iterations : int
+        Linear programmes with frozen strength, at most.
+    average : float
+        Weight of the new forces in the strength.
+    """
+    if problem.dim != 2:
+        msg = "the search for collapse states handles plane problems"
+        raise InputError(msg, hint="follow the load path instead")
+    law = problem.laws
+    start = associated_limit(problem, live)
+    if not np.isfinite(start.multiplier):
+        return None
+    strength = problem.sliding_strength(start.normal_force)
+    best: CollapseState | None = None
+    last, still = np.inf, 0
+    zero = np.zeros(problem.pairs)
+    asked: set[bytes] = set()
+    for count in range(1, iterations + 1):
+        frozen = replace(law, friction=zero, dilatancy=zero, cohesion=strength)
+        found = associated_limit(replace(problem, laws=frozen), live)
+        if not np.isfinite(found.multiplier) or found.mechanism is None:
+            return best
+        change = abs(found.multiplier - last) / max(1.0, abs(last)) if count > 1 else 0.0
+        if change <= NEARLY_STILL:
+            motion = Motion.of(problem, found.mechanism.velocity)
+            if motion.key not in asked:
+                asked.add(motion.key)
+                state = certify_collapse(problem, live, found.mechanism.velocity, count)
+                if state is not None and (best is None or state.multiplier < best.multiplier - 1e-12):
+                    best = state
+        still = still + 1 if change <= STILL else 0
+        if still >= PATIENCE:
+            return best
+        last = found.multiplier
+        strength = (1 - average) * strength + average * problem.sliding_strength(found.normal_force)
+    return best
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Which pairs open, slip (and which way) and crush in a motion.
+
+    Parameters
+    ----------
+    velocity : (N,) array
+        Largest entry 1.
+    w_n, w_t : (m,) arrays
+        Its relative velocities.
+    opens, slips, crushes : (m,) boolean arrays
+    """
+
+    velocity: Array
+    w_n: Array
+    w_t: Array
+    opens: Array
+    slips: Array
+    crushes: Array
+
+    @classmethod
+    def of(cls, problem: ContactProblem, velocity: Array) -> Motion:
+        """Return what a motion (N,) of any size asks of the pairs."""
+        v = velocity / float(np.abs(velocity).max())
+        w_n, _ = pair_velocities(problem, v)
+        w_t = problem.C_t @ v
+        crushes = np.isfinite(problem.laws.cap) & (w_n < -MOVES)
+        return cls(v, w_n, w_t, w_n > MOVES, np.abs(w_t) > MOVES, crushes)
+
+    @property
+    def key(self) -> bytes:
+        """The states of all pairs: equal keys ask for the same forces."""
+        return np.concatenate([self.opens, self.crushes, np.where(self.slips, np.sign(self.w_t), 0)]).tobytes()
+
+    def flow_error(self, problem: ContactProblem, t_n: Array, t_t: Array) -> Array:
+        """Return the power that should not be there at each pair, (m,), for forces t_n, t_t (m,) [kN]."""
+        law = problem.laws
+        cap = np.where(np.isfinite(law.cap), law.cap, 0.0)
+        opposed = problem.sliding_strength(t_n) * np.sign(self.w_t) + t_t
+        wrong: Array = np.maximum.reduce(
+            [
+                np.abs(np.where(self.opens, self.w_n, 0.0) * (t_n + law.tension)),
+                np.abs(np.where(self.slips, self.w_t, 0.0) * opposed),
+                np.abs(np.where(self.crushes, self.w_n, 0.0) * (cap - t_n)),
+            ]
+        )
+        return wrong
+
+    def penetration(self) -> float:
+        """Largest rate at which pairs that do not crush come closer."""
+        return float(np.where(self.crushes, 0.0, np.maximum(-self.w_n, 0.0)).max(initial=0.0))
+
+
+def certify_collapse(problem: ContactProblem, live: Array, velocity: Array, iterations: int) -> CollapseState | None:
+    """Find forces of the true cones that go with a motion (N,), and return the certified state or None."""
+    programme = StaticProgramme(problem)
+    motion = Motion.of(problem, velocity)
+    equations, bounds, caps, force = forces_asked_for(programme, motion, live)
+    alone: Method | None = "interior" if len(bounds) >= LARGE else None  # "there are none" is not worth minutes
+    result = optimise(np.r_[np.zeros(len(bounds) - 1), 1.0], equations, bounds, caps, method=alone)
+    if result.status != 0:
+        return None
+    multiplier = float(result.x[-1])
+    t_n, t_t = programme.forces(result.x[:-1] * force)
+    load = problem.f + multiplier * live
+    wrong = float(motion.flow_error(problem, t_n, t_t[:, 0]).max(initial=0.0)) / float(np.abs(load).sum())
+    flow = max(wrong, motion.penetration())
+    statics = static_residual(problem, load, t_n, t_t)
+    state = CollapseState(multiplier, t_n, t_t, motion.velocity, statics, flow, iterations)
+    return state if state.certified and float(live @ motion.velocity) > 0 else None
+
+
+def forces_asked_for(
+    programme: StaticProgramme, motion: Motion, live: Array
+) -> tuple[tuple[sp.csc_array, Array], Array, tuple[sp.csc_array, Array] | None, float]:
+    """Return equations, bounds, caps and unit of force [kN] of the programme over forces that a motion allows.
+
+    Its variables are those of ``programme`` and the multiplier of the live load (N,). Pairs that open carry -T, pairs
+    that slip the whole strength against the slip, pairs that crush the cap; all others what their cone allows.
+    """
+    problem, law = programme.problem, programme.problem.laws
+    rough = law.friction > 0
+    bounds = programme.bounds.copy()
+    pair, direction = programme.rays
+    sign = np.sign(motion.w_t)
+    wrong_way = motion.slips[pair] & (sign[pair] * direction[:, 0] > 0) & rough[pair]
+    bounds[: pair.size][motion.opens[pair] | wrong_way, 1] = 0.0
+    full = np.flatnonzero(motion.crushes[pair] & ~rough[pair])
+    bounds[full, 0] = bounds[full, 1]
+    sticky = np.flatnonzero(programme.spare > 0)
+    bounds[pair.size :][motion.slips[sticky]] = (-sign * programme.spare)[sticky][motion.slips[sticky], None]
+    A, e0 = programme.equilibrium
+    force = max(float(np.abs(problem.f).sum()), float(np.abs(live).sum()))
+    column = sp.csc_array((programme.project(live) / force)[:, None])
+    matrix, right = sp.csc_array(sp.hstack([A, column])), -(programme.project(problem.f) + e0) / force
+    caps = programme.caps
+    if caps is not None:
+        rows = sp.csr_array(sp.hstack([caps[0], sp.csc_array((caps[0].shape[0], 1))]))
+        full = motion.crushes[np.isfinite(law.cap) & rough]
+        matrix = sp.csc_array(sp.vstack([matrix, rows[full]]))
+        right = np.concatenate([right, caps[1][full] / force])
+        caps = (sp.csc_array(rows[~full]), caps[1][~full] / force) if not full.all() else None
+    return (matrix, right), np.vstack([bounds / force, [-np.inf, np.inf]]), caps, force

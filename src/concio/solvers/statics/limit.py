@@ -1,0 +1,260 @@
+r"""Limit load of associated friction: the static theorem, its dual mechanism, and the checks of both.
+
+With dead load f and live load g, the *associated multiplier* is
+
+.. math:: \lambda^* = \max\{\lambda : R^T (f + \lambda g + C^T t) = 0,\ t_k \in S_k\}
+                    = \min\{h(C v) - f^T v : v = R\alpha,\ g^T v = 1,\ w_n \ge \mu |w_t| \text{ without cap}\},
+
+the second by duality; h is the power the joints absorb (:mod:`concio.solvers.statics.existence`). It does not depend on
+the
+bodies' stiffness. Every forces-and-motion pair is rechecked: the forces give a lower bound, the motion an upper one,
+and what is between them is the duality gap. With Coulomb friction (no dilatancy) collapse may come earlier, never
+later: lambda* is an upper bound there, and is not to be called the collapse load of a masonry wall.
+
+Reference: Livesley, Limit analysis of structures formed from rigid blocks, Int. J. Num. Meth. Engng 12 (1978).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from concio.errors import SolverError
+from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.solution import Mechanism
+from concio.solvers.statics.existence import absorbed_power, polish, statically_admissible, total_load, verify_mechanism
+from concio.solvers.statics.programme import Method, StaticProgramme, optimise
+
+CHECKED = 1e-8
+"""Largest residual, violation and relative duality gap of a limit load that counts as checked."""
+
+BALANCED = 1e-11
+"""Residual below which forces count as admissible where the least friction is sought."""
+
+
+@dataclass(frozen=True, eq=False)
+class LimitLoad:
+    """Associated limit multiplier with its two proofs.
+
+    Parameters
+    ----------
+    multiplier : float
+        lambda*; ``inf`` where the load can grow without end, ``nan`` where no multiplier at all gives equilibrium.
+    upper : float
+        Multiplier of the mechanism, recomputed from its velocity: h(Cv) - f'v with g'v = 1.
+    normal_force, friction_force : arrays (m,), (m, d-1)
+        Forces in equilibrium at the multiplier [kN].
+    residual : float
+        Largest entry of R'(f + lambda g + C't) and of the excess over the cones, relative to the total load.
+    mechanism : Mechanism or None
+        Motion of the collapse; its power is that of the loads at the multiplier less what the joints absorb: zero up
+        to rounding.
+    """
+
+    multiplier: float
+    upper: float
+    normal_force: Array
+    friction_force: Array
+    residual: float
+    mechanism: Mechanism | None
+
+    @property
+    def gap(self) -> float:
+        """Relative distance of the two bounds."""
+        if not np.isfinite(self.multiplier):
+            return 0.0
+        return abs(self.upper - self.multiplier) / max(1.0, abs(self.multiplier))
+
+    @property
+    def checked(self) -> bool:
+        """True when forces and motion prove the multiplier from both sides (always for ``inf``: forces only)."""
+        return self.worst <= CHECKED
+
+    @property
+    def worst(self) -> float:
+        """Largest of residual, violation and gap."""
+        if not np.isfinite(self.multiplier):
+            return self.residual
+        violation = self.mechanism.violation if self.mechanism else np.inf
+        return max(self.residual, violation, self.gap)
+
+    @property
+    def bounds_hold(self) -> bool:
+        """True when forces and motion are each beyond doubt, whatever lies between them.
+
+        Then ``multiplier`` is carried and ``upper`` is not exceeded; they are the answer where they do not coincide.
+        """
+        violation = self.mechanism.violation if self.mechanism else np.inf
+        return max(self.residual, violation) <= CHECKED
+
+
+def associated_limit(problem: ContactProblem, live: Array) -> LimitLoad:
+    """Return the largest multiplier of the live load for associated friction.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+        Its load is the dead load.
+    live : (N,) array
+        Load that is multiplied [kN].
+
+    Raises
+    ------
+    SolverError
+        The linear programme stopped without an answer.
+    """
+    m, s = problem.pairs, problem.dim - 1
+    live = np.asarray(live, dtype=float)
+    nothing = (np.zeros(m), np.zeros((m, s)))
+    size = float(np.abs(live).sum())
+    pushed = float(np.abs(problem.R.T @ live).max(initial=0.0))
+    if problem.rigid_motions == 0 or m == 0 or pushed <= 1e-12 * size:
+        state = statically_admissible(problem)
+        return LimitLoad(np.inf if state.exists else np.nan, np.inf, *nothing, state.residual, None)
+    found = programmed_limit(problem, live, None)
+    if np.isfinite(found.multiplier) and not found.checked:
+        other = programmed_limit(problem, live, "highs")
+        found = other if other.checked or other.worst < found.worst else found
+    return found
+
+
+def programmed_limit(problem: ContactProblem, live: Array, method: Method | None) -> LimitLoad:
+    """Return what one linear programme says, rechecked; ``method`` as in :mod:`concio.solvers.statics.programme`."""
+    nothing = (np.zeros(problem.pairs), np.zeros((problem.pairs, problem.dim - 1)))
+    size = float(np.abs(live).sum())
+    programme = StaticProgramme(problem)
+    A, e0 = programme.equilibrium
+    force = max(total_load(problem) if problem.f.any() else 0.0, size)
+    column = sp.csc_array((programme.project(live) / size)[:, None])
+    equations = sp.csc_array(sp.hstack([A, column])), -(programme.project(problem.f) + e0) / force
+    bounds = np.vstack([programme.bounds / force, [-np.inf, np.inf]])
+    caps = programme.caps
+    if caps is not None:
+        caps = sp.csc_array(sp.hstack([caps[0], sp.csc_array((caps[0].shape[0], 1))])), caps[1] / force
+    result = optimise(np.r_[np.zeros(A.shape[1]), -1.0], equations, bounds, caps, method=method)
+    if result.status == 2:
+        return LimitLoad(np.nan, np.nan, *nothing, np.inf, None)
+    if result.status == 3:
+        state = statically_admissible(problem)
+        return LimitLoad(np.inf, np.inf, state.normal_force, state.friction_force, state.residual, None)
+    if result.status != 0:
+        msg = f"the linear programme of the limit load stopped: {result.message}"
+        raise SolverError(msg, hint="scale the model, or look for bodies of very different size")
+    multiplier = float(result.x[-1]) * force / size
+    x = result.x[:-1] * force
+    loaded = problem.f + multiplier * live
+    t_n, t_t = programme.forces(x)
+    if static_residual(problem, loaded, t_n, t_t) > 1e-13:
+        t_n, t_t = programme.forces(programme.balance(x, loaded))
+    velocity = problem.R @ (-result.marginals / programme.scale)
+    upper, mechanism = kinematic_bound(problem, live, multiplier, velocity)
+    residual = static_residual(problem, loaded, t_n, t_t)
+    return LimitLoad(multiplier, upper, t_n, t_t, residual, mechanism)
+
+
+def static_residual(problem: ContactProblem, load: Array, t_n: Array, t_t: Array) -> float:
+    """Return the largest entry of R'(load + C't) and of the excess over the cones, over the total load."""
+    left = problem.R.T @ (load + problem.C_n.T @ t_n + problem.C_t.T @ t_t.ravel())
+    strength = problem.sliding_strength(t_n)
+    excess = np.maximum.reduce(
+        [np.linalg.norm(t_t, axis=1) - strength, -(t_n + problem.laws.tension), t_n - problem.laws.cap]
+    )
+    worst = max(float(np.abs(left).max(initial=0.0)), float(np.maximum(excess, 0.0).max(initial=0.0)))
+    return worst / (float(np.abs(load).sum()) or 1.0)
+
+
+def kinematic_bound(
+    problem: ContactProblem, live: Array, multiplier: float, velocity: Array
+) -> tuple[float, Mechanism]:
+    """Return the multiplier of a motion (N,), polished if need be, and the motion as a rechecked mechanism.
+
+    The mechanism is that of the load f + multiplier g; its power is zero up to rounding at the true multiplier.
+    """
+    loaded = problem.with_loads(problem.f + multiplier * live)
+    best: tuple[float, Mechanism] | None = None
+    for active in (None, 1e-9, 1e-8, 1e-7):
+        v = velocity if active is None else polish(problem, velocity, active)
+        mechanism = verify_mechanism(loaded, v)
+        rate = float(live @ mechanism.velocity)
+        if rate > 0:
+            upper = (absorbed_power(problem, mechanism.velocity) - float(problem.f @ mechanism.velocity)) / rate
+            if best is None or mechanism.violation < best[1].violation:
+                best = upper, mechanism
+        if best is not None and best[1].violation <= 1e-12:
+            break
+    return best if best is not None else (np.nan, verify_mechanism(loaded, velocity))
+
+
+def scaled_friction(problem: ContactProblem, factor: float) -> ContactProblem:
+    """Return the problem with every friction coefficient multiplied by ``factor`` (dilatancy kept below it)."""
+    law = problem.laws
+    mu = law.friction * factor
+    return replace(problem, laws=replace(law, friction=mu, dilatancy=np.minimum(law.dilatancy, mu)))
+
+
+@dataclass(frozen=True)
+class FrictionMargin:
+    """Smallest common factor of the friction coefficients at which admissible forces still exist.
+
+    Parameters
+    ----------
+    factor : float
+        Factor of equilibrium; 0 where no friction is needed, ``nan`` where not even the largest factor tried holds.
+    below : float
+        Largest factor shown to be too small (-inf where none was).
+    programmes : int
+        Linear programmes solved.
+    """
+
+    factor: float
+    below: float
+    programmes: int
+
+
+def smallest_friction(problem: ContactProblem, *, largest: float = 1.0, tolerance: float = 1e-7) -> FrictionMargin:
+    """Find the smallest friction that still admits equilibrium under the problem's loads (associated bound).
+
+    What is left unbalanced, e(factor), falls to zero as friction grows and its slope is known from the dual
+    motion, -sum t_n mu |w_t|: Newton's method from below, kept within a bracket that bisection shrinks.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    largest : float
+        Largest factor considered.
+    tolerance : float
+        Width of the final bracket, relative to ``largest``. Forces count as admissible at a residual of 1e-11 of the
+        load.
+    """
+
+    def unbalanced(factor: float) -> tuple[bool, float]:
+        state = statically_admissible(scaled_friction(problem, factor))
+        if state.residual <= BALANCED:
+            return True, factor
+        v = state.velocity
+        w_t = np.linalg.norm((problem.C_t @ v).reshape(problem.pairs, -1), axis=1)
+        slope = float((state.normal_force * problem.laws.friction * w_t).sum())
+        loaded = scaled_friction(problem, factor)
+        short = float(loaded.f @ v) - absorbed_power(loaded, v)
+        return False, factor + short / slope if slope > 0 and short > 0 else np.nan
+
+    holds, _ = unbalanced(largest)
+    if not holds:
+        return FrictionMargin(np.nan, largest, 1)
+    low, high, count = 0.0, largest, 2
+    holds, guess = unbalanced(0.0)
+    if holds:
+        return FrictionMargin(0.0, -np.inf, count)
+    while high - low > tolerance * largest and count < 200:
+        step = 0.25 * tolerance * largest
+        inside = np.isfinite(guess) and low < guess < high
+        trial = min(max(guess + step, low + step), high - step) if inside and count % 4 else 0.5 * (low + high)
+        holds, found = unbalanced(trial)
+        count += 1
+        if holds:
+            high = trial
+        else:
+            low, guess = trial, found
+    return FrictionMargin(high, low, count)
