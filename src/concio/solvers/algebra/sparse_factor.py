@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import os
 from copy import copy
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
@@ -21,6 +22,10 @@ from concio.errors import ConcioError, InputError
 
 Array = np.ndarray
 Engine = Literal["superlu", "pardiso"]
+
+
+PIVOT = 0.01
+"""Share of the largest entry of its column down to which a diagonal entry is the pivot, unless told otherwise."""
 
 
 class SingularMatrixError(ConcioError):
@@ -58,85 +63,98 @@ def nested_dissection(pattern: sp.csr_array, group: int = 2) -> tuple[Array, str
     return (group * np.asarray(order)[:, None] + np.arange(group)).ravel(), "nested dissection"
 
 
-class PatternFactor:
-    """Factorises ``base + sum_k d_k * term_k`` for changing ``d`` without touching the pattern again.
+@dataclass(frozen=True, eq=False)
+class Pattern:
+    """A symmetric pattern in its fill-reducing order, compressed as an engine wants it.
 
     Parameters
     ----------
-    K : (N, N) CSR array
-    C : (p, N) CSR array
-        Rows coupled by ``D``.
-    couples : (k, 2) integer array
-        Entry ``(i, j)`` of D for each k; the matrix is K + sum_k d_k C_i' C_j + diagonal.
     engine : {"superlu", "pardiso"}
+    order : (N,) integer array
+        Unknowns in the order of elimination.
+    ordering : str
+        Name of the method.
+    minor, indptr : integer arrays
+        Compressed by columns (superlu) or rows (pardiso), permuted.
+    slot : (k,) integer array
+        Place among the values of each entry the pattern was made of.
     """
 
-    def __init__(self, K: sp.csr_array, C: sp.csr_array, couples: Array, engine: Engine = "superlu") -> None:
+    engine: Engine
+    order: Array
+    ordering: str
+    minor: Array
+    indptr: Array
+    slot: Array
+
+    @classmethod
+    def of(cls, row: Array, column: Array, size: int, engine: Engine) -> Pattern:
+        """Return the pattern of entries (k,), repeated ones among them, of a matrix of ``size`` unknowns."""
         if engine not in ("superlu", "pardiso"):
             msg = f"unknown factorisation engine '{engine}'"
             raise InputError(msg, hint="superlu or pardiso")
-        self.engine = engine
-        self.size = n = K.shape[0]
-        rows, columns, terms, values = _outer_terms(C, couples)
-        identity = np.arange(n)
-        K_coo = K.tocoo()
-        i = np.concatenate([K_coo.row, identity, rows])
-        j = np.concatenate([K_coo.col, identity, columns])
-        pattern = sp.csr_array((np.ones(len(i), dtype=np.int8), (i, j)), shape=(n, n))
+        pattern = sp.csr_array((np.ones(len(row), dtype=np.int8), (row, column)), shape=(size, size))
         pattern.sum_duplicates()
-        self.order, self.ordering = nested_dissection(pattern)
-        place = np.empty(n, dtype=np.int64)
-        place[self.order] = np.arange(n)
-        # permuted, compressed by columns (superlu) or rows (pardiso): major * n + minor
-        major, minor = (place[j], place[i]) if engine == "superlu" else (place[i], place[j])
-        keys, slot = np.unique(major * n + minor, return_inverse=True)
-        self._minor = (keys % n).astype(np.int32)
-        self._indptr = np.searchsorted(keys, np.arange(n + 1, dtype=np.int64) * n).astype(np.int32)
-        k_nnz = K_coo.nnz
-        self.nnz = len(keys)
-        self._base = np.bincount(slot[:k_nnz], weights=K_coo.data, minlength=self.nnz).astype(float)
-        self._diagonal = slot[k_nnz : k_nnz + n]
-        self._terms = sp.csr_array((values, (slot[k_nnz + n :], terms)), shape=(self.nnz, len(couples)))
+        order, ordering = nested_dissection(pattern)
+        place = np.empty(size, dtype=np.int64)
+        place[order] = np.arange(size)
+        major, minor = (place[column], place[row]) if engine == "superlu" else (place[row], place[column])
+        keys, slot = np.unique(major * size + minor, return_inverse=True)
+        indptr = np.searchsorted(keys, np.arange(size + 1, dtype=np.int64) * size).astype(np.int32)
+        return cls(engine, order, ordering, (keys % size).astype(np.int32), indptr, slot)
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return len(self.order)
+
+    @property
+    def nnz(self) -> int:
+        """Number of entries."""
+        return len(self.minor)
+
+
+class OrderedFactor:
+    """Factors of matrices of one pattern, ordered once.
+
+    Parameters
+    ----------
+    pattern : Pattern
+    pivot : float
+        Diagonal entries are pivots down to this share of the largest entry of their column (SuperLU).
+    """
+
+    def __init__(self, pattern: Pattern, pivot: float = PIVOT) -> None:
+        self.pattern, self.pivot = pattern, pivot
         self.count = 0
         self._lu: Any = None
         self._pardiso: Any = None
 
-    def with_diagonal(self, diagonal: Array) -> PatternFactor:
-        """Return a factor of K + diag(diagonal) that shares ordering and pattern; each keeps factors of its own."""
-        other = copy(self)
-        other._base = self._base.copy()
-        other._base[self._diagonal] += diagonal[self.order]
-        other._lu, other._pardiso, other.count = None, None, 0
-        return other
-
-    def factorise(self, d: Array, diagonal: Array | float = 0.0) -> None:
-        """Factorise K + sum_k d_k C_i' C_j + diag(diagonal).
+    def factorise(self, data: Array) -> None:
+        """Factorise the matrix whose entries are ``data`` (nnz,), as :attr:`Pattern.slot` places them.
 
         Raises
         ------
         SingularMatrixError
             A pivot is zero or not finite.
         """
-        data = self._base + self._terms @ d
-        if np.any(diagonal):
-            data[self._diagonal] += np.broadcast_to(diagonal, self.size)[self.order]
         if not np.isfinite(data).all():
             msg = "the matrix holds a value that is not finite"
             raise SingularMatrixError(msg)
         self.count += 1
-        shape = (self.size, self.size)
-        if self.engine == "pardiso":
-            self._factorise_pardiso(sp.csr_matrix((data, self._minor, self._indptr), shape=shape))
+        p = self.pattern
+        if p.engine == "pardiso":
+            self._factorise_pardiso(sp.csr_matrix((data, p.minor, p.indptr), shape=(p.size, p.size)))
             return
-        matrix = sp.csc_matrix((data, self._minor, self._indptr), shape=shape)
-        spec = "MMD_AT_PLUS_A" if self.ordering == "minimum degree" else "NATURAL"
+        matrix = sp.csc_matrix((data, p.minor, p.indptr), shape=(p.size, p.size))
+        spec = "MMD_AT_PLUS_A" if p.ordering == "minimum degree" else "NATURAL"
         try:
             splu: Any = sla.splu
-            self._lu = splu(matrix, permc_spec=spec, diag_pivot_thresh=0.01, options={"SymmetricMode": True})
+            self._lu = splu(matrix, permc_spec=spec, diag_pivot_thresh=self.pivot, options={"SymmetricMode": True})
         except RuntimeError as error:
             raise SingularMatrixError(str(error)) from None
         except MemoryError:
-            msg = f"not enough memory to factorise {self.size:,} unknowns"
+            msg = f"not enough memory to factorise {p.size:,} unknowns"
             raise ConcioError(msg, hint="use larger elements or rigid blocks") from None
 
     def _factorise_pardiso(self, matrix: Any) -> None:
@@ -155,21 +173,90 @@ class PatternFactor:
         self._matrix = matrix
         self._pardiso.set_phase(12 if first else 22)
         try:
-            self._pardiso._call_pardiso(matrix, np.zeros((self.size, 1)))
+            self._pardiso._call_pardiso(matrix, np.zeros((self.pattern.size, 1)))
         except pypardiso.PyPardisoError as error:
             raise SingularMatrixError(str(error)) from None
 
     def solve(self, b: Array) -> Array:
         """Return the solution for the last matrix factorised; ``b`` is (N,) or (N, k)."""
-        permuted = np.ascontiguousarray(b[self.order])
-        if self.engine == "pardiso":
+        order = self.pattern.order
+        permuted = np.ascontiguousarray(b[order])
+        if self.pattern.engine == "pardiso":
             self._pardiso.set_phase(33)
-            x = self._pardiso._call_pardiso(self._matrix, permuted.reshape(self.size, -1)).reshape(b.shape)
+            x = self._pardiso._call_pardiso(self._matrix, permuted.reshape(order.size, -1)).reshape(b.shape)
         else:
             x = self._lu.solve(permuted)
         result = np.empty_like(b)
-        result[self.order] = x
+        result[order] = x
         return result
+
+
+class PatternFactor:
+    """Factorises ``base + sum_k d_k * term_k`` for changing ``d`` without touching the pattern again.
+
+    Parameters
+    ----------
+    K : (N, N) CSR array
+    C : (p, N) CSR array
+        Rows coupled by ``D``.
+    couples : (k, 2) integer array
+        Entry ``(i, j)`` of D for each k; the matrix is K + sum_k d_k C_i' C_j + diagonal.
+    engine : {"superlu", "pardiso"}
+    """
+
+    def __init__(self, K: sp.csr_array, C: sp.csr_array, couples: Array, engine: Engine = "superlu") -> None:
+        n = K.shape[0]
+        rows, columns, terms, values = _outer_terms(C, couples)
+        identity = np.arange(n)
+        K_coo = K.tocoo()
+        i = np.concatenate([K_coo.row, identity, rows])
+        j = np.concatenate([K_coo.col, identity, columns])
+        self.pattern = pattern = Pattern.of(i, j, n, engine)
+        self.nnz, slot, k_nnz = pattern.nnz, pattern.slot, K_coo.nnz
+        self._base = np.bincount(slot[:k_nnz], weights=K_coo.data, minlength=self.nnz).astype(float)
+        self._diagonal = slot[k_nnz : k_nnz + n]
+        self._terms = sp.csr_array((values, (slot[k_nnz + n :], terms)), shape=(self.nnz, len(couples)))
+        self.numeric = OrderedFactor(pattern)
+
+    @property
+    def engine(self) -> Engine:
+        """Name of the factorisation."""
+        return self.pattern.engine
+
+    @property
+    def ordering(self) -> str:
+        """Name of the fill-reducing ordering."""
+        return self.pattern.ordering
+
+    @property
+    def count(self) -> int:
+        """Number of factorisations made."""
+        return self.numeric.count
+
+    def with_diagonal(self, diagonal: Array) -> PatternFactor:
+        """Return a factor of K + diag(diagonal) that shares ordering and pattern; each keeps factors of its own."""
+        other = copy(self)
+        other._base = self._base.copy()
+        other._base[self._diagonal] += diagonal
+        other.numeric = OrderedFactor(self.pattern)
+        return other
+
+    def factorise(self, d: Array, diagonal: Array | float = 0.0) -> None:
+        """Factorise K + sum_k d_k C_i' C_j + diag(diagonal).
+
+        Raises
+        ------
+        SingularMatrixError
+            A pivot is zero or not finite.
+        """
+        data = self._base + self._terms @ d
+        if np.any(diagonal):
+            data[self._diagonal] += diagonal
+        self.numeric.factorise(data)
+
+    def solve(self, b: Array) -> Array:
+        """Return the solution for the last matrix factorised; ``b`` is (N,) or (N, k)."""
+        return self.numeric.solve(b)
 
 
 def _outer_terms(C: sp.csr_array, couples: Array) -> tuple[Array, Array, Array, Array]:
