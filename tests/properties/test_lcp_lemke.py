@@ -7,10 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from concio.solvers.forms.complementary_basis import lemke_generalised
-from concio.solvers.forms.decide import infeasibility
-from concio.solvers.forms.lemke_method import Outcome, lemke
-from concio.solvers.forms.linear_problem import GeneralisedComplementarity, LinearComplementarity
+from concio.solvers.lcp.lemke_method import Outcome, lemke
+from concio.solvers.lcp.linear_problem import LinearComplementarity
+from lcp_oracles import infeasibility
 
 small = st.integers(-4, 4).map(float)
 sizes = st.integers(1, 7)
@@ -70,23 +69,3 @@ def test_degenerate_problems_end(n: int, seed: int) -> None:
     result = lemke(problem, limit=5000)
     assert result.outcome is Outcome.SOLVED
     assert good(problem, result.residual)
-
-
-@settings(max_examples=100, deadline=None)
-@given(square_and_vector(), st.integers(0, 10_000))
-def test_generalised_problem_agrees_with_the_standard_one_it_came_from(
-    data: tuple[np.ndarray, np.ndarray], seed: int
-) -> None:
-    L, q = data
-    n = len(q)
-    rng = np.random.default_rng(seed)
-    M = L @ L.T + (L - L.T) + 0.5 * np.eye(n)
-    swap = rng.random(n) < 0.5
-    mix = rng.uniform(-1, 1, (n, n)) + 3 * np.eye(n)
-    A, B = np.where(swap, np.eye(n), -M), np.where(swap, -M, np.eye(n))
-    problem = GeneralisedComplementarity(mix @ A, mix @ B, mix @ q)
-    result, t, y = lemke_generalised(problem)
-    assert result.outcome is Outcome.SOLVED
-    assert problem.residual(t, y) <= 1e-8 * (1 + np.abs(q).max() + np.abs(M).max())
-    z = lemke(LinearComplementarity(M, q)).z
-    np.testing.assert_allclose(np.where(swap, y, t), z, atol=1e-7)

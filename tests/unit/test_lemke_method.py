@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from concio.errors import InputError, MethodError
-from concio.solvers.forms.complementary_basis import complementary_basis, lemke_generalised, standard_form
-from concio.solvers.forms.decide import Verdict, decide, infeasibility
-from concio.solvers.forms.lemke_method import Outcome, equilibrate, lemke
-from concio.solvers.forms.linear_problem import GeneralisedComplementarity, LinearComplementarity
+from concio.errors import InputError
+from concio.solvers.lcp.lemke_method import Outcome, equilibrate, lemke
+from concio.solvers.lcp.linear_problem import GeneralisedComplementarity, LinearComplementarity
+from lcp_oracles import infeasibility, solution
 
 CORPUS = Path(os.environ.get("CONCIO_LCP_CORPUS", Path(__file__).parents[3] / "shared" / "data" / "lcp_corpus"))
 
@@ -67,13 +66,9 @@ FILES = sorted(CORPUS.glob("*.dat")) if CORPUS.is_dir() else []
 @pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)
 def test_corpus_is_solved_or_excluded_by_proof(path: Path) -> None:
     problem = read_corpus(path)
-    found = decide(problem)
-    if found.verdict is Verdict.SOLVED:
-        assert found.z is not None
-        assert problem.residual(found.z) <= 1e-9 * (1 + np.abs(problem.q).max())
+    if solution(problem) is not None:
         return
-    assert found.verdict is Verdict.INFEASIBLE, found.verdict.value
-    v = found.proof
+    v = infeasibility(problem)
     assert v is not None
     assert (v >= 0).all()
     assert (problem.M.T @ v).max() <= 1e-12
@@ -117,15 +112,16 @@ def test_ray_without_proof_is_not_taken_for_one() -> None:
     A, B = np.array([[10.0, 30.0], [20.0, 15.0]]), np.array([[10.0, 20.0], [30.0, 15.0]])
     problem = LinearComplementarity(np.block([[np.zeros((2, 2)), A], [B, np.zeros((2, 2))]]), -np.ones(4))
     assert lemke(problem).outcome is Outcome.RAY
-    found = decide(problem)
-    assert found.verdict is Verdict.SOLVED
-    assert problem.residual(found.z) < 1e-12
+    found = solution(problem)
+    assert found is not None
+    assert problem.residual(found) < 1e-12
 
 
-def test_exhausted_where_feasible_points_are_not_complementary() -> None:
-    """w1 = z1 - z2 + 1... with M = [[0, 0], [1, 0]]: w2 = z1 - 1 >= 0 needs z1 >= 1, w1 = 1 > 0 forbids it."""
+def test_no_solution_where_feasible_points_are_not_complementary() -> None:
+    """w1 = 1 with M = [[0, 0], [1, 0]]; w2 = z1 - 1 >= 0 needs z1 >= 1, and w1 > 0 forbids it."""
     problem = LinearComplementarity(np.array([[0.0, 0.0], [1.0, 0.0]]), np.array([1.0, -1.0]))
-    assert decide(problem).verdict is Verdict.EXHAUSTED
+    assert infeasibility(problem) is None
+    assert solution(problem) is None
 
 
 def test_limit_and_cancel_end_the_run() -> None:
@@ -160,29 +156,10 @@ def test_bad_input_is_refused() -> None:
         lemke(murty(2), basis="tableau")  # type: ignore[arg-type]
 
 
-def test_generalised_problem_with_singular_b() -> None:
-    """t1 is fixed by an equation without y: B has a zero row, and t1 must enter the basis."""
-    A = np.array([[1.0, 1.0], [-1.0, -2.0]])
-    B = np.array([[0.0, 0.0], [0.0, 1.0]])
-    problem = GeneralisedComplementarity(A, B, np.array([3.0, -4.0]))  # t1 + t2 = 3, y2 = t1 + 2 t2 - 4
-    np.testing.assert_array_equal(complementary_basis(problem), [True, False])
-    result, t, y = lemke_generalised(problem)
-    assert result.outcome is Outcome.SOLVED
-    assert problem.residual(t, y) < 1e-14
-    np.testing.assert_allclose(t, [2.0, 1.0], atol=1e-14)
-
-
-def test_complementary_basis_needs_an_exchange() -> None:
-    """The greedy choice B1 blocks the second row: only A1 with B2 is a basis."""
-    A = np.array([[0.0, 0.0], [1.0, 0.0]])
-    B = np.array([[2.0, 1.0], [0.0, 0.0]])
-    problem = GeneralisedComplementarity(A, B, np.array([1.0, 1.0]))
-    np.testing.assert_array_equal(complementary_basis(problem), [True, False])
-    _, t, y = lemke_generalised(problem)
-    assert problem.residual(t, y) < 1e-14
-
-
-def test_no_complementary_basis_is_said() -> None:
-    problem = GeneralisedComplementarity(np.array([[1.0, 0], [0, 0]]), np.array([[1.0, 0], [0, 0]]), np.ones(2))
-    with pytest.raises(MethodError, match="no complementary basis"):
-        standard_form(problem)
+def test_generalised_problem_measures_a_candidate() -> None:
+    problem = GeneralisedComplementarity(
+        np.array([[1.0, 1.0], [-1.0, -2.0]]), np.array([[0.0, 0.0], [0.0, 1.0]]), np.array([3.0, -4.0])
+    )  # t1 + t2 = 3, y2 = t1 + 2 t2 - 4
+    assert problem.residual(np.array([2.0, 1.0]), np.zeros(2)) == 0.0
+    assert problem.residual(np.array([2.0, 1.0]), np.array([0.0, 0.5])) == 0.5  # t2 y2 > 0
+    assert problem.residual(np.array([3.0, 0.0]), np.array([0.0, 0.25])) == 1.25  # y2 should be -1

@@ -151,8 +151,6 @@ def _walk(
     exact = follow(path, state, until=until, control=control, max_events=max_events, progress=progress)
     found = StepPath(exact.states, exact.events, exact.outcome, exact.direction)
     notes.extend(_finite_steps(stage, exact))
-    if control is not None:
-        return found
     if control is not None or exact.outcome is not Outcome.TOO_MANY:
         return found
     notes.append(

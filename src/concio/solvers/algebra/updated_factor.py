@@ -16,7 +16,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import SuperLU, splu
 
 from concio.problem.contact_problem import Array
-from concio.solvers.forms.lemke_basis import SingularBasisError
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
 
 CANCELLED = 1e5
 """Ratio of a column to its updated one beyond which digits are lost: the factorised matrix was nearly singular."""
@@ -61,13 +61,13 @@ class UpdatedFactor:
 
         Raises
         ------
-        SingularBasisError
+        SingularMatrixError
             It is singular.
         """
         try:
             self._lu: SuperLU = splu(sp.csc_matrix(self.matrix()), permc_spec="COLAMD")
         except RuntimeError as error:
-            raise SingularBasisError(str(error)) from error
+            raise SingularMatrixError(str(error)) from error
         self.factorisations += 1
         self._base = list(self.rows)
         self._places: list[int] = []
@@ -132,6 +132,6 @@ class UpdatedFactor:
         try:
             weights = np.linalg.solve(self._S[:q, :q], short)
         except np.linalg.LinAlgError as error:
-            raise SingularBasisError(str(error)) from error
+            raise SingularMatrixError(str(error)) from error
         y -= self._W[:, :q] @ weights
         return y

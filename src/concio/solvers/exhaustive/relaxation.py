@@ -152,17 +152,6 @@ class Relaxation:
             self.bases.append((self.fixed, self.highs.getBasis()))
         return found
 
-    def shrink(self, proof: Empty, rounds: int) -> Empty:
-        """Return a proof with fewer reasons where solving with these reasons alone finds one."""
-        for _ in range(rounds):
-            fixed = np.zeros(self.n, dtype=bool)
-            fixed[proof.reasons] = True
-            found = self.solve(fixed)
-            if not isinstance(found, Empty) or found.reasons.size >= proof.reasons.size:
-                break
-            proof = found
-        return proof
-
     def _attempt(self, fixed: Array) -> Point | Empty | None:
         self.solves += 1
         self.highs.run()

@@ -46,9 +46,6 @@ from concio.solvers.interior.exact_finish import finish
 ZERO = 1e-9
 """Forces and gaps below this, scaled, count as zero when a point is read as a state; the answer is judged anyway."""
 
-SHRINKS = 0
-"""Times a proof is tried again with its reasons alone, to find fewer."""
-
 REPORT = 20
 """Nodes between two calls of the progress callback."""
 
@@ -216,7 +213,6 @@ class Search:
     def excluded(self, found: Empty) -> Clause:
         """Return the clause that a proof of emptiness teaches: one of its reasons must not hold."""
         self.leaves += 1
-        found = self.lp.shrink(found, SHRINKS)
         self.reach = min(self.reach, found.reach)
         return [int(literal) ^ 1 for literal in self.questions.literal[found.reasons]]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from concio.errors import MethodError
 from concio.solvers.forms.forms import MixedForm
-from concio.solvers.forms.linear_problem import LinearComplementarity
+from concio.solvers.lcp.linear_problem import LinearComplementarity
 
 
 def condense(form: MixedForm) -> LinearComplementarity:

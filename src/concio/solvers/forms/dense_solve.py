@@ -10,13 +10,13 @@ import numpy as np
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Progress, ProgressCallback, Solution, Status, failed, judge, pair_states
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.forms.condensation import condense
 from concio.solvers.forms.force_method import force_method
 from concio.solvers.forms.forms import MixedForm
-from concio.solvers.forms.lemke_basis import SingularBasisError
-from concio.solvers.forms.lemke_method import LemkeResult, Outcome, lemke
-from concio.solvers.forms.linear_problem import LinearComplementarity
 from concio.solvers.forms.split_motions import join, split
+from concio.solvers.lcp.lemke_method import LemkeResult, Outcome, lemke
+from concio.solvers.lcp.linear_problem import LinearComplementarity
 from concio.solvers.pivoting import sparse_lemke
 from concio.solvers.pivoting.lemke_outcome import no_solution
 from concio.solvers.pivoting.pair_rows import Normal, Tangential
@@ -127,7 +127,7 @@ class DenseRun:
         normal, tangential = read_states(form, z, w)
         try:
             exact = finish(reduction.system, normal, tangential, method=self.method, **self.extra())
-        except SingularBasisError:
+        except SingularMatrixError:
             exact = plain
         best = exact if exact.certificate.worst <= plain.certificate.worst else plain
         if best.certificate.worst > EXACT and best.certificate.worst < ROUGH:

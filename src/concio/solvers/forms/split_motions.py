@@ -20,7 +20,7 @@ import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array
 from concio.solvers.forms.forms import MixedForm
-from concio.solvers.forms.linear_problem import LinearComplementarity
+from concio.solvers.lcp.linear_problem import LinearComplementarity
 
 
 def split(form: MixedForm, *, negligible: float = 1e-14) -> LinearComplementarity:

@@ -135,7 +135,7 @@ def cover_states(
 
     Raises
     ------
-    SingularBasisError
+    SingularMatrixError
         The states leave a body loose.
     """
     m = system.m

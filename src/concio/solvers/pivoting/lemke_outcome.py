@@ -6,6 +6,7 @@ from typing import Any
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Solution, Status, failed
+from concio.solvers.statics.existence import find_mechanism, mechanism_from
 
 
 def no_solution(
@@ -24,8 +25,6 @@ def no_solution(
     **extra
         Further fields of the solution.
     """
-    from concio.solvers.statics.existence import find_mechanism, mechanism_from
-
     mechanism = mechanism_from(problem, velocity) if velocity is not None else None
     mechanism = mechanism or find_mechanism(problem)
     trace = tuple(extra.pop("trace", ()))

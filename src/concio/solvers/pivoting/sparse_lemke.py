@@ -39,7 +39,7 @@ import numpy as np
 from concio.errors import InputError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution, Status, failed
-from concio.solvers.forms.lemke_basis import SingularBasisError
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.pivoting.covering import cold_states, cover_point, cover_states, named_states, open_states
 from concio.solvers.pivoting.lemke_outcome import no_solution
 from concio.solvers.pivoting.pair_rows import PairSystem
@@ -143,7 +143,7 @@ def solve(
         try:
             held, states = _covered(system, attempt)
             path = StatePath(held, *states, refresh=refresh)
-        except SingularBasisError:
+        except SingularMatrixError:
             work.trace.append(f"{name}: the starting states leave a body loose.")
             continue
         end = path.follow(most, progress)
@@ -156,7 +156,7 @@ def solve(
             ends = end.normal[:m], end.tangential[:m]
             try:
                 solution = finish(system if held.ground else held, *ends, method=METHOD, **work.extra(start=name))
-            except SingularBasisError:
+            except SingularMatrixError:
                 work.trace.append(f"{name}: its final states leave a body loose.")
                 continue
             if solution.solved:
@@ -197,7 +197,7 @@ def _as_given(system: PairSystem, states: tuple[Array, Array], work: _Work) -> S
     work.factorisations += 1
     try:
         return finish(system, *states, method=METHOD, **work.extra(start="given states, no pivot needed"))
-    except SingularBasisError:
+    except SingularMatrixError:
         return None
 
 

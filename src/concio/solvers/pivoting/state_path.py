@@ -30,8 +30,8 @@ import numpy as np
 
 from concio.problem.contact_problem import Array
 from concio.problem.solution import Progress, ProgressCallback
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.algebra.updated_factor import UpdatedFactor
-from concio.solvers.forms.lemke_basis import SingularBasisError
 from concio.solvers.pivoting.pair_rows import SIGN, Normal, PairSystem, Tangential
 
 FAR = 1e8
@@ -113,14 +113,14 @@ class StatePath:
             v = v + self.factor.solve(self.b - matrix @ v)
         if not np.isfinite(v).all():
             msg = "the system of the states is singular"
-            raise SingularBasisError(msg)
+            raise SingularMatrixError(msg)
         return v
 
     def follow(self, limit: int, progress: ProgressCallback | None = None) -> PathEnd:
         """Follow the path for at most ``limit`` events."""
         try:
             outcome, d = self._follow(limit, progress)
-        except SingularBasisError:
+        except SingularMatrixError:
             outcome, d = "singular", np.zeros_like(self.v)
         return PathEnd(outcome, self.normal, self.tangential, self.v, d, self.events, self.factor.factorisations)
 

@@ -15,7 +15,7 @@ from scipy.sparse.linalg import splu
 
 from concio.problem.contact_problem import Array
 from concio.problem.solution import Solution, judge
-from concio.solvers.forms.lemke_basis import SingularBasisError
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.pivoting.pair_rows import SIGN, PairSystem
 
 ROUNDS = 40
@@ -62,7 +62,7 @@ def state_solution(
 
     Raises
     ------
-    SingularBasisError
+    SingularMatrixError
         The states leave a body loose.
     """
     n, m = system.n, system.m
@@ -72,7 +72,7 @@ def state_solution(
     try:
         lu = splu(sp.csc_matrix(matrix))
     except RuntimeError as error:
-        raise SingularBasisError(str(error)) from error
+        raise SingularMatrixError(str(error)) from error
     target = matrix
     if hard:
         held, springs, anchored = system.delta, system.K, system.anchored
@@ -82,7 +82,7 @@ def state_solution(
     x = lu.solve(b)
     if not np.isfinite(x).all() or np.abs(x).max(initial=0.0) > 1e13:
         msg = "the states leave a body loose"
-        raise SingularBasisError(msg)
+        raise SingularMatrixError(msg)
     best, least = x, np.inf
     for _ in range(ROUNDS if hard else 2):
         rest = b - target @ x

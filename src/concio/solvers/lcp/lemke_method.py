@@ -31,8 +31,9 @@ import scipy.sparse as sp
 from concio.errors import InputError
 from concio.problem.contact_problem import Array
 from concio.problem.solution import Progress, ProgressCallback
-from concio.solvers.forms.lemke_basis import Basis, Columns, ExplicitInverse, ProductForm, SingularBasisError
-from concio.solvers.forms.linear_problem import LinearComplementarity, Matrix, is_sparse
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
+from concio.solvers.lcp.lemke_basis import Basis, Columns, ExplicitInverse, ProductForm
+from concio.solvers.lcp.linear_problem import LinearComplementarity, Matrix, is_sparse
 
 PIVOT = 1e-9
 """Entries of a column below this, relative to its largest, do not take part in the ratio test."""
@@ -223,14 +224,14 @@ class _Path:
         self.x, self.xp = vertex
         if not (np.isfinite(self.x).all() and np.isfinite(self.xp).all()):
             msg = "the basis is singular"
-            raise SingularBasisError(msg)
+            raise SingularMatrixError(msg)
         return inverse
 
     def follow(self, limit: int, progress: ProgressCallback | None) -> tuple[Outcome, Ray | None]:
         """Pivot until the path ends."""
         try:
             return self._follow(limit, progress)
-        except SingularBasisError:
+        except SingularMatrixError:
             return Outcome.BROKEN, None
 
     def _follow(self, limit: int, progress: ProgressCallback | None) -> tuple[Outcome, Ray | None]:

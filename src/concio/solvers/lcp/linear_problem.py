@@ -5,8 +5,8 @@ Standard:      :math:`w = M z + q,\quad 0 \le z \perp w \ge 0`.
 Generalised (horizontal), the paper's (33):      :math:`A t + B y = c,\quad 0 \le t \perp y \ge 0`.
 
 With B regular the second is the first with ``M = -B^{-1} A``, ``q = B^{-1} c``; the force method gives a singular B,
-and then any *complementary basis* (one column of each pair ``A_i, B_i``, all independent) does the same service: see
-:mod:`concio.solvers.forms.complementary_basis`.
+and then any *complementary basis* (one column of each pair ``A_i, B_i``, all independent) does the same service, that
+of the isostatic structure for instance (:mod:`concio.solvers.forms.force_method`).
 """
 
 from __future__ import annotations

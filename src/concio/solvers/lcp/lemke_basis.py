@@ -19,14 +19,11 @@ from scipy.linalg.blas import dger
 from scipy.sparse.linalg import SuperLU, splu
 
 from concio.problem.contact_problem import Array
-from concio.solvers.forms.linear_problem import Matrix, is_sparse
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
+from concio.solvers.lcp.linear_problem import Matrix, is_sparse
 
 DENSE = 0.2
 """Share of entries that are not zero above which the product form factorises a full matrix."""
-
-
-class SingularBasisError(ArithmeticError):
-    """The basis cannot be factorised."""
 
 
 class Basis(Protocol):
@@ -93,7 +90,7 @@ class ExplicitInverse:
         try:
             self._inverse: Array = np.asfortranarray(sl.inv(dense, check_finite=False))
         except sl.LinAlgError as error:
-            raise SingularBasisError(str(error)) from error
+            raise SingularMatrixError(str(error)) from error
         self.updates = 0
 
     def solve(self, a: Array) -> Array:
@@ -128,7 +125,7 @@ class ProductForm:
             try:
                 lu: SuperLU = splu(sp.csc_matrix(matrix))
             except RuntimeError as error:
-                raise SingularBasisError(str(error)) from error
+                raise SingularMatrixError(str(error)) from error
             self._solve = lu.solve
         self._etas: list[tuple[int, float, Array]] = []
 

@@ -1,0 +1,1 @@
+"""Linear complementarity problems as such, and the method of Lemke for them."""
