@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from concio.model.file.reading import load, loads
     from concio.model.file.writing import dumps, save
     from concio.model.generate.arches import arch
+    from concio.model.generate.cells import cell
     from concio.model.generate.columns import buttress, column
     from concio.model.generate.panel import running_bond_panel
     from concio.model.generate.rubble import rubble
@@ -57,6 +58,7 @@ _HOMES = {
     ),
     "concio.problem.solution": ("Status",),
     "concio.model.generate.arches": ("arch",),
+    "concio.model.generate.cells": ("cell",),
     "concio.model.generate.columns": ("buttress", "column"),
     "concio.model.drawing.drawing": ("model_from_dxf",),
     "concio.model.file.reading": ("load", "loads"),
@@ -95,6 +97,7 @@ __all__ = [
     "arch",
     "assemble",
     "buttress",
+    "cell",
     "column",
     "dumps",
     "friction_by_solving",

@@ -13,12 +13,14 @@ import scipy.sparse as sp
 from concio.contact.inertia import lumped_masses
 from concio.contact.loads import load_vectors
 from concio.contact.pairs import Pairs, make_pairs, pair_laws
+from concio.contact.periodic import STRAINS, held_at_a_point, strain_groups
 from concio.contact.sides import interface_breaks
 from concio.contact.supports import Supported, apply_supports, moved_obstacles
 from concio.contact.ties import add_ties
 from concio.errors import GeometryError, InputError
 from concio.fem.discretisation import Discretisation, discretise
 from concio.model.interfaces.detect import Detection, detect_interfaces
+from concio.model.interfaces.periodic import detect_periodic
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem, Laws
 
@@ -76,7 +78,7 @@ class Assembly:
         return f
 
     def problem(self, factors: Mapping[str, float] | None = None) -> ContactProblem:
-        """Return the contact problem under load factors; a group that is not named has factor 1.
+        """Return the contact problem under load factors; a group that is not named has factor 1 (a strain 0).
 
         Raises
         ------
@@ -135,7 +137,8 @@ def _no_pairs(disc: Discretisation) -> Pairs:
 
 
 def _factor(factors: Mapping[str, float] | None, group: str) -> float:
-    return 1.0 if factors is None else float(factors.get(group, 1.0))
+    usual = 0.0 if group in STRAINS else 1.0
+    return usual if factors is None else float(factors.get(group, usual))
 
 
 def default_tolerance(model: Model) -> float:
@@ -148,6 +151,8 @@ def default_tolerance(model: Model) -> float:
 
 def detect(model: Model) -> Detection:
     """Return the interfaces of a model with the report of what was dropped or overlaps."""
+    if model.periods is not None:
+        return detect_periodic(model.bodies, model.periods, tolerance=default_tolerance(model))
     return detect_interfaces(model.bodies, tolerance=default_tolerance(model), reach=model.gap_reach)
 
 
@@ -199,7 +204,9 @@ def assemble(model: Model) -> Assembly:
     """
     require_model(model)
     fixed = {"", *(b.name for b in model.bodies if b.kind == "fixed")}  # a tie without a body ends at a fixed point
-    if len(fixed) == 1 and not model.supports and not any({t.body_a, t.body_b} & fixed for t in model.ties):
+    periodic = model.periods is not None
+    tied = any({t.body_a, t.body_b} & fixed for t in model.ties)
+    if not periodic and len(fixed) == 1 and not model.supports and not tied:
         msg = "nothing holds the structure: there is no fixed body, no support and no tie to a fixed point"
         raise InputError(msg, hint="add a fixed body such as the ground, or a [[supports]] entry")
     if not model.free_bodies:
@@ -211,7 +218,7 @@ def assemble(model: Model) -> Assembly:
         others = len(detection.overlaps) - 1
         msg = first.sentence + (f", and {others} more overlap{'s' if others > 1 else ''}" if others else "")
         raise GeometryError(msg, hint="raise gap_tolerance only where the overlap is no more than inaccurate drawing")
-    disc = discretise(model, interface_breaks(model, detection.interfaces))
+    disc = discretise(held_at_a_point(model) if periodic else model, interface_breaks(model, detection.interfaces))
     held = bool(model.ties) or bool({s.body for s in model.supports} & {b.name for b in model.free_bodies})
     pairs = make_pairs(disc, detection.interfaces) if detection.interfaces or not held else _no_pairs(disc)
     laws = pair_laws(model, pairs)
@@ -225,5 +232,5 @@ def assemble(model: Model) -> Assembly:
         supported=apply_supports(disc),
         K=disc.stiffness(),
         loads=load_vectors(disc),
-        moved=moved_obstacles(disc, pairs),
+        moved=strain_groups(pairs, detection.interfaces) if periodic else moved_obstacles(disc, pairs),
     )

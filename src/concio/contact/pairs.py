@@ -120,14 +120,16 @@ def make_pairs(disc: Discretisation, interfaces: Sequence[Interface]) -> Pairs:
         at[rows], own_length[rows] = coupling.at, coupling.length
         where = sides.start[members][:, None] + coupling.at[:, None] * along[members][:, None]
         frame = np.stack([sides.normal[members], tangent[members]])
-        for body, side, sign in ((sides.a, coupling.a, -1.0), (sides.b, coupling.b, 1.0)):
+        own = where - sides.shift[members][:, None]  # the same points on b itself, not on its image across the cell
+        for body, side, sign, points_of in ((sides.a, coupling.a, -1.0, where), (sides.b, coupling.b, 1.0, own)):
             b = body[members]
             if disc.shape_of[b[0]] == FIXED:
                 continue
-            entries = (
-                _rigid_side(disc, b, rows, where, frame) if side is None else _meshed_side(disc, b, rows, side, frame)
+            row, column, value = (
+                _rigid_side(disc, b, rows, points_of, frame)
+                if side is None
+                else _meshed_side(disc, b, rows, side, frame)
             )
-            row, column, value = entries
             triplets.append((row.ravel(), column.ravel(), sign * value[0].ravel(), sign * value[1].ravel()))
     face = np.repeat(np.arange(len(interfaces)), count)
     share = at / length[face]

@@ -16,7 +16,10 @@ Array = np.ndarray
 
 @dataclass(frozen=True, eq=False)
 class FacingSides:
-    """All interfaces as arrays, i in all: bodies, edges with their ends, the common segment, its frame and gaps."""
+    """All interfaces as arrays, i in all: bodies, edges with their ends, the common segment, its frame and gaps.
+
+    ``p_b`` and ``q_b`` are ends of the image of b that a touches; ``shift`` is where it stands, from b itself.
+    """
 
     a: Array
     b: Array
@@ -30,6 +33,7 @@ class FacingSides:
     end: Array
     normal: Array
     gap: Array
+    shift: Array
 
     @classmethod
     def of(cls, bodies: Sequence[Body], interfaces: Sequence[Interface]) -> FacingSides:
@@ -40,10 +44,12 @@ class FacingSides:
         count = np.array([len(body.outline) for body in bodies])
         first = np.concatenate([[0], np.cumsum(count)[:-1]])
         vertices = np.concatenate([body.outline for body in bodies])
-        p_a, p_b = vertices[first[a] + edge_a], vertices[first[b] + edge_b]
+        shift = np.array([f.shift for f in interfaces], dtype=float).reshape(-1, 2)
+        p_a, p_b = vertices[first[a] + edge_a], vertices[first[b] + edge_b] + shift
         q_a = vertices[first[a] + (edge_a + 1) % count[a]]
-        q_b = vertices[first[b] + (edge_b + 1) % count[b]]
-        return cls(a, b, edge_a, edge_b, p_a, q_a, p_b, q_b, *(vectors[:, k] for k in range(4)))
+        q_b = vertices[first[b] + (edge_b + 1) % count[b]] + shift
+        start, end, normal, gap = (vectors[:, k] for k in range(4))
+        return cls(a, b, edge_a, edge_b, p_a, q_a, p_b, q_b, start, end, normal, gap, shift)
 
 
 def interface_breaks(model: Model, interfaces: Sequence[Interface]) -> Mapping[int, list[Array]]:

@@ -14,6 +14,7 @@ from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.stages import Stage
 
 Array = np.ndarray
+Periods = tuple[tuple[float, float], tuple[float, float]]
 Kind = Literal["elastic", "rigid", "fixed"]
 
 
@@ -252,6 +253,9 @@ class Model:
         How the model was made, for the record.
     stages : tuple of Stage
         Load path that comes with the model; :func:`concio.run_path` takes it where it is given no stages.
+    periods : ((x1, y1), (x2, y2)) or None
+        The model is a *cell* that these two vectors repeat in the plane without end [m]: its interfaces wrap round, and
+        nothing else may hold or load it. See :mod:`concio.model.periodic`.
     """
 
     bodies: tuple[Body, ...]
@@ -270,6 +274,7 @@ class Model:
     title: str = ""
     generator: Mapping[str, object] = field(default_factory=dict)
     stages: tuple[Stage, ...] = ()
+    periods: Periods | None = None
 
     def __post_init__(self) -> None:
         if not self.bodies:
@@ -294,6 +299,8 @@ class Model:
             if rule.law not in self.laws:
                 msg = f"joint law '{rule.law}' is not defined"
                 raise InputError(msg, hint="known: " + ", ".join(self.laws))
+        if self.periods is not None:
+            check_cell(self)
 
     @property
     def free_bodies(self) -> tuple[Body, ...]:
@@ -326,3 +333,33 @@ class Model:
                 return rule
         msg = f"no joint law for the interface between '{a.name}' and '{b.name}'"
         raise InputError(msg, hint="add a rule between '*' and '*'")
+
+
+def check_cell(model: Model) -> None:
+    """Refuse a periodic cell that is held or loaded by anything but its neighbours, or whose periods span no area.
+
+    Raises
+    ------
+    InputError
+    """
+    assert model.periods is not None
+    periods = np.asarray(model.periods, dtype=float)
+    if periods.shape != (2, 2) or not np.isfinite(periods).all():
+        msg = f"periods = {model.periods!r} must be two vectors (x, y)"
+        raise InputError(msg, hint="for example ((0.25, 0.0), (0.0, 0.12))")
+    if abs(float(np.linalg.det(periods))) <= 1e-9 * float(np.abs(periods).max()) ** 2:
+        msg = "the two periods are parallel: they span no cell"
+        raise InputError(msg, hint="give for example the length and the height of the cell")
+    fixed = [b.name for b in model.bodies if b.kind == "fixed"]
+    for what, found in (
+        (f"a fixed body ('{fixed[0]}')" if fixed else "", fixed), ("supports", model.supports),
+        ("loads", model.loads), ("ties", model.ties), ("a gap_reach", model.gap_reach),
+    ):  # fmt: skip
+        if found:
+            msg = f"a periodic cell has {what}"
+            hint = "a cell is held and loaded by its neighbours alone: macroscopic strains and stresses act on it"
+            raise InputError(msg, hint=hint)
+    depths = {b.thickness for b in model.bodies}
+    if len(depths) > 1:
+        msg = f"the bodies of a periodic cell have {len(depths)} thicknesses"
+        raise InputError(msg, hint="macroscopic stress is force over length and thickness: give them all one")

@@ -106,6 +106,8 @@ def _parts(
         "stages": (*(start.stages if start else ()), *(_stage(t, k) for k, t in enumerate(data.stages, 1))),
         **chosen,
     }
+    if data.periods is not None:
+        given["periods"] = data.periods
     if data.title or not start:
         given["title"] = data.title
     if data.record or not start:
@@ -172,7 +174,7 @@ def _argument(value: Any, table: str, key: str, materials: Materials, laws: Laws
         if value in ("elastic", "rigid") and key == "block" and value not in materials:
             return value
         return _named(value, f"[{table}], {key}", materials, "material")
-    if isinstance(value, str) and key == "friction":
+    if isinstance(value, str) and key in ("friction", "head"):
         return _named(value, f"[{table}], {key}", laws, "joint law")
     return value
 

@@ -68,7 +68,7 @@ def field_type(name: str, hint: Any) -> Any:
         return Literal[tuple(word for p in parts for word in get_args(p))]
     if name in ("block_size", "at"):
         return tuple[Size, Size]
-    if name == "elements_per_block":
+    if name in ("elements_per_block", "repeat"):
         return tuple[StrictInt, StrictInt]
     if any(p is float for p in parts):
         return TYPES[KINDS.get(name, "number")]

@@ -256,6 +256,7 @@ class FileTable(Table):
     rules: list[RuleTable] | None = None
     blocks: list[BlockTable] = Field(default_factory=list)
     blocks_file: Name | None = None
+    periods: tuple[Point, Point] | None = Field(None, description="the blocks are a cell that these vectors repeat")
     drawing: DrawingTable | None = None
     supports: list[SupportTable] = Field(default_factory=list)
     loads: list[LoadTable] = Field(default_factory=list)

@@ -32,7 +32,7 @@ def dumps(model: Model, *, blocks_file: str | None = None) -> str:
         Name a table of blocks instead of writing them into the text.
     """
     lines = ["# concio model"]
-    lines += _pairs({"title": model.title or None, "blocks_file": blocks_file})
+    lines += _pairs({"title": model.title or None, "blocks_file": blocks_file, "periods": model.periods})
     if not model.rules:
         lines.append("rules = []")
     lines += ["", "[units]", 'force = "kN"', 'length = "m"']

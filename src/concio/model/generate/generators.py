@@ -10,6 +10,7 @@ from typing import Any
 from concio.errors import InputError
 from concio.model.generate.arches import arch
 from concio.model.generate.arguments import Common
+from concio.model.generate.cells import cell
 from concio.model.generate.columns import buttress, column
 from concio.model.generate.panel import running_bond_panel
 from concio.model.generate.rubble import rubble
@@ -25,6 +26,7 @@ GENERATORS: Mapping[str, Callable[..., Model]] = MappingProxyType(
         "column": column,
         "buttress": buttress,
         "rubble": rubble,
+        "cell": cell,
     }
 )
 """Functions that return a model, by the name of their table in a model file."""

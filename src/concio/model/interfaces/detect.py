@@ -64,6 +64,9 @@ class Interface:
         Distance as drawn, negative where the edges overlap (by at most the tolerance) [m].
     length : float
         Length of the segment [m].
+    shift : (x, y)
+        Where the image of ``b`` stands that ``a`` touches, from ``b`` itself; not zero across an edge of a periodic
+        cell, where ``a`` may be ``b`` [m].
     """
 
     a: int
@@ -76,6 +79,7 @@ class Interface:
     gap: Array
     signed_gap: Array
     length: float
+    shift: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)

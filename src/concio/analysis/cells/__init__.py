@@ -1,0 +1,1 @@
+"""Periodic cells: homogenised moduli, unilateral response, strength, and the wall that they stand for."""

@@ -1,0 +1,58 @@
+"""Rates of a structure whose pairs keep given states: the linear response between two events."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from concio.problem.contact_problem import Array
+from concio.solvers.path.equations import PathEquations
+from concio.solvers.path.scaling import Scaled
+from concio.solvers.path.state import LinearPath
+
+
+@dataclass(frozen=True, eq=False)
+class StateRates:
+    """Rates for each unit of the parameter of a path.
+
+    Parameters
+    ----------
+    displacement : (N,) array
+        [m].
+    normal_force, friction_force : (m,) arrays
+        [kN].
+    residual : float
+        What the linear equations leave, relative to the largest term; not small where the states admit no response.
+    """
+
+    displacement: Array
+    normal_force: Array
+    friction_force: Array
+    residual: float
+
+
+def state_rates(path: LinearPath, contact: Array, sliding: Array) -> StateRates:
+    """Return the rates of a path whose pairs keep their states.
+
+    Parameters
+    ----------
+    path : LinearPath
+    contact, sliding : (m,) integer arrays
+        As in :class:`concio.solvers.path.state.PathState`.
+    """
+    scaled = Scaled.of(path)
+    driven = float(max(np.abs(path.gap_rate).max(initial=0.0), np.abs(path.tangent_rate).max(initial=0.0)))
+    pushed = float(np.abs(path.load_rate).max(initial=0.0))
+    unit = max(driven / scaled.length, pushed / scaled.force) or 1.0
+    slow = replace(
+        path, load_rate=path.load_rate / unit, gap_rate=path.gap_rate / unit, tangent_rate=path.tangent_rate / unit
+    )
+    n, m = path.problem.unknowns, path.problem.pairs
+    control = np.zeros(n + 2 * m + 1)
+    control[-1] = 1.0
+    equations = PathEquations(replace(scaled, path=slow), contact, sliding, control)
+    x, residual = equations.solve(control)
+    length, force = scaled.length * unit, scaled.force * unit
+    size = max(1.0, float(np.abs(x).max()))
+    return StateRates(x[:n] * length, x[n : n + m] * force, x[n + m : -1] * force, residual / size)
