@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from concio.model.model import signed_area
+from concio.kinematics.mass import signed_area
 
 
 def assert_good_mesh(outline, points, cells):

@@ -63,7 +63,19 @@ def test_masses_are_weights_over_gravity() -> None:
     assert problem.inertia[::2].sum() == pytest.approx(20.0 * 0.5 / GRAVITY)
     assert problem.inertia[1::2].sum() == pytest.approx(20.0 * 0.5 / GRAVITY)
     rigid = falling(Rigid(unit_weight=20.0))
-    np.testing.assert_allclose(rigid.inertia, 20.0 * 0.5 / GRAVITY)
+    np.testing.assert_allclose(rigid.inertia[:2], 20.0 * 0.5 / GRAVITY)
+
+
+def test_rotational_inertia_of_a_rigid_block_is_that_of_the_textbook() -> None:
+    """m (b^2 + h^2) / 12 for a block b x h; the unknown is the rotation times ``reach``."""
+    width, height, thickness = 0.5, 1.5, 0.7
+    stone = replace(box("stone", 0.1, 0.0, width, height, "rigid"), thickness=thickness)
+    model = Model((box("ground", -1.0, -0.2, 3.0, 0.2, "fixed"), stone), {"brick": Rigid(unit_weight=24.0)},
+                  {"joint": JointLaw(0.5)}, loads=(Load("weight", (0.0, -1.0)),))  # fmt: skip
+    assembly = concio.assemble(model)
+    about_centroid = assembly.inertia[2] * assembly.disc.reach[1] ** 2
+    mass = 24.0 / GRAVITY * width * height * thickness
+    assert about_centroid == pytest.approx(mass * (width**2 + height**2) / 12, rel=1e-13)
 
 
 def test_masses_without_weight_are_volumes() -> None:

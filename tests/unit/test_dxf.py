@@ -10,6 +10,7 @@ import pytest
 
 from concio.errors import GeometryError, InputError
 from concio.io.dxf_out import write_dxf
+from concio.kinematics.mass import signed_area
 from concio.model.drawing.drawing import model_from_dxf
 from concio.model.drawing.dxf import read_drawing
 from concio.model.drawing.dxf_entities import with_arcs
@@ -17,7 +18,6 @@ from concio.model.file.block_table import read_blocks, write_blocks
 from concio.model.generate.walls import wall
 from concio.model.interfaces.detect import detect_interfaces
 from concio.model.materials import Elastic, Rigid
-from concio.model.model import signed_area
 
 ezdxf = pytest.importorskip("ezdxf")
 

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from concio.errors import GeometryError, InputError
-from concio.fem.body import Shape, rigid_motions
+from concio.fem.body import Shape
 from concio.fem.constitutive import constitutive_matrix, principal
 from concio.fem.edge_integral import edge_weights
 from concio.fem.elements import FAMILIES, build, family
 from concio.fem.mesh import tensor
+from concio.kinematics.rigid import rigid_modes
 from concio.model.materials import Elastic
 
 STEEL = Elastic(E=2.0e5, nu=0.3)
@@ -212,7 +213,7 @@ def test_unknown_family_and_folded_element():
 
 def test_rigid_motions_are_translations_and_a_small_rotation():
     points = np.array([(2.0, 1.0), (4.0, 1.0), (3.0, 5.0)])
-    R = rigid_motions(points)
+    R = rigid_modes(points)
     turned = np.column_stack([-points[:, 1], points[:, 0]]).ravel()
     for motion in (np.tile([1.0, 0.0], 3), np.tile([0.0, 1.0], 3), turned):
         np.testing.assert_allclose(R @ (R.T @ motion), motion, atol=1e-13)

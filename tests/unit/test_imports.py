@@ -16,9 +16,9 @@ import concio
 
 ROOT = Path(concio.__file__).parent
 ORDER = (
-    "__version__", "errors", "units",
+    "__version__", "errors", "units", "kinematics",
     "model", "model/interfaces", "model/generate", "model/drawing", "model/file",
-    "kinematics", "fem", "problem", "contact",
+    "fem", "problem", "contact",
     "solvers/algebra", "solvers/lcp", "solvers/states", "solvers/statics", "solvers/interior", "solvers/pivoting",
     "solvers/forms", "solvers/iterative", "solvers/exhaustive", "solvers/motion", "solvers/auto", "solvers/path",
     "solvers", "analysis", "analysis/cells", "post", "plot", "report", "io", "study", "cli",
@@ -151,6 +151,15 @@ def test_solvers_know_nothing_of_masonry(path: Path) -> None:
     allowed = ("concio.problem", "concio.errors", "concio.solvers")
     for module in imports(path, lazy=True):
         assert module.startswith(allowed), f"{path.name} imports {module}"
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "kinematics").rglob("*.py")), ids=lambda p: p.name)
+def test_kinematics_knows_numpy_and_errors_only(path: Path) -> None:
+    for module in imports(path, lazy=True):
+        assert module.startswith(("concio.errors", "concio.kinematics")), f"{path.name} imports {module}"
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    packages = {a.name for n in ast.walk(tree) if isinstance(n, ast.Import) for a in n.names}
+    assert packages - {*sys.stdlib_module_names} <= {"numpy"}
 
 
 def loaded_after(code: str) -> set[str]:

@@ -13,7 +13,8 @@ from concio.analysis.contacts import Contacts, JointResultants, joint_resultants
 from concio.analysis.stress import Stress
 from concio.contact.assembly import Assembly
 from concio.errors import InputError
-from concio.fem.discretisation import FIXED, RIGID, rigid_rows
+from concio.fem.discretisation import FIXED, RIGID
+from concio.kinematics.rigid import rigid_operator, swept
 from concio.model.model import Model
 from concio.problem.certificate import Certificate
 from concio.problem.solution import Mechanism, Solution, Status, pair_states
@@ -184,7 +185,8 @@ class Result:
         if disc.shape_of[b] == FIXED:
             return self._obstacle_displacement(b)
         if disc.shape_of[b] == RIGID:
-            return np.array([rigid_rows(x, disc.centroids[b], disc.reach[b]) @ own for x in disc.nodes(b)])
+            moved: Array = rigid_operator(disc.nodes(b) - disc.centroids[b], disc.reach[b]) @ own
+            return moved
         return own.reshape(-1, 2)
 
     def _obstacle_displacement(self, b: int) -> Array:
@@ -194,8 +196,7 @@ class Result:
         for s in self.model.supports:
             if s.body == self.model.bodies[b].name:
                 factor = self.factors.get(s.group, 1.0)
-                turn = s.rotation * np.column_stack([-arm[:, 1], arm[:, 0]])
-                total = total + factor * (np.array(s.displacement) + turn)
+                total = total + factor * (np.array(s.displacement) + swept(s.rotation, arm))
         return total
 
     @cached_property

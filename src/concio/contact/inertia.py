@@ -17,7 +17,7 @@ def lumped_masses(disc: Discretisation) -> Array:
 
     Where every free body has a unit weight, masses are weights over gravity. Where one has none (it is common to leave
     the weight out), all bodies get a density of 1 t/m3 instead: some resistance to motion, equal everywhere. The
-    rotation of a rigid body, whose unknown is measured at the radius of gyration, carries the body's mass too.
+    rotation of a rigid body carries its mass too, since its unknown is the rotation times the radius of gyration.
     """
     model = disc.model
     free = [b for b in model.bodies if b.kind != "fixed"]

@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from concio.errors import InputError
-from concio.fem.discretisation import FIXED, RIGID, Discretisation, rigid_rows
+from concio.fem.discretisation import FIXED, RIGID, Discretisation
 from concio.fem.edge_integral import edge_weights
+from concio.kinematics.frames import turned_left
+from concio.kinematics.rigid import rigid_operator
 from concio.model.model import Load
 
 Array = np.ndarray
@@ -89,7 +91,7 @@ def _edges(disc: Discretisation, load: Load, chosen: list[int], f: Array) -> Non
         msg = f"the edge of a {load.kind} load has no length"
         raise InputError(msg, where=f"load group '{load.group}'", hint="use a point load")
     along = (q - p) / length
-    across = np.array([-along[1], along[0]])
+    across = turned_left(along)
     tolerance = max(1e-6 * disc.size, disc.model.gap_tolerance or 0.0)
     loaded = 0.0
     for b in chosen:
@@ -105,7 +107,7 @@ def _edges(disc: Discretisation, load: Load, chosen: list[int], f: Array) -> Non
                 continue
             loaded += end - start
             if load.kind == "pressure":
-                vector = load.value[0] * np.array([-direction[1], direction[0]])  # into the body
+                vector = load.value[0] * turned_left(direction)  # into the body
             else:
                 vector = np.array(load.value, dtype=float)
             _line_load(disc, b, int(e), (start, end), vector * body.thickness, f)
@@ -121,7 +123,7 @@ def _line_load(disc: Discretisation, b: int, edge: int, part: tuple[float, float
         outline = disc.model.bodies[b].outline
         p, q = outline[edge], outline[(edge + 1) % len(outline)]
         middle = p + (q - p) / np.linalg.norm(q - p) * (part[0] + part[1]) / 2
-        rows = rigid_rows(middle, disc.centroids[b], disc.reach[b])
+        rows = rigid_operator(middle - disc.centroids[b], disc.reach[b])
         f[at : at + 3] += rows.T @ vector * (part[1] - part[0])
         return
     nodes = disc.shapes[disc.shape_of[b]].edges[edge]

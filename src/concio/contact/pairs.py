@@ -17,6 +17,8 @@ from concio.contact.coupling import Line, Side, couple
 from concio.contact.sides import FacingSides
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, Discretisation
+from concio.kinematics.frames import turned_left
+from concio.kinematics.rigid import rigid_row
 from concio.model.interfaces.detect import Interface
 from concio.model.materials import JointLaw
 from concio.model.model import Model
@@ -111,7 +113,7 @@ def make_pairs(disc: Discretisation, interfaces: Sequence[Interface]) -> Pairs:
     total = int(begin[-1])
     at, own_length = np.zeros(total), np.zeros(total)
     triplets: list[tuple[Array, Array, Array, Array]] = []  # row, column, C_n, C_t
-    tangent = np.column_stack([-sides.normal[:, 1], sides.normal[:, 0]])
+    tangent = turned_left(sides.normal)
     order = np.argsort(group, kind="stable")
     ends = np.searchsorted(group[order], np.arange(len(couplings) + 1))
     for g, coupling in enumerate(couplings):
@@ -244,11 +246,8 @@ def _meshed_side(disc: Discretisation, b: Array, rows: Array, side: Side, frame:
 
 def _rigid_side(disc: Discretisation, b: Array, rows: Array, at: Array, frame: Array) -> tuple[Array, Array, Array]:
     """Return the same, (g, p, 3) and (2, g, p, 3), for rigid sides whose points are ``at`` (g, p, 2)."""
-    arm = (at - disc.centroids[b][:, None]) / disc.reach[b][:, None, None]
     columns = np.broadcast_to(disc.offsets[b][:, None, None] + np.arange(3), (*rows.shape, 3))
-    value = np.empty((2, *rows.shape, 3))
-    value[..., :2] = frame[:, :, None]
-    value[..., 2] = frame[..., 1, None] * arm[..., 0] - frame[..., 0, None] * arm[..., 1]
+    value = rigid_row(frame[:, :, None], at - disc.centroids[b][:, None], disc.reach[b][:, None])
     return np.broadcast_to(rows[..., None], columns.shape), columns, value
 
 

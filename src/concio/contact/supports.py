@@ -10,7 +10,8 @@ import scipy.sparse as sp
 
 from concio.contact.pairs import Pairs
 from concio.errors import InputError
-from concio.fem.discretisation import FIXED, RIGID, Discretisation, rigid_rows
+from concio.fem.discretisation import FIXED, RIGID, Discretisation
+from concio.kinematics.rigid import rigid_operator, swept
 from concio.model.model import Support
 
 Array = np.ndarray
@@ -158,8 +159,7 @@ def moved_obstacles(disc: Discretisation, pairs: Pairs) -> dict[str, tuple[Array
         if disc.shape_of[b] != FIXED:
             continue
         normal, tangential = moved.setdefault(support.group, (np.zeros(len(pairs)), np.zeros(len(pairs))))
-        arm = pairs.point - disc.centroids[b]
-        motion = np.array(support.displacement) + support.rotation * np.column_stack([-arm[:, 1], arm[:, 0]])
+        motion = np.array(support.displacement) + swept(support.rotation, pairs.point - disc.centroids[b])
         sign = (pairs.body_b == b).astype(float) - (pairs.body_a == b)
         normal += sign * (motion * pairs.normal).sum(1)
         tangential += sign * rough * (motion * pairs.tangent).sum(1)
@@ -192,7 +192,7 @@ def _conditions(disc: Discretisation, b: int, number: int) -> list[Condition]:
         motion = _moved(support, points[k], disc.centroids[b])
         for axis in axes:
             if disc.shape_of[b] == RIGID:
-                row = rigid_rows(points[k], disc.centroids[b], disc.reach[b])[axis]
+                row = rigid_operator(points[k] - disc.centroids[b], disc.reach[b])[axis]
                 found.append(Condition(number, axis, np.arange(3), row, float(motion[axis])))
             else:
                 found.append(Condition(number, axis, np.array([2 * k + axis]), np.ones(1), float(motion[axis])))
@@ -200,8 +200,8 @@ def _conditions(disc: Discretisation, b: int, number: int) -> list[Condition]:
 
 
 def _moved(support: Support, point: Array, centroid: Array) -> Array:
-    x, y = point - centroid
-    return np.array(support.displacement) + support.rotation * np.array([-y, x])
+    moved: Array = np.array(support.displacement) + swept(support.rotation, point - centroid)
+    return moved
 
 
 def _near(points: Array, p: Array, q: Array, tolerance: float) -> Array:

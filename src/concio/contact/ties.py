@@ -14,6 +14,7 @@ import scipy.sparse as sp
 from concio.contact.pairs import Pairs
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, Discretisation
+from concio.kinematics.frames import turned_left
 from concio.problem.contact_problem import Laws
 
 Array = np.ndarray
@@ -74,7 +75,7 @@ def add_ties(disc: Discretisation, pairs: Pairs, laws: Laws) -> tuple[Pairs, Law
         interface=np.concatenate([pairs.interface, np.full(n, -1)]),
         point=np.vstack([pairs.point, [(np.array(t.at_a) + np.array(t.at_b)) / 2 for t in ties]]),
         normal=np.vstack([pairs.normal, normals]),
-        tangent=np.vstack([pairs.tangent, np.column_stack([-normals[:, 1], normals[:, 0]])]),
+        tangent=np.vstack([pairs.tangent, turned_left(normals)]),
         length=np.concatenate([pairs.length, zero]),
         area=np.concatenate([pairs.area, one]),
         gap=np.concatenate([pairs.gap, -prestress / stiffness]),

@@ -9,6 +9,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.fem.elements import Elements
+from concio.kinematics.frames import turned_left
+from concio.kinematics.rigid import rigid_modes
 
 Array = np.ndarray
 
@@ -70,7 +72,7 @@ class Shape:
     @cached_property
     def R(self) -> Array:
         """Rigid motions (2n, 3), orthonormal: translations along x and y, rotation about the nodes' mean."""
-        return rigid_motions(self.elements.nodes)
+        return rigid_modes(self.elements.nodes)
 
     @cached_property
     def volume_weights(self) -> Array:
@@ -89,7 +91,7 @@ class Shape:
             length = float(np.linalg.norm(b - a))
             tangent = (b - a) / length
             at = (nodes - a) @ tangent
-            off = np.abs((nodes - a) @ np.array([-tangent[1], tangent[0]]))
+            off = np.abs((nodes - a) @ turned_left(tangent))
             on = np.flatnonzero((off <= tolerance) & (at >= -tolerance) & (at <= length + tolerance))
             on = on[np.argsort(at[on])]
             found.append(EdgeNodes(on, at[on], self.elements.edge_order))
@@ -112,14 +114,3 @@ class Shape:
         w = self.elements.weights / self.elements.weights.sum()
         mean = sp.csr_array(sp.kron(w[None, :], np.eye(3)))
         return np.asarray((mean @ self.stress_operator).todense())
-
-
-def rigid_motions(points: Array) -> Array:
-    """Return the orthonormal rigid motions (2n, 3) of points (n, 2), unknowns ordered (x, y) point by point."""
-    n = len(points)
-    R = np.zeros((2 * n, 3))
-    centred = points - points.mean(0)
-    R[0::2, 0] = R[1::2, 1] = 1 / np.sqrt(n)
-    R[0::2, 2], R[1::2, 2] = -centred[:, 1], centred[:, 0]
-    R[:, 2] /= np.linalg.norm(R[:, 2])
-    return R

@@ -14,6 +14,8 @@ from concio.fem.body import Shape
 from concio.fem.constitutive import constitutive_matrix
 from concio.fem.elements import build
 from concio.fem.mesh import mesh_body
+from concio.kinematics.frames import cross
+from concio.kinematics.rigid import rigid_operator
 from concio.model.materials import Elastic
 from concio.model.model import Body, Model
 
@@ -103,7 +105,7 @@ class Discretisation:
         if s == FIXED:
             return np.zeros(0, dtype=int), np.zeros((2, 0))
         if s == RIGID:
-            return self.offsets[b] + np.arange(3), rigid_rows(point, self.centroids[b], self.reach[b])
+            return self.offsets[b] + np.arange(3), rigid_operator(np.asarray(point) - self.centroids[b], self.reach[b])
         elements = self.shapes[s].elements
         local = np.asarray(point, dtype=float) - self.origins[b]
         distance = np.linalg.norm(elements.nodes - local, axis=1)
@@ -127,25 +129,13 @@ def _interpolate(nodes: Array, cells: Array, point: Array, size: float) -> tuple
     """Return corner nodes and linear weights of a point, by splitting elements into triangles."""
     triangles = cells if cells.shape[1] == 3 else np.vstack([cells[:, [0, 1, 2]], cells[:, [0, 2, 3]]])
     a, b, c = (nodes[triangles[:, i]] for i in range(3))
-    det = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (c[:, 0] - a[:, 0]) * (b[:, 1] - a[:, 1])
-    beta = ((point[0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (c[:, 0] - a[:, 0]) * (point[1] - a[:, 1])) / det
-    gamma = ((b[:, 0] - a[:, 0]) * (point[1] - a[:, 1]) - (point[0] - a[:, 0]) * (b[:, 1] - a[:, 1])) / det
+    det = cross(b - a, c - a)
+    beta, gamma = cross(point - a, c - a) / det, cross(b - a, point - a) / det
     weights = np.column_stack([1 - beta - gamma, beta, gamma])
     best = int(np.argmax(weights.min(axis=1)))
     if weights[best].min() < -1e-6:
         return np.zeros(0, dtype=int), np.zeros(0)
     return triangles[best], weights[best]
-
-
-def rigid_rows(point: Array, centroid: Array, reach: float) -> Array:
-    """Return (2, 3): displacement of ``point`` from the motion (u_x, u_y, reach * rotation) of a rigid body."""
-    x, y = np.asarray(point, dtype=float) - centroid
-    return np.array([[1.0, 0.0, -y / reach], [0.0, 1.0, x / reach]])
-
-
-def radius_of_gyration(outline: Array, centroid: Array) -> float:
-    """Return a length of the order of the polygon's radius of gyration, root mean square of its vertices [m]."""
-    return float(np.sqrt(((outline - centroid) ** 2).sum(1).mean()))
 
 
 def discretise(model: Model, breaks: Mapping[int, Sequence[Array]] | None = None) -> Discretisation:
@@ -186,7 +176,7 @@ def discretise(model: Model, breaks: Mapping[int, Sequence[Array]] | None = None
     offsets = np.concatenate([[0], np.cumsum(sizes)])
     _check_size(float(offsets[-1]))
     centroids = np.array([b.centroid for b in model.bodies])
-    reach = np.array([radius_of_gyration(b.outline, c) for b, c in zip(model.bodies, centroids, strict=True)])
+    reach = np.array([b.moments.radius_of_gyration for b in model.bodies])
     origins = np.array([b.outline[0] for b in model.bodies])
     return Discretisation(model, tuple(shapes), shape_of, offsets, origins, centroids, reach)
 

@@ -16,6 +16,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from concio.kinematics.frames import cross, turning
+
 Array = np.ndarray
 CORNER = np.deg2rad(30.0)
 """Vertices where the outline turns by less are part of a smooth side [rad]."""
@@ -26,16 +28,13 @@ SHARPEST = np.deg2rad(25.0)
 def corners_of(outline: Array) -> Array | None:
     """Return the indices of the four corners of an outline (n, 2), or None where it is not a quadrilateral."""
     before, after = outline - np.roll(outline, 1, axis=0), np.roll(outline, -1, axis=0) - outline
-    turn = np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], (before * after).sum(1))
+    turn = turning(before, after)
     corners = np.flatnonzero(np.abs(turn) >= CORNER)
     if len(corners) != 4:
         return None
     p = outline[corners]
     p_before, p_after = p - np.roll(p, 1, axis=0), np.roll(p, -1, axis=0) - p
-    chord_turn = np.arctan2(
-        p_before[:, 0] * p_after[:, 1] - p_before[:, 1] * p_after[:, 0], (p_before * p_after).sum(1)
-    )
-    inner = np.pi - np.concatenate([turn[corners], chord_turn])
+    inner = np.pi - np.concatenate([turn[corners], turning(p_before, p_after)])
     if (inner < SHARPEST).any() or (inner > np.pi - SHARPEST).any():
         return None
     return corners
@@ -90,7 +89,7 @@ def mapped_quads(outline: Array, corners: Array, marks: list[Array], size: float
     cells = np.column_stack([first, first + 1, first + nx + 1, first + nx])
     x = points[cells]
     ahead, back = np.roll(x, -1, axis=1) - x, np.roll(x, 1, axis=1) - x
-    turn = ahead[..., 0] * back[..., 1] - ahead[..., 1] * back[..., 0]
+    turn = cross(ahead, back)
     if (turn <= 0.02 * np.hypot(*ahead.transpose(2, 0, 1)) * np.hypot(*back.transpose(2, 0, 1))).any():
         return None
     return points, cells

@@ -17,6 +17,7 @@ import numpy as np
 from concio.errors import GeometryError, InputError
 from concio.fem.mapped_mesh import corners_of, mapped_quads
 from concio.fem.triangulate import triangles
+from concio.kinematics.frames import turning
 
 Array = np.ndarray
 
@@ -103,8 +104,7 @@ def mesh_quality(points: Array, cells: Array) -> MeshQuality:
     """Return the worst angles and the worst aspect of the cells (k, 3 or 4)."""
     x = points[cells]
     ahead, back = np.roll(x, -1, axis=1) - x, np.roll(x, 1, axis=1) - x
-    cross = ahead[..., 0] * back[..., 1] - ahead[..., 1] * back[..., 0]
-    angle = np.rad2deg(np.arctan2(cross, (ahead * back).sum(-1)))
+    angle = np.rad2deg(turning(ahead, back))
     angle = np.where(angle < 0, angle + 360, angle)
     side = np.hypot(ahead[..., 0], ahead[..., 1])
     return MeshQuality(float(angle.min()), float(angle.max()), float((side.max(1) / side.min(1)).max()))

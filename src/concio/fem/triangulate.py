@@ -17,6 +17,7 @@ import numpy as np
 import shapely
 
 from concio.errors import GeometryError
+from concio.kinematics.frames import cross
 
 Array = np.ndarray
 _SHARP = np.deg2rad(25.0)
@@ -63,7 +64,7 @@ class Triangulation:
         xy, tri = np.array(self.xy), np.array(self.triangles)
         p = np.array(point)
         a, b, c = (xy[tri[:, k]] for k in range(3))
-        signs = np.stack([_cross(b - a, p - a), _cross(c - b, p - b), _cross(a - c, p - c)], 1)
+        signs = np.stack([cross(b - a, p - a), cross(c - b, p - b), cross(a - c, p - c)], 1)
         length = np.stack([np.hypot(*(v).T) for v in (b - a, c - b, a - c)], 1)
         home = int(np.argmax((signs / length).min(1)))
         if (signs / length)[home].min() <= _ON_EDGE:
@@ -156,7 +157,7 @@ def cut_ears(boundary: Array) -> list[tuple[int, int, int]]:
     while len(remaining) > 3:
         p = boundary[remaining]
         before, after = np.roll(p, 1, axis=0), np.roll(p, -1, axis=0)
-        double = _cross(p - before, after - before)
+        double = cross(p - before, after - before)
         square = ((p - before) ** 2 + (after - p) ** 2 + (before - after) ** 2).sum(1)
         shape = double / square
         for ear in np.argsort(-shape):
@@ -170,7 +171,7 @@ def cut_ears(boundary: Array) -> list[tuple[int, int, int]]:
         result.append((remaining[ear - 1], remaining[ear], remaining[(ear + 1) % n]))
         del remaining[ear]
     i, j, k = remaining
-    if _cross(boundary[j] - boundary[i], boundary[k] - boundary[i]) <= 0:
+    if cross(boundary[j] - boundary[i], boundary[k] - boundary[i]) <= 0:
         raise _cannot(boundary[i])
     result.append((i, j, k))
     return result
@@ -187,7 +188,7 @@ def _holds_another(points: Array, a: Array, b: Array, c: Array, ear: int) -> boo
     others = np.delete(points, [ear - 1 if ear else n - 1, ear, (ear + 1) % n], axis=0)
     inside = np.ones(len(others), dtype=bool)
     for p, q in ((a, b), (b, c), (c, a)):
-        inside &= _cross(q - p, others - p) >= -_FLAT
+        inside &= cross(q - p, others - p) >= -_FLAT
     return bool(inside.any())
 
 
@@ -246,7 +247,7 @@ def _refine(mesh: Triangulation, h: float, may_stand: object) -> None:
         xy, tri = np.array(mesh.xy), mesh.cells()
         a, b, c = (xy[tri[:, k]] for k in range(3))
         la, lb, lc = (np.hypot(*v.T) for v in (c - b, a - c, b - a))
-        double = _cross(b - a, c - a)
+        double = cross(b - a, c - a)
         shortest = np.minimum(np.minimum(la, lb), lc)
         radius = la * lb * lc / np.maximum(2 * double, 1e-300)
         sharp = shortest < 2 * np.sin(_SHARP) * radius
@@ -267,8 +268,3 @@ def _refine(mesh: Triangulation, h: float, may_stand: object) -> None:
                 break
         else:
             return
-
-
-def _cross(p: Array, q: Array) -> Array:
-    result: Array = p[..., 0] * q[..., 1] - p[..., 1] * q[..., 0]
-    return result

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
 
 from concio.errors import GeometryError, InputError
+from concio.kinematics.mass import Moments, polygon_moments, signed_area
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.stages import Stage
 
@@ -83,26 +85,20 @@ class Body:
             msg = f"kind '{self.kind}' is not one of elastic, rigid, fixed"
             raise InputError(msg, where=where)
 
+    @cached_property
+    def moments(self) -> Moments:
+        """Area, centroid and second moments."""
+        return polygon_moments(self.outline)
+
     @property
     def area(self) -> float:
         """Area [m2]."""
-        return signed_area(self.outline)
+        return self.moments.measure
 
     @property
     def centroid(self) -> Array:
         """Centroid (2,) [m]."""
-        origin = self.outline[0]
-        p, q = self.outline - origin, np.roll(self.outline, -1, axis=0) - origin
-        cross = p[:, 0] * q[:, 1] - q[:, 0] * p[:, 1]
-        centroid: Array = origin + ((p + q) * cross[:, None]).sum(0) / (3 * cross.sum())
-        return centroid
-
-
-def signed_area(points: Array) -> float:
-    """Return the area of a polygon (n, 2), positive when counter-clockwise [m2]."""
-    p = points - points[0]
-    q = np.roll(p, -1, axis=0)
-    return float(0.5 * (p[:, 0] * q[:, 1] - q[:, 0] * p[:, 1]).sum())
+        return self.moments.centroid
 
 
 @dataclass(frozen=True)

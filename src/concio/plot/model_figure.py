@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from concio.kinematics.frames import turned_right
 from concio.plot import style
 
 if TYPE_CHECKING:
@@ -151,7 +152,7 @@ def _arrows(load: Load) -> tuple[Array, Array, str] | None:
         if load.kind == "traction":
             direction = value / size
         else:
-            inward = np.array([along[1], -along[0]])
+            inward = turned_right(along)
             direction = np.sign(value[0]) * (inward if inward[1] < 0 or (inward[1] == 0 and inward[0] < 0) else -inward)
         tips = np.linspace(a, b, 13)
         return tips, np.tile(direction, (13, 1)), style.number(size, "kN/m2")

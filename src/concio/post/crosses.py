@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from concio.fem.constitutive import principal
+from concio.kinematics.frames import turned_left
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
@@ -47,7 +48,7 @@ class Crosses:
     def arms(self, scale: float) -> tuple[Array, Array]:
         """Return arms (2c, 2, 2) [m] and their stresses (2c,) [kN/m2]; ``scale`` is the length of 1 kN/m2 [m]."""
         direction = np.column_stack([np.cos(self.angle), np.sin(self.angle)])
-        across = np.column_stack([-direction[:, 1], direction[:, 0]])
+        across = turned_left(direction)
         lines = []
         for value, along in ((self.s1, direction), (self.s2, across)):
             half = (0.5 * scale * np.abs(value))[:, None] * along

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.fem.discretisation import FIXED, RIGID
+from concio.kinematics.rigid import rigid_operator
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
@@ -37,11 +38,8 @@ def body_motions(result: Result, u: Array | None = None) -> Array:
         if not len(bodies):
             continue
         arm = shape.elements.nodes - (disc.centroids[bodies[0]] - disc.origins[bodies[0]])
-        n = len(arm)
-        modes = np.zeros((2 * n, 3))
-        modes[0::2, 0] = modes[1::2, 1] = 1.0
-        modes[0::2, 2], modes[1::2, 2] = -arm[:, 1], arm[:, 0]
-        nodal = own[disc.offsets[bodies][:, None] + np.arange(2 * n)]
+        modes = rigid_operator(arm, 1.0).reshape(-1, 3)
+        nodal = own[disc.offsets[bodies][:, None] + np.arange(len(modes))]
         motion[bodies] = nodal @ np.linalg.pinv(modes).T
     if u is None:
         for b in np.flatnonzero(disc.shape_of == FIXED):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.fem.discretisation import FIXED
+from concio.kinematics.rigid import swept
 from concio.post.motion import body_motions
 
 if TYPE_CHECKING:
@@ -80,8 +81,7 @@ def outlines(result: Result, u: Array | None = None) -> Outlines:
             outline = disc.model.bodies[b].outline
             place, corner = np.vstack([outline, outline[:1]]), np.arange(len(outline) + 1)
             arm = place - disc.centroids[b]
-            turn = np.column_stack([-arm[:, 1], arm[:, 0]])
-            displaced = motion[b, :2] + motion[b, 2] * turn
+            displaced = motion[b, :2] + swept(motion[b, 2], arm)
             if s == FIXED and u is not None:
                 displaced = np.zeros_like(place)
         along = begin + np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(place, axis=0).T))])

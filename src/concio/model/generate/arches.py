@@ -21,6 +21,7 @@ from typing import Literal, Unpack
 import numpy as np
 
 from concio.errors import InputError
+from concio.kinematics.frames import turned_left, turned_right
 from concio.model.generate.arguments import Common, checked, choice, count, finite, positive
 from concio.model.generate.masonry import Piece, assemble, numbered
 from concio.model.model import Array, Load, Model
@@ -205,7 +206,7 @@ def _flat(where: str, s: float, t: float, n: int, skew: float) -> tuple[list[Arr
 def _abutment(joint: Array, t: float) -> Array:
     """Return a fixed block (4, 2) behind a springing joint, given from intrados to extrados."""
     along = joint[1] - joint[0]
-    outward = np.array([along[1], -along[0]]) if along[0] > 0 else np.array([-along[1], along[0]])
+    outward = turned_right(along) if along[0] > 0 else turned_left(along)
     behind = outward / np.hypot(*outward) * 0.5 * t
     return np.array([joint[0], joint[1], joint[1] + behind, joint[0] + behind])
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from concio.kinematics.frames import turned_right, turning
 from concio.model.model import Array, Body
 
 
@@ -62,7 +63,7 @@ class FacingPairs:
     @property
     def normal(self) -> Array:
         """Unit normals from a to b (p, 2)."""
-        return np.stack([self.tangent[:, 1], -self.tangent[:, 0]], 1)
+        return turned_right(self.tangent)
 
     @property
     def g_min(self) -> Array:
@@ -116,8 +117,7 @@ def facing_pairs(edges: Edges, near: Array, tolerance: float, angle: float) -> F
     ti, tj = edges.tangent[i], edges.tangent[j]
     keep = (-(ti * tj).sum(1) >= np.cos(angle)) & ~(edges.fixed[i] & edges.fixed[j])
     i, j, ti, tj = i[keep], j[keep], ti[keep], tj[keep]
-    cross = np.abs(ti[:, 0] * tj[:, 1] - ti[:, 1] * tj[:, 0])
-    turned = np.arctan2(cross, -(ti * tj).sum(1))
+    turned = np.abs(turning(ti, -tj))
     t = ti - tj
     t /= np.hypot(*t.T)[:, None]
     origin = edges.start[i]
@@ -126,7 +126,7 @@ def facing_pairs(edges: Edges, near: Array, tolerance: float, angle: float) -> F
     lo, hi = np.maximum(0.0, b0), np.minimum(a1, b1)
     keep = hi - lo > tolerance
     i, j, t, turned, origin, a1, b0, b1, lo, hi = (v[keep] for v in (i, j, t, turned, origin, a1, b0, b1, lo, hi))
-    n = np.stack([t[:, 1], -t[:, 0]], 1)
+    n = turned_right(t)
     end_i, b_first, b_last = edges.end[i] - origin, edges.end[j] - origin, edges.start[j] - origin
 
     def point_a(s: Array) -> Array:

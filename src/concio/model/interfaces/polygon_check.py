@@ -10,7 +10,9 @@ import numpy as np
 import shapely
 
 from concio.errors import GeometryError
-from concio.model.model import Array, Body, signed_area
+from concio.kinematics.frames import turning
+from concio.kinematics.mass import signed_area
+from concio.model.model import Array, Body
 
 FaultKind = Literal["not finite", "too few", "double vertex", "spike", "crossing", "touching", "no area"]
 SHARPEST = np.deg2rad(1.0)
@@ -110,8 +112,7 @@ def _double_vertices(points: Array, tolerance: float) -> list[Fault]:
 
 def _spikes(points: Array, sharpest: float) -> list[Fault]:
     back, ahead = np.roll(points, 1, axis=0) - points, np.roll(points, -1, axis=0) - points
-    cross = back[:, 0] * ahead[:, 1] - back[:, 1] * ahead[:, 0]
-    angle = np.arctan2(np.abs(cross), (back * ahead).sum(1))
+    angle = np.abs(turning(back, ahead))
     return [
         Fault(
             "spike",

@@ -1,0 +1,62 @@
+"""Frames of contact and the products that go with them: one sign convention for the plane and for space.
+
+The tangent of the plane is the normal *turned left*, so that (n, t) turns like (x, y). Arrays hold vectors along their
+last axis, of length d = 2 or 3; functions work on any number of vectors at once.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+Array = np.ndarray
+
+FLAT = 1e-6
+"""Share of a normal that may lie in the horizontal plane for its face to count as horizontal."""
+
+
+def turned_left(v: Array) -> Array:
+    """Return plane vectors (..., 2) turned left by a right angle: (-y, x)."""
+    v = np.asarray(v)
+    return np.stack([-v[..., 1], v[..., 0]], axis=-1)
+
+
+def turned_right(v: Array) -> Array:
+    """Return plane vectors (..., 2) turned right by a right angle: (y, -x)."""
+    v = np.asarray(v)
+    return np.stack([v[..., 1], -v[..., 0]], axis=-1)
+
+
+def cross(p: Array, q: Array) -> Array:
+    """Return the cross product: (...) in the plane, positive from p to q turning left; (..., 3) in space."""
+    p, q = np.asarray(p), np.asarray(q)
+    if p.shape[-1] == 2:
+        area: Array = np.asarray(p[..., 0] * q[..., 1] - p[..., 1] * q[..., 0])
+        return area
+    a, b, c = p[..., 0], p[..., 1], p[..., 2]
+    x, y, z = q[..., 0], q[..., 1], q[..., 2]
+    return np.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=-1)
+
+
+def turning(p: Array, q: Array) -> Array:
+    """Return the angle (...) by which plane vectors p turn into q, in (-pi, pi], positive to the left [rad]."""
+    p, q = np.asarray(p), np.asarray(q)
+    return np.asarray(np.arctan2(cross(p, q), (p * q).sum(-1)))
+
+
+def tangents(normal: Array) -> Array:
+    """Return the tangents (..., d-1, d) of unit normals (..., d).
+
+    In the plane the normal turned left. In space two of them, right-handed with the normal: on a face that is not
+    horizontal the first is horizontal, the normal turned left in plan, and the second points up the face; on a
+    horizontal face the first points along x.
+    """
+    n = np.asarray(normal, dtype=float)
+    if n.shape[-1] == 2:
+        return turned_left(n)[..., None, :]
+    level = np.hypot(n[..., 0], n[..., 1])
+    flat = (level <= FLAT)[..., None]
+    in_plan = np.stack([-n[..., 1], n[..., 0], np.zeros_like(level)], axis=-1) / np.where(flat, 1.0, level[..., None])
+    along_x = np.array([1.0, 0.0, 0.0]) - n[..., :1] * n
+    length = np.where(flat, np.linalg.norm(along_x, axis=-1, keepdims=True), 1.0)
+    first = np.where(flat, along_x / length, in_plan)
+    return np.stack([first, cross(n, first)], axis=-2)
