@@ -32,6 +32,10 @@ class InputError(ConcioError):
     exit_code = 2
 
 
+class ArgumentError(InputError, TypeError):
+    """A function was called with an argument it does not know, or without one it needs (exit code 2)."""
+
+
 class GeometryError(InputError):
     """A polygon, a drawing or the arrangement of blocks is not usable (exit code 2)."""
 

@@ -25,8 +25,8 @@ def test_what_where_and_hint(kind: type[errors.ConcioError]) -> None:
 def test_exit_codes() -> None:
     codes = {c.__name__: c.exit_code for c in ALL}
     assert codes == {
-        "ConcioError": 1, "InputError": 2, "GeometryError": 2, "MethodError": 2, "NoEquilibriumError": 3,
-        "SolverError": 4,
+        "ConcioError": 1, "InputError": 2, "ArgumentError": 2, "GeometryError": 2, "MethodError": 2,
+        "NoEquilibriumError": 3, "SolverError": 4,
     }  # fmt: skip
     assert {s.name: s.exit_code for s in Status} == {
         "SOLVED": 0, "NO_EQUILIBRIUM": 3, "COLLAPSES": 3, "NO_COULOMB_STATE": 3,

@@ -307,7 +307,7 @@ WRONG = {
     "unknown key": ("[panel]\ncourse = 3", "[panel]: unknown key 'course' (did you mean 'courses'?)"),
     "unknown table": ("[pannel]\ncourses = 3", "f.toml: unknown key 'pannel' (did you mean 'panel'?)"),
     "unknown key of a block": (BLOCK + "colour = 'red'", "[[blocks]] 2 'b': unknown key 'colour'"),
-    "unknown key of a material": ("[materials.a]\ne = 1\n[panel]", "[materials.a]: unknown key 'e' (known: kind, E"),
+    "unknown key of a material": ("[materials.a]\ne = 1\n[panel]", "unknown key 'e' (did you mean 'E'?)"),
     "unknown key of a joint": ("[joints.a]\nfricton = 1\n[panel]", "unknown key 'fricton' (did you mean 'friction'?)"),
     "unknown key of a friction": ("[panel.friction]\nfriction = 1\nfoo = 1", "[panel.friction]: unknown key 'foo'"),
     "negative modulus": ("[panel]\nblock.E = -1", "[panel.block]: Young's modulus E = -1 must be positive"),

@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from concio.analysis.lent_compliance import with_compliance
+from concio.arguments import closest, strict
 from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
@@ -139,6 +140,7 @@ class LimitResult:
         }
 
 
+@strict
 def limit(
     model: Model | Assembly,
     live: str | Sequence[str] = "live",
@@ -199,6 +201,7 @@ def search_collapse(dead: ContactProblem, live: Array) -> tuple[CollapseState | 
     return state, f"least of those found, in programme {state.iterations} of at most {most}"
 
 
+@strict
 def friction_margin(model: Model | Assembly, live: str | Sequence[str] = "live", factor: float = 1.0) -> FrictionMargin:
     """Return the smallest common factor of all friction coefficients that still admits equilibrium.
 
@@ -220,7 +223,7 @@ def dead_and_live(assembly: Assembly, live: str | Sequence[str]) -> tuple[Contac
     for group in groups:
         if group not in assembly.groups:
             msg = f"there is no load group '{group}'"
-            raise InputError(msg, hint="groups: " + ", ".join(assembly.groups))
+            raise InputError(msg, hint=closest(group, assembly.groups, names="groups"))
     dead = assembly.problem(dict.fromkeys(groups, 0.0))
     load = assembly.problem(dict.fromkeys(groups, 1.0)).f - dead.f
     if not np.abs(load).any():

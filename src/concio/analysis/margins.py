@@ -18,6 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.analysis.limit import dead_and_live
+from concio.arguments import strict
 from concio.contact.assembly import Assembly, as_assembly
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
@@ -55,6 +56,7 @@ class Margin:
     solves: int
 
 
+@strict
 def load_margin(model: Model | Assembly, live: str | Sequence[str] = "live", tolerance: float = 1e-3) -> Margin:
     """Return the largest factor of the live load that :func:`concio.solve` was found to carry, in one step.
 
@@ -81,6 +83,7 @@ def load_margin(model: Model | Assembly, live: str | Sequence[str] = "live", tol
     return _bisect(lambda factor: dead.with_loads(dead.f + factor * load), 0.0, limit, tolerance * abs(limit))
 
 
+@strict
 def friction_by_solving(
     model: Model | Assembly, live: str | Sequence[str] = "live", factor: float = 1.0, tolerance: float = 1e-3
 ) -> Margin:

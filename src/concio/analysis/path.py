@@ -20,6 +20,7 @@ import numpy as np
 
 from concio.analysis.lent_compliance import SHEAR_TO_NORMAL, assembly_with_compliance
 from concio.analysis.path_result import NamedEvent, PathResult, PathStep, control_functional, named_event
+from concio.arguments import closest, strict
 from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import InputError, SolverError
 from concio.model.model import Model
@@ -36,6 +37,7 @@ __all__ = ["ControlPoint", "NamedEvent", "PathResult", "PathStep", "Stage", "con
 Array = np.ndarray
 
 
+@strict
 def run_path(
     model: Model | Assembly,
     stages: Sequence[Stage] = (),
@@ -184,7 +186,7 @@ def _target(assembly: Assembly, factors: Mapping[str, float], stage: Stage) -> d
     for group in stage.factors:
         if group not in factors:
             msg = f"there is no load group '{group}'"
-            raise InputError(msg, where=f"stage '{stage.name}'", hint="groups: " + ", ".join(assembly.groups))
+            raise InputError(msg, where=f"stage '{stage.name}'", hint=closest(group, assembly.groups, names="groups"))
     return {**factors, **{g: float(v) for g, v in stage.factors.items()}}
 
 

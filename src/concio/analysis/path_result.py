@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from concio.analysis.result import Result
+from concio.arguments import closest
 from concio.contact.assembly import Assembly
 from concio.errors import InputError
 from concio.model.stages import ControlPoint, Stage
@@ -165,7 +166,8 @@ def control_functional(assembly: Assembly, point: ControlPoint) -> tuple[Array, 
     names = [body.name for body in assembly.model.bodies]
     if point.body not in names:
         msg = f"there is no body called '{point.body}'"
-        raise InputError(msg, where="control point", hint="see the names with 'concio check'")
+        hint = closest(point.body, names, otherwise="see the names with 'concio check'")
+        raise InputError(msg, where="control point", hint=hint)
     b, disc = names.index(point.body), assembly.disc
     size = float(np.hypot(*point.direction))
     if not size > 0:

@@ -11,6 +11,7 @@ import numpy as np
 
 from concio.analysis.contacts import Contacts, JointResultants, joint_resultants
 from concio.analysis.stress import Stress
+from concio.arguments import closest
 from concio.contact.assembly import Assembly
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID
@@ -169,7 +170,8 @@ class Result:
                 if b.name == body:
                     return i
             msg = f"there is no body called '{body}'"
-            raise InputError(msg, hint="see the names with 'concio check'")
+            hint = closest(body, (b.name for b in self.model.bodies), otherwise="see the names with 'concio check'")
+            raise InputError(msg, hint=hint)
         return body
 
     def nodes(self, body: int | str) -> Array:

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
+from concio.arguments import strict
 from concio.contact.assembly import require_model
 from concio.errors import InputError, SolverError
 from concio.model.materials import Rigid
@@ -137,6 +138,7 @@ class _Blocks:
                 self.outlines[b] = self.outlines[b] + np.array([x, y])
 
 
+@strict
 def rock(model: Model, *, direction: float = 1.0, step: float = 0.005, smallest: float = 0.0) -> RockingResult:
     """Follow the collapse of rigid blocks under a horizontal share of their weight in large displacements.
 

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from concio.analysis.path import PathResult, Stage, run_path
+from concio.arguments import strict
 from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import InputError
 from concio.model.model import Model
@@ -41,6 +42,7 @@ class SettlementResult:
         return self.path.complete
 
 
+@strict
 def settle(
     model: Model | Assembly,
     group: str = "settlement",

@@ -7,13 +7,15 @@ from collections.abc import Mapping
 from typing import Any, Literal
 
 from concio.analysis.result import Result
+from concio.arguments import options_of, strict
 from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import NoEquilibriumError, SolverError
 from concio.model.model import Model
 from concio.problem.solution import ProgressCallback, Solver, Status
-from concio.solvers.methods import find
+from concio.solvers.methods import check_options, find
 
 
+@strict
 def solve(
     model: Model | Assembly,
     method: str = "auto",
@@ -39,7 +41,7 @@ def solve(
     progress : callable, optional
         Called with :class:`concio.problem.solution.Progress` as the solver works; true stops it.
     **options
-        Options of the method.
+        Options of the method, see the ``solve`` of its module; others are refused.
 
     Returns
     -------
@@ -48,13 +50,14 @@ def solve(
     Raises
     ------
     InputError
-        The model cannot be used as it is.
+        The model cannot be used as it is, or the method has no option of a name that was given.
     NoEquilibriumError
         A mechanism, a motion without end or the exclusion of all joint states proves that the loads are not carried.
     SolverError
         The solver stopped without an answer.
     """
     solver: Solver = find(method)
+    check_options(method, options, function="solve()", others=("method", *options_of(solve)))
     begin = time.perf_counter()
     assembly = as_assembly(model, jointless=True)
     problem = assembly.problem(factors)

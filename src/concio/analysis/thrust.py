@@ -14,6 +14,7 @@ import numpy as np
 
 from concio.analysis.contacts import JointResultants
 from concio.analysis.result import Result
+from concio.arguments import strict
 from concio.errors import InputError
 
 Array = np.ndarray
@@ -98,6 +99,7 @@ def crossing_points(joints: JointResultants) -> Array:
     return points
 
 
+@strict
 def hinges(result: Result, tolerance: float = AT_EDGE) -> list[Hinge]:
     """Return the joints whose resultant crosses them within ``tolerance`` times their length from an edge.
 
@@ -118,6 +120,7 @@ def hinges(result: Result, tolerance: float = AT_EDGE) -> list[Hinge]:
     return found
 
 
+@strict
 def thrust_line(result: Result) -> ThrustLine:
     """Return the line of thrust of a chain of blocks, such as an arch between its abutments.
 
@@ -165,6 +168,7 @@ def thrust_line(result: Result) -> ThrustLine:
     )
 
 
+@strict
 def course_resultants(result: Result, tolerance: float = 1e-6) -> CourseResultants:
     """Return the resultants of the level bed joints of a wall, level by level from below.
 

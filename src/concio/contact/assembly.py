@@ -10,6 +10,7 @@ from os import PathLike, fspath
 import numpy as np
 import scipy.sparse as sp
 
+from concio.arguments import closest, strict
 from concio.contact.inertia import lumped_masses
 from concio.contact.loads import load_vectors
 from concio.contact.pairs import Pairs, make_pairs, pair_laws
@@ -88,7 +89,7 @@ class Assembly:
         for group in factors or {}:
             if group not in self.groups:
                 msg = f"there is no load group '{group}'"
-                raise InputError(msg, hint="groups: " + ", ".join(self.groups))
+                raise InputError(msg, hint=closest(group, self.groups, names="groups"))
         T = self.supported.T
         u0 = self.imposed(factors)
         C_n, C_t = self.pairs.C_n, self.pairs.C_t
@@ -191,6 +192,7 @@ def as_assembly(model: Model | Assembly, *, jointless: bool = False) -> Assembly
     return assembly
 
 
+@strict
 def assemble(model: Model) -> Assembly:
     """Return the arrays of a model.
 

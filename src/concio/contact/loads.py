@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from concio.arguments import closest
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID, Discretisation
 from concio.fem.edge_integral import edge_weights
@@ -56,8 +57,10 @@ def _bodies(disc: Discretisation, load: Load) -> list[int]:
     for word in load.bodies:
         found = [i for i, b in enumerate(bodies) if b.kind != "fixed" and word in (b.name, b.role, b.layer)]
         if not found:
+            known = {w for b in bodies if b.kind != "fixed" for w in (b.name, b.role, b.layer) if w}
             msg = f"a {load.kind} load acts on '{word}', but no free body has that name, role or layer"
-            raise InputError(msg, where=f"load group '{load.group}'", hint="see the names with 'concio check'")
+            hint = closest(word, known, otherwise="see the names with 'concio check'")
+            raise InputError(msg, where=f"load group '{load.group}'", hint=hint)
         chosen.extend(found)
     return sorted(set(chosen))
 

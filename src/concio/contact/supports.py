@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
+from concio.arguments import closest
 from concio.contact.pairs import Pairs
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID, Discretisation
@@ -108,7 +109,8 @@ def apply_supports(disc: Discretisation) -> Supported:
         where = f"support '{support.name}'"
         if support.body not in number:
             msg = f"holds '{support.body}', but no body has that name"
-            raise InputError(msg, where=where, hint="see the names with 'concio check'")
+            hint = closest(support.body, number, otherwise="see the names with 'concio check'")
+            raise InputError(msg, where=where, hint=hint)
         if not np.isfinite([*support.displacement, support.rotation]).all():
             msg = "an imposed displacement is not finite"
             raise InputError(msg, where=where)

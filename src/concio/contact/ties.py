@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 import scipy.sparse as sp
 
+from concio.arguments import closest
 from concio.contact.pairs import Pairs
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, Discretisation
@@ -52,7 +53,8 @@ def add_ties(disc: Discretisation, pairs: Pairs, laws: Laws) -> tuple[Pairs, Law
         for side, (name, point, sign) in enumerate(((tie.body_a, a, 1.0), (tie.body_b, b, -1.0))):
             if name and name not in number:
                 msg = f"there is no body called '{name}'"
-                raise InputError(msg, where=where, hint="leave body_b empty for a fixed point")
+                hint = closest(name, number, otherwise="leave body_b empty for a fixed point")
+                raise InputError(msg, where=where, hint=hint)
             ends[k, side] = number.get(name, -1)
             if name:
                 dofs, operator = disc.point_operator(number[name], point)

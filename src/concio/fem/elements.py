@@ -17,6 +17,7 @@ import numpy as np
 import scipy.sparse as sp
 import skfem
 
+from concio.arguments import closest
 from concio.errors import GeometryError, InputError
 
 Array = np.ndarray
@@ -55,7 +56,7 @@ def family(name: str) -> Family:
     """
     if name not in FAMILIES:
         msg = f"unknown element '{name}'"
-        raise InputError(msg, hint="one of: " + ", ".join(FAMILIES))
+        raise InputError(msg, hint=closest(name, FAMILIES, names="one of"))
     return FAMILIES[name]
 
 

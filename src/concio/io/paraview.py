@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.arguments import strict
 from concio.errors import InputError
 from concio.fem.constitutive import principal
 from concio.io.vtu import POLYGON, QUAD, TRIANGLE, VERTEX, Grid, write_pvd, write_vtu
@@ -102,6 +103,7 @@ def contacts_grid(result: Result) -> Grid:
     return Grid(pairs.point, np.arange(m), np.arange(1, m + 1), np.full(m, VERTEX), data)
 
 
+@strict
 def write_paraview(
     results: Result | Sequence[Result], directory: Path | str, *, times: Sequence[float] | None = None
 ) -> list[Path]:

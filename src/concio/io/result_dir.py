@@ -21,6 +21,7 @@ import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from concio.arguments import strict
 from concio.errors import ConcioError, InputError
 from concio.io.csv_table import write_csv
 from concio.io.result_file import save_result
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from concio.analysis.result import Result
 
 
+@strict
 def write_result(result: Result, directory: Path | str, *, figures: bool = True, report: bool = True) -> list[Path]:
     """Write a result directory; one that is there from an earlier run is replaced.
 

@@ -21,6 +21,7 @@ import scipy
 
 import concio
 from concio.analysis.result import Result
+from concio.arguments import strict
 from concio.contact.assembly import Assembly
 from concio.contact.pairs import Pairs
 from concio.contact.supports import Condition, Supported
@@ -92,6 +93,7 @@ def save_result(result: Result, directory: Path) -> list[Path]:
     return [text, arrays]
 
 
+@strict
 def load_result(directory: Path | str) -> Result:
     """Return the result that :func:`save_result` or :func:`concio.io.write_result` left in a directory.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from concio.arguments import strict_class
 from concio.errors import InputError
 from concio.units import quantity
 
@@ -23,6 +24,7 @@ def _check_weight(unit_weight: float) -> None:
         raise InputError(msg, hint="weight acts downwards by itself; give it as a positive number")
 
 
+@strict_class
 @dataclass(frozen=True)
 class Elastic:
     """Isotropic linear elastic material.
@@ -59,6 +61,7 @@ class Elastic:
         _check_weight(self.unit_weight)
 
 
+@strict_class
 @dataclass(frozen=True)
 class Rigid:
     """Material of a body that does not deform: three unknowns in the plane.
@@ -76,6 +79,7 @@ class Rigid:
         _check_weight(self.unit_weight)
 
 
+@strict_class
 @dataclass(frozen=True)
 class JointLaw:
     """Law of an interface between two bodies; strengths are stresses, integrated over tributary areas later.

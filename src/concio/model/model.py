@@ -10,6 +10,7 @@ from typing import Literal
 
 import numpy as np
 
+from concio.arguments import closest, strict_class
 from concio.errors import GeometryError, InputError
 from concio.kinematics.mass import Moments, polygon_moments, signed_area
 from concio.model.materials import Elastic, JointLaw, Rigid
@@ -20,6 +21,7 @@ Periods = tuple[tuple[float, float], tuple[float, float]]
 Kind = Literal["elastic", "rigid", "fixed"]
 
 
+@strict_class
 @dataclass(frozen=True, eq=False)
 class Body:
     """A block, a mortar film or an obstacle: a simple polygon.
@@ -101,6 +103,7 @@ class Body:
         return self.moments.centroid
 
 
+@strict_class
 @dataclass(frozen=True)
 class JointRule:
     """Chooses the law of the interfaces between two sorts of bodies.
@@ -136,6 +139,7 @@ class JointRule:
         return (fits(p, a) and fits(q, b)) or (fits(p, b) and fits(q, a))
 
 
+@strict_class
 @dataclass(frozen=True)
 class Support:
     """Holds unknowns of elastic or rigid bodies, with or without an imposed displacement.
@@ -166,6 +170,7 @@ class Support:
     group: str = "settlement"
 
 
+@strict_class
 @dataclass(frozen=True)
 class Load:
     """A load on the bodies it names.
@@ -195,6 +200,7 @@ class Load:
     group: str = "dead"
 
 
+@strict_class
 @dataclass(frozen=True)
 class Tie:
     """A straight bar that takes tension only, with prestress, between two bodies or a body and a fixed point.
@@ -221,6 +227,7 @@ class Tie:
     prestress: float = 0.0
 
 
+@strict_class
 @dataclass(frozen=True, eq=False)
 class Model:
     """A masonry structure in the plane.
@@ -286,7 +293,7 @@ class Model:
                 continue
             if body.material not in self.materials:
                 msg = f"material '{body.material}' is not defined"
-                raise InputError(msg, where=f"block '{body.name}'", hint="known: " + ", ".join(self.materials))
+                raise InputError(msg, where=f"block '{body.name}'", hint=closest(body.material, self.materials))
             material = self.materials[body.material]
             if (body.kind == "rigid") != isinstance(material, Rigid):
                 msg = f"a body of kind '{body.kind}' has the material '{body.material}' ({type(material).__name__})"
@@ -294,7 +301,7 @@ class Model:
         for rule in self.rules:
             if rule.law not in self.laws:
                 msg = f"joint law '{rule.law}' is not defined"
-                raise InputError(msg, hint="known: " + ", ".join(self.laws))
+                raise InputError(msg, hint=closest(rule.law, self.laws))
         if self.periods is not None:
             check_cell(self)
 
@@ -314,7 +321,8 @@ class Model:
             if body.name == name:
                 return body
         msg = f"there is no body called '{name}'"
-        raise InputError(msg, hint="see the names with 'concio check'")
+        hint = closest(name, (b.name for b in self.bodies), otherwise="see the names with 'concio check'")
+        raise InputError(msg, hint=hint)
 
     def rule_between(self, a: Body, b: Body) -> JointRule:
         """Return the rule of an interface between two bodies: the last that matches.

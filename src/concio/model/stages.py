@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from concio.arguments import strict_class
 
+
+@strict_class
 @dataclass(frozen=True)
 class ControlPoint:
     """A point whose displacement is controlled or plotted.
@@ -25,6 +28,7 @@ class ControlPoint:
     direction: tuple[float, float] = (1.0, 0.0)
 
 
+@strict_class
 @dataclass(frozen=True)
 class Stage:
     """One stage of loading.

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from concio.arguments import strict
 from concio.problem.certificate import CERTIFIED
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ class Table(Protocol):
         """Title of the figure."""
 
 
+@strict
 def plot_convergence(table: Table, ax: Axes | None = None) -> Axes:
     """Draw the best residual so far against the work, one line a method, both axes logarithmic.
 

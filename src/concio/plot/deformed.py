@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from concio.arguments import strict
 from concio.errors import InputError
 from concio.plot import style
 from concio.post.joint_lines import JointLines, joint_lines
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 Array = np.ndarray
 
 
+@strict
 def plot_deformed(result: Result, ax: Axes | None = None, *, scale: float | None = None) -> Axes:
     """Draw the deformed shape; joints are told apart as open, sticking, slipping.
 
@@ -57,6 +59,7 @@ def plot_deformed(result: Result, ax: Axes | None = None, *, scale: float | None
     return ax
 
 
+@strict
 def plot_slip(result: Result, ax: Axes | None = None) -> Axes:
     """Draw how far joints have opened (orange) and slipped (purple): the thicker, the further.
 
@@ -96,6 +99,7 @@ def plot_slip(result: Result, ax: Axes | None = None) -> Axes:
     return ax
 
 
+@strict
 def plot_mechanism(
     result: Result,
     ax: Axes | None = None,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from concio.arguments import strict
 from concio.errors import InputError
 from concio.plot import style
 from concio.post.force_lines import force_chains
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 Array = np.ndarray
 
 
+@strict
 def plot_pressure(result: Result, ax: Axes | None = None, *, scale: float | None = None) -> Axes:
     """Draw contact pressure as a diagram standing on each joint.
 
@@ -63,6 +65,7 @@ def plot_pressure(result: Result, ax: Axes | None = None, *, scale: float | None
     return ax
 
 
+@strict
 def plot_forces(result: Result, ax: Axes | None = None, *, chains: bool = True, reactions: bool = True) -> Axes:
     """Draw contact forces as lines along which they act, and as chains from joint to joint through the blocks.
 
@@ -113,6 +116,7 @@ def plot_forces(result: Result, ax: Axes | None = None, *, chains: bool = True, 
     return ax
 
 
+@strict
 def plot_thrust(result: Result, ax: Axes | None = None) -> Axes:
     """Draw the line of thrust through the resultants of the joints, with hinges where it reaches an edge.
 

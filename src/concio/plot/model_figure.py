@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from concio.arguments import strict
 from concio.kinematics.frames import turned_right
 from concio.plot import style
 
@@ -21,6 +22,7 @@ NAMED = 150
 """Up to this many bodies get their names written."""
 
 
+@strict
 def plot_model(model: Model, ax: Axes | None = None, *, names: bool | None = None) -> Axes:
     """Draw a model as it is described, before meshing.
 

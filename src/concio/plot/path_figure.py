@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from concio.arguments import strict
 from concio.plot import style
 
 if TYPE_CHECKING:
@@ -64,6 +65,7 @@ MARKS: dict[str, tuple[str, str, str]] = {
 """Marker, colour and word of each kind of event."""
 
 
+@strict
 def plot_path(
     curve: PathCurve,
     ax: Axes | None = None,

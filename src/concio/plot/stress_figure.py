@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from concio.arguments import strict
 from concio.plot import style
 from concio.post.crosses import crosses
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 Array = np.ndarray
 
 
+@strict
 def plot_principal(
     result: Result,
     ax: Axes | None = None,

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import concio
+from concio.arguments import strict
 from concio.errors import InputError
 from concio.plot.figures import TITLES, suitable_figures
 from concio.plot.style import number
@@ -28,6 +29,7 @@ ROWS = 250
 """Longest table; of longer ones the rows that matter most are shown."""
 
 
+@strict
 def write_report(
     results: Result | Sequence[Result], path: Path | str, *, labels: Sequence[str] | None = None, figures: bool = True
 ) -> Path:
@@ -53,6 +55,7 @@ def write_report(
     return path
 
 
+@strict
 def report_html(
     results: Result | Sequence[Result], *, labels: Sequence[str] | None = None, figures: bool = True
 ) -> str:

@@ -1,9 +1,11 @@
-"""The methods by name. A method is a module with a function ``solve(problem, *, progress=None, **options)``."""
+"""The methods by name: modules with a function ``solve(problem, *, progress=None, ...)`` and its options."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from importlib import import_module
 
+from concio.arguments import closest, options_of, refuse_unknown
 from concio.errors import MethodError
 from concio.problem.solution import Solver
 
@@ -40,6 +42,31 @@ def find(name: str) -> Solver:
     """
     if name not in METHODS:
         msg = f"unknown method '{name}'"
-        raise MethodError(msg, hint="one of: " + ", ".join(METHODS))
+        raise MethodError(msg, hint=closest(name, METHODS, names="one of"))
     solver: Solver = import_module(METHODS[name]).solve
     return solver
+
+
+def check_options(name: str, options: Iterable[str], *, function: str, others: tuple[str, ...] = ()) -> None:
+    """Refuse options that a method does not have.
+
+    Parameters
+    ----------
+    name : str
+        The method.
+    options : iterable of str
+        Names of the options given.
+    function : str
+        The function that was called with them, for the message.
+    others : tuple of str
+        Arguments of that function itself, which may have been meant.
+
+    Raises
+    ------
+    ArgumentError
+        An option is not known.
+    MethodError
+        There is no method of that name.
+    """
+    own = tuple(option for option in options_of(find(name)) if option != "progress")
+    refuse_unknown(options, (*others, *own), function)

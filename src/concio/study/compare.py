@@ -16,10 +16,11 @@ from typing import Any
 
 import numpy as np
 
+from concio.arguments import closest, strict
 from concio.errors import MethodError
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Progress, ProgressCallback, Solution, Status
-from concio.solvers.methods import METHODS, find
+from concio.solvers.methods import METHODS, check_options, find
 
 ENGINE = "interior-point"
 """The method the seconds of all others are divided by."""
@@ -100,6 +101,7 @@ class ComparisonTable:
         return told
 
 
+@strict
 def compare(
     problem: ContactProblem,
     methods: Iterable[str] | None = None,
@@ -130,11 +132,18 @@ def compare(
     Raises
     ------
     MethodError
-        There is no method of one of the names.
+        There is no method of one of the names, or options are given for one that is not compared.
+    ArgumentError
+        A method has no option of a name that was given.
     """
     names = [name for name in METHODS if name != "auto"] if methods is None else list(dict.fromkeys(methods))
     for name in (*names, engine):
         find(name)
+    for name, given in (options or {}).items():
+        if name not in (*names, engine):
+            msg = f"options are given for '{name}', which is not among the methods compared"
+            raise MethodError(msg, hint=closest(name, (*names, engine), names="compared"))
+        check_options(name, given, function=f"method '{name}'")
     order = [engine, *(name for name in names if name != engine)]
     runs = [_run(problem, name, (options or {}).get(name, {}), time_limit, progress) for name in order]
     unit = runs[0][1]

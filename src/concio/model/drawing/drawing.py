@@ -10,6 +10,7 @@ from typing import Any, Literal, Unpack
 import numpy as np
 import shapely
 
+from concio.arguments import strict_with
 from concio.errors import GeometryError, InputError
 from concio.model.drawing.dxf import CHORD_TOLERANCE, Drawing, DxfFault, Outline, read_drawing
 from concio.model.drawing.mend import snapped
@@ -22,6 +23,7 @@ from concio.model.model import Array, Body, Load, Model, Support
 from concio.units import quantity
 
 
+@strict_with(Common.__annotations__)
 def model_from_dxf(
     path: str | Path,
     *,

@@ -26,6 +26,7 @@ from typing import Any
 
 import numpy as np
 
+from concio.arguments import closest
 from concio.errors import InputError
 from concio.model.interfaces.polygon_check import check_polygon
 from concio.model.model import Array, Body
@@ -170,7 +171,7 @@ def _body(row: Mapping[str, Any], factor: float, where: str) -> Body:
     for key in row:
         if key not in _COLUMNS:
             msg = f"unknown key '{key}'"
-            raise InputError(msg, where=where, hint="known: " + ", ".join(_COLUMNS))
+            raise InputError(msg, where=where, hint=closest(key, _COLUMNS))
     name = row.get("name")
     if not isinstance(name, str) or not name:
         msg = "the block has no name"

@@ -13,10 +13,11 @@ from typing import Any, Literal
 
 import numpy as np
 
+from concio.arguments import closest
 from concio.errors import GeometryError, InputError
 from concio.model.drawing.drawing import model_from_dxf
 from concio.model.file.block_table import read_blocks
-from concio.model.file.errors import closest, placed
+from concio.model.file.errors import placed
 from concio.model.file.tables import (
     BlockTable,
     CourseTable,

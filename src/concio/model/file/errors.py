@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -10,6 +9,7 @@ from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
+from concio.arguments import closest
 from concio.errors import InputError
 
 Location = tuple[int | str, ...]
@@ -37,12 +37,6 @@ def placed(place: str, *, own: str = "") -> Iterator[None]:
         if own and (where == own or where.startswith(f"{own}, ")):
             where = where[len(own) + 2 :]
         raise type(error)(error.what, where=f"{place}, {where}" if where else place, hint=error.hint) from None
-
-
-def closest(word: str, known: Sequence[str]) -> str:
-    """Return a hint that names the key that was probably meant, or the known ones."""
-    near = difflib.get_close_matches(word, known, n=1, cutoff=0.6)
-    return f"did you mean '{near[0]}'?" if near else "known: " + ", ".join(known)
 
 
 def key_path(data: Any, location: Location) -> str:

@@ -31,6 +31,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from concio.arguments import strict
 from concio.errors import InputError
 from concio.model.file.build import build
 from concio.model.file.errors import check_finite, first_fault
@@ -44,6 +45,7 @@ LARGEST_FILE = 200_000_000
 """A larger model file is refused; blocks belong into a table of their own [bytes]."""
 
 
+@strict
 def load(path: str | os.PathLike[str]) -> Model:
     """Return the model that a TOML file describes.
 
@@ -60,6 +62,7 @@ def load(path: str | os.PathLike[str]) -> Model:
     return loads(_read(path), folder=path.parent, name=str(path))
 
 
+@strict
 def loads(text: str, *, folder: str | os.PathLike[str] = ".", name: str = "model text") -> Model:
     """Return the model that a TOML text describes.
 

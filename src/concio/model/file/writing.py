@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from concio.arguments import strict
 from concio.errors import InputError
 from concio.model.file.block_table import write_blocks
 from concio.model.materials import Elastic, Rigid
@@ -22,6 +23,7 @@ from concio.model.model import Body, Load, Model, Support
 from concio.model.stages import Stage
 
 
+@strict
 def dumps(model: Model, *, blocks_file: str | None = None) -> str:
     """Return the model as TOML text; :func:`concio.loads` makes an equal model of it.
 
@@ -59,6 +61,7 @@ def dumps(model: Model, *, blocks_file: str | None = None) -> str:
     return "\n".join(lines) + "\n"
 
 
+@strict
 def save(model: Model, path: str | os.PathLike[str], *, blocks_file: str | None = None) -> None:
     """Write the model as a TOML file; an existing file is replaced only when the new one is complete.
 

@@ -20,6 +20,7 @@ from typing import Literal, Unpack
 
 import numpy as np
 
+from concio.arguments import strict_with
 from concio.errors import InputError
 from concio.kinematics.frames import turned_left, turned_right
 from concio.model.generate.arguments import Common, checked, choice, count, finite, positive
@@ -29,6 +30,7 @@ from concio.model.model import Array, Load, Model
 Shape = Literal["semicircular", "segmental", "pointed", "flat"]
 
 
+@strict_with(Common.__annotations__)
 def arch(
     *,
     span: float | str,

@@ -8,6 +8,7 @@ from typing import Any, Literal, TypedDict
 
 import numpy as np
 
+from concio.arguments import closest
 from concio.errors import InputError
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.units import quantity
@@ -89,7 +90,7 @@ def checked(where: str, options: Mapping[str, Any]) -> Checked:
     for key in options:
         if key not in Common.__annotations__:
             msg = f"unknown option '{key}'"
-            raise InputError(msg, where=where, hint="common options: " + ", ".join(Common.__annotations__))
+            raise InputError(msg, where=where, hint=closest(key, Common.__annotations__, names="common options"))
     block = options.get("block", "elastic")
     if block == "elastic":
         block = STONE
@@ -180,7 +181,7 @@ def check_keys(where: str, given: Iterable[str], kind: type) -> None:
     for key in given:
         if key not in known:
             msg = f"unknown key '{key}'"
-            raise InputError(msg, where=where, hint="known: " + ", ".join(known))
+            raise InputError(msg, where=where, hint=closest(key, known))
 
 
 def two(where: str, name: str, value: Sequence[Any]) -> tuple[Any, Any]:
@@ -197,5 +198,5 @@ def choice(where: str, name: str, value: object, allowed: Sequence[str]) -> str:
     """Return a word that must be one of ``allowed``."""
     if value not in allowed:
         msg = f"{name} = {value!r} is not one of {', '.join(allowed)}"
-        raise InputError(msg, where=where)
+        raise InputError(msg, where=where, hint=closest(str(value), allowed))
     return str(value)

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from concio.arguments import closest, strict_class
 from concio.errors import InputError
 from concio.model.model import Array
 
@@ -27,6 +28,7 @@ SHORTEST = 0.25
 """Shortest piece a mason would lay, in block lengths."""
 
 
+@strict_class
 @dataclass(frozen=True)
 class Course:
     """One course of a bond, in block lengths.
@@ -98,7 +100,7 @@ def bond_courses(bond: str | Sequence[Course | Sequence[float]], lap: float = 0.
     }
     if bond not in table:
         msg = f"bond '{bond}' is not known"
-        raise InputError(msg, where="bond", hint="known: " + ", ".join(table) + ", or a list of courses")
+        raise InputError(msg, where="bond", hint=closest(bond, table) + ", or a list of courses")
     return table[bond]
 
 

@@ -7,6 +7,7 @@ from typing import Unpack
 
 import numpy as np
 
+from concio.arguments import strict_with
 from concio.errors import InputError
 from concio.model.generate.arguments import Common, checked, count, finite, not_negative, positive
 from concio.model.generate.bonds import without_short_pieces
@@ -14,6 +15,7 @@ from concio.model.generate.masonry import Piece, assemble, numbered, rectangle
 from concio.model.model import Load, Model
 
 
+@strict_with(Common.__annotations__)
 def column(
     *,
     width: float | str,
@@ -63,6 +65,7 @@ def column(
     return assemble(options, pieces, [ground], loads=loads, title=title, generator={"kind": "column", "blocks": n})
 
 
+@strict_with(Common.__annotations__)
 def buttress(
     *,
     base: float | str,

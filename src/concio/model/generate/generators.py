@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any
 
+from concio.arguments import closest
 from concio.errors import InputError
 from concio.model.generate.arches import arch
 from concio.model.generate.arguments import Common
@@ -42,7 +43,7 @@ def arguments_of(kind: str) -> tuple[str, ...]:
     """
     if kind not in GENERATORS:
         msg = f"there is no generator '{kind}'"
-        raise InputError(msg, hint="known: " + ", ".join(GENERATORS))
+        raise InputError(msg, hint=closest(kind, GENERATORS))
     names: list[str] = []
     for name, parameter in inspect.signature(GENERATORS[kind]).parameters.items():
         names += Common.__annotations__ if parameter.kind is inspect.Parameter.VAR_KEYWORD else [name]
@@ -61,7 +62,7 @@ def generate(kind: str, arguments: Mapping[str, Any]) -> Model:
     for name in arguments:
         if name not in known:
             msg = f"unknown key '{name}'"
-            raise InputError(msg, where=kind, hint="known: " + ", ".join(known))
+            raise InputError(msg, where=kind, hint=closest(name, known))
     function = GENERATORS[kind]
     for name, parameter in inspect.signature(function).parameters.items():
         needed = parameter.default is inspect.Parameter.empty and parameter.kind is inspect.Parameter.KEYWORD_ONLY

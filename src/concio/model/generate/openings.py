@@ -6,10 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from concio.arguments import strict_class
 from concio.errors import InputError
 from concio.model.generate.arguments import check_keys, finite, not_negative, positive
 
 
+@strict_class
 @dataclass(frozen=True)
 class Opening:
     """A rectangular hole in a wall, with a lintel over it or none.

@@ -14,6 +14,7 @@ from typing import Literal, TypeVar
 
 import numpy as np
 
+from concio.arguments import strict
 from concio.errors import InputError
 from concio.model.generate.spacing import subdivided
 from concio.model.materials import Elastic, JointLaw, Rigid
@@ -28,6 +29,7 @@ LARGEST_BLOCKS = 2_000_000
 """More blocks than this are taken for a slip of the pen."""
 
 
+@strict
 def running_bond_panel(
     *,
     courses: int = 3,

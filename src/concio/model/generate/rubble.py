@@ -14,6 +14,7 @@ import numpy as np
 import shapely
 from scipy.spatial import Voronoi
 
+from concio.arguments import strict_with
 from concio.errors import InputError
 from concio.model.generate.arguments import Common, checked, count, finite, positive
 from concio.model.generate.masonry import Piece, assemble, numbered, rectangle
@@ -22,6 +23,7 @@ from concio.model.model import Array, Load, Model
 LARGEST_STONES = 200_000
 
 
+@strict_with(Common.__annotations__)
 def rubble(
     *,
     length: float | str,

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from concio.arguments import strict_class
 from concio.errors import InputError
 from concio.model.generate.arguments import check_keys, finite, positive, two
 from concio.model.generate.bonds import Course
@@ -14,6 +15,7 @@ from concio.model.generate.openings import Opening
 Bond = str | Sequence[Course | Sequence[float]]
 
 
+@strict_class
 @dataclass(frozen=True)
 class Panel:
     """One rectangular part of a wall, with a bond of its own.

@@ -9,6 +9,7 @@ from typing import Any, Unpack
 import numpy as np
 import shapely
 
+from concio.arguments import strict_with
 from concio.errors import GeometryError, InputError
 from concio.model.generate.arguments import Common, checked, finite, positive, two
 from concio.model.generate.bonds import SHORTEST, Course, bond_courses, head_joints, sort_of_piece, without_short_pieces
@@ -22,6 +23,7 @@ LARGEST_BLOCKS = 2_000_000
 """More blocks than this are taken for a slip of the pen."""
 
 
+@strict_with(Common.__annotations__)
 def wall(
     *,
     length: float | str | None = None,
@@ -117,6 +119,7 @@ def wall(
     return assemble(options, pieces, obstacles, loads=loads, materials=materials, title=title, generator=record)
 
 
+@strict_with(Common.__annotations__)
 def wall_of_courses(
     courses: Sequence[Sequence[float]],
     *,

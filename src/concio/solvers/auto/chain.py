@@ -20,8 +20,6 @@ or its motion alone, a load that no Coulomb state carries by exhaustion alone; e
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from concio.errors import MethodError
@@ -66,7 +64,6 @@ def solve(
     progress: ProgressCallback | None = None,
     engine: Engine = "superlu",
     pivoting: bool = True,
-    **options: Any,
 ) -> Solution:
     """Solve one load step by whatever it takes.
 

@@ -42,7 +42,6 @@ def solve(
     engine: Engine = "superlu",
     homotopy: bool = True,
     starts: tuple[float, ...] = STARTS,
-    **options: Any,
 ) -> Solution:
     """Solve one load step.
 

@@ -1,0 +1,138 @@
+"""Arguments of public functions: what a function does not know it refuses, and says what was probably meant.
+
+Python refuses an unknown keyword by itself unless a function passes its keywords on; then a misspelt one must not be
+lost on the way. :func:`strict` makes either case the same error with the same words.
+"""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import inspect
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, ParamSpec, TypeVar
+
+from concio.errors import ArgumentError
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+CLOSE = 0.6
+"""Similarity (of :mod:`difflib`) from which on a word is taken for another one misspelt."""
+
+
+def closest(word: str, known: Iterable[str], *, names: str = "known", otherwise: str = "") -> str:
+    """Return a hint that names the word that was probably meant, or all that are known.
+
+    Parameters
+    ----------
+    word : str
+    known : iterable of str
+    names : str
+        What stands before the list of all that are known.
+    otherwise : str
+        What to say in place of that list, where it would be long.
+    """
+    words = list(known)
+    folded = {w.casefold(): w for w in reversed(words)}
+    near = difflib.get_close_matches(word.casefold(), list(folded), n=1, cutoff=CLOSE)
+    if near:
+        return f"did you mean '{folded[near[0]]}'?"
+    return otherwise or f"{names}: {', '.join(words) or 'none'}"
+
+
+def refuse_unknown(given: Iterable[str], known: Sequence[str], function: str) -> None:
+    """Raise where a name is none of those that ``function`` (``"solve()"``, for the message) knows.
+
+    Raises
+    ------
+    ArgumentError
+        With the name that was probably meant.
+    """
+    for name in given:
+        if name not in known:
+            msg = f"{function} has no argument '{name}'"
+            raise ArgumentError(msg, hint=closest(name, known))
+
+
+def options_of(function: Callable[..., object]) -> tuple[str, ...]:
+    """Return the names of the keyword-only arguments of a function: its options."""
+    parameters = inspect.signature(function).parameters.values()
+    return tuple(p.name for p in parameters if p.kind is inspect.Parameter.KEYWORD_ONLY)
+
+
+def strict(function: Callable[P, T]) -> Callable[P, T]:
+    """Return a function that refuses, in words, arguments it does not know and calls that leave one out.
+
+    A function that passes further keywords on (``**options``) checks these itself.
+    """
+    return _strict(function, _Expected.of(function))
+
+
+def strict_with(names: Iterable[str]) -> Callable[[Callable[P, T]], Callable[P, T]]:
+    """Return :func:`strict` for functions whose further keywords (``**common``) have the ``names`` given."""
+    also = tuple(names)
+
+    def decorate(function: Callable[P, T]) -> Callable[P, T]:
+        return _strict(function, _Expected.of(function, also=also))
+
+    return decorate
+
+
+def strict_class(cls: type[T]) -> type[T]:
+    """Make the constructor of a class :func:`strict`."""
+    made: Any = cls.__init__
+    type.__setattr__(cls, "__init__", _strict(made, _Expected.of(made, method_of=cls.__name__)))
+    return cls
+
+
+def _strict(function: Callable[P, T], expected: _Expected) -> Callable[P, T]:
+    @functools.wraps(function)
+    def run(*args: P.args, **kwargs: P.kwargs) -> T:
+        expected.check(len(args), kwargs)
+        return function(*args, **kwargs)
+
+    return run
+
+
+@dataclass(frozen=True)
+class _Expected:
+    """What a function takes: names in order, those without a default with their places, and whether it takes more."""
+
+    name: str
+    order: tuple[str, ...]
+    known: tuple[str, ...]
+    needed: tuple[tuple[str, float], ...]
+    passes_on: bool
+    own: int
+
+    @classmethod
+    def of(cls, function: Callable[..., object], *, also: tuple[str, ...] = (), method_of: str = "") -> _Expected:
+        parameters = list(inspect.signature(function).parameters.values())
+        own = 1 if method_of else 0  # self
+        named = [p for p in parameters[own:] if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)]
+        order = tuple(p.name for p in named if p.kind is p.POSITIONAL_OR_KEYWORD)
+        needed = tuple(
+            (p.name, float(order.index(p.name)) if p.name in order else math.inf) for p in named if p.default is p.empty
+        )
+        more = any(p.kind is p.VAR_KEYWORD for p in parameters) and not also
+        return cls(method_of or function.__name__, order, (*(p.name for p in named), *also), needed, more, own)
+
+    def check(self, given: int, named: Mapping[str, object]) -> None:
+        """Raise where a call with ``given`` arguments by place and others by name is not one the function takes."""
+        if not self.passes_on:
+            refuse_unknown(named, self.known, f"{self.name}()")
+        given -= self.own
+        for name, place in self.needed:
+            if place >= given and name not in named:
+                msg = f"{self.name}() needs the argument '{name}'"
+                raise ArgumentError(msg, hint=f"its arguments: {', '.join(self.known)}")
+        if given > len(self.order):
+            msg = f"{self.name}() takes {len(self.order)} arguments by place, {given} were given"
+            raise ArgumentError(msg, hint="give the others by name: " + ", ".join(self.known[len(self.order) :]))
+        for name in self.order[:given]:
+            if name in named:
+                msg = f"{self.name}() was given '{name}' twice, by place and by name"
+                raise ArgumentError(msg, hint="leave one of them out")

@@ -1,0 +1,139 @@
+"""No public function loses a misspelt argument: each refuses what it does not know and says what was meant."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+import concio
+from concio.arguments import closest, strict, strict_class, strict_with
+from concio.errors import ArgumentError
+from concio.solvers.methods import METHODS, find
+from concio.study.compare import compare
+from models import box, on_ground, weight
+
+BUILT_BY_CONCIO = {"Assembly", "PathResult", "Result", "Status"}
+CALLED = sorted(
+    name
+    for name in concio.__all__
+    if name not in {*BUILT_BY_CONCIO, "__version__"}
+    and not (inspect.isclass(getattr(concio, name)) and issubclass(getattr(concio, name), Exception))
+)
+
+
+def stack(blocks: int) -> concio.Model:
+    bodies = [box(f"b{k}", 0.0, 1.0, k * 0.5, (k + 1) * 0.5) for k in range(blocks)]
+    return on_ground(*bodies, loads=(weight(),))
+
+
+def all_arguments(function: Callable[..., Any]) -> list[str]:
+    return [p.name for p in inspect.signature(function).parameters.values() if p.kind not in (p.VAR_KEYWORD,)]
+
+
+@pytest.mark.parametrize("name", CALLED)
+def test_every_public_function_and_class_refuses_what_it_does_not_know(name: str) -> None:
+    """Before anything else, whatever its other arguments are: a misspelt name is found without a valid call."""
+    function = getattr(concio, name)
+    meant = all_arguments(function)[-1]
+    needed = {
+        p.name: None for p in inspect.signature(function).parameters.values()
+        if p.default is p.empty and p.kind is not p.VAR_KEYWORD
+    }  # fmt: skip
+    given = {"model": stack(2)} if "model" in needed else {}
+    with pytest.raises(concio.InputError, match=rf"has no argument '{meant}_'.*did you mean '{meant}'\?"):
+        function(**{**needed, **given, f"{meant}_": 1.0})
+
+
+def test_the_misspelt_load_factor() -> None:
+    """``factor=`` for ``factors=`` used to give a certified answer to another question."""
+    model = stack(2)
+    with pytest.raises(concio.InputError, match=r"solve\(\) has no argument 'factor' \(did you mean 'factors'\?\)"):
+        concio.solve(model, factor={"live": 0.5})
+    with pytest.raises(TypeError):  # what a Python programmer expects
+        concio.solve(model, factor={"live": 0.5})
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_every_method_refuses_options_it_does_not_have(method: str) -> None:
+    parameters = inspect.signature(find(method)).parameters.values()
+    assert not any(p.kind is p.VAR_KEYWORD for p in parameters), "an option would be swallowed"
+    option = [p.name for p in parameters if p.kind is p.KEYWORD_ONLY][-1]
+    with pytest.raises(concio.InputError, match=rf"has no argument '{option}x' \(did you mean '{option}'\?\)"):
+        concio.solve(stack(2), method, **{f"{option}x": 1})
+    problem = concio.assemble(stack(2)).problem()
+    with pytest.raises(concio.InputError, match=rf"method '{method}' has no argument '{option}x'"):
+        compare(problem, [method], options={method: {f"{option}x": 1}})
+
+
+def test_options_of_methods_that_are_not_compared() -> None:
+    problem = concio.assemble(stack(2)).problem()
+    with pytest.raises(concio.MethodError, match="did you mean 'lemke'"):
+        compare(problem, ["lemke"], options={"lemkes": {}})
+
+
+def test_options_of_common_keywords() -> None:
+    with pytest.raises(concio.InputError, match=r"wall\(\) has no argument 'frction' \(did you mean 'friction'\?\)"):
+        concio.wall(length=1.0, height=1.0, frction=0.3)
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: concio.solve(), r"solve\(\) needs the argument 'model'"),
+        (lambda: concio.solve(stack(2), "auto", {"live": 1.0}), r"takes 2 arguments by place, 3 were given"),
+        (lambda: concio.solve(stack(2), "auto", method="auto"), r"given 'method' twice"),
+        (lambda: concio.Body("a"), r"Body\(\) needs the argument 'outline'"),
+        (lambda: concio.Load("weight"), r"Load\(\) needs the argument 'value'"),
+        (lambda: concio.solve(stack(2), "lemk"), "did you mean 'lemke'"),
+        (lambda: concio.solve(stack(2), factors={"daed": 1.0}), "no load group 'daed' .did you mean 'dead'"),
+        (lambda: concio.run_path(stack(2), [concio.Stage("a", {"daed": 1.0})]), "did you mean 'dead'"),
+        (lambda: concio.limit(stack(2), "daed"), "did you mean 'dead'"),
+        (lambda: concio.wall(length=1.0, height=1.0, bond="flemmish"), "did you mean 'flemish'"),
+        (lambda: concio.solve(stack(2)).plot.deformed(scal=3.0), "did you mean 'scale'"),
+    ],
+)
+def test_calls_that_cannot_be_meant(call: Callable[[], object], said: str) -> None:
+    with pytest.raises(concio.InputError, match=said):
+        call()
+
+
+def test_strict_keeps_what_a_function_says_of_itself() -> None:
+    @strict
+    def area(width: float, height: float = 1.0) -> float:
+        """Say it."""
+        return width * height
+
+    assert area(2.0) == 2.0
+    assert area(height=3.0, width=2.0) == 6.0
+    assert area.__doc__ == "Say it."
+    assert list(inspect.signature(area).parameters) == ["width", "height"]
+    with pytest.raises(ArgumentError, match="did you mean 'height'"):
+        area(1.0, hight=2.0)
+
+    @strict_with(["colour"])
+    def draw(**common: object) -> object:
+        return common["colour"]
+
+    assert draw(colour="red") == "red"
+    with pytest.raises(ArgumentError, match="did you mean 'colour'"):
+        draw(color="red")
+
+    @strict_class
+    class Point:
+        def __init__(self, x: float) -> None:
+            self.x = x
+
+    assert Point(1.0).x == 1.0
+    with pytest.raises(ArgumentError, match=r"Point\(\) has no argument 'y' \(known: x\)"):
+        Point(1.0, y=2.0)
+
+
+def test_closest() -> None:
+    assert closest("fricton", ["cohesion", "friction"]) == "did you mean 'friction'?"
+    assert closest("Friction", ["cohesion", "friction"]) == "did you mean 'friction'?"
+    assert closest("zzz", ["a", "b"], names="groups") == "groups: a, b"
+    assert closest("zzz", []) == "known: none"
+    assert closest("zzz", ["a"], otherwise="look") == "look"
