@@ -148,16 +148,23 @@ class Run:
         return self.close_in(z, "interior point from there") if path.theta == 0 else None
 
     def finish(self, u: np.ndarray, t_n: np.ndarray, t_t: np.ndarray, rounds: int = 12) -> Finished | None:
-        """Exact finish of a point; return it if exact, None (and keep the best) if not."""
+        """Exact finish of a point; return it if exact, None (and keep the best) if not.
+
+        The finish measures against the largest force and displacement of the point itself. A point that runs off has
+        them as large as it likes; it is exact only where the certificate, which measures against the load, says so.
+        """
         found = finish(self.scaled, u, t_n, t_t, rounds)
-        exact = found.error <= EXACT
-        self.trace.append(
-            f"exact finish: {found.solves} linear solves, residual {found.error:.1e}"
-            + ("" if exact else f", {len(found.undecided)} pairs undecided")
-        )
-        if self.best is None or found.error < self.best.error:
+        settled = found.error <= EXACT
+        exact = settled and self.certified(found)
+        left = f", {len(found.undecided)} pairs undecided" if not settled else ", runs off" if not exact else ""
+        self.trace.append(f"exact finish: {found.solves} linear solves, residual {found.error:.1e}{left}")
+        if (exact or not settled) and (self.best is None or found.error < self.best.error):
             self.best = found
         return found if exact else None
+
+    def certified(self, found: Finished) -> bool:
+        """Return whether a point is an equilibrium by its certificate."""
+        return self.solution(found).solved
 
     def solution(self, found: Finished | None, failure: Status = Status.GAVE_UP, method: str = NAME) -> Solution:
         """Return the judged solution of what was found, or of the best point met."""

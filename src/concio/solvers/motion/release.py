@@ -84,7 +84,7 @@ def release(run: Run, u: Array | None = None) -> Finished | Departure | None:
         here, shift, taken, good = moved, moved.u, taken + 1, good + 1
         new = replace(moved, u=u + shift)
         u = new.u
-        ended = _rest(s, new) or _steady(s, e * shift, new) or departure(s, new.states, u, new.t_n, new.t_t)
+        ended = _rest(run, new) or _steady(s, e * shift, new) or departure(s, new.states, u, new.t_n, new.t_t)
         error, _ = natural_residual(s, u, new.t_n, new.t_t)
         if ended is None and error < close:
             close, ended = 0.01 * error, _cross(run, s, new)
@@ -97,10 +97,10 @@ def release(run: Run, u: Array | None = None) -> Finished | Departure | None:
     return ended
 
 
-def _rest(s: Scaled, now: Finished) -> Finished | None:
-    """Return the equilibrium that the states of a step belong to, if there is one."""
-    rest = finish(s, now.u, now.t_n, now.t_t, rounds=6)
-    return rest if rest.error <= EXACT else None
+def _rest(run: Run, now: Finished) -> Finished | None:
+    """Return the certified equilibrium that the states of a step belong to, if there is one."""
+    rest = finish(run.scaled, now.u, now.t_n, now.t_t, rounds=6)
+    return rest if rest.error <= EXACT and run.certified(rest) else None
 
 
 def _cross(run: Run, s: Scaled, now: Finished) -> Finished | None:
