@@ -24,7 +24,7 @@ from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Status
 from concio.solvers.auto.chain import solve as solve_step
-from concio.solvers.statics.limit import associated_limit, scaled_friction, smallest_friction
+from concio.solvers.statics.limit import associated_limit, smallest_friction
 
 FAR = 1e6
 """A load that can grow beyond this factor counts as unlimited."""
@@ -109,7 +109,7 @@ def friction_by_solving(
     least = smallest_friction(loaded).factor
     if np.isnan(least):
         return Margin(float("nan"), float("nan"), None, least, 0)
-    return _bisect(lambda share: scaled_friction(loaded, share), 1.0, least, tolerance)
+    return _bisect(loaded.with_friction, 1.0, least, tolerance)
 
 
 def _bisect(problem: Callable[[float], ContactProblem], safe: float, limit: float, width: float) -> Margin:

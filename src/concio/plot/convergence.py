@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from concio.arguments import strict
-from concio.problem.certificate import CERTIFIED
+from concio.problem.tolerances import CERTIFIED
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

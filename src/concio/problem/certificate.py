@@ -18,16 +18,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from concio.problem.contact_problem import Array, ContactProblem
-
-CERTIFIED = 1e-9
-"""Largest worst entry of an answer that may be called solved."""
-
-
-ROUNDING = 4.0 * float(np.finfo(float).eps)
-"""Share of |K| |u| by which rounding of displacements may put the balance at a node wrong."""
-
-GRANTED = 1e-7
-"""Largest share of the load that is granted to rounding."""
+from concio.problem.tolerances import CERTIFIED, GRANTED, ROUNDING
 
 
 @dataclass(frozen=True)
@@ -96,10 +87,9 @@ def kinematics(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> Kin
     m = problem.pairs
     slip = (problem.C_t @ u).reshape(m, problem.dim - 1) - problem.slip_origin
     slip += law.tangential_compliance[:, None] * t_t
-    sliding = (law.friction > 0) | (law.cohesion > 0)
-    size = np.linalg.norm(slip, axis=1)
-    gap = problem.gap + problem.C_n @ u + law.normal_compliance * t_n - np.where(sliding, law.dilatancy * size, 0.0)
-    crushing = np.where(np.isfinite(law.cap), np.maximum(-gap, 0.0), 0.0)
+    dilated = np.where(problem.cone.rough, law.dilatancy * np.linalg.norm(slip, axis=1), 0.0)
+    gap = problem.gap + problem.C_n @ u + law.normal_compliance * t_n - dilated
+    crushing = np.where(problem.cone.capped, np.maximum(-gap, 0.0), 0.0)
     return Kinematics(gap + crushing, slip, crushing)
 
 
@@ -144,7 +134,7 @@ def certify(
     total_load : float, optional
         F to measure forces by, where the problem's own loads are not the measure [kN].
     """
-    law = problem.laws
+    cone = problem.cone
     t_t = t_t.reshape(problem.pairs, problem.dim - 1)
     if not (np.isfinite(u).all() and np.isfinite(t_n).all() and np.isfinite(t_t).all()):
         return Certificate(*([np.inf] * 5))
@@ -152,18 +142,14 @@ def certify(
     force = total_load or force
     kin = kinematics(problem, u, t_n, t_t)
     equilibrium = max(float(np.abs(part).max(initial=0.0)) for part in imbalance(problem, u, t_n, t_t, force))
-    strength = problem.sliding_strength(t_n)
-    shifted = t_n + law.tension
-    size_t = np.linalg.norm(t_t, axis=1)
-    excess = np.maximum.reduce([size_t - strength, -shifted, t_n - law.cap])
+    shifted = t_n + cone.tension
     size_y = np.linalg.norm(kin.slip, axis=1)
-    direction = kin.slip / np.where(size_y > 0, size_y, 1.0)[:, None]
-    wrong_way = np.linalg.norm(t_t + strength[:, None] * direction, axis=1)
-    crush = np.minimum(kin.crushing / length, np.where(np.isfinite(law.cap), law.cap - t_n, 0.0) / force)
+    wrong_way = np.linalg.norm(t_t - cone.opposing(t_n, kin.slip), axis=1)
+    crush = np.minimum(kin.crushing / length, np.where(cone.capped, cone.cap - t_n, 0.0) / force)
     return Certificate(
         equilibrium=equilibrium / force,
         penetration=float(np.maximum(-kin.gap, 0.0).max(initial=0.0) / length),
-        cone=float(np.maximum(excess, 0.0).max(initial=0.0) / force),
+        cone=float(cone.excess(t_n, t_t).max(initial=0.0) / force),
         slip_direction=float(np.minimum(size_y / length, wrong_way / force).max(initial=0.0)),
         complementarity=float(
             max(np.minimum(kin.gap / length, shifted / force).max(initial=0.0), crush.max(initial=0.0))

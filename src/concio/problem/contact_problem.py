@@ -27,6 +27,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.errors import InputError
+from concio.problem.cone import Cone
 
 Array = np.ndarray
 
@@ -78,6 +79,11 @@ class Laws:
             or self.tangential_compliance.any()
             or np.isfinite(self.cap).any()
         )
+
+    @cached_property
+    def cone(self) -> Cone:
+        """The forces each pair may carry."""
+        return Cone(self.friction, self.cohesion, self.tension, self.cap)
 
     def __getitem__(self, pick: Array | slice) -> Laws:
         return Laws(*(getattr(self, name)[pick] for name in self.__dataclass_fields__))
@@ -192,6 +198,11 @@ class ContactProblem:
         """Total load by which forces are measured [kN]: ``load`` if given, else the sum of |f|."""
         return self.load or float(np.abs(self.f).sum())
 
+    @property
+    def cone(self) -> Cone:
+        """The forces each pair may carry."""
+        return self.laws.cone
+
     @cached_property
     def C(self) -> sp.csr_array:
         """C_n over C_t, shape (m d, N)."""
@@ -207,7 +218,13 @@ class ContactProblem:
         """Return the same problem under other loads, all of them loads."""
         return replace(self, f=np.asarray(f, dtype=float), load=0.0)
 
-    def sliding_strength(self, t_n: Array) -> Array:
-        """Return c + mu t_n, never below zero, shape (m,)."""
-        strength: Array = np.maximum(self.laws.cohesion + self.laws.friction * t_n, 0.0)
-        return strength
+    def with_friction(self, factor: float) -> ContactProblem:
+        """Return the problem with its friction coefficients times ``factor``; dilatancy and tension stay within them.
+
+        Dilatancy is kept at most mu, and the tensile strength at most c / mu.
+        """
+        law = self.laws
+        mu = factor * law.friction
+        tension = np.where(mu * law.tension > law.cohesion, law.cohesion / np.where(mu > 0, mu, 1.0), law.tension)
+        laws = replace(law, friction=mu, tension=tension, dilatancy=np.minimum(law.dilatancy, mu))
+        return replace(self, laws=laws)

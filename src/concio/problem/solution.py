@@ -9,8 +9,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from concio.problem.certificate import CERTIFIED, Certificate, Kinematics, certify, kinematics, scales
+from concio.problem.certificate import Certificate, Kinematics, certify, kinematics, scales
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.tolerances import AT_BOUND, CERTIFIED
 
 
 class Status(Enum):
@@ -226,7 +227,7 @@ def failed(problem: ContactProblem, status: Status, *, method: str, **extra: Any
     return Solution(status, u, t_n, t_t, kinematics(problem, u, t_n, t_t), certificate, method, **extra)
 
 
-def pair_states(problem: ContactProblem, solution: Solution, tolerance: float = 1e-9) -> Array:
+def pair_states(problem: ContactProblem, solution: Solution, tolerance: float = AT_BOUND) -> Array:
     """Return the state of each pair, (m,) integers of :class:`PairState`.
 
     A pair is open when its force is below ``tolerance`` times the total load, slipping when its slip exceeds
@@ -234,7 +235,7 @@ def pair_states(problem: ContactProblem, solution: Solution, tolerance: float = 
     """
     force, length = scales(problem, solution.displacement, solution.normal_force, solution.friction_force)
     t_n, t_t = solution.normal_force, solution.friction_force
-    strength = problem.sliding_strength(t_n)
+    strength = problem.cone.strength(t_n)
     used = np.linalg.norm(t_t, axis=1) >= strength - tolerance * force
     slips = used & (np.linalg.norm(solution.slip, axis=1) > tolerance * length)
     first = solution.slip[:, 0]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from concio.problem.certificate import CERTIFIED
 from concio.problem.solution import Status
+from concio.problem.tolerances import CERTIFIED
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result

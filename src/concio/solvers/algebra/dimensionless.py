@@ -17,7 +17,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import SuperLU, splu
 
-from concio.problem.cone import Cone, return_map
+from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array, ContactProblem
 
 PROXIMAL = 1e-9
@@ -92,7 +92,7 @@ class Dimensionless:
     def natural_map(self, u: Array, t: Array) -> Array:
         """Return t minus the return map of t - y, (m, d); zero exactly where the joint laws hold."""
         y = self.opening(u) + self.compliance * t
-        distance: Array = t - return_map(self.cone, t - y, self.dilatancy)
+        distance: Array = t - self.cone.project(t - y, self.dilatancy)
         return distance
 
     def residual(self, u: Array, t: Array) -> float:
@@ -142,8 +142,7 @@ def dimensionless(problem: ContactProblem) -> Dimensionless:
     force = float(np.sqrt((t**2).sum(axis=1).mean())) if m else 0.0
     force = force if np.isfinite(force) and force > 0 else 1.0
     length = force / stiffness
-    cone = Cone(laws.friction, laws.cohesion / force, -laws.tension / force, laws.cap / force)
-    sliding = (laws.friction > 0) | (laws.cohesion > 0)
+    cone = laws.cone.in_units(force)
     return Dimensionless(
         force=force,
         length=length,
@@ -152,8 +151,8 @@ def dimensionless(problem: ContactProblem) -> Dimensionless:
         C=c,
         x=x / length,
         compliance=compliance * stiffness,
-        dilatancy=np.where(sliding, laws.dilatancy, 0.0),
+        dilatancy=np.where(cone.rough, laws.dilatancy, 0.0),
         cone=cone,
         u=u / length,
-        t=return_map(cone, t / force, laws.friction),
+        t=cone.project(t / force),
     )

@@ -14,12 +14,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.errors import MethodError
-from concio.problem.certificate import GRANTED, ROUNDING
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.tolerances import GRANTED, ROUNDING, SMOOTH
 from concio.solvers.algebra.sparse_factor import Engine, PatternFactor
-
-SMOOTH = 1e-12
-"""Friction coefficients up to this are taken for none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,13 +190,13 @@ def scale(problem: ContactProblem, engine: Engine = "superlu") -> Scaled:
         gap=(problem.gap - law.normal_compliance * law.tension) / length,
         origin=problem.slip_origin[:, 0] / length,
         mu=np.where(law.friction > SMOOTH, law.friction, 0.0),
-        cohesion=np.maximum(law.cohesion - law.friction * law.tension, 0.0) / force,
+        cohesion=law.cone.spare / force,
         tension=law.tension / force,
         dilatancy=law.dilatancy,
         a_n=law.normal_compliance * stiffness,
         a_t=law.tangential_compliance * stiffness,
         cap=(law.cap + law.tension) / force,
-        rough=(law.friction > SMOOTH) | (law.cohesion > 0),
+        rough=law.cone.rough,
         share=problem.area_share,
         inertia=problem.inertia / problem.inertia.mean(),
         rigid=problem.R,

@@ -12,8 +12,6 @@ the certificate of the problem itself.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution, Status, pair_states
 from concio.solvers.algebra.scaled import scale
@@ -58,7 +56,7 @@ def from_neighbours(run: Run, progress: ProgressCallback | None = None) -> Solut
         return None
     left = min(BUDGET, WORK // problem.pairs)
     for factor in FACTORS:
-        near = Run(scale(with_friction(problem, factor), engine), progress)
+        near = Run(scale(problem.with_friction(factor), engine), progress)
         found = None
         for start in STARTS:
             found = found or near.plain(start)
@@ -75,11 +73,6 @@ def from_neighbours(run: Run, progress: ProgressCallback | None = None) -> Solut
     return None
 
 
-def with_friction(problem: ContactProblem, factor: float) -> ContactProblem:
-    """Return the problem with its friction coefficients multiplied by ``factor``."""
-    return replace(problem, laws=replace(problem.laws, friction=factor * problem.laws.friction))
-
-
 def _carry(
     problem: ContactProblem, near: Solution, factor: float, left: int, progress: ProgressCallback | None
 ) -> tuple[Solution | None, int, int]:
@@ -87,8 +80,8 @@ def _carry(
     to, ways, pivots, failures = 1.0, 0, 0, 0
     while failures <= HALVINGS and pivots < left:
         answer = sparse_lemke.solve(
-            with_friction(problem, to) if to != 1.0 else problem,
-            start_states=pair_states(with_friction(problem, factor), near),
+            problem.with_friction(to) if to != 1.0 else problem,
+            start_states=pair_states(problem.with_friction(factor), near),
             start=(near.displacement, near.normal_force, near.friction_force),
             limit=min(PIVOTS + problem.pairs // 10, left - pivots),
             tries=0,

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from concio.problem.certificate import CERTIFIED, certify
+from concio.problem.certificate import certify
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Progress, ProgressCallback, Solution, Status, judge
+from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled, scale
 from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.interior.exact_finish import Finished, finish
@@ -23,9 +24,6 @@ AT_REST = 1e-6
 
 TARGETS = (1e-6, 1e-8, 1e-10)
 """Relative residuals at which the exact finish is tried."""
-
-EXACT = 1e-11
-"""Largest natural-map residual of an exact finish; a structure drifting off may come near, never here."""
 
 STARTS = (10.0, 100.0, 1000.0)
 """Sizes of the starting points that are tried in turn; jammed structures want the larger."""
@@ -177,7 +175,7 @@ class Run:
         small = float(np.abs(u).max(initial=0.0)) < AT_REST
         u, t_n, t_t = s.restore(u, t_n, t_t)
         rest = np.zeros_like(u)
-        if small and certify(s.problem, rest, t_n, t_t[:, None]).worst <= CERTIFIED:
+        if small and certify(s.problem, rest, t_n, t_t[:, None]).certified:
             u = rest  # nothing moves: rounding must not be measured against itself
         return judge(
             s.problem,

@@ -23,6 +23,7 @@ import numpy as np
 
 from concio.problem.contact_problem import Array
 from concio.problem.solution import PairState
+from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 
@@ -32,13 +33,10 @@ DELTA = 1e-6
 LOOSE = 1e-9
 """Stiffness of the springs that keep unknowns which nothing holds where they are, scaled units."""
 
-SETTLED = 1e-11
-"""Natural-map residual below which states are taken as settled."""
-
 ANCHORS = 8
 """Largest number of times the springs of loose unknowns are anchored anew."""
 
-EXACT = 1e-14
+REFINED = 1e-14
 """Relative residual at which refinement stops; it stops before where it no longer halves the residual."""
 
 
@@ -190,7 +188,7 @@ def solve_states(
         late = late + 1 if residual > 0.5 * best[3] else 0
         if residual < best[3]:
             best = (u, t_n, t_t, residual)
-        if not residual > EXACT or residual > 1e3 * best[3] or late >= 3:
+        if not residual > REFINED or residual > 1e3 * best[3] or late >= 3:
             break
         n0, t0 = r_n * d_nn, r_t * d_tt
         du = s.factor.solve(r_u + s.pull(n0, t0 + drag * n0))
@@ -213,7 +211,7 @@ def _least_norm(s: Scaled, found: Finished) -> Finished:
     for start_n, start_t in ((found.t_n, found.t_t), (zero, zero)):
         u, t_n, t_t, _ = solve_states(s, found.states, found.u, start_n, start_t, found.u, again=True)
         error, _ = natural_residual(s, u, t_n, t_t)
-        if error <= max(found.error, SETTLED):
+        if error <= max(found.error, EXACT):
             found = replace(found, u=u, t_n=t_n, t_t=t_t, error=error)
     return found
 
@@ -231,7 +229,7 @@ def _far_from_anchor(
         if not new_error < 0.5 * error:
             break
         u, t_n, t_t, error, laws = new_u, new_n, new_t, new_error, new_laws
-        if error < SETTLED:
+        if error < EXACT:
             break
     return u, t_n, t_t, error, laws
 
@@ -274,7 +272,7 @@ def finish(
         solves += 1
         error, laws = natural_residual(s, u, t_n, t_t)
         new = read_states(s, u, t_n, t_t)
-        if error >= SETTLED and new.key() == states.key():
+        if error >= EXACT and new.key() == states.key():
             u, t_n, t_t, error, laws = _far_from_anchor(s, states, u, t_n, t_t, error, laws)
             new = read_states(s, u, t_n, t_t)
         undecided = np.flatnonzero(
@@ -283,7 +281,7 @@ def finish(
         )
         if best is None or error < best.error:
             best = Finished(u, t_n, t_t, states, error, solves, undecided)
-        if error < SETTLED:
+        if error < EXACT:
             best = _least_norm(s, best) if least else best
             break
         if new.key() in seen:

@@ -33,7 +33,6 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.errors import MethodError
-from concio.problem.cone import return_map
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
 from concio.solvers.algebra.dimensionless import PROXIMAL, Dimensionless, dimensionless
@@ -105,7 +104,7 @@ def _iterate(s: Dimensionless, record: Record, level: float, omega: float, limit
         w = t - rho * (omega * y + (1.0 - omega) * z)
         scaled = w / rho
         scaled[:, 0] -= held
-        t_new = return_map(s.cone, scaled / (1.0 / rho + s.compliance), s.cone.friction)
+        t_new = s.cone.project(scaled / (1.0 / rho + s.compliance))
         z_new = (t_new - w) / rho
         primal += float(np.linalg.norm(y - z_new))
         dual += float(np.linalg.norm(z_new - z))

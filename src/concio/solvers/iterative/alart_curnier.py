@@ -27,7 +27,6 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from concio.problem.cone import return_map, return_map_derivative
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
 from concio.solvers.algebra.dimensionless import Dimensionless, dimensionless
@@ -129,7 +128,7 @@ def newton(
 def _law_residual(s: Dimensionless, u: Array, t: Array, rho: float) -> tuple[Array, Array]:
     """Return the trial force and (t - P)/rho."""
     w = t - rho * (s.opening(u) + s.compliance * t)
-    return w, (t - return_map(s.cone, w, s.dilatancy)) / rho
+    return w, (t - s.cone.project(w, s.dilatancy)) / rho
 
 
 def _newton_step(
@@ -137,7 +136,7 @@ def _newton_step(
 ) -> tuple[Array, Array]:
     """Return the Newton direction (du, dt)."""
     w, law = _law_residual(s, u, t, rho)
-    jacobian = return_map_derivative(s.cone, w, s.dilatancy)
+    jacobian = s.cone.derivative(w, s.dilatancy)
     d = s.dim
     diagonal = (1.0 - rho * s.compliance)[:, None, :]
     local = np.linalg.inv((1.0 + damping) * np.eye(d) - jacobian * diagonal)

@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
-from concio.problem.cone import Cone, return_map, return_map_derivative
+from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array
 from concio.solvers.algebra.dimensionless import Dimensionless
 from concio.solvers.iterative.iteration import Record
@@ -89,12 +89,12 @@ class Augmented:
 
     def forces(self, u: Array) -> Array:
         """Contact forces t(u), (m, d)."""
-        return return_map(self.cone, self.trial(u), self.kappa) + self.fixed
+        return self.cone.project(self.trial(u), self.kappa) + self.fixed
 
     def tangent(self, u: Array) -> sp.csc_array:
         """K + C' P' r C."""
         s = self.scaled
-        blocks = return_map_derivative(self.cone, self.trial(u), self.kappa) * self.stiffness[:, None, :]
+        blocks = self.cone.derivative(self.trial(u), self.kappa) * self.stiffness[:, None, :]
         return sp.csc_array(s.K + s.C.T @ block_diagonal(blocks) @ s.C + self.prox * sp.eye_array(u.size))
 
     def imbalance(self, u: Array) -> Array:
@@ -106,7 +106,7 @@ class Augmented:
         """Augmented Lagrangian, whose gradient is the imbalance."""
         s = self.scaled
         w = self.trial(u)
-        t = return_map(self.cone, w, self.kappa)
+        t = self.cone.project(w, self.kappa)
         stored = ((t * (w - 0.5 * t)) / self.stiffness).sum()
         outer = s.f @ u + (s.pull(np.broadcast_to(self.fixed, t.shape)) @ u if np.ndim(self.fixed) else 0.0)
         return float(0.5 * u @ (s.K @ u) - outer + stored + 0.5 * self.prox * ((u - self.anchor) ** 2).sum())

@@ -23,7 +23,6 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.errors import MethodError
-from concio.problem.cone import Cone, return_map
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
 from concio.solvers.algebra.dimensionless import Dimensionless, dimensionless
@@ -106,8 +105,7 @@ class _Group:
         for i in range(d):
             for j in range(d):
                 self.block[:, i, j] = sp.csr_array(own[i::d, j::d]).diagonal()
-        c = s.cone
-        self.cone = Cone(c.friction[pick], c.cohesion[pick], c.lower[pick], c.upper[pick])
+        self.cone = s.cone[pick]
         self.dilatancy = s.dilatancy[pick]
         self.stiffness = 1.0 / np.maximum(np.linalg.norm(self.block, ord=2, axis=(1, 2)), 1e-300)
 
@@ -121,7 +119,7 @@ class _Group:
         return t
 
     def _projected(self, gap: Array, now: Array) -> Array:
-        return return_map(self.cone, now - self.stiffness[:, None] * gap, self.dilatancy)
+        return self.cone.project(now - self.stiffness[:, None] * gap, self.dilatancy)
 
     def _candidates(self, rest: Array) -> Array:
         """Return the exact local solution: the candidate state that violates the law least."""
@@ -129,7 +127,7 @@ class _Group:
         w_nn, w_nt, w_tt = w[:, 0, 0], w[:, 0, 1], np.maximum(w[:, 1, 1], 1e-300)
 
         def held(t_n: Array) -> Array:
-            bound = cone.radius(t_n)
+            bound = cone.strength(t_n)
             return np.column_stack([t_n, np.clip(-(rest[:, 1] + w_nt * t_n) / w_tt, -bound, bound)])
 
         def slipping(sign: float) -> Array:
@@ -138,19 +136,19 @@ class _Group:
             friction, cohesion = sign * cone.friction, sign * cone.cohesion
             slope = w_nn + w_nt * friction + lean * (w_nt + w_tt * friction)
             value = rest[:, 0] + w_nt * cohesion + lean * (rest[:, 1] + w_tt * cohesion)
-            t_n = np.clip(-value / np.where(slope == 0.0, 1e-300, slope), cone.lower, cone.upper)
-            return np.column_stack([t_n, sign * cone.radius(t_n)])
+            t_n = np.clip(-value / np.where(slope == 0.0, 1e-300, slope), -cone.tension, cone.cap)
+            return np.column_stack([t_n, sign * cone.strength(t_n)])
 
         determinant = np.maximum(w_nn * w_tt - w_nt**2, 1e-14 * w_nn * w_tt + 1e-300)
         stick_n = -(w_tt * rest[:, 0] - w_nt * rest[:, 1]) / determinant
-        tries = [held(np.clip(stick_n, cone.lower, cone.upper)), slipping(1.0), slipping(-1.0), held(cone.lower)]
-        if np.isfinite(cone.upper).any():
-            tries.append(held(np.where(np.isfinite(cone.upper), cone.upper, cone.lower)))
+        tries = [held(np.clip(stick_n, -cone.tension, cone.cap)), slipping(1.0), slipping(-1.0), held(-cone.tension)]
+        if cone.capped.any():
+            tries.append(held(np.where(cone.capped, cone.cap, -cone.tension)))
         scale = self.stiffness[:, None]
         wrong = []
         for t in tries:
             y = rest + np.einsum("kij,kj->ki", w, t)
-            wrong.append(np.abs(t - return_map(cone, t - scale * y, self.dilatancy)).max(axis=1))
+            wrong.append(np.abs(t - cone.project(t - scale * y, self.dilatancy)).max(axis=1))
         chosen = np.argmin(np.array(wrong), axis=0)
         best: Array = np.array(tries)[chosen, np.arange(chosen.size)]
         return best

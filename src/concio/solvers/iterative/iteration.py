@@ -15,9 +15,9 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import SuperLU
 
 from concio.errors import MethodError
-from concio.problem.certificate import CERTIFIED
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Progress, ProgressCallback, Solution, Status, judge
+from concio.problem.tolerances import CERTIFIED
 from concio.solvers.algebra.dimensionless import Dimensionless, factorise
 
 GOAL = 1e-11

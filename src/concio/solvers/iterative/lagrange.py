@@ -116,8 +116,8 @@ def solve(problem: ContactProblem, *, progress: ProgressCallback | None = None, 
 def _guess(s: Dimensionless, u: Array, t: Array) -> States:
     """States of the glued structure."""
     y = s.opening(u)
-    normal = np.where(t[:, 0] - y[:, 0] > s.cone.lower, CLOSED, OPEN)
-    slips = np.abs(t[:, 1]) >= s.cone.radius(t[:, 0])
+    normal = np.where(t[:, 0] - y[:, 0] > -s.cone.tension, CLOSED, OPEN)
+    slips = np.abs(t[:, 1]) >= s.cone.strength(t[:, 0])
     return States(normal, np.where(slips, np.sign(t[:, 1]), 0).astype(int))
 
 
@@ -134,8 +134,8 @@ def _solve_states(s: Dimensionless, record: Record, states: States, u: Array, t:
     jacobian[:, 0, 1] = scale * kappa * sign
     jacobian[:, 1, 0] = sign * cone.friction * jacobian[:, 0, 0]
     jacobian[:, 1, 1] = np.where(slips, sign * cone.friction * jacobian[:, 0, 1], ~_idle(s, states))
-    imposed = np.where(states.normal == OPEN, cone.lower, np.where(closed, -scale * kappa * cone.cohesion, 0.0))
-    imposed = np.where(states.normal == CRUSHED, cone.upper, imposed)
+    imposed = np.where(states.normal == OPEN, -cone.tension, np.where(closed, -scale * kappa * cone.cohesion, 0.0))
+    imposed = np.where(states.normal == CRUSHED, cone.cap, imposed)
     constant = np.column_stack([imposed, np.where(slips, sign * (cone.cohesion + cone.friction * imposed), 0.0)])
 
     def forces(v: Array, multiplier: Array) -> Array:
@@ -167,10 +167,10 @@ def _corrected(s: Dimensionless, states: States, u: Array, t: Array, *, single: 
     eps = 1e-12
     n_wrong = np.select(
         [normal == OPEN, normal == CLOSED],
-        [-gap, np.maximum(cone.lower - t[:, 0], t[:, 0] - np.where(np.isfinite(cone.upper), cone.upper, np.inf))],
+        [-gap, np.maximum(-cone.tension - t[:, 0], t[:, 0] - cone.cap)],
         gap,
     )
-    radius = cone.radius(t[:, 0])
+    radius = cone.strength(t[:, 0])
     t_wrong = np.where(sign != 0, sign * y[:, 1], np.abs(t[:, 1]) - radius)
     t_wrong = np.where(_idle(s, states), 0.0, t_wrong)
     fix_n, fix_t = n_wrong > eps, t_wrong > eps
@@ -178,7 +178,7 @@ def _corrected(s: Dimensionless, states: States, u: Array, t: Array, *, single: 
         worst = max(n_wrong.max(initial=0.0), t_wrong.max(initial=0.0))
         fix_n = n_wrong >= worst
         fix_t = (t_wrong >= worst) & ~fix_n
-    toggled = np.where(normal == CLOSED, np.where(t[:, 0] < cone.lower + eps, OPEN, CRUSHED), CLOSED)
+    toggled = np.where(normal == CLOSED, np.where(t[:, 0] < -cone.tension + eps, OPEN, CRUSHED), CLOSED)
     turned = np.where(sign != 0, 0, np.sign(t[:, 1])).astype(int)
     closing = fix_n & _idle(s, states)
     return States(np.where(fix_n, toggled, normal), np.where(fix_t, turned, np.where(closing, 0, sign)))
@@ -186,5 +186,5 @@ def _corrected(s: Dimensionless, states: States, u: Array, t: Array, *, single: 
 
 def _idle(s: Dimensionless, states: States) -> Array:
     """Open pairs without cohesion: they carry no friction, whatever their tangential state is called."""
-    idle: Array = (states.normal == OPEN) & (s.cone.radius(s.cone.lower) <= 0.0)
+    idle: Array = (states.normal == OPEN) & (s.cone.spare == 0.0)
     return idle

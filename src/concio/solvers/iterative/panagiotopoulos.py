@@ -120,7 +120,7 @@ def solve(
 def _tresca(law: Augmented, record: Record, u: Array, held: Array, goal: float) -> tuple[Array, Array]:
     """One Tresca problem with the sliding strength of the normal forces held."""
     cone = law.scaled.cone
-    u, t, _ = multipliers(replace(law, cone=cone.tresca(cone.radius(held[:, 0]))), u, record, goal=goal)
+    u, t, _ = multipliers(replace(law, cone=cone.tresca(cone.strength(held[:, 0]))), u, record, goal=goal)
     return u, t
 
 
@@ -132,6 +132,6 @@ def _alternating(law: Augmented, record: Record, u: Array, held: Array, goal: fl
     u, t, _ = multipliers(replace(law, cone=cone.tresca(zero), lam=normal, fixed=tangential), u, record, goal=goal)
     pressed = t.copy()
     pressed[:, 1:] = 0.0
-    bound = replace(cone.tresca(cone.radius(t[:, 0])), lower=zero, upper=zero)
+    bound = replace(cone.tresca(cone.strength(t[:, 0])), tension=zero, cap=zero)
     u, t, _ = multipliers(replace(law, cone=bound, lam=tangential, shift=0.0, fixed=pressed), u, record, goal=goal)
     return u, t

@@ -28,7 +28,6 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import SuperLU
 
 from concio.errors import MethodError
-from concio.problem.cone import return_map
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
 from concio.solvers.algebra.dimensionless import Dimensionless, dimensionless
@@ -80,7 +79,7 @@ def solve(
             ahead = u - lu.solve(s.imbalance(u, t))
             record.solves()
             y = s.opening(2.0 * ahead - u) + s.compliance * t
-            u, t = ahead, return_map(s.cone, t - step * y, s.dilatancy)
+            u, t = ahead, s.cone.project(t - step * y, s.dilatancy)
             residual = record.note(u, t)
             if residual <= GOAL or not np.isfinite(residual) or record.stalled(1000, 0.9):
                 break

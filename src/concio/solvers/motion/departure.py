@@ -121,17 +121,15 @@ def verify_departure(problem: ContactProblem, a: Array, u: Array, t_n: Array, t_
     rigid = float(np.abs(problem.K @ a).max(initial=0.0)) / (stiffness * top)
     w_t = (problem.C_t @ a).reshape(t_t.shape)
     speed = np.linalg.norm(w_t, axis=1)
-    sliding = (law.friction > 0) | (law.cohesion > 0)
-    w_n = problem.C_n @ a - np.where(sliding, law.dilatancy * speed, 0.0)
+    cone = problem.cone
+    w_n = problem.C_n @ a - np.where(cone.rough, law.dilatancy * speed, 0.0)
     opening, closing = np.maximum(w_n, 0.0) / top, np.maximum(-w_n, 0.0) / top
-    reserve = np.where(np.isfinite(law.cap), np.maximum(law.cap - t_n, 0.0) / force, np.inf)  # against crushing
-    strength = problem.sliding_strength(t_n)
-    direction = w_t / np.where(speed > 0, speed, 1.0)[:, None]
-    wrong_way = np.linalg.norm(t_t + strength[:, None] * direction, axis=1) / force
+    reserve = np.where(cone.capped, np.maximum(cone.cap - t_n, 0.0) / force, np.inf)  # against crushing
+    wrong_way = np.linalg.norm(t_t - cone.opposing(t_n, w_t), axis=1) / force
     violation = max(
         certificate.worst,
         rigid,
-        float(np.minimum(opening, (t_n + law.tension) / force).max(initial=0.0)),
+        float(np.minimum(opening, (t_n + cone.tension) / force).max(initial=0.0)),
         float(np.minimum(closing, reserve).max(initial=0.0)),
         float(np.minimum(speed / top, wrong_way).max(initial=0.0)),
     )

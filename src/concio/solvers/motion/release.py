@@ -22,8 +22,9 @@ import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array
 from concio.problem.solution import Departure, ProgressCallback, Status
+from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
-from concio.solvers.interior.engine import EXACT, STARTS, Cancelled, Run
+from concio.solvers.interior.engine import STARTS, Cancelled, Run
 from concio.solvers.interior.exact_finish import Finished, States, finish, natural_residual, read_states
 from concio.solvers.motion.departure import departure, verify_departure
 from concio.solvers.pivoting import sparse_lemke

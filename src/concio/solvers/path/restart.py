@@ -175,8 +175,8 @@ def moves_freely(path: LinearPath, point: PathState, velocity: Array) -> bool:
     opening, _ = plastic_position(path, point)
     w_n, w_t = problem.C_n @ v, problem.C_t @ v
     touching = opening + point.offset <= 1e-9 * length
-    rough = (law.friction > 0) | (law.cohesion > 0)
-    strength = problem.sliding_strength(point.normal_force)
+    rough = problem.cone.rough
+    strength = problem.cone.strength(point.normal_force)
     lifted = w_n - np.where(rough, law.dilatancy * np.abs(w_t), 0.0)
     carried = point.normal_force + law.tension > 1e-9 * force
     crushed = law.cap - point.normal_force <= 1e-9 * force

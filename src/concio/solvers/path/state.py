@@ -234,7 +234,7 @@ def state_of(
     state = PathState(parameter, u, t_n, t_t, contact, zero.astype(np.int8), zero, zero)
     opening, position = plastic_position(path, state)
     start = plastic_position(path, before)[1] if before is not None else zero
-    used = np.abs(t_t) >= problem.sliding_strength(t_n) - tolerance * force
+    used = np.abs(t_t) >= problem.cone.strength(t_n) - tolerance * force
     moved = np.abs(position - start) > tolerance * length
     sliding = np.where(used & moved, np.where(t_t > 0, -1, 1), STICK).astype(np.int8)
     carried = before.offset if before is not None else zero

@@ -56,7 +56,7 @@ def named_states(system: PairSystem, states: Array, start: tuple[Array, Array, A
         capped = np.isfinite(law.cap) & (t_n >= (1.0 - 1e-9) * law.cap)
         normal = np.where(capped, Normal.CRUSHED, normal)
         # friction used up without slip: the force says which way the pair would slide
-        used = np.abs(np.ravel(t_t)) >= problem.sliding_strength(t_n) - USED * np.abs(t_n).max(initial=0.0)
+        used = np.abs(np.ravel(t_t)) >= problem.cone.strength(t_n) - USED * np.abs(t_n).max(initial=0.0)
         idle = (states == PairState.STICK) & used
         states = np.where(idle, np.where(np.ravel(t_t) <= 0, PairState.SLIP_PLUS, PairState.SLIP_MINUS), states)
     side = np.where(slip < 0, Tangential.MINUS, Tangential.PLUS)

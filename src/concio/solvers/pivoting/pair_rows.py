@@ -101,13 +101,8 @@ class PairSystem:
         self.s: Dimensionless = dimensionless(problem)
         s, self.m, self.n = self.s, self.s.pairs, self.s.f.size
         m, n = self.m, self.n
-        cone = s.cone
-        self.mu = cone.friction
-        tension = -cone.lower
-        self.tension = tension
-        self.cohesion = np.maximum(cone.cohesion - self.mu * tension, 0.0)  # c'
-        self.cohesion[self.cohesion < 1e-13 * np.maximum(1.0, cone.cohesion)] = 0.0
-        self.cap = cone.upper + tension
+        self.tension = tension = s.cone.tension
+        self.mu, self.cohesion, self.cap = s.cone.friction, s.cone.spare, s.cone.shifted.cap  # mu, c', N + T
         self.dilatancy = s.dilatancy
         self.frictionless = (self.mu == 0.0) & (self.cohesion == 0.0)
         self.a = s.compliance.copy()

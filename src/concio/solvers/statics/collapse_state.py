@@ -24,15 +24,13 @@ import scipy.sparse as sp
 
 from concio.errors import InputError
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.tolerances import CHECKED
 from concio.solvers.statics.existence import pair_velocities
 from concio.solvers.statics.limit import associated_limit, static_residual
 from concio.solvers.statics.programme import LARGE, Method, StaticProgramme, optimise
 
 MOVES = 1e-8
 """Relative velocities above this share of the largest count as opening or slipping."""
-
-CERTIFIED = 1e-8
-"""Largest residual of a collapse state that is returned."""
 
 NEARLY_STILL = 1e-3
 """Relative change of the multiplier of frozen strength below which its motion is tried."""
@@ -72,7 +70,7 @@ class CollapseState:
     @property
     def certified(self) -> bool:
         """True when all residuals are rounding."""
-        return max(self.statics, self.flow) <= CERTIFIED
+        return max(self.statics, self.flow) <= CHECKED
 
 
 def find_collapse_state(
@@ -97,7 +95,7 @@ def find_collapse_state(
     start = associated_limit(problem, live)
     if not np.isfinite(start.multiplier):
         return None
-    strength = problem.sliding_strength(start.normal_force)
+    strength = problem.cone.strength(start.normal_force)
     best: CollapseState | None = None
     last, still = np.inf, 0
     zero = np.zeros(problem.pairs)
@@ -119,7 +117,7 @@ def find_collapse_state(
         if still >= PATIENCE:
             return best
         last = found.multiplier
-        strength = (1 - average) * strength + average * problem.sliding_strength(found.normal_force)
+        strength = (1 - average) * strength + average * problem.cone.strength(found.normal_force)
     return best
 
 
@@ -149,7 +147,7 @@ class Motion:
         v = velocity / float(np.abs(velocity).max())
         w_n, _ = pair_velocities(problem, v)
         w_t = problem.C_t @ v
-        crushes = np.isfinite(problem.laws.cap) & (w_n < -MOVES)
+        crushes = problem.cone.capped & (w_n < -MOVES)
         return cls(v, w_n, w_t, w_n > MOVES, np.abs(w_t) > MOVES, crushes)
 
     @property
@@ -159,12 +157,12 @@ class Motion:
 
     def flow_error(self, problem: ContactProblem, t_n: Array, t_t: Array) -> Array:
         """Return the power that should not be there at each pair, (m,), for forces t_n, t_t (m,) [kN]."""
-        law = problem.laws
-        cap = np.where(np.isfinite(law.cap), law.cap, 0.0)
-        opposed = problem.sliding_strength(t_n) * np.sign(self.w_t) + t_t
+        cone = problem.cone
+        cap = np.where(cone.capped, cone.cap, 0.0)
+        opposed = cone.strength(t_n) * np.sign(self.w_t) + t_t
         wrong: Array = np.maximum.reduce(
             [
-                np.abs(np.where(self.opens, self.w_n, 0.0) * (t_n + law.tension)),
+                np.abs(np.where(self.opens, self.w_n, 0.0) * (t_n + cone.tension)),
                 np.abs(np.where(self.slips, self.w_t, 0.0) * opposed),
                 np.abs(np.where(self.crushes, self.w_n, 0.0) * (cap - t_n)),
             ]

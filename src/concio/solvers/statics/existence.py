@@ -32,14 +32,8 @@ from scipy.sparse.linalg import splu
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Mechanism
+from concio.problem.tolerances import ADMISSIBLE, CLEARLY
 from concio.solvers.statics.programme import StaticProgramme, optimise
-
-VIOLATION = 1e-9
-"""Largest violation of a mechanism, relative to the largest velocity, that is accepted as a proof."""
-
-CLEARLY = 1e-9
-"""A power counts as positive when it exceeds this share of the sum of |f_i v_i|."""
-
 
 NEARLY = 1e-6
 """Residual below which the forces of the linear programme are balanced once more, to tell rounding from collapse."""
@@ -105,7 +99,7 @@ def sufficient_condition(problem: ContactProblem) -> SufficientCondition:
     """
     m, r = problem.pairs, problem.rigid_motions
     force = total_load(problem)
-    capped = np.isfinite(problem.laws.cap)
+    capped = problem.cone.capped
     if r == 0 or m == 0:
         moved = float(np.abs(problem.R.T @ problem.f).max(initial=0.0)) > CLEARLY * force
         return SufficientCondition(-np.inf if moved else np.inf, np.zeros(m), not moved)
@@ -126,7 +120,7 @@ def sufficient_condition(problem: ContactProblem) -> SufficientCondition:
     s = float(result.x[-1])
     t_n = (result.x[:m] + s) * force
     balance = np.abs(problem.R.T @ (problem.f + problem.C_n.T @ t_n)).max(initial=0.0) / force
-    holds = s > CLEARLY and float(balance) <= VIOLATION
+    holds = s > CLEARLY and float(balance) <= ADMISSIBLE
     endless = caps is None and s > 1.0 - 1e-9
     return SufficientCondition(np.inf if endless else s * force, t_n, holds)
 
@@ -152,7 +146,7 @@ def statically_admissible(problem: ContactProblem, *, around: bool = False) -> S
     if m == 0:
         velocity = problem.R @ (load / programme.scale)
         residual = float(np.abs(problem.R.T @ problem.f).max() / force)
-        return StaticState(residual <= VIOLATION, np.zeros(0), np.zeros((0, s)), residual, velocity)
+        return StaticState(residual <= ADMISSIBLE, np.zeros(0), np.zeros((0, s)), residual, velocity)
     A, e0 = programme.equilibrium
     n = A.shape[1]
     eye = sp.eye_array(r, format="csc")
@@ -174,7 +168,7 @@ def statically_admissible(problem: ContactProblem, *, around: bool = False) -> S
             break
         x = programme.balance(x, problem.f)
     velocity = problem.R @ (-result.marginals / programme.scale)
-    return StaticState(residual <= VIOLATION, t_n, t_t, residual, velocity)
+    return StaticState(residual <= ADMISSIBLE, t_n, t_t, residual, velocity)
 
 
 def find_mechanism(problem: ContactProblem) -> Mechanism | None:
@@ -214,11 +208,7 @@ def pair_velocities(problem: ContactProblem, velocity: Array) -> tuple[Array, Ar
 
 def absorbed_power(problem: ContactProblem, velocity: Array) -> float:
     """Return sum h_k, the most the joints can absorb in a motion (N,) [kN]; the cone violations count as zero."""
-    law = problem.laws
-    w_n, w_t = pair_velocities(problem, velocity)
-    q = w_n - law.friction * w_t
-    crush = np.where(np.isfinite(law.cap), law.cap, 0.0) * np.maximum(-q, 0.0)
-    return float((law.cohesion * w_t + law.tension * np.maximum(q, 0.0) + crush).sum())
+    return float(problem.cone.absorbed_power(*pair_velocities(problem, velocity)).sum())
 
 
 def verify_mechanism(problem: ContactProblem, velocity: Array) -> Mechanism:
@@ -239,10 +229,9 @@ def verify_mechanism(problem: ContactProblem, velocity: Array) -> Mechanism:
     if not (np.isfinite(top) and top > 0):
         return Mechanism(np.zeros(problem.unknowns), 0.0, np.inf)
     v = np.asarray(velocity, dtype=float) / top
-    law = problem.laws
-    w_n, w_t = pair_velocities(problem, v)
-    q = w_n - law.friction * w_t
-    violation = float(np.maximum(-q[~np.isfinite(law.cap)], 0.0).max(initial=0.0))
+    cone = problem.cone
+    closer = -cone.lift(*pair_velocities(problem, v))
+    violation = float(np.maximum(closer[~cone.capped], 0.0).max(initial=0.0))
     stiffness = float(abs(problem.K).max()) if problem.K.nnz else 0.0
     if stiffness:
         violation = max(violation, float(np.abs(problem.K @ v).max()) / stiffness)
@@ -255,7 +244,7 @@ def proves(problem: ContactProblem, mechanism: Mechanism) -> bool:
     The violation must be rounding, and the power must exceed rounding and what the violation could hide: a hundred
     times the violation times the total load.
     """
-    if not (np.isfinite(mechanism.power) and mechanism.violation <= VIOLATION):
+    if not (np.isfinite(mechanism.power) and mechanism.violation <= ADMISSIBLE):
         return False
     size = float(np.abs(problem.f * mechanism.velocity).sum()) + absorbed_power(problem, mechanism.velocity)
     return bool(mechanism.power > CLEARLY * size + 100.0 * mechanism.violation * total_load(problem))
@@ -273,8 +262,8 @@ def polish(problem: ContactProblem, velocity: Array, active: float = 1e-6) -> Ar
     alpha = (problem.R.T @ velocity) * programme.scale
     w_n, w_t = pair_velocities(problem, velocity)
     s = problem.dim - 1
-    mu = problem.laws.friction
-    tight = np.abs(w_n - mu * w_t) <= active * top
+    mu = problem.cone.friction
+    tight = np.abs(problem.cone.lift(w_n, w_t)) <= active * top
     still = tight & (w_t <= active * top)
     moving = np.flatnonzero(tight & ~still)
     direction = (problem.C_t @ velocity).reshape(problem.pairs, s) / np.where(w_t > 0, w_t, 1.0)[:, None]

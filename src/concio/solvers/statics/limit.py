@@ -16,7 +16,7 @@ Reference: Livesley, Limit analysis of structures formed from rigid blocks, Int.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
@@ -24,11 +24,9 @@ import scipy.sparse as sp
 from concio.errors import SolverError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Mechanism
+from concio.problem.tolerances import CHECKED
 from concio.solvers.statics.existence import absorbed_power, polish, statically_admissible, total_load, verify_mechanism
 from concio.solvers.statics.programme import Method, StaticProgramme, optimise
-
-CHECKED = 1e-8
-"""Largest residual, violation and relative duality gap of a limit load that counts as checked."""
 
 BALANCED = 1e-11
 """Residual below which forces count as admissible where the least friction is sought."""
@@ -157,11 +155,7 @@ def programmed_limit(problem: ContactProblem, live: Array, method: Method | None
 def static_residual(problem: ContactProblem, load: Array, t_n: Array, t_t: Array) -> float:
     """Return the largest entry of R'(load + C't) and of the excess over the cones, over the total load."""
     left = problem.R.T @ (load + problem.C_n.T @ t_n + problem.C_t.T @ t_t.ravel())
-    strength = problem.sliding_strength(t_n)
-    excess = np.maximum.reduce(
-        [np.linalg.norm(t_t, axis=1) - strength, -(t_n + problem.laws.tension), t_n - problem.laws.cap]
-    )
-    worst = max(float(np.abs(left).max(initial=0.0)), float(np.maximum(excess, 0.0).max(initial=0.0)))
+    worst = max(float(np.abs(left).max(initial=0.0)), float(problem.cone.excess(t_n, t_t).max(initial=0.0)))
     return worst / (float(np.abs(load).sum()) or 1.0)
 
 
@@ -185,13 +179,6 @@ def kinematic_bound(
         if best is not None and best[1].violation <= 1e-12:
             break
     return best if best is not None else (np.nan, verify_mechanism(loaded, velocity))
-
-
-def scaled_friction(problem: ContactProblem, factor: float) -> ContactProblem:
-    """Return the problem with every friction coefficient multiplied by ``factor`` (dilatancy kept below it)."""
-    law = problem.laws
-    mu = law.friction * factor
-    return replace(problem, laws=replace(law, friction=mu, dilatancy=np.minimum(law.dilatancy, mu)))
 
 
 @dataclass(frozen=True)
@@ -230,13 +217,13 @@ def smallest_friction(problem: ContactProblem, *, largest: float = 1.0, toleranc
     """
 
     def unbalanced(factor: float) -> tuple[bool, float]:
-        state = statically_admissible(scaled_friction(problem, factor))
+        state = statically_admissible(problem.with_friction(factor))
         if state.residual <= BALANCED:
             return True, factor
         v = state.velocity
         w_t = np.linalg.norm((problem.C_t @ v).reshape(problem.pairs, -1), axis=1)
         slope = float((state.normal_force * problem.laws.friction * w_t).sum())
-        loaded = scaled_friction(problem, factor)
+        loaded = problem.with_friction(factor)
         short = float(loaded.f @ v) - absorbed_power(loaded, v)
         return False, factor + short / slope if slope > 0 and short > 0 else np.nan
 

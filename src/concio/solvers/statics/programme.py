@@ -83,8 +83,7 @@ class StaticProgramme:
     @cached_property
     def spare(self) -> Array:
         """Half width of the segment of each pair, (m,): c - mu T, in space of the square inside or around."""
-        law = self.problem.laws
-        width: Array = np.maximum(law.cohesion - law.friction * law.tension, 0.0)
+        width = self.problem.cone.spare
         return width if self.around else width / np.sqrt(self.problem.dim - 1)
 
     @cached_property
