@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from concio.contact.assembly import Assembly
+from concio.contact.load_faces import covered, line_tolerance, loaded_faces
+from concio.errors import InputError
 from concio.fem.discretisation import RIGID
 from concio.model.interfaces.detect import Detection
 from concio.model.materials import Elastic, JointLaw, Rigid
@@ -27,7 +29,9 @@ def check_facts(model: Model, detection: Detection) -> dict[str, Any]:
         "interfaces": len(detection.interfaces),
         "near_misses": [m.sentence for m in detection.near_misses],
         "overlaps": [o.sentence for o in detection.overlaps],
-        "drawing_faults": [str(fault) for fault in _drawing_faults(model)],
+        "drawing_faults": list(_noted(model, "faults")),
+        "left_out": list(_noted(model, "left_out")),
+        "moved": list(_noted(model, "moved")),
     }
 
 
@@ -68,11 +72,13 @@ def check_lines(
         lines.append(f"load group   {group}: {', '.join(words)}{force}")
     if not model.loads and not any(any(s.displacement) or s.rotation for s in model.supports):
         lines.append("attention    there are no loads and nothing is moved: everything stays as it is")
+    lines += _edge_loads(model, every=every)
     for tie in model.ties:
         lines.append(f"tie          {tie.name}: {tie.body_a} to {tie.body_b or 'a fixed point'}")
     findings = [f"overlap      {o.sentence}" for o in detection.overlaps if o.sentence not in fault]
-    findings += [f"attention    {fault}" for fault in _drawing_faults(model)]
+    findings += [f"attention    {fault}" for fault in _noted(model, "faults")]
     findings += [f"near miss    {m.sentence}" for m in detection.near_misses]
+    lines += _drawing(model, every=every)
     shown = findings if every else findings[:MOST_LINES]
     lines += shown
     if len(findings) > len(shown):
@@ -132,9 +138,53 @@ def _law(law: JointLaw) -> str:
     return ", ".join(words)
 
 
-def _drawing_faults(model: Model) -> tuple[object, ...]:
-    faults = model.generator.get("faults", ())
-    return tuple(faults) if isinstance(faults, tuple | list) else ()
+def _edge_loads(model: Model, *, every: bool) -> list[str]:
+    """Return a line for each load along a line that lies in a joint, or not on blocks all along."""
+    lines = []
+    for load in model.loads:
+        if load.kind not in ("pressure", "traction") or load.edge is None:
+            continue
+        try:
+            faces = loaded_faces(model, load)
+        except InputError:  # told by the assembly
+            continue
+        ends = np.array(load.edge, dtype=float)
+        length, loaded = float(np.hypot(*(ends[1] - ends[0]))), covered(faces)
+        tolerance = line_tolerance(model)
+        in_joint = sum(face.in_joint for face in faces)
+        value = ", ".join(f"{v:g}" for v in load.value)
+        head = f"{load.kind} ({value}) kN/m2 in group '{load.group}' from ({ends[0, 0]:.4g}, {ends[0, 1]:.4g}) to "
+        head += f"({ends[1, 0]:.4g}, {ends[1, 1]:.4g}) m"
+        if in_joint > tolerance and load.face == "both":
+            lines.append(f"load         {head}: in a joint, on both of its faces, as asked")
+        elif in_joint > tolerance:
+            named = load.face or "lower"
+            other = {"lower": "upper", "upper": "lower", "left": "right", "right": "left"}[named]
+            lines.append(
+                f"load         {head}: in a joint, on its {named} face only (face = '{other}' or 'both' says otherwise)"
+            )
+        if length - loaded > max(2 * tolerance, 0.005 * length):
+            lines.append(f"attention    {head}: only {loaded:.4g} m of its {length:.4g} m lie on edges of its blocks")
+    shown = lines if every else lines[:MOST_LINES]
+    more = [f"             ... and {len(lines) - len(shown)} more (--all lists them)"] if shown != lines else []
+    return [*shown, *more]
+
+
+def _drawing(model: Model, *, every: bool) -> list[str]:
+    """Return what the reader of a drawing left out as asked, and the corners it moved."""
+    lines = [f"left out     {sentence}" for sentence in _noted(model, "left_out")]
+    moved = _noted(model, "moved")
+    if moved and every:
+        lines += [f"moved        {sentence}" for sentence in moved]
+    elif moved:
+        lines.append(f"moved        {len(moved):,} corners that nearly met (--all lists every one)")
+    return lines
+
+
+def _noted(model: Model, what: str) -> tuple[str, ...]:
+    """Return what the reader of a drawing noted."""
+    found = model.generator.get(what, ())
+    return tuple(str(v) for v in found) if isinstance(found, tuple | list) else ()
 
 
 def resultants(assembly: Assembly) -> dict[str, list[float]]:

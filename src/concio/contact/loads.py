@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from concio.arguments import closest
+from concio.contact.load_faces import loaded_bodies, loaded_faces
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID, Discretisation
 from concio.fem.edge_integral import edge_weights
-from concio.kinematics.frames import turned_left
 from concio.kinematics.rigid import rigid_operator
 from concio.model.model import Load
 
@@ -36,33 +35,16 @@ def load_vectors(disc: Discretisation) -> dict[str, Array]:
             wanted = "one value" if COMPONENTS[load.kind] == 1 else "two components"
             msg = f"a {load.kind} load has {len(load.value)} values, it takes {wanted}"
             raise InputError(msg, where=f"load group '{load.group}'")
-        chosen = _bodies(disc, load)
         if load.kind in ("weight", "body"):
-            _volume(disc, load, chosen, f)
+            _volume(disc, load, loaded_bodies(disc.model, load), f)
         elif load.kind in ("pressure", "traction"):
-            _edges(disc, load, chosen, f)
+            _edges(disc, load, f)
         elif load.kind == "point":
-            _point(disc, load, chosen, f)
+            _point(disc, load, loaded_bodies(disc.model, load), f)
         else:
             msg = f"unknown load kind '{load.kind}'"
             raise InputError(msg, hint="one of weight, pressure, traction, point, body")
     return vectors
-
-
-def _bodies(disc: Discretisation, load: Load) -> list[int]:
-    bodies = disc.model.bodies
-    if not load.bodies:
-        return [i for i, b in enumerate(bodies) if b.kind != "fixed"]
-    chosen = []
-    for word in load.bodies:
-        found = [i for i, b in enumerate(bodies) if b.kind != "fixed" and word in (b.name, b.role, b.layer)]
-        if not found:
-            known = {w for b in bodies if b.kind != "fixed" for w in (b.name, b.role, b.layer) if w}
-            msg = f"a {load.kind} load acts on '{word}', but no free body has that name, role or layer"
-            hint = closest(word, known, otherwise="see the names with 'concio check'")
-            raise InputError(msg, where=f"load group '{load.group}'", hint=hint)
-        chosen.extend(found)
-    return sorted(set(chosen))
 
 
 def _volume(disc: Discretisation, load: Load, chosen: list[int], f: Array) -> None:
@@ -84,39 +66,15 @@ def _volume(disc: Discretisation, load: Load, chosen: list[int], f: Array) -> No
             f[at : disc.offsets[b + 1]] += np.outer(nodal, vector).ravel()
 
 
-def _edges(disc: Discretisation, load: Load, chosen: list[int], f: Array) -> None:
-    if load.edge is None:
-        msg = f"a {load.kind} load needs an edge"
-        raise InputError(msg, where=f"load group '{load.group}'", hint="give the two ends of the loaded line")
-    p, q = (np.array(end, dtype=float) for end in load.edge)
-    length = float(np.linalg.norm(q - p))
-    if length == 0:
-        msg = f"the edge of a {load.kind} load has no length"
-        raise InputError(msg, where=f"load group '{load.group}'", hint="use a point load")
-    along = (q - p) / length
-    across = turned_left(along)
-    tolerance = max(1e-6 * disc.size, disc.model.gap_tolerance or 0.0)
-    loaded = 0.0
-    for b in chosen:
-        body = disc.model.bodies[b]
-        off = np.abs((body.outline - p) @ across) <= tolerance
-        for e in np.flatnonzero(off & np.roll(off, -1)):
-            a, c = body.outline[e], body.outline[(e + 1) % len(body.outline)]
-            edge = float(np.linalg.norm(c - a))
-            direction = (c - a) / edge
-            ends = sorted((float((p - a) @ direction), float((q - a) @ direction)))
-            start, end = max(ends[0], 0.0), min(ends[1], edge)
-            if end - start <= tolerance:
-                continue
-            loaded += end - start
-            if load.kind == "pressure":
-                vector = load.value[0] * turned_left(direction)  # into the body
-            else:
-                vector = np.array(load.value, dtype=float)
-            _line_load(disc, b, int(e), (start, end), vector * body.thickness, f)
-    if loaded == 0.0:
-        msg = f"the {load.kind} load from ({p[0]:g}, {p[1]:g}) to ({q[0]:g}, {q[1]:g}) lies on no edge of a body"
-        raise InputError(msg, where=f"load group '{load.group}'", hint="give coordinates on the outline of a block")
+def _edges(disc: Discretisation, load: Load, f: Array) -> None:
+    for face in loaded_faces(disc.model, load):
+        if load.kind == "pressure":
+            vector = load.value[0] * face.inward
+        else:
+            vector = np.array(load.value, dtype=float)
+        thickness = disc.model.bodies[face.body].thickness
+        for part in face.parts:
+            _line_load(disc, face.body, face.edge, part, vector * thickness, f)
 
 
 def _line_load(disc: Discretisation, b: int, edge: int, part: tuple[float, float], vector: Array, f: Array) -> None:

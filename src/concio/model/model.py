@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from concio.model.stages import Stage
 Array = np.ndarray
 Periods = tuple[tuple[float, float], tuple[float, float]]
 Kind = Literal["elastic", "rigid", "fixed"]
+Face = Literal["lower", "upper", "left", "right", "both"]
+FACES: tuple[str, ...] = get_args(Face)
+"""Faces of a joint that a load along it may act on."""
 
 
 @strict_class
@@ -190,6 +193,9 @@ class Load:
         Point of a point load [m].
     group : str
         Load group; groups are scaled by load factors.
+    face : {"lower", "upper", "left", "right", "both"} or None
+        Which of the two faces of a joint a pressure or traction acts on that lies in a joint between two of the
+        bodies; None is the lower one, the top of the body below. Where the edge lies on one face only, it is that one.
     """
 
     kind: Literal["weight", "pressure", "traction", "point", "body"]
@@ -198,6 +204,7 @@ class Load:
     edge: tuple[tuple[float, float], tuple[float, float]] | None = None
     at: tuple[float, float] | None = None
     group: str = "dead"
+    face: Face | None = None
 
 
 @strict_class

@@ -13,13 +13,15 @@ import shapely
 from concio.arguments import strict_with
 from concio.errors import GeometryError, InputError
 from concio.model.drawing.dxf import CHORD_TOLERANCE, Drawing, DxfFault, Outline, read_drawing
-from concio.model.drawing.mend import snapped
+from concio.model.drawing.layers import Layers
+from concio.model.drawing.mend import mended
+from concio.model.drawing.places import supports_and_loads
 from concio.model.generate.arguments import Checked, Common, checked, not_negative
 from concio.model.generate.masonry import Piece, assemble
 from concio.model.interfaces.near import find_overlaps
 from concio.model.interfaces.polygon_check import polygon_faults
 from concio.model.materials import Elastic, Rigid
-from concio.model.model import Array, Body, Load, Model, Support
+from concio.model.model import Array, Body, Model
 from concio.units import quantity
 
 
@@ -28,6 +30,7 @@ def model_from_dxf(
     path: str | Path,
     *,
     materials: Mapping[str, Elastic | Rigid] | None = None,
+    layers: Mapping[str, Any] | None = None,
     mend: float | str = 0.0,
     close: float | str | None = None,
     on_fault: Literal["raise", "skip"] = "raise",
@@ -35,20 +38,22 @@ def model_from_dxf(
     chord_tolerance: float | str = CHORD_TOLERANCE,
     **common: Unpack[Common],
 ) -> Model:
-    """Return the model that a DXF drawing describes; its layers are documented in :mod:`concio.model.drawing.dxf`.
+    """Return the model that a DXF drawing describes; see :mod:`concio.model.drawing.dxf` for what is read.
 
     Parameters
     ----------
     path : str or Path
-    materials : mapping of layer to material, optional
-        Blocks on other layers take ``block``.
+    materials : mapping of name to material, optional
+        A block takes the one that ``layers`` gives its layer, else the one of its layer's own name, else ``block``.
+    layers : mapping of layer to word or table, optional
+        What layers mean: "fixed", "ignore", a material, a role, a load...; see :mod:`concio.model.drawing.layers`.
     mend : float or str
-        Vertices closer than this to each other or to a side are put together, double vertices and blocks drawn twice
-        within it are deleted, and it becomes the gap tolerance of the model [m]. 0 mends nothing.
+        Corners closer than this are moved together or onto the side they nearly touch, double vertices and blocks
+        drawn twice within it are deleted, and it becomes the gap tolerance of the model [m]. 0 mends nothing.
     close : float or str, optional
         Open polylines whose ends are at most this far apart are closed with a straight side [m]; None takes ``mend``.
     on_fault : {"raise", "skip"}
-        Skip leaves out what cannot be used, and leaves overlaps as they are; ``model.generator["faults"]`` tells what.
+        Skip leaves out what cannot be used, and leaves overlaps as they are.
     unit : str, optional
         Unit of length of the drawing; None takes ``$INSUNITS``.
     chord_tolerance : float or str
@@ -62,6 +67,11 @@ def model_from_dxf(
         The file or an option is not usable.
     GeometryError
         The drawing has faults that would lose or spoil a block, a support or a load; the message lists them.
+
+    Notes
+    -----
+    ``model.generator`` keeps what was found: ``faults`` (mended or skipped), ``moved`` (every corner that mending
+    moved), ``left_out`` (what was ignored as asked), ``metres`` (a drawing unit).
     """
     where = str(path)
     options = checked(where, common)
@@ -70,8 +80,9 @@ def model_from_dxf(
     if on_fault not in ("raise", "skip"):
         msg = f"on_fault = '{on_fault}' is not one of raise, skip"
         raise InputError(msg, where=where)
-    drawing = read_drawing(path, unit=unit, chord_tolerance=chord_tolerance)
-    outlines, faults = usable_outlines(drawing, within, gap)
+    uses = Layers(layers, list(materials or {}))
+    drawing = read_drawing(path, unit=unit, chord_tolerance=chord_tolerance, layers=uses)
+    outlines, faults, moved = usable_outlines(drawing, within, gap, where)
     curved = 2.5 * quantity(chord_tolerance, "length") if any(o.curved for o in outlines) else 0.0
     pieces, obstacles, table = _pieces(outlines, materials or {}, options)
     if not pieces and on_fault == "skip":
@@ -80,7 +91,7 @@ def model_from_dxf(
     if pieces:
         size = float(np.ptp(np.concatenate([o.points for o in outlines]), axis=0).max())
         tolerance = max(within, curved, 1e-6 * size)
-        supports, loads, lost = _supports_and_loads(drawing, [*pieces, *obstacles], tolerance)
+        supports, loads, lost = supports_and_loads(drawing, pieces, tolerance)
         faults += lost + _overlaps(outlines, obstacles, tolerance)
     serious = [f for f in faults if f.serious and not f.mended]
     if not pieces and not serious:
@@ -91,26 +102,32 @@ def model_from_dxf(
         more = f"\n  ... and {len(serious) - 12} more" if len(serious) > 12 else ""
         msg = f"the drawing has {len(serious)} fault{'s' if len(serious) > 1 else ''}\n{shown}{more}\n"
         raise GeometryError(msg, where=where, hint="mend them there, give 'mend' a tolerance, or set on_fault = 'skip'")
-    model = assemble(
-        options,
-        pieces,
-        obstacles,
-        loads=loads,
-        materials=table,
-        title=f"drawing {Path(path).name}, {len(pieces)} block{'s' if len(pieces) != 1 else ''}",
-        generator={"kind": "dxf", "file": str(path), "faults": tuple(f.sentence for f in faults)},
-    )
+    record = {
+        "kind": "dxf", "file": str(path), "metres": drawing.metres, "faults": tuple(f.sentence for f in faults),
+        "left_out": drawing.left_out, "moved": moved,
+    }  # fmt: skip
+    title = f"drawing {Path(path).name}, {len(pieces)} block{'s' if len(pieces) != 1 else ''}"
+    model = assemble(options, pieces, obstacles, loads=loads, materials=table, title=title, generator=record)
     return replace(model, supports=tuple(supports), gap_tolerance=tolerance)
 
 
-def usable_outlines(drawing: Drawing, mend: float = 0.0, close: float = 0.0) -> tuple[list[Outline], list[DxfFault]]:
-    """Return the outlines that can be blocks, mended within the tolerances, and all faults, those of reading first.
+def usable_outlines(
+    drawing: Drawing, mend: float = 0.0, close: float = 0.0, where: str = "drawing"
+) -> tuple[list[Outline], list[DxfFault], tuple[str, ...]]:
+    """Return the outlines that can be blocks, mended within the tolerances, all faults, and the corners moved.
 
     Parameters
     ----------
     drawing : Drawing
     mend, close : float
         As in :func:`model_from_dxf` [m].
+    where : str
+        The drawing, for messages.
+
+    Raises
+    ------
+    InputError
+        Mending would swallow half of the blocks.
     """
     faults = list(drawing.faults)
 
@@ -126,17 +143,25 @@ def usable_outlines(drawing: Drawing, mend: float = 0.0, close: float = 0.0) -> 
             continue
         if o.open_by:
             note("open", o, o.points[-1], f"open by {1e3 * o.open_by:.4g} mm, closed", mended=True)
-        points = o.points
-        if mend:
-            apart = np.hypot(*(points - np.roll(points, 1, axis=0)).T)
-            if (apart <= mend).any():
-                for at in points[apart <= mend]:
-                    note("outline", o, at, "double vertex, deleted", mended=True)
-                points = points[apart > mend]
-        closed.append(replace(o, points=points))
-    if mend and closed:
-        moved = snapped([o.points for o in closed], mend)
-        closed = [replace(o, points=p) for o, p in zip(closed, moved, strict=True)]
+        closed.append(o)
+    closed = _wider(closed, mend, note, where)
+    moved: list[str] = []
+    if mend:
+        singled = []
+        for o in closed:
+            apart = np.hypot(*(o.points - np.roll(o.points, 1, axis=0)).T)
+            for at in o.points[apart <= mend]:
+                note("outline", o, at, "double vertex, deleted", mended=True)
+            singled.append(replace(o, points=o.points[apart > mend]))
+        single = _without_duplicates(singled, mend, note)
+        points, moves = mended([o.points for o in single], mend)
+        closed = [replace(o, points=p) for o, p in zip(single, points, strict=True)]
+        for m in moves:
+            o, a, b = closed[m.outline], m.start, m.end
+            moved.append(
+                f"entity {o.handle} on layer '{o.layer}': corner ({a[0]:.6g}, {a[1]:.6g}) m moved by "
+                f"{1e3 * m.length:.3g} mm to ({b[0]:.6g}, {b[1]:.6g}) m"
+            )
     result: list[Outline] = []
     for o in closed:
         wrong = polygon_faults(o.points)
@@ -144,7 +169,29 @@ def usable_outlines(drawing: Drawing, mend: float = 0.0, close: float = 0.0) -> 
             note("outline", o, fault.at, f"{fault.sentence} ({fault.hint})")
         if not wrong:
             result.append(o)
-    return _without_duplicates(result, mend, note), faults
+    return (result if mend else _without_duplicates(result, mend, note)), faults, tuple(moved)
+
+
+def _wider(outlines: list[Outline], mend: float, note: Any, where: str) -> list[Outline]:
+    """Return the outlines that mending does not swallow, the others noted."""
+    if not mend:
+        return outlines
+    kept: list[tuple[float, Outline]] = []
+    lost: list[tuple[float, Outline]] = []
+    for o in outlines:
+        shape = shapely.Polygon(o.points) if len(o.points) > 2 else shapely.Polygon()
+        width = 2 * abs(shape.area) / shape.length if shape.length else 0.0
+        (lost if width <= 2 * mend else kept).append((width, o))
+    if len(lost) > len(kept):
+        width, o = min(lost, key=lambda found: found[0])
+        msg = f"mend = {mend:g} m would swallow {len(lost)} of {len(outlines)} outlines"
+        at = o.points[0]
+        hint = f"the thinnest, entity {o.handle} at ({at[0]:.6g}, {at[1]:.6g}) m, is some {1e3 * width:.3g} mm wide"
+        raise InputError(msg, where=where, hint=hint)
+    for width, o in lost:
+        text = f"this outline is only some {1e3 * width:.3g} mm wide, and mend = {1e3 * mend:.3g} mm would swallow it"
+        note("thin", o, o.points[0], text + " (delete it, or give 'mend' a smaller length)")
+    return [o for _, o in kept]
 
 
 def _without_duplicates(outlines: list[Outline], mend: float, note: Any) -> list[Outline]:
@@ -171,60 +218,20 @@ def _pieces(
     outlines: list[Outline], materials: Mapping[str, Elastic | Rigid], options: Checked
 ) -> tuple[list[Piece], list[Piece], dict[str, Elastic | Rigid]]:
     """Return blocks, fixed bodies and the materials beside "block"."""
-    by_layer = {layer.upper(): (layer, material) for layer, material in materials.items()}
+    by_layer = {layer.upper(): layer for layer in materials}
     pieces, obstacles, table = [], [], {}
     for o in outlines:
-        word = o.layer.upper()
-        if word == "CONCIO_FIXED":
-            obstacles.append(Piece(o.name, o.points, "obstacle", o.layer))
+        use = o.use
+        if use.use == "fixed":
+            obstacles.append(Piece(o.name, o.points, use.role or "obstacle", o.layer, "", use.thickness))
             continue
-        key = "block"
-        if word in by_layer:
-            key, table[by_layer[word][0]] = by_layer[word][0], by_layer[word][1]
-        elif word.startswith("CONCIO_RIGID"):
+        key = use.material or by_layer.get(o.layer.upper(), "block")
+        if key in materials:
+            table[key] = materials[key]
+        elif use.use == "rigid":
             key, table["rigid"] = "rigid", Rigid(options.block.unit_weight)
-        pieces.append(Piece(o.name, o.points, "block", o.layer, key))
+        pieces.append(Piece(o.name, o.points, use.role or "block", o.layer, key, use.thickness))
     return pieces, obstacles, table
-
-
-def _supports_and_loads(
-    drawing: Drawing, pieces: list[Piece], tolerance: float
-) -> tuple[list[Support], list[Load], list[DxfFault]]:
-    """Return supports and loads with the names of the blocks they stand on, and those that stand on none."""
-    shapes = shapely.polygons([shapely.linearrings(p.outline) for p in pieces])
-    rings = shapely.boundary(shapes)
-    free = np.array([p.role != "obstacle" for p in pieces])
-    supports, loads, lost = [], [], []
-
-    def blocks_at(edge: Any, inside: bool) -> list[str]:
-        if edge[0] == edge[1]:
-            near = shapely.distance(shapes if inside else rings, shapely.Point(edge[0])) <= tolerance
-            chosen = np.flatnonzero(near & free)[:1] if inside else np.flatnonzero(near & free)
-        else:
-            line = shapely.LineString(edge)
-            common = shapely.length(shapely.intersection(line, shapely.buffer(rings, tolerance)))
-            chosen = np.flatnonzero((common > 4 * tolerance) & free)
-        return [pieces[k].name for k in chosen]
-
-    def nowhere(handle: str, at: Any, what: str) -> None:
-        text = f"entity {handle} at ({at[0]:.6g}, {at[1]:.6g}) m: this {what} lies on no block (move it onto an edge)"
-        lost.append(DxfFault("place", handle, "", np.array(at), text))
-
-    for held in drawing.supports:
-        names = blocks_at(held.edge, inside=False)
-        if not names:
-            nowhere(held.handle, held.edge[0], "support")
-        for name in names:
-            label = f"support {held.handle}" + (f" {name}" if len(names) > 1 else "")
-            supports.append(Support(label, name, held.edge, held.directions))
-    for load, handle in drawing.loads:
-        edge = load.edge if load.edge is not None else (load.at, load.at)
-        names = blocks_at(edge, inside=load.kind == "point")
-        if names:
-            loads.append(replace(load, bodies=tuple(names)))
-        else:
-            nowhere(handle, edge[0], "load")
-    return supports, loads, lost
 
 
 def _overlaps(outlines: list[Outline], obstacles: list[Piece], tolerance: float) -> list[DxfFault]:

@@ -3,56 +3,63 @@
 What is read
 ------------
 Closed polylines (LWPOLYLINE and POLYLINE, with bulges), circles, closed ellipses and splines become blocks, also inside
-block references (INSERT). ``$INSUNITS`` gives the unit of length. Arcs become chords within a tolerance.
+block references (INSERT). ``$INSUNITS`` gives the unit of length. Arcs become chords within a tolerance that keep the
+area under the arc.
 
 Layers (upper or lower case)
 ----------------------------
+What a layer means is said in a table (:mod:`concio.model.drawing.layers`), or by its name:
+
 ``CONCIO_FIXED``
     Fixed bodies: ground, abutments.
 ``CONCIO_RIGID``, ``CONCIO_RIGID_<name>``
     Rigid blocks.
+``CONCIO_HOLE``, ``CONCIO_HOLES``
+    Holes in the blocks they lie in.
 ``CONCIO_NAMES``
-    TEXT or MTEXT whose insertion point lies in a block gives it its name; a block without one is called ``h`` and its
-    handle, as in ``h2F``.
+    TEXT or MTEXT that stands in a block gives it its name; a block without one is called ``h`` and its handle, as in
+    ``h2F``.
 ``CONCIO_SUPPORT_X``, ``_Y``, ``_XY``
-    A LINE along an edge, or a POINT on an outline, holds the block it lies on in these directions.
+    A LINE or polyline along edges, or a POINT on an outline, holds the block it lies on in these directions.
 ``CONCIO_LOAD_PRESSURE_<value>_<group>``
-    A LINE along edges that are loaded [kN/m2], positive pushes against the edge.
+    A LINE or polyline along edges that are loaded [kN/m2], positive pushes against the edge.
 ``CONCIO_LOAD_TX_<value>_<group>``, ``..._TY_...``
     The same for a traction along x or y [kN/m2].
 ``CONCIO_LOAD_FX_<value>_<group>``, ``..._FY_...``
     A POINT on a block on which a force acts [kN]; ``CONCIO_LOAD_FY_-5_LIVE`` is 5 kN downwards.
 ``CONCIO_IGNORE...``, ``DEFPOINTS``, and layers that are off or frozen
-    Left out.
+    Left out, and counted.
 Any other layer
     Blocks; the layer's name is kept, and is the key that gives them a material.
 
-Everything else on such layers (lines, texts, dimensions, hatches) is left out and counted. Every fault names the handle
-of its entity and the place.
+Everything that is no closed outline on a layer of blocks is left out and counted: texts, dimensions, hatches. A LINE or
+an ARC there is a fault, since blocks may have been drawn with single lines; a layer that is ignored may hold any. Every
+fault names the handle of its entity and the place.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import shapely
 
 from concio.errors import InputError
-from concio.model.drawing.dxf_entities import load_of, outline_of, place_of
+from concio.model.arcs import with_arcs
+from concio.model.drawing.dxf_entities import Entity, read_sheet
+from concio.model.drawing.layers import Layers, LayerUse
 from concio.model.model import Array, Load
 from concio.units import quantity
 
-UNITS = {1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 7: 1e3, 8: 0.0254e-6, 10: 0.9144, 13: 1e-6, 14: 0.1}
-"""Metres in one unit of ``$INSUNITS``."""
 CHORD_TOLERANCE = 5e-4
 """Largest distance of a chord from its arc where none is given [m]."""
 
-DxfFaultKind = Literal["open", "outline", "duplicate", "overlap", "layer", "place", "ignored"]
+DxfFaultKind = Literal["open", "outline", "duplicate", "overlap", "layer", "place", "ignored", "thin", "hole"]
+Edge = tuple[tuple[float, float], tuple[float, float]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +93,23 @@ class DxfFault:
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """A closed outline of a drawing: handle, layer, name or "", points (n, 2) [m], whether it has arcs or was open."""
+    """A closed outline of a drawing.
+
+    Parameters
+    ----------
+    handle, layer : str
+    points : (n, 2) array
+        [m].
+    name : str
+        As written in it, or ``h`` and its handle.
+    curved : bool
+        Whether it has arcs.
+    open_by : float
+        Distance between its ends where it was not closed [m].
+    use : LayerUse
+    holes : tuple of Outline
+        Outlines of the holes in it.
+    """
 
     handle: str
     layer: str
@@ -94,15 +117,18 @@ class Outline:
     name: str = ""
     curved: bool = False
     open_by: float = 0.0
+    use: LayerUse = field(default_factory=LayerUse)
+    holes: tuple[Outline, ...] = ()
 
 
 @dataclass(frozen=True)
 class HeldEdge:
-    """A support line or point: its ends [m], its directions, its handle."""
+    """A support line or point: its ends [m], its directions, its handle, its load group."""
 
-    edge: tuple[tuple[float, float], tuple[float, float]]
+    edge: Edge
     directions: str
     handle: str
+    group: str = "settlement"
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,13 +138,15 @@ class Drawing:
     Parameters
     ----------
     outlines : tuple of Outline
-        In the order of the file.
+        In the order of the file; those of holes among them.
     supports : tuple of HeldEdge
     loads : tuple of (Load, str)
         Loads with the handles of their entities.
     faults : tuple of DxfFault
     metres : float
         Length of a drawing unit [m].
+    left_out : tuple of str
+        What was left out as asked, in sentences.
     """
 
     outlines: tuple[Outline, ...]
@@ -126,10 +154,15 @@ class Drawing:
     loads: tuple[tuple[Load, str], ...]
     faults: tuple[DxfFault, ...]
     metres: float
+    left_out: tuple[str, ...] = ()
 
 
 def read_drawing(
-    path: str | Path, *, unit: str | None = None, chord_tolerance: float | str = CHORD_TOLERANCE
+    path: str | Path,
+    *,
+    unit: str | None = None,
+    chord_tolerance: float | str = CHORD_TOLERANCE,
+    layers: Layers | None = None,
 ) -> Drawing:
     """Return what a DXF file holds.
 
@@ -140,132 +173,137 @@ def read_drawing(
         Unit of length of the drawing, such as "mm"; None takes ``$INSUNITS``.
     chord_tolerance : float or str
         Largest distance of a chord from its arc [m].
+    layers : Layers, optional
+        What layers mean whose names do not say it.
 
     Raises
     ------
     InputError
-        ezdxf is not installed, the file is missing or is no DXF, or the drawing has no unit.
+        ezdxf is not installed, the file is missing or is no DXF, the drawing has no unit, or a layer that is given a
+        meaning is not in it.
     """
-    document = _document(Path(path))
-    metres = _metres(document, unit, str(path))
     chord = quantity(chord_tolerance, "length", where="chord_tolerance")
     if not 0 < chord < np.inf:
         msg = f"chord_tolerance = {chord:g} must be positive and finite"
         raise InputError(msg, where=str(path))
+    sheet = read_sheet(Path(path), unit, chord)
+    layers = Layers() if layers is None else layers
+    left_out = layers.check_used(sheet.layers, str(path))
+    uses = {layer: layers.of(layer) for layer in sheet.layers}
     outlines: list[Outline] = []
     supports: list[HeldEdge] = []
     loads: list[tuple[Load, str]] = []
     faults: list[DxfFault] = []
     names: list[tuple[str, Array]] = []
-    ignored: Counter[tuple[str, str]] = Counter()
-    for entity, handle in _entities(document):
-        layer, kind = str(entity.dxf.layer), str(entity.dxftype())
-        word = layer.upper()
-        if _left_out(document, layer):
-            continue
-        if word == "CONCIO_NAMES" and kind in ("TEXT", "MTEXT"):
-            text = entity.plain_text() if hasattr(entity, "plain_text") else entity.dxf.text
-            names.append((str(text).strip(), metres * np.array([entity.dxf.insert.x, entity.dxf.insert.y])))
-        elif word.startswith(("CONCIO_SUPPORT", "CONCIO_LOAD")):
-            place = place_of(entity, metres)
-            if place is None:
-                faults.append(_fault("place", handle, layer, None, f"{kind} is neither a LINE nor a POINT"))
-            elif word.startswith("CONCIO_SUPPORT"):
-                directions = word.removeprefix("CONCIO_SUPPORT").strip("_")
-                if directions in ("X", "Y", "XY"):
-                    supports.append(HeldEdge(place, directions.lower(), handle))
-                else:
-                    text = "this layer is not CONCIO_SUPPORT_X, _Y or _XY"
-                    faults.append(_fault("layer", handle, layer, np.array(place[0]), text))
+    ignored: dict[tuple[str, str], Counter[str]] = {}
+    lost: Counter[tuple[str, str]] = Counter()
+    for e in sheet.entities:
+        use = uses[e.layer]
+        hidden = e.layer.upper() in sheet.hidden
+        if hidden or (isinstance(use, LayerUse) and use.use == "ignore"):
+            ignored.setdefault((e.layer, "off or frozen" if hidden else "ignored"), Counter())[e.kind] += 1
+        elif e.fault:
+            faults.append(_fault("outline", e, f"{e.fault} (draw it anew, or delete it)"))
+        elif isinstance(use, str):
+            faults.append(_fault("layer", e, use))
+        elif use.use == "names":
+            if e.kind in ("TEXT", "MTEXT") and e.text.strip():
+                names.append((" ".join(e.text.split()), e.points[0]))
             else:
-                load = load_of(word, place)
-                if isinstance(load, Load):
-                    loads.append((load, handle))
-                else:
-                    faults.append(_fault("layer", handle, layer, np.array(place[0]), load))
+                lost[e.layer, e.kind] += 1
+        elif use.use == "support":
+            edges = _edges(e)
+            if not edges:
+                faults.append(_fault("place", e, f"{e.kind} is neither a LINE nor a POINT"))
+            supports += [HeldEdge(edge, use.directions, e.handle, use.group) for edge in edges]
+        elif use.load is not None:
+            edges = _edges(e)
+            point = use.load.kind == "point"
+            if not edges or (edges[0][0] == edges[0][1]) != point:
+                wanted = f"a {use.load.kind} load wants {'a POINT' if point else 'a LINE'}, not {e.kind}"
+                faults.append(_fault("place", e, wanted))
+                continue
+            loads += [(replace(use.load, **{"at": a} if point else {"edge": (a, b)}), e.handle) for a, b in edges]
         else:
-            found = outline_of(entity, metres, chord)
+            found = outline_of(e, chord)
             if found is None:
-                ignored[layer, kind] += 1
-            elif len(found[0]) < 2:
-                faults.append(_fault("outline", handle, layer, None, f"{kind} has fewer than two points (delete it)"))
+                lost[e.layer, e.kind] += 1
+            elif isinstance(found, str):
+                faults.append(_fault("outline", e, found))
             else:
-                points, curved, open_by = found
-                outlines.append(Outline(handle, layer, points, "", curved, open_by))
-    for (layer, kind), many in ignored.items():
+                outlines.append(replace(found, use=use))
+    for (layer, why), kinds in ignored.items():
+        what = ", ".join(f"{many:,} {kind}" for kind, many in kinds.items())
+        left_out.append(f"{what} on layer '{layer}', which is {why}")
+    for (layer, kind), many in lost.items():
         text = f"{many} {kind} on layer '{layer}' left out: only closed polylines and circles become blocks"
-        faults.append(DxfFault("ignored", "", layer, np.full(2, np.nan), text, serious=kind in ("LINE", "ARC")))
-    return Drawing(_named(outlines, names, faults), tuple(supports), tuple(loads), tuple(faults), metres)
+        serious = kind in ("LINE", "ARC")
+        if serious:
+            text += f" (draw blocks as closed polylines, or write {layer} = 'ignore' in [drawing.layers])"
+        faults.append(DxfFault("ignored", "", layer, np.full(2, np.nan), text, serious=serious))
+    named = _named(outlines, names, faults)
+    return Drawing(named, tuple(supports), tuple(loads), tuple(faults), sheet.metres, tuple(left_out))
 
 
-def _document(path: Path) -> Any:
+def outline_of(entity: Entity, chord: float) -> Outline | str | None:
+    """Return the outline an entity draws, a sentence on its fault, or None where it is no outline.
+
+    Parameters
+    ----------
+    entity : Entity
+    chord : float
+        Largest distance of a chord from its arc [m].
+    """
+    if entity.kind not in ("LWPOLYLINE", "POLYLINE", "CIRCLE", "ELLIPSE", "SPLINE") or not len(entity.points):
+        return None
+    points, bulges = entity.points, entity.bulges.copy()
+    if len(points) < 2:
+        return f"{entity.kind} has fewer than two points (delete it)"
+    size = float(np.ptp(points, axis=0).max())
+    apart = float(np.hypot(*(points[-1] - points[0])))
+    open_by = 0.0 if entity.closed else apart
+    if apart <= 1e-9 * size:
+        points, bulges, open_by = points[:-1], bulges[:-1], 0.0
+    if open_by:
+        bulges[-1] = 0.0
     try:
-        import ezdxf
-    except ImportError:
-        msg = "reading DXF needs the package ezdxf, which is not installed"
-        raise InputError(msg, where=str(path), hint="pip install ezdxf") from None
-    if not path.is_file():
-        msg = "there is no such file"
-        raise InputError(msg, where=str(path))
-    try:
-        return ezdxf.readfile(path)
-    except (OSError, ezdxf.DXFError, UnicodeDecodeError, ValueError) as error:
-        msg = f"the file is not a DXF drawing that can be read: {error}"
-        raise InputError(msg, where=str(path), hint="save it as DXF (ASCII, 2000 or later) once more") from None
+        drawn = with_arcs(points, bulges, chord)
+    except InputError as error:
+        return str(error)
+    return Outline(entity.handle, entity.layer, drawn, "", bool(bulges.any()) or entity.smooth, open_by)
 
 
-def _metres(document: Any, unit: str | None, where: str) -> float:
-    if unit is not None:
-        return quantity(f"1 {unit}", "length", where=f"{where}, unit")
-    code = int(document.header.get("$INSUNITS", 0))
-    if code in UNITS:
-        return UNITS[code]
-    msg = f"the drawing does not say its unit of length ($INSUNITS = {code})"
-    raise InputError(msg, where=where, hint="set the unit in the drawing, or give unit = 'mm' (or 'm', 'cm', 'in')")
+def _edges(entity: Entity) -> list[Edge]:
+    """Return the straight edges of a LINE or polyline, or the place of a POINT twice [m]."""
+    if entity.kind not in ("LINE", "POINT", "LWPOLYLINE", "POLYLINE") or entity.bulges.any():
+        return []
+    places = [(float(x), float(y)) for x, y in entity.points]
+    if entity.kind == "POINT":
+        return [(places[0], places[0])]
+    ends = [*places[1:], *(places[:1] if entity.closed else ())]
+    return [(a, b) for a, b in zip(places, ends, strict=False) if a != b]
 
 
-def _entities(document: Any) -> Iterator[tuple[Any, str]]:
-    """Yield the entities of model space with their handles; block references are taken apart."""
-    from ezdxf.disassemble import recursive_decompose
-
-    for entity in document.modelspace():
-        handle = str(entity.dxf.handle)
-        if entity.dxftype() == "INSERT":
-            for k, part in enumerate(recursive_decompose([entity]), 1):
-                yield part, f"{handle}.{k}"
-        else:
-            yield entity, handle
-
-
-def _left_out(document: Any, layer: str) -> bool:
-    word = layer.upper()
-    if word == "DEFPOINTS" or word.startswith("CONCIO_IGNORE"):
-        return True
-    if layer not in document.layers:
-        return False
-    entry = document.layers.get(layer)
-    return bool(entry.is_off() or entry.is_frozen())
-
-
-def _fault(kind: DxfFaultKind, handle: str, layer: str, at: Array | None, text: str) -> DxfFault:
-    place = "" if at is None else f" at ({at[0]:.6g}, {at[1]:.6g}) m"
-    where = np.full(2, np.nan) if at is None else at
-    return DxfFault(kind, handle, layer, where, f"entity {handle} on layer '{layer}'{place}: {text}")
+def _fault(kind: DxfFaultKind, entity: Entity, text: str) -> DxfFault:
+    at = entity.points[0] if len(entity.points) else np.full(2, np.nan)
+    place = f" at ({at[0]:.6g}, {at[1]:.6g}) m" if len(entity.points) else ""
+    sentence = f"entity {entity.handle} on layer '{entity.layer}'{place}: {text}"
+    return DxfFault(kind, entity.handle, entity.layer, at, sentence)
 
 
 def _named(
     outlines: Sequence[Outline], names: Sequence[tuple[str, Array]], faults: list[DxfFault]
 ) -> tuple[Outline, ...]:
-    """Return the outlines with the names written in them."""
+    """Return the outlines with the names written in them; a name stands in the smallest block around it."""
+    areas = np.array([0.0 if len(o.points) < 3 else shapely.Polygon(o.points).buffer(0).area for o in outlines])
+    shapes = [shapely.Polygon(o.points).buffer(0) if len(o.points) > 2 else shapely.Polygon() for o in outlines]
+    tree = shapely.STRtree(shapes)
     chosen: dict[int, str] = {}
     for text, at in names:
-        inside = [k for k, o in enumerate(outlines) if len(o.points) > 2 and
-                  shapely.Polygon(o.points).buffer(0).contains(shapely.Point(at))]  # fmt: skip
+        inside = [int(k) for k in tree.query(shapely.Point(at), predicate="within") if outlines[k].use.use != "hole"]
         if not inside:
-            faults.append(_fault("place", "", "CONCIO_NAMES", at, f"the name '{text}' stands in no block"))
-        for k in inside[:1]:
-            chosen[k] = text
-    return tuple(
-        Outline(o.handle, o.layer, o.points, chosen.get(k, f"h{o.handle}"), o.curved, o.open_by)
-        for k, o in enumerate(outlines)
-    )
+            sentence = f"the name '{text}' at ({at[0]:.6g}, {at[1]:.6g}) m stands in no block"
+            faults.append(DxfFault("place", "", "", at, sentence))
+            continue
+        chosen[min(inside, key=lambda k: areas[k])] = text
+    return tuple(replace(o, name=chosen.get(k, f"h{o.handle}")) for k, o in enumerate(outlines))

@@ -191,18 +191,23 @@ def _from_drawing(data: FileTable, materials: Materials, laws: Laws, folder: Pat
     table = data.drawing
     options: dict[str, Any] = {"thickness": data.analysis.thickness}
     if table is not None:
-        options |= {key: getattr(table, key) for key in table.model_fields_set}
+        options |= {key: getattr(table, key) for key in table.model_fields_set - {"layers"}}
+        options["layers"] = {
+            layer: meaning.model_dump(exclude_none=True) if isinstance(meaning, Table) else meaning
+            for layer, meaning in table.layers.items()
+        }
     if materials:  # the drawing's own default is never meant; blocks that would take it are named below
         options["block"] = materials.get("block", next(iter(materials.values())))
     if laws:
         options["friction"] = next(iter(laws.values()))
-    layers = {name: material for name, material in materials.items() if name != "block"}
-    model = model_from_dxf(folder / str(data.blocks_file), materials=layers, **options)
+    model = model_from_dxf(folder / str(data.blocks_file), materials=materials, **options)
     lost = dict.fromkeys(b.layer for b in model.free_bodies if b.material == "block" and "block" not in materials)
     if lost:
         names = ", ".join(f"'{layer}'" for layer in lost)
         msg = f"there is no material for blocks on layer {names}"
-        raise InputError(msg, hint=f"add [materials.{next(iter(lost))}], or [materials.block] for all other layers")
+        layer = next(iter(lost))
+        hint = f"write {layer} = 'A MATERIAL' in [drawing.layers], or add [materials.block] for all other layers"
+        raise InputError(msg, hint=hint)
     used = {b.material for b in model.free_bodies}
     model = replace(model, materials={name: m for name, m in model.materials.items() if name in used})
     return replace(model, laws={}, rules=()) if laws else model
@@ -272,7 +277,7 @@ def _support(table: SupportTable, number: int) -> Support:
 
 
 def _load(table: LoadTable) -> Load:
-    return Load(table.kind, table.value, tuple(table.bodies), table.edge, table.at, table.group)
+    return Load(table.kind, table.value, tuple(table.bodies), table.edge, table.at, table.group, table.face)
 
 
 def _tie(table: TieTable) -> Tie:

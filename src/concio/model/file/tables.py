@@ -30,6 +30,7 @@ from concio.model.file.values import (
     converted,
     units_of,
 )
+from concio.model.model import Face
 
 Point = tuple[Length, Length]
 Element = Literal["Q4", "Q4I", "Q8", "Q9", "T3", "T6"]
@@ -170,6 +171,17 @@ class SupportTable(Table):
     group: Name = "settlement"
 
 
+def _load_value(kind: str, value: Any, info: ValidationInfo) -> tuple[float, ...]:
+    """Return the numbers of a load in kN and m."""
+    quantity, entries = LOAD_KINDS[kind]
+    parts = value if isinstance(value, list) else [value]
+    if len(parts) != entries:
+        form = "one number" if entries == 1 else "two numbers [x, y]"
+        msg = f"a {kind} load takes {form}, not {len(parts)}"
+        raise ValueError(msg)
+    return tuple(converted(part, quantity, units_of(info)) for part in parts)
+
+
 class LoadTable(Table):
     """A load; the unit of ``value`` follows from its kind."""
 
@@ -179,19 +191,12 @@ class LoadTable(Table):
     edge: tuple[Point, Point] | None = None
     at: Point | None = None
     group: Name = "dead"
+    face: Face | None = None
 
     @field_validator("value", mode="after")
     @classmethod
     def _value(cls, value: Any, info: ValidationInfo) -> tuple[float, ...]:
-        if "kind" not in info.data:
-            return ()
-        quantity, entries = LOAD_KINDS[info.data["kind"]]
-        parts = value if isinstance(value, list) else [value]
-        if len(parts) != entries:
-            form = "one number" if entries == 1 else "two numbers [x, y]"
-            msg = f"a {info.data['kind']} load takes {form}, not {len(parts)}"
-            raise ValueError(msg)
-        return tuple(converted(part, quantity, units_of(info)) for part in parts)
+        return _load_value(info.data["kind"], value, info) if "kind" in info.data else ()
 
 
 class TieTable(Table):
@@ -236,9 +241,36 @@ class AnalysisTable(Table):
     thickness: Length = 1.0
 
 
+class LayerTable(Table):
+    """What a layer of a drawing means; see :mod:`concio.model.drawing.layers`."""
+
+    use: Literal["block", "rigid", "fixed", "hole", "names", "ignore"] | None = None
+    material: StrictStr | None = None
+    role: StrictStr | None = None
+    thickness: Length | None = None
+    load: Literal["pressure", "traction", "point"] | None = None
+    value: Annotated[Any, Field(description="a number for pressure, [x, y] otherwise")] = None
+    group: Name | None = None
+    face: Face | None = None
+    support: Literal["x", "y", "xy"] | None = None
+
+    @field_validator("value", mode="after")
+    @classmethod
+    def _value(cls, value: Any, info: ValidationInfo) -> tuple[float, ...] | None:
+        kind = info.data.get("load")
+        return None if kind is None or value is None else _load_value(kind, value, info)
+
+
+Layer = Annotated[
+    Annotated[LayerTable, Tag("<table>")] | Annotated[StrictStr, Tag("<name>")], Discriminator(_material_branch)
+]
+"""A table, or a word: a use or a material."""
+
+
 class DrawingTable(Table):
     """How a DXF drawing is read; see :func:`concio.model.drawing.drawing.model_from_dxf`."""
 
+    layers: dict[str, Layer] = Field(default_factory=dict)
     mend: Length = 0.0
     close: Length | None = None
     on_fault: Literal["raise", "skip"] = "raise"

@@ -15,13 +15,14 @@ from concio.model.model import Array, Body, JointRule, Load, Model
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A block before it has a material: name, outline (n, 2), role, layer, material."""
+    """A block before it is a body: name, outline (n, 2), role, layer, material, thickness (None: the common one)."""
 
     name: str
     outline: Array
     role: str = "block"
     layer: str = ""
     material: str = "block"
+    thickness: float | None = None
 
 
 def rectangle(x0: float, x1: float, y0: float, y1: float) -> Array:
@@ -61,10 +62,12 @@ def assemble(
         For the record.
     """
     table: dict[str, Elastic | Rigid] = {"block": options.block, **(materials or {})}
-    bodies = [Body(o.name, o.outline, "", "fixed", o.role, o.layer, options.thickness) for o in obstacles]
+    bodies = [
+        Body(o.name, o.outline, "", "fixed", o.role, o.layer, o.thickness or options.thickness) for o in obstacles
+    ]
     for p in pieces:
         kind: Literal["elastic", "rigid"] = "rigid" if isinstance(table[p.material], Rigid) else "elastic"
-        bodies.append(Body(p.name, p.outline, p.material, kind, p.role, p.layer, options.thickness))
+        bodies.append(Body(p.name, p.outline, p.material, kind, p.role, p.layer, p.thickness or options.thickness))
     laws: dict[str, JointLaw] = {"joint": options.law}
     rules = [JointRule("joint")]
     if options.base_law is not None:
