@@ -15,7 +15,7 @@ from pathlib import Path
 
 import concio
 from concio.problem.contact_problem import ContactProblem
-from concio.study.compare import compare, format_table
+from concio.studies.compare import compare, format_table
 
 DENSE = ("lemke", "klarbring", "ercolano", "lee", "del-piero")
 """Methods that form dense matrices: left out of the large wall."""

@@ -35,6 +35,9 @@ if TYPE_CHECKING:
     from concio.model.materials import Elastic, JointLaw, Rigid
     from concio.model.model import Body, JointRule, Load, Model, Support, Tie
     from concio.problem.solution import Status
+    from concio.studies.study import Stop, study
+    from concio.studies.study_result import StudyResult, load_study
+    from concio.studies.variables import Variable, variable
 
 __version__ = "0.1.0"
 
@@ -57,6 +60,9 @@ _HOMES = {
         "SolverError",
     ),
     "concio.problem.solution": ("Status",),
+    "concio.studies.study": ("Stop", "study"),
+    "concio.studies.study_result": ("StudyResult", "load_study"),
+    "concio.studies.variables": ("Variable", "variable"),
     "concio.model.generate.arches": ("arch",),
     "concio.model.generate.cells": ("cell",),
     "concio.model.generate.columns": ("buttress", "column"),
@@ -91,8 +97,11 @@ __all__ = [
     "SolverError",
     "Stage",
     "Status",
+    "Stop",
+    "StudyResult",
     "Support",
     "Tie",
+    "Variable",
     "__version__",
     "arch",
     "assemble",
@@ -105,6 +114,7 @@ __all__ = [
     "limit",
     "load",
     "load_margin",
+    "load_study",
     "loads",
     "model_from_dxf",
     "rock",
@@ -114,7 +124,9 @@ __all__ = [
     "save",
     "settle",
     "solve",
+    "study",
     "thrust_line",
+    "variable",
     "wall",
     "wall_of_courses",
 ]

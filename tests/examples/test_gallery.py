@@ -92,6 +92,17 @@ def check_bonds(found):
 NAMES = sorted(p.stem for p in EXAMPLES.glob("[0-9]*.py"))
 
 
+def check_scatter_of_a_wall(found):
+    assert found["failed"] == 0
+    assert found["mu"] > 0.8  # friction matters most
+    assert found["median"] == pytest.approx(found["even"], rel=0.03)
+
+
+def check_what_matters_for_an_arch(found):
+    assert found["weight"] == pytest.approx(0.0, abs=1e-6)  # a uniform weight changes no multiplier of itself
+    assert found["friction"] > found["ring"] > 0.05
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_example(name, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)

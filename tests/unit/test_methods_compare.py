@@ -10,7 +10,7 @@ import pytest
 
 from concio.errors import MethodError
 from concio.plot.convergence import plot_convergence
-from concio.study.compare import ComparisonTable, compare, format_table
+from concio.studies.compare import ComparisonTable, compare, format_table
 from contact_problems import wall
 
 mpl.use("Agg")

@@ -27,8 +27,8 @@ def compare(
     """
     import concio
     from concio.contact.assembly import as_assembly
-    from concio.study.compare import compare as compared
-    from concio.study.compare import format_table
+    from concio.studies.compare import compare as compared
+    from concio.studies.compare import format_table
 
     names = None if methods is None else [name.strip() for name in methods.split(",") if name.strip()]
     model = concio.load(file)

@@ -6,7 +6,7 @@ import sys
 
 import typer
 
-from concio.cli import check, compare, export, limit, new, path, run, schema, view
+from concio.cli import check, compare, export, limit, new, path, run, schema, study, view
 
 app = typer.Typer(
     name="concio",
@@ -47,6 +47,7 @@ app.command("run")(run.run)
 app.command("path")(path.path)
 app.command("limit")(limit.limit)
 app.command("compare")(compare.compare)
+app.command("study")(study.study)
 app.command("view")(view.view)
 app.command("export")(export.export)
 app.command("schema")(schema.schema)

@@ -21,7 +21,7 @@ DASHES: tuple[Any, ...] = ("-", "--", ":", "-.")
 
 
 class Curve(Protocol):
-    """What is drawn of a method: a row of :class:`concio.study.compare.ComparisonTable` has it."""
+    """What is drawn of a method: a row of :class:`concio.studies.compare.ComparisonTable` has it."""
 
     @property
     def method(self) -> str:

@@ -59,7 +59,12 @@ def load(path: str | os.PathLike[str]) -> Model:
         The file is missing, not readable, or says something that cannot be used; the message names the key.
     """
     path = Path(path)
-    return loads(_read(path), folder=path.parent, name=str(path))
+    return model_from_tables(read_tables(path), folder=path.parent, name=str(path))
+
+
+def read_tables(path: Path) -> dict[str, Any]:
+    """Return the tables of a TOML file as they stand in it; raises as :func:`load`."""
+    return parse(_read(path), str(path))
 
 
 @strict
@@ -79,7 +84,19 @@ def loads(text: str, *, folder: str | os.PathLike[str] = ".", name: str = "model
     InputError
         As :func:`load`.
     """
-    data = parse(text, name)
+    return model_from_tables(parse(text, name), folder=folder, name=name)
+
+
+def model_from_tables(
+    data: dict[str, Any], *, folder: str | os.PathLike[str] = ".", name: str = "model text"
+) -> Model:
+    """Return the model that the tables of a TOML text describe; ``folder`` and ``name`` as in :func:`loads`.
+
+    Raises
+    ------
+    InputError
+        As :func:`load`.
+    """
     units = _units(data, name)
     try:
         table = file_table().model_validate(data, context={"units": units})

@@ -61,6 +61,22 @@ def dumps(model: Model, *, blocks_file: str | None = None) -> str:
     return "\n".join(lines) + "\n"
 
 
+def toml_of(tables: Mapping[str, Any]) -> str:
+    """Return tables as TOML text: plain values, then a heading for each table and each entry of a list of tables."""
+    lines = _pairs({k: v for k, v in tables.items() if not _is_table(v)})
+    for name, value in tables.items():
+        if isinstance(value, Mapping):
+            lines += _table(_key(name), value)
+        elif _is_table(value):
+            for entry in value:
+                lines += _table(_key(name), entry, many=True)
+    return "\n".join(lines).lstrip("\n") + "\n"
+
+
+def _is_table(value: Any) -> bool:
+    return isinstance(value, Mapping) or (isinstance(value, list) and bool(value) and isinstance(value[0], Mapping))
+
+
 @strict
 def save(model: Model, path: str | os.PathLike[str], *, blocks_file: str | None = None) -> None:
     """Write the model as a TOML file; an existing file is replaced only when the new one is complete.

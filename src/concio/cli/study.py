@@ -1,0 +1,117 @@
+"""``concio study FILE``: many runs of one model."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from concio.cli.outcome import guarded, print_json, say
+from concio.cli.run import File, Json, Quiet
+
+if TYPE_CHECKING:
+    from concio.studies.study import Progress, StudyProgress
+    from concio.studies.study_result import StudyResult
+
+
+@guarded
+def study(
+    file: File,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Directory for rows and report; by default FILE-study.")
+    ] = None,
+    workers: Annotated[int | None, typer.Option("--workers", "-w", help="Processes that make the runs.")] = None,
+    scheduler: Annotated[
+        str | None, typer.Option("--scheduler", help="Address of a Dask scheduler, tcp://HOST:PORT, or 'local'.")
+    ] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with the study that --out holds.")] = False,
+    figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw figures into the report.")] = True,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> int:
+    """Make the runs that a model file's [[study]] table asks for: rows are written as they end.
+
+    Example: concio study wall.toml --workers 2
+    """
+    import concio
+    from concio.io.csv_table import write_csv
+    from concio.report.study_page import write_study_report
+
+    directory = out if out is not None else file.with_name(f"{file.stem}-study")
+    executor = "dask" if scheduler == "local" else scheduler
+    with study_bar(shown=not (json or quiet)) as progress:
+        found = concio.study(
+            file, directory=directory, executor=executor, workers=workers, resume=resume, progress=progress
+        )
+    write_csv(found.table(), directory / "table.csv")
+    write_study_report(found, directory / "report.html", title=f"Study of {file.name}", figures=figures)
+    if json:
+        print_json({"status": "solved" if not found.failures else "undecided", **found.summary()})
+    elif not quiet:
+        for line in study_lines(found, directory):
+            say(line)
+    return 0 if not found.failures else 4
+
+
+def study_lines(found: StudyResult, directory: Path) -> list[str]:
+    """Return what a study found, in words."""
+    import numpy as np
+
+    from concio.plot.style import number
+
+    of = "" if len(found) == len(found.sample) else f" of {len(found.sample)}"
+    lines = [f"{len(found)}{of} runs, {found.sample.design} sample, seed {found.sample.seed}"]
+    if found.stopped:
+        lines.append("  stopped early: enough was known")
+    for word, count in found.verdicts.items():
+        lines.append(f"  {word.replace('_', ' '):22s} {count}")
+    random = found.sample.design in ("monte-carlo", "latin-hypercube", "sobol", "given")
+    for o in found.outputs:
+        values = found.values(o.name)
+        known = values[np.isfinite(values)]
+        unit = "" if o.unit == "-" else o.unit
+        if not len(known):
+            lines.append(f"  {o.name:22s} no run has a value")
+        elif random and np.isin(known, (0.0, 1.0)).all():
+            lines.append(f"  {o.name:22s} probability {found.probability(o.name)}")
+        else:
+            low, middle, high = (number(float(x), unit) for x in np.quantile(known, (0.05, 0.5, 0.95)))
+            lines.append(f"  {o.name:22s} median {middle}, 5 to 95 % of runs from {low} to {high}")
+    failed = found.failures
+    if failed:
+        lines.append(f"  {len(failed)} runs came to no answer; the first: run {failed[0].index}, {failed[0].message}")
+    lines.append(f"  report                 {directory / 'report.html'}")
+    lines.append(f"  table                  {directory / 'table.csv'}")
+    return lines
+
+
+@contextmanager
+def study_bar(*, shown: bool) -> Iterator[Progress | None]:
+    """Give a callback that moves a bar with the time left, or None where there is nobody to see it."""
+    if not shown or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
+    from rich.progress import Progress as Bar
+
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
+    with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("runs", total=None)
+
+        def move(state: StudyProgress) -> None:
+            failed = f", {state.failed} without an answer" if state.failed else ""
+            text = f"runs{failed}, {_time(state.seconds_left)} left"
+            bar.update(task, completed=state.done, total=state.total, description=text)
+
+        yield move
+
+
+def _time(seconds: float) -> str:
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

@@ -1,0 +1,136 @@
+"""The report of a study: one HTML file with table, figures, and a model file for every run that failed."""
+
+from __future__ import annotations
+
+import base64
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import concio
+from concio.plot.study_figures import suitable
+from concio.plot.style import number
+from concio.report.html_parts import figure_html
+
+if TYPE_CHECKING:
+    from concio.studies.rows import Row
+    from concio.studies.study_result import StudyResult
+
+SHOWN = 200
+"""Failed runs listed one by one; of more, the first."""
+
+
+def write_study_report(study: StudyResult, path: Path | str, *, title: str = "Study", figures: bool = True) -> Path:
+    """Write the report of a study.
+
+    Parameters
+    ----------
+    study : StudyResult
+    path : Path or str
+    title : str
+    figures : bool
+
+    Returns
+    -------
+    Path
+        ``path``.
+    """
+    path = Path(path)
+    path.write_text(study_html(study, title=title, figures=figures), encoding="utf-8")
+    return path
+
+
+def study_html(study: StudyResult, *, title: str = "Study", figures: bool = True) -> str:
+    """Return the report as a text; see :func:`write_study_report`."""
+    style = (files("concio.report") / "report.css").read_text(encoding="utf-8")
+    parts = [
+        f'<header><p class="brand">concio</p><h1>{escape(title)}</h1></header>',
+        f"<section id=verdict>{_head(study)}</section>",
+        f"<section><h2>Outputs</h2>{_outputs(study)}</section>",
+        f"<section><h2>Variables</h2>{_variables(study)}</section>",
+    ]
+    if figures:
+        drawn = "".join(figure_html(axes, name, caption) for name, axes, caption in suitable(study))
+        parts.append(f"<section id=figures><h2>Figures</h2>{drawn}</section>")
+    parts.append(f"<section id=failed><h2>Runs without an answer</h2>{_failed(study)}</section>")
+    parts.append(f"<footer>Written by concio {escape(concio.__version__)}. Forces in kN, lengths in m.</footer>")
+    return (
+        '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f'<title>{escape(title)} &middot; concio</title><link rel="icon" href="data:,"><style>{style}</style></head>'
+        f"<body><main>{''.join(parts)}</main></body></html>\n"
+    )
+
+
+def study_notebook(study: StudyResult) -> str:
+    """Return a study as a piece of HTML for notebooks."""
+    return f"<div>{_head(study)}{_outputs(study)}</div>"
+
+
+def _head(study: StudyResult) -> str:
+    planned = len(study.sample)
+    said = f"{len(study)} of {planned} runs" if len(study) < planned else f"{planned} runs"
+    more = " It stopped there because enough was known." if study.stopped else ""
+    failed = len(study.failures)
+    tone = "good" if not failed else "unsure"
+    words = ", ".join(f"{count} {escape(word.replace('_', ' '))}" for word, count in study.verdicts.items())
+    without = f" {failed} came to no answer; they are listed below." if failed else ""
+    return (
+        f'<div class="verdict {tone}"><h2>{said}</h2><p>Sample: {escape(study.sample.design)}, seed '
+        f"{study.sample.seed}.{more}{without}</p><p>{words}</p></div>"
+    )
+
+
+def _outputs(study: StudyResult) -> str:
+    rows = []
+    for o in study.outputs:
+        values = study.values(o.name)
+        known = values[np.isfinite(values)]
+        cells = [f"{len(known)}"]
+        if len(known):
+            quantiles = np.quantile(known, (0.05, 0.5, 0.95))
+            spread = known.std(ddof=1) if len(known) > 1 else float("nan")
+            cells += [number(float(x)) for x in (known.mean(), spread, known.min(), *quantiles, known.max())]
+        else:
+            cells += ["&ndash;"] * 7
+        unit = "" if o.unit == "-" else f" [{escape(o.unit)}]"
+        numbers = "".join(f"<td class=n>{c}</td>" for c in cells)
+        rows.append(f"<tr><td>{escape(o.name)}{unit}</td>{numbers}</tr>")
+    head = "".join(f"<th>{w}</th>" for w in ("output", "runs", "mean", "sd", "least", "5 %", "median", "95 %", "most"))
+    return f"<div class=scroll><table><thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table></div>"
+
+
+def _variables(study: StudyResult) -> str:
+    rows = "".join(
+        f"<tr><td>{escape(v.name)}</td><td>{escape(v.describe())}</td><td>{escape(', '.join(v.keys))}</td></tr>"
+        for v in study.sample.variables
+    )
+    head = "<th>variable</th><th>distribution</th><th>keys of the model file</th>"
+    return f"<div class=scroll><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>"
+
+
+def _failed(study: StudyResult) -> str:
+    failed = study.failures
+    if not failed:
+        return "<p>None.</p>"
+    rows = "".join(_failed_row(study, row) for row in failed[:SHOWN])
+    head = "<th>run</th><th>values</th><th>what happened</th><th>model</th>"
+    more = f"<p>{len(failed) - SHOWN} more are in the table.</p>" if len(failed) > SHOWN else ""
+    return f"<div class=scroll><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>{more}"
+
+
+def _failed_row(study: StudyResult, row: Row) -> str:
+    values = ", ".join(
+        f"{name} = {number(value) if isinstance(value, float) else value}"
+        for name, value in study.sample.row(row.index).items()
+    )
+    link = "&ndash;"
+    if study.source is not None:
+        data = base64.b64encode(study.model_text(row.index).encode()).decode("ascii")
+        name = f"run-{row.index}.toml"
+        link = f'<a download="{name}" href="data:application/toml;base64,{data}">{name}</a>'
+    said = f"{row.verdict.replace('_', ' ')}: {row.message}" if row.message else row.verdict.replace("_", " ")
+    return f"<tr><td class=n>{row.index}</td><td>{escape(values)}</td><td>{escape(said)}</td><td>{link}</td></tr>"

@@ -1,0 +1,235 @@
+"""One run of a study: from the values of its variables to a row, whatever happens in it.
+
+Nothing that goes wrong in a run stops the study: bad values, structures that do not stand, solvers that give up,
+functions that raise and runs that take too long are rows with a verdict and a sentence.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import math
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field
+from types import FrameType
+from typing import Any
+
+from concio.errors import ConcioError, InputError, NoEquilibriumError, SolverError
+from concio.model.file.keys import KeyPath, with_values
+from concio.model.file.reading import model_from_tables
+from concio.model.model import Model
+from concio.studies.outputs import Analyses, Output, Settings, verdict_of
+from concio.studies.variables import Variable
+
+GRACE = 5.0
+"""Seconds beyond its time limit after which a run that does not answer is ended with its process."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """What came of one run.
+
+    Parameters
+    ----------
+    index : int
+        Number of the run, from 0.
+    verdict : str
+        "solved", "no_equilibrium", "collapses" ... of its load step; "done" where none was asked for; "bad_input",
+        "raised", "time_limit", "worker_lost" where it came to no end of its own.
+    message : str
+        Why, in a sentence; empty where all is well.
+    outputs : mapping of str to float
+        ``nan`` where the run has no such number.
+    seconds : float
+    """
+
+    index: int
+    verdict: str
+    message: str = ""
+    outputs: Mapping[str, float] = field(default_factory=dict)
+    seconds: float = 0.0
+
+    @property
+    def failed(self) -> bool:
+        """Whether the run came to no verdict on the structure."""
+        return self.verdict in FAILURES
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain values; numbers that are not finite as texts, so that JSON keeps them."""
+        told = asdict(self)
+        told["outputs"] = {k: v if math.isfinite(v) else str(v) for k, v in self.outputs.items()}
+        return told
+
+    @classmethod
+    def from_dict(cls, told: Mapping[str, Any]) -> Row:
+        """Return the row that :meth:`as_dict` told."""
+        outputs = {str(k): float(v) for k, v in told["outputs"].items()}
+        return cls(int(told["index"]), str(told["verdict"]), str(told["message"]), outputs, float(told["seconds"]))
+
+
+FAILURES = ("bad_input", "raised", "time_limit", "worker_lost", "gave_up", "cancelled")
+"""Verdicts that say nothing of the structure."""
+
+
+@dataclass(frozen=True)
+class Tables:
+    """A model file as the source of models: tables, and the keys that variables change.
+
+    Parameters
+    ----------
+    data : mapping
+        Tables as read from TOML, without ``[study]``.
+    folder : str
+        Files beside the model file are relative to it.
+    name : str
+        For messages.
+    places : tuple of tuple of KeyPath
+        Of each variable.
+    """
+
+    data: Mapping[str, Any]
+    folder: str
+    name: str
+    places: tuple[tuple[KeyPath, ...], ...]
+
+    def tables(self, variables: tuple[Variable, ...], numbers: tuple[float, ...]) -> dict[str, Any]:
+        """Return the tables of one run."""
+        values = {
+            place: v.written(x)
+            for v, x, places in zip(variables, numbers, self.places, strict=True)
+            for place in places
+        }
+        return with_values(self.data, values)
+
+    def model(self, variables: tuple[Variable, ...], numbers: tuple[float, ...]) -> Model:
+        """Return the model of one run."""
+        return model_from_tables(self.tables(variables, numbers), folder=self.folder, name=self.name)
+
+
+@dataclass(frozen=True)
+class Task:
+    """All that a worker needs to make any run of a study.
+
+    Parameters
+    ----------
+    source : Tables or callable
+        A function takes the values by name, and ``seed``, and returns a :class:`Model` or the outputs by name.
+    variables : tuple of Variable
+    outputs : tuple of Output
+        Of models; of a function that returns outputs itself only their names count.
+    settings : Settings
+    time_limit : float
+        Seconds for a run.
+    own_process : bool
+        Whether the process may be ended with a run that does not stop.
+    """
+
+    source: Tables | Callable[..., Any]
+    variables: tuple[Variable, ...]
+    outputs: tuple[Output, ...]
+    settings: Settings = field(default_factory=Settings)
+    time_limit: float = math.inf
+    own_process: bool = False
+
+    def __call__(self, index: int, numbers: tuple[float, ...], seed: int) -> Row:
+        """Make one run; see :func:`run_row`."""
+        return run_row(self, index, numbers, seed)
+
+
+class OutOfTimeError(Exception):
+    """Raised in a run whose time is over."""
+
+
+def run_row(task: Task, index: int, numbers: tuple[float, ...], seed: int) -> Row:
+    """Make one run and return its row; only interrupts get out of it."""
+    start = time.monotonic()
+    verdict, message, outputs = "raised", "", {o.name: math.nan for o in task.outputs}
+
+    def row() -> Row:
+        return Row(index, verdict, message, outputs, round(time.monotonic() - start, 6))
+
+    try:
+        with _limited(task.time_limit, task.own_process):
+            verdict, message = _evaluate(task, numbers, seed, start + task.time_limit, outputs)
+    except OutOfTimeError:
+        verdict = "time_limit"
+    except NoEquilibriumError as error:
+        verdict, message = "no_equilibrium", str(error)
+    except InputError as error:
+        verdict, message = "bad_input", str(error)
+    except SolverError as error:
+        verdict, message = "gave_up", str(error)
+    except ConcioError as error:
+        message = str(error)
+    except MemoryError:
+        message = "the run does not fit into memory"
+    except Exception as error:  # what a function of the user's raises is a row, never the end of a study
+        message = f"{type(error).__name__}: {error}"
+    late = time.monotonic() - start > task.time_limit
+    if verdict == "time_limit" or (late and verdict in ("cancelled", "raised", "gave_up", "undecided")):
+        verdict, message = "time_limit", f"the run did not end within {task.time_limit:g} s"
+    return row()
+
+
+def _evaluate(
+    task: Task, numbers: tuple[float, ...], seed: int, deadline: float, outputs: dict[str, float]
+) -> tuple[str, str]:
+    """Fill ``outputs`` and return verdict and sentence."""
+    if isinstance(task.source, Tables):
+        made: Any = task.source.model(task.variables, numbers)
+    else:
+        values = {v.name: v.value(x) for v, x in zip(task.variables, numbers, strict=True)}
+        made = task.source({**values, "seed": seed})
+    if isinstance(made, Model):
+        analyses = Analyses(made, task.settings, deadline)
+        for output in task.outputs:
+            outputs[output.name] = float(output.read(analyses))
+        return verdict_of(analyses)
+    if not isinstance(made, Mapping):
+        made = {task.outputs[0].name: made} if len(task.outputs) == 1 else made
+    if not isinstance(made, Mapping) or not set(outputs) <= set(made):
+        said = ", ".join(map(str, made)) if isinstance(made, Mapping) else type(made).__name__
+        msg = f"the function returned {said or 'nothing'}, not the outputs {', '.join(outputs)}"
+        raise InputError(msg, hint="return a concio.Model, or a mapping of the outputs' names to numbers")
+    outputs.update({name: float(made[name]) for name in outputs})
+    return str(made.get("verdict", "done")), str(made.get("message", ""))
+
+
+@contextmanager
+def _limited(seconds: float, own_process: bool) -> Iterator[None]:
+    """Raise :class:`OutOfTimeError` after some seconds where the system can; later end a process of its own."""
+    if not math.isfinite(seconds):
+        yield
+        return
+    alarm = threading.current_thread() is threading.main_thread() and hasattr(signal, "setitimer")
+
+    def late(_: int, __: FrameType | None) -> None:
+        raise OutOfTimeError
+
+    if own_process:
+        faulthandler.dump_traceback_later(seconds + GRACE, exit=True, file=_nowhere())
+    previous = signal.signal(signal.SIGALRM, late) if alarm else None
+    if alarm:
+        signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        if alarm:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            signal.signal(signal.SIGALRM, previous)
+        if own_process:
+            faulthandler.cancel_dump_traceback_later()
+
+
+_SINK: list[int] = []
+
+
+def _nowhere() -> int:
+    """Return the descriptor of a file that keeps nothing, opened once."""
+    if not _SINK:
+        _SINK.append(os.open(os.devnull, os.O_WRONLY))
+    return _SINK[0]
