@@ -1,11 +1,12 @@
-"""Friction and the places of head joints are not known: how much can a wall carry?
+"""Friction and the places of head joints scatter, and with them what a wall can carry.
 
-Every run draws a friction coefficient and moves each head joint a little, as masons do. The limit load of the wall under a
-horizontal share of its weight scatters; what matters is seen by rank correlation.
+Every run draws a friction coefficient and moves each head joint a little, as masons do. The limit load of the wall
+under a horizontal share of its weight scatters; what matters is seen by rank correlation.
 """
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,7 @@ LENGTH, COURSES, BLOCK = 3.0, 10, (0.50, 0.25)
 
 
 def wall(row: dict[str, float]) -> concio.Model:
-    """Return a dry wall on the ground whose head joints are ``row["scatter"]`` (standard deviation) off their places."""
+    """Return a dry wall on the ground; ``row["scatter"]`` is the standard deviation of its head joints' places."""
     rng = np.random.default_rng(row["seed"])
     ground = concio.Body("ground", ((-1, -0.3), (LENGTH + 1, -0.3), (LENGTH + 1, 0), (-1, 0)), kind="fixed")
     bodies = [ground]
@@ -25,7 +26,7 @@ def wall(row: dict[str, float]) -> concio.Model:
         inner = inner + np.clip(rng.normal(0.0, row["scatter"], len(inner)), -0.1, 0.1)
         ends = [0.0, *inner, LENGTH]
         low, high = course * BLOCK[1], (course + 1) * BLOCK[1]
-        for k, (a, b) in enumerate(zip(ends[:-1], ends[1:], strict=True)):
+        for k, (a, b) in enumerate(pairwise(ends)):
             outline = ((a, low), (b, low), (b, high), (a, high))
             bodies.append(concio.Body(f"{course}-{k}", outline, material="stone", kind="rigid"))
     return concio.Model(

@@ -7,12 +7,12 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from concio.study.compare import compare
 
 import concio
 from concio.arguments import closest, strict, strict_class, strict_with
 from concio.errors import ArgumentError
 from concio.solvers.methods import METHODS, find
-from concio.study.compare import compare
 from models import box, on_ground, weight
 
 BUILT_BY_CONCIO = {"Assembly", "PathResult", "Result", "Status"}

@@ -211,7 +211,7 @@ def test_an_executor_that_is_none_is_told() -> None:
         study(formula, executor=3)  # type: ignore[arg-type]
     with pytest.raises(concio.InputError, match="no Dask scheduler answers"):
         concio.study(formula, VARIABLES, "multiplier", size=4, executor=f"tcp://127.0.0.1:{free_port()}")
-    with pytest.raises(concio.ConcioError, match="could not be handed"):
+    with pytest.raises(concio.ConcioError, match="cannot be handed"):
         concio.study(lambda row: formula(row), VARIABLES, "multiplier", size=4, workers=2)
 
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from concio.arguments import closest
 from concio.errors import InputError
-from concio.model.file.errors import closest
 from concio.studies.sampling import Sample, given_sample
 from concio.studies.variables import Variable, variable
 

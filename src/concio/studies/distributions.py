@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
+from concio.arguments import closest
 from concio.errors import InputError
-from concio.model.file.errors import closest
 
 Array = np.ndarray
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 import multiprocessing
 import os
+import pickle
 import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Sequence
@@ -27,8 +28,8 @@ from contextlib import contextmanager, suppress
 from dataclasses import replace
 from typing import Any
 
+from concio.arguments import closest
 from concio.errors import ConcioError, InputError
-from concio.model.file.errors import closest
 from concio.studies.rows import GRACE, Row, Task
 from concio.studies.sampling import Sample
 
@@ -151,6 +152,7 @@ def _dask(address: str | None, workers: int | None) -> Iterator[tuple[Executor, 
 def _run_processes(task: Task, sample: Sample, wanted: Sequence[int], emit: Emit, size: int) -> None:
     """Make runs in processes; where one is lost, those that were out are made alone, and a new pool takes the rest."""
     queue = deque(wanted)
+    _check_portable(task)
     with one_thread():
         while queue:
             lost = []
@@ -214,6 +216,16 @@ def _ended(
     finally:
         for future in out:
             future.cancel()
+
+
+def _check_portable(task: Task) -> None:
+    """Raise where a run cannot be handed to another process."""
+    try:
+        pickle.dumps(task)
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        msg = f"runs cannot be handed to workers: {error}"
+        hint = "functions must be importable by workers: put them into a module, or use executor='serial'"
+        raise ConcioError(msg, hint=hint) from None
 
 
 def _ready() -> bool:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from concio.arguments import closest
 from concio.errors import InputError
-from concio.model.file.errors import closest
 from concio.model.model import Model
 from concio.problem.solution import PROVEN_FAILURES, Progress, Status
 

@@ -16,8 +16,8 @@ from typing import Any
 
 import numpy as np
 
+from concio.arguments import closest
 from concio.errors import InputError
-from concio.model.file.errors import closest
 from concio.studies.variables import Variable
 
 Array = np.ndarray

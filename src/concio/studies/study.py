@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from concio.arguments import strict, strict_class
 from concio.errors import InputError
 from concio.model.file.keys import find_key
 from concio.model.file.reading import read_tables
@@ -61,6 +62,7 @@ class StudyProgress:
     seconds_left: float
 
 
+@strict_class
 @dataclass(frozen=True)
 class Stop:
     """When a study has seen enough: a probability is known to within an interval.
@@ -100,6 +102,7 @@ class Stop:
         return found.high - found.low <= self.width
 
 
+@strict
 def study(
     model: Any,
     variables: Any = None,

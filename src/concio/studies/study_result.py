@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from concio.arguments import closest, strict
 from concio.errors import InputError
-from concio.model.file.errors import closest
 from concio.model.file.keys import KeyPath, find_key
 from concio.model.file.writing import toml_of
 from concio.studies.outputs import NAN, Analyses, Output
@@ -262,6 +262,7 @@ def event_of(values: Array, below: float | None, above: float | None) -> Array:
     return told
 
 
+@strict
 def load_study(directory: str | os.PathLike[str]) -> StudyResult:
     """Return a study from its directory, ended or not.
 

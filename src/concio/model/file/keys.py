@@ -13,8 +13,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from concio.arguments import closest
 from concio.errors import InputError
-from concio.model.file.errors import closest, known_keys
+from concio.model.file.errors import known_keys
 from concio.model.file.generator_tables import file_table
 
 _PART = re.compile(r'\.?(?:"([^"]*)"|\[([^\]]*)\]|([^.\[\]"]+))')
