@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import stat
 import tempfile
 from collections.abc import Iterator
@@ -68,14 +69,14 @@ def read_text(path: Path, *, hint: str | None = None, pipes: bool = False, too_l
         It is no file, cannot be read, is too large, or is not UTF-8.
     """
     where = str(path)
-    check_regular(path, hint=hint, pipes=pipes)
+    size = check_regular(path, hint=hint, pipes=pipes)
     try:
         with path.open("rb") as file:
-            raw = file.read(LARGEST + 1)
+            raw = b"" if size > LARGEST else file.read(LARGEST + 1)
     except OSError as error:
         msg = f"the file cannot be read: {error.strerror or error}"
         raise InputError(msg, where=where) from None
-    if len(raw) > LARGEST:
+    if max(size, len(raw)) > LARGEST:
         msg = f"the file has more than {LARGEST / 1e6:.0f} MB"
         raise InputError(msg, where=where, hint=too_large)
     try:
@@ -99,3 +100,16 @@ def whole_file(target: Path) -> Iterator[Path]:
         if real.exists():
             fresh.chmod(stat.S_IMODE(real.stat().st_mode))
         fresh.replace(real)
+
+
+_FORMULA = re.compile(r"'*[=+\-@\t\r]")
+
+
+def guarded(text: str) -> str:
+    """Return a text for a cell of a table; an apostrophe goes before what a spreadsheet would take for a formula."""
+    return f"'{text}" if isinstance(text, str) and _FORMULA.match(text) else text
+
+
+def unguarded(text: str) -> str:
+    """Return the text that :func:`guarded` was given."""
+    return text[1:] if text.startswith("'") and _FORMULA.match(text[1:]) else text

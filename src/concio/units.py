@@ -1,6 +1,7 @@
 """Values with units: ``"100 MPa"``, ``"20 kN/m3"``, ``"5 mm"`` become numbers in kN and m.
 
-A bare number is taken to be in the consistent system already (kN, m, and what follows from them).
+A bare number is taken to be in the consistent system already (kN, m, and what follows from them). A coefficient of
+friction may be given as its angle (``"31 deg"``), a weight per volume as a mass per volume (``"2100 kg/m3"``).
 """
 
 from __future__ import annotations
@@ -12,11 +13,15 @@ from concio.errors import InputError
 
 _FORCE = {"N": 1e-3, "kN": 1.0, "MN": 1e3, "kgf": 9.80665e-3, "tf": 9.80665}
 _LENGTH = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "km": 1e3, "in": 0.0254, "ft": 0.3048}
+_MASS = {"g": 1e-6, "kg": 1e-3, "t": 1.0}
+_ANGLE = {"deg": math.pi / 180, "degree": math.pi / 180, "degrees": math.pi / 180, "gon": math.pi / 200, "rad": 1.0}
 _STRESS = {"Pa": 1e-3, "kPa": 1.0, "MPa": 1e3, "GPa": 1e6, "bar": 100.0}
 
 # exponents of (force, length)
 KINDS: dict[str, tuple[int, int]] = {
     "number": (0, 0),
+    "friction": (0, 0),
+    "angle": (0, 0),
     "length": (0, 1),
     "area": (0, 2),
     "force": (1, 0),
@@ -31,6 +36,8 @@ KINDS: dict[str, tuple[int, int]] = {
 
 SYMBOL: dict[str, str] = {
     "number": "-",
+    "friction": "-",
+    "angle": "rad",
     "length": "m",
     "area": "m2",
     "force": "kN",
@@ -47,10 +54,16 @@ _VALUE = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[-+]?inf|na
 _ATOM = re.compile(r"^([A-Za-z]+)(?:\^|\*\*)?([23])?$")
 
 
-def _unit(text: str) -> tuple[float, int, int] | None:
-    """Return factor and exponents of force and length of a unit such as ``kN/m2``; None where unknown."""
+GRAVITY = 9.80665
+"""Standard gravity [m/s2]."""
+DECIMAL_COMMA = "decimals are set off by a point, not by a comma: 1.5, not 1,5"
+"""What to do about ``1,5``."""
+
+
+def _unit(text: str) -> tuple[float, int, int, int] | None:
+    """Return factor and exponents of force, length and mass of a unit such as ``kN/m2``; None where unknown."""
     text = text.replace("²", "2").replace("³", "3").replace("·", " ").replace("*", " ")
-    factor, force, length = 1.0, 0, 0
+    factor, force, length, mass = 1.0, 0, 0, 0
     for position, part in enumerate(text.split("/")):
         sign = 1 if position == 0 else -1
         for atom in part.split():
@@ -66,9 +79,11 @@ def _unit(text: str) -> tuple[float, int, int] | None:
                 factor, length = factor * _LENGTH[name] ** power, length + power
             elif name in _STRESS:
                 factor, force, length = factor * _STRESS[name] ** power, force + power, length - 2 * power
+            elif name in _MASS:
+                factor, mass = factor * _MASS[name] ** power, mass + power
             else:
                 return None
-    return factor, force, length
+    return factor, force, length, mass
 
 
 def quantity(value: float | str, kind: str, *, where: str | None = None) -> float:
@@ -79,7 +94,7 @@ def quantity(value: float | str, kind: str, *, where: str | None = None) -> floa
     value : float or str
         A number, or a text with a unit such as ``"100 MPa"``.
     kind : str
-        One of :data:`KINDS`.
+        One of :data:`KINDS`. Friction takes an angle too, and gives its tangent; a unit weight takes a mass per volume.
     where : str, optional
         Name used in the message of an error.
 
@@ -88,35 +103,58 @@ def quantity(value: float | str, kind: str, *, where: str | None = None) -> floa
     InputError
         Not a number, a unit that is not known, or a unit of another kind.
     """
-    if isinstance(value, bool) or not isinstance(value, int | float | str):
+    if not isinstance(value, str):
         try:
-            value = float(value)
+            number, unit = float(value), ""
         except (TypeError, ValueError):
             msg = f"{value!r} is not a number"
             raise InputError(msg, where=where) from None
-    if not isinstance(value, str):
-        number, unit = float(value), ""
+        except OverflowError:
+            msg = "the number is too large"
+            raise InputError(msg, where=where, hint="give a finite value") from None
     else:
         match = _VALUE.match(value)
         if match is None:
-            msg = f"'{value}' is not a number with a unit"
-            example = "1.5" if kind == "number" else f"'1.5 {SYMBOL[kind]}'"
-            raise InputError(msg, where=where, hint=f"write for example {example}")
+            msg = f"'{_short(value)}' is not a number with a unit"
+            example = "1.5" if SYMBOL[kind] == "-" else f"'1.5 {SYMBOL[kind]}'"
+            hint = DECIMAL_COMMA if re.match(r"\s*[-+]?\d*,\d", value) else f"write for example {example}"
+            raise InputError(msg, where=where, hint=hint)
         number, unit = float(match.group(1)), match.group(2)
     if math.isnan(number):
         msg = "the value is not a number (NaN)"
         raise InputError(msg, where=where, hint="give a finite value")
     if not unit or unit == "-":
         return number
+    angle = _ANGLE.get(unit.replace("°", "deg"))
+    if angle is not None and kind in ("friction", "angle"):
+        return number * angle if kind == "angle" else _tangent(number * angle, str(value), where)
     found = _unit(unit)
-    if found is None:
-        msg = f"unknown unit '{unit}' in '{value}'"
+    if found is None and not (angle is not None and kind == "number"):
+        msg = f"unknown unit '{_short(unit)}' in '{_short(str(value))}'"
         if re.match(r",\d", unit):
-            raise InputError(msg, where=where, hint="decimals are set off by a point, not by a comma: 1.5, not 1,5")
+            raise InputError(msg, where=where, hint=DECIMAL_COMMA)
         hint = f"use {SYMBOL[kind]}, or N, kN, MN, m, cm, mm, Pa, kPa, MPa, GPa combined as in 'kN/m2'"
+        if SYMBOL[kind] == "-":
+            hint = "leave the unit out" + (", or give the angle: '31 deg'" if kind == "friction" else "")
         raise InputError(msg, where=where, hint=hint)
-    factor, *exponents = found
-    if tuple(exponents) != KINDS[kind]:
-        msg = f"'{value}' is not a {kind}" if kind != "number" else f"'{value}' must be a plain number"
-        raise InputError(msg, where=where, hint=f"expected a unit like {SYMBOL[kind]}")
+    factor, force, length, mass = found or (1.0, 0, 1, 0)
+    if kind == "unit weight" and (force, length, mass) == (0, -3, 1):
+        return number * factor * GRAVITY
+    if mass or (force, length) != KINDS[kind]:
+        plain = SYMBOL[kind] == "-"
+        msg = f"'{_short(str(value))}' must be a plain number" if plain else f"'{_short(str(value))}' is not a {kind}"
+        expected = None if plain else f"expected a unit like {SYMBOL[kind]}"
+        masses = "kg, g and t are masses: write N, kN or kgf for a force"
+        raise InputError(msg, where=where, hint=masses if mass else expected)
     return number * factor
+
+
+def _tangent(angle: float, value: str, where: str | None) -> float:
+    if not 0 <= angle < math.pi / 2:
+        msg = f"'{_short(value)}' is no angle of friction"
+        raise InputError(msg, where=where, hint="it lies between 0 and 90 degrees; stones have some 30 to 40")
+    return math.tan(angle)
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -92,9 +92,12 @@ def test_out_holds_summary_report_and_figures(panel: Path) -> None:
 
 def test_a_result_is_replaced_and_anything_else_is_not(panel: Path) -> None:
     assert run("run", panel, "--out", "result", "--no-figures")[0] == 0
-    (panel.parent / "result" / "old").write_text("old")
-    assert run("run", panel, "--out", "result", "--no-figures")[0] == 0
-    assert not (panel.parent / "result" / "old").exists()
+    before = (panel.parent / "result" / "result.json").stat().st_mtime_ns
+    (panel.parent / "result" / "mine").write_text("mine")
+    code, _, err = run("run", panel, "--out", "result", "--no-figures")
+    assert (code, "they stay: mine" in err) == (0, True)
+    assert (panel.parent / "result" / "mine").read_text() == "mine"
+    assert (panel.parent / "result" / "result.json").stat().st_mtime_ns > before
     letters = panel.parent / "letters"
     letters.mkdir()
     (letters / "dear.txt").write_text("dear")

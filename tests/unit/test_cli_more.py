@@ -98,7 +98,7 @@ def test_path_writes_curve_events_and_the_last_state(slender: Path) -> None:
     assert (code, err) == (0, "")
     place = slender.parent / "p"
     assert {p.name for p in place.iterdir()} == {
-        "summary.json", "path.csv", "events.csv", "path.png", "path.svg", "report.html", "end",
+        "summary.json", "path.csv", "events.csv", "path.png", "path.svg", "report.html", "end", "concio.json",
     }  # fmt: skip
     rows = list(csv.reader((place / "path.csv").read_text().splitlines()))
     data = json.loads((place / "summary.json").read_text())

@@ -19,9 +19,9 @@ from hypothesis import strategies as st
 import concio
 from concio.errors import GeometryError, InputError
 from concio.fem.elements import FAMILIES
+from concio.files import LARGEST
 from concio.model.file.block_table import write_blocks
 from concio.model.file.generator_tables import KINDS, file_table, hints_of, json_schema
-from concio.model.file.reading import LARGEST_FILE
 from concio.model.file.tables import Element
 from concio.model.generate.generators import GENERATORS
 
@@ -400,7 +400,7 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     (tmp_path / "bom.toml").write_bytes("﻿[panel]\r\ncourses = 1\r\n".encode())
     assert len(concio.load(tmp_path / "bom.toml").free_bodies) == 3
     with (tmp_path / "huge.toml").open("wb") as huge:
-        huge.truncate(LARGEST_FILE + 1)
+        huge.truncate(LARGEST + 1)
     with pytest.raises(InputError, match="more than 200 MB"):
         concio.load(tmp_path / "huge.toml")
 

@@ -205,7 +205,7 @@ def test_result_directory_holds_everything(panel: Result, tmp_path: Path) -> Non
     for name in ("summary.json", "model.toml", "result.json", "result.npz", "joints.csv", "figures/principal.png",
                  "figures/deformed.svg", "report.html"):  # fmt: skip
         assert name in names
-    assert sorted(p for p in target.rglob("*") if p.is_file()) == sorted(written)
+    assert sorted(p for p in target.rglob("*") if p.is_file()) == sorted([*written, target / "concio.json"])
     assert json.loads((target / "summary.json").read_text()) == json.loads(json.dumps(panel.summary()))
     assert load_result(target).summary() == panel.summary()
     model = concio.load(target / "model.toml")
@@ -244,17 +244,18 @@ def test_nothing_is_half_written(
 
 def test_earlier_result_is_replaced_and_other_files_are_not(panel: Result, tmp_path: Path) -> None:
     target = tmp_path / "out"
+    write_result(panel, target, figures=True, report=False)
+    (target / "notes.txt").write_text("what I thought of it")
     write_result(panel, target, figures=False, report=False)
-    (target / "stale.txt").write_text("left by an earlier run")
-    write_result(panel, target, figures=False, report=False)
-    assert not (target / "stale.txt").exists()
+    assert not (target / "figures").exists()
+    assert (target / "notes.txt").read_text() == "what I thought of it"
     other = tmp_path / "thesis"
     other.mkdir()
     (other / "chapter.txt").write_text("years of work")
-    with pytest.raises(InputError, match="other files"):
+    with pytest.raises(InputError, match="other things"):
         write_result(panel, other)
     assert (other / "chapter.txt").read_text() == "years of work"
-    with pytest.raises(InputError, match="file of this name"):
+    with pytest.raises(InputError, match="this is a file"):
         write_result(panel, other / "chapter.txt")
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from concio.cli.outcome import guarded, print_json, say
-from concio.cli.output import check_writable, replaced_file
+from concio.cli.output import PICTURES, check_file, replaced_file
 from concio.cli.run import File, Json
 
 if TYPE_CHECKING:
@@ -23,6 +23,7 @@ def check(
         Path | None, typer.Option("--out", "-o", help="Picture of the model to write: .png, .svg or .pdf.")
     ] = None,
     every: Annotated[bool, typer.Option("--all", help="List every finding and every body.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
     json: Json = False,
 ) -> int:
     """Say what a model file holds and what is wrong with it, without solving.
@@ -35,7 +36,7 @@ def check(
     from concio.errors import ConcioError
 
     if out is not None:
-        _check_picture(out)
+        _check_picture(out, force=force)
     model = concio.load(file)
     detection = detect(model)
     fault: ConcioError | None = None
@@ -63,13 +64,13 @@ def check(
     return 0
 
 
-def _check_picture(out: Path) -> None:
+def _check_picture(out: Path, *, force: bool) -> None:
     from concio.errors import InputError
 
-    if out.suffix not in (".png", ".svg", ".pdf"):
+    if out.suffix not in PICTURES:
         msg = f"a picture ends in .png, .svg or .pdf, not in '{out.suffix}'"
         raise InputError(msg, where="--out", hint=f"write for example --out {out.stem}.png")
-    check_writable(out)
+    check_file(out, force=force)
 
 
 def _draw(model: Model, detection: Detection, out: Path) -> None:
@@ -85,4 +86,4 @@ def _draw(model: Model, detection: Detection, out: Path) -> None:
     figure = axes.figure
     assert isinstance(figure, Figure)
     with replaced_file(out) as fresh:
-        figure.savefig(fresh, dpi=150)
+        figure.savefig(fresh, dpi=150, metadata=PICTURES[out.suffix][0])

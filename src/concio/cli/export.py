@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from concio.cli.outcome import guarded, say
-from concio.cli.output import check_writable, replaced_file
+from concio.cli.output import check_directory, check_file, replaced_directory, replaced_file
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
@@ -22,50 +22,62 @@ def export(
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Directory (vtu, csv) or file (dxf, toml) to write.")
     ] = None,
-    scale: Annotated[float, typer.Option("--scale", help="Scale of the displacements of a drawing.")] = 1.0,
+    scale: Annotated[
+        float, typer.Option("--scale", help="Scale of the displacements of a drawing; 0 draws the model as it was.")
+    ] = 1.0,
+    unit: Annotated[
+        str | None, typer.Option("--unit", help="Unit of a drawing; default that of the drawing read, else m.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> int:
     """Write a result for ParaView (vtu), spreadsheets (csv), drawing programs (dxf), or its model (toml).
 
     Example: concio export result --to vtu
     """
+    from concio.io.owned_dir import CONTENTS, add_own
     from concio.io.result_file import load_result
 
     target = out if out is not None else directory / {"dxf": "deformed.dxf", "toml": "model.toml"}.get(to, to)
     result = load_result(directory)
-    check_writable(target)
-    for path in _write(result, to, target, scale):
+    if to in ("vtu", "csv"):
+        check_directory(target)
+        with replaced_directory(target) as fresh:
+            written = [target / path.relative_to(fresh) for path in _write_tables(result, to, fresh)]
+        add_own(directory, [*written, target / CONTENTS])
+    else:
+        check_file(target, force=force)
+        with replaced_file(target) as fresh:
+            _write_file(result, to, fresh, scale, unit)
+        written = [target]
+        add_own(directory, written)
+    for path in written:
         say(str(path))
     return 0
 
 
-def _write(result: Result, to: str, target: Path, scale: float) -> list[Path]:
+def _write_tables(result: Result, to: str, place: Path) -> list[Path]:
     if to == "vtu":
         from concio.io.paraview import write_paraview
 
-        return write_paraview(result, target)
-    if to == "csv":
-        from concio.io.csv_table import write_csv
-        from concio.post.tables import Tables
+        return write_paraview(result, place)
+    from concio.io.csv_table import write_csv
+    from concio.post.tables import Tables
 
-        target.mkdir(parents=True, exist_ok=True)
-        return [write_csv(table, target / f"{name}.csv") for name, table in Tables(result).all().items()]
+    return [write_csv(table, place / f"{name}.csv") for name, table in Tables(result).all().items()]
+
+
+def _write_file(result: Result, to: str, fresh: Path, scale: float, unit: str | None) -> None:
     if to == "toml":
-        from concio.model.file.writing import save
+        from concio.model.file.writing import dumps
 
-        save(result.model, target)
-        return [target]
-    return [_write_drawing(result, target, scale)]
-
-
-def _write_drawing(result: Result, target: Path, scale: float) -> Path:
-    from concio.io.dxf_out import write_dxf
+        fresh.write_text(dumps(result.model), encoding="utf-8")
+        return
+    from concio.io.dxf_out import layer_of, unit_of, write_dxf
     from concio.post.outlines import outlines
 
     drawn = outlines(result)
     points = drawn.points + scale * drawn.displacement
     closed = [points[a : b - 1] for a, b in pairwise(drawn.starts.tolist())]
     bodies = result.model.bodies
-    layers = ["FIXED" if body.kind == "fixed" else (body.layer or body.material or "BLOCKS") for body in bodies]
-    with replaced_file(target) as fresh:
-        write_dxf(fresh, [body.name for body in bodies], closed, layers=layers)
-    return target
+    layers = [layer_of(result.model, body) for body in bodies]
+    write_dxf(fresh, [b.name for b in bodies], closed, layers=layers, unit=unit or unit_of(result.model))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 import typer
 
-from concio.cli import check, compare, export, limit, new, path, run, schema, study, view
+from concio.cli import check, compare, export, limit, new, outcome, path, run, schema, study, view
 
 app = typer.Typer(
     name="concio",
@@ -55,8 +56,40 @@ app.command("schema")(schema.schema)
 
 def main() -> None:
     """Run the command line and leave with its exit code."""
+    if _open_closed() and not {"--quiet", "-q"} & set(sys.argv):
+        sys.stderr.write("Error: standard output: it is closed\n  -> send it somewhere: > file, or > /dev/null\n")
+        sys.exit(2)
     try:
         app()
     except KeyboardInterrupt:
         sys.stderr.write("Stopped.\n")
         sys.exit(130)
+    except OSError as error:  # help and version are printed by typer itself
+        outcome.silence()
+        if not isinstance(error, BrokenPipeError):
+            sys.stderr.write(f"Error: standard output: cannot be written to: {error.strerror or error}\n")
+        sys.exit(0 if isinstance(error, BrokenPipeError) else 2)
+    finally:
+        try:
+            sys.stdout.flush()
+        except OSError:
+            outcome.silence()
+
+
+def _open_closed() -> bool:
+    """Return whether standard output is closed.
+
+    Closed ones of the three are opened to nowhere: otherwise the next file would get their numbers, and what a library
+    prints would go into it.
+    """
+    found = sys.stdout is None
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)
+    if sys.stdout is None:
+        sys.stdout = os.fdopen(os.dup(1), "w")
+    if sys.stderr is None:
+        sys.stderr = os.fdopen(os.dup(2), "w")
+    return found

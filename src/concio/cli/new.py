@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 import typer
 
 from concio.cli.outcome import guarded, say
-from concio.cli.output import check_writable, replaced_file
+from concio.cli.output import check_file, replaced_file
 
 Kind = Literal["panel", "wall", "arch", "column", "blocks"]
 
@@ -27,13 +27,8 @@ def new(
     """
     from importlib.resources import files
 
-    from concio.errors import InputError
-
     target = file if file is not None else Path(f"{kind}.toml")
-    if target.exists() and not force:
-        msg = "there is a file of that name already"
-        raise InputError(msg, where=str(target), hint="give another name, or --force to replace it")
-    check_writable(target)
+    check_file(target, force=force)
     text = files("concio.model").joinpath("templates", f"{kind}.toml").read_text(encoding="utf-8")
     with replaced_file(target) as fresh:
         fresh.write_text(text, encoding="utf-8")

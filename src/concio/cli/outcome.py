@@ -8,7 +8,8 @@ import json as json_text
 import math
 import os
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from typing import Any, NoReturn, ParamSpec
 
 import typer
@@ -17,6 +18,7 @@ P = ParamSpec("P")
 
 INTERRUPTED = 130
 INTERNAL = 1
+STDOUT = "standard output"
 DEBUG = "CONCIO_DEBUG"
 """Environment variable that makes commands show tracebacks."""
 
@@ -35,11 +37,11 @@ def guarded(command: Callable[P, int]) -> Callable[P, None]:
         as_json = bool(kwargs.get("json"))
         try:
             code = command(*args, **kwargs)
-            sys.stdout.flush()
+            flush()
         except KeyboardInterrupt:
             fail({"kind": "Interrupted", "what": "stopped on request; nothing was written"}, INTERRUPTED, as_json)
         except BrokenPipeError:  # the reader of our output has gone
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            silence()
             code = 0
         except (typer.Exit, typer.Abort):
             raise
@@ -84,15 +86,50 @@ def fail(told: Mapping[str, Any], code: int, as_json: bool) -> NoReturn:
     sys.stderr.write(f"Error: {text.rstrip()}\n")
     if told.get("hint"):
         sys.stderr.write(f"  -> {told['hint']}\n")
-    if as_json:
-        print_json({"status": "error", "exit_code": code, **{k: v for k, v in told.items() if v is not None}})
+    if as_json and told.get("where") != STDOUT:
+        from concio.errors import InputError
+
+        with suppress(OSError, InputError):
+            print_json({"status": "error", "exit_code": code, **{k: v for k, v in told.items() if v is not None}})
     raise typer.Exit(code)
+
+
+def _print(text: str) -> None:
+    with _writable():
+        sys.stdout.write(text)
+
+
+def flush() -> None:
+    """Send what was printed on its way; raises as printing does."""
+    with _writable():
+        sys.stdout.flush()
+
+
+@contextmanager
+def _writable() -> Iterator[None]:
+    """Turn a failure to write to standard output into an InputError; a reader that has gone stays what it is."""
+    from concio.errors import InputError
+
+    try:
+        yield
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        silence()
+        msg = f"cannot be written to: {error.strerror or error}"
+        raise InputError(msg, where=STDOUT, hint="send it somewhere else, or use --quiet") from None
+
+
+def silence() -> None:
+    """Send what is still to be printed, and what Python prints when it ends, to nowhere."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def print_json(data: Mapping[str, Any]) -> None:
     """Print one JSON object on standard output; numbers that JSON does not know become null."""
-    sys.stdout.write(json_text.dumps(_plain(data), allow_nan=False, ensure_ascii=False) + "\n")
-    sys.stdout.flush()
+    _print(json_text.dumps(_plain(data), allow_nan=False, ensure_ascii=False) + "\n")
+    flush()
 
 
 def _plain(value: Any) -> Any:
@@ -105,7 +142,7 @@ def _plain(value: Any) -> Any:
 
 def say(text: str = "") -> None:
     """Print a line on standard output."""
-    sys.stdout.write(text + "\n")
+    _print(text + "\n")
 
 
 def note(text: str) -> None:

@@ -1,4 +1,4 @@
-"""Where a command may write, found out before any work is done; single files replaced only when complete."""
+"""Where a command may write, found out before any work is done; nothing of the user's is ever replaced."""
 
 from __future__ import annotations
 
@@ -9,26 +9,31 @@ from pathlib import Path
 
 from concio.errors import InputError
 
-MARK = "summary.json"
-"""A directory that holds this file is a result directory, which may be replaced."""
+PICTURES = {
+    ".png": ({"Software": "concio"}, b"Software\0concio"),
+    ".svg": ({"Creator": "concio"}, b"<dc:title>concio<"),
+    ".pdf": ({"Creator": "concio"}, b"/Creator (concio)"),
+}
+"""What concio writes into the pictures it draws beside the drawing, and how that stands in the file."""
+LARGEST_PICTURE = 100_000_000
+"""A larger file is not taken for a picture of concio's [bytes]."""
 
 
 def check_directory(target: Path) -> None:
-    """Raise where results cannot go to the directory ``target``.
+    """Raise where results cannot go to the directory ``target``; say what stays there and what is removed.
 
     Raises
     ------
     InputError
         It is a file, it holds something else than results, or its place cannot be written to.
     """
-    where = str(target)
-    if target.exists() and not target.is_dir():
-        msg = "this is a file; results need a directory"
-        raise InputError(msg, where=where, hint="give another name to --out")
-    if target.is_dir() and any(target.iterdir()) and not (target / MARK).exists():
-        msg = "the directory holds other things than results of concio"
-        raise InputError(msg, where=where, hint="give the name of a new directory to --out")
+    from concio.cli.outcome import note
+    from concio.io.owned_dir import look_at
+
+    place = look_at(target)
     check_writable(target)
+    for line in place.notes():
+        note(f"Note: {line}")
 
 
 def check_writable(target: Path) -> None:
@@ -39,41 +44,59 @@ def check_writable(target: Path) -> None:
     InputError
         The nearest directory that exists cannot be written to.
     """
-    parent = target.absolute().parent
-    while not parent.exists():
-        parent = parent.parent
     try:
-        with tempfile.TemporaryDirectory(dir=parent, prefix=f".{target.name}."):
+        nearest = target.resolve()
+        while not nearest.is_dir():
+            nearest = nearest.parent
+        with tempfile.TemporaryDirectory(dir=nearest, prefix=".concio."):
             pass
-    except OSError as error:
-        msg = f"cannot write into '{parent}': {error.strerror}"
+    except (OSError, RuntimeError, ValueError) as error:
+        msg = f"cannot write there: {getattr(error, 'strerror', None) or error}"
         raise InputError(msg, where=str(target), hint="give another place") from None
+
+
+def check_file(target: Path, *, force: bool = False, force_by: str = "--force") -> None:
+    """Raise where a file cannot be written to ``target``, or where one is that concio cannot tell to be its own.
+
+    Raises
+    ------
+    InputError
+        A file of that name is there, and is neither a picture that concio drew nor listed as concio's in its
+        directory; it is a directory or a device; or its place cannot be written to.
+    """
+    from concio.io.owned_dir import is_own
+
+    where = str(target)
+    if target.exists():
+        if not target.is_file():
+            msg = "this is a directory or a device; a file is to be written"
+            raise InputError(msg, where=where, hint="give another name")
+        if not (force or is_own(target) or _is_picture(target)):
+            msg = "there is a file of that name already"
+            raise InputError(msg, where=where, hint=f"give another name, or {force_by} to replace it")
+    check_writable(target.parent)
+
+
+def _is_picture(path: Path) -> bool:
+    if path.suffix not in PICTURES or path.stat().st_size > LARGEST_PICTURE:
+        return False
+    return PICTURES[path.suffix][1] in path.read_bytes()
 
 
 @contextmanager
 def replaced_file(target: Path) -> Iterator[Path]:
     """Give a file to write; when all went well it takes the place of ``target``, otherwise it goes away."""
+    from concio.files import whole_file
+
     target.absolute().parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=target.absolute().parent, prefix=f".{target.name}.") as aside:
-        fresh = Path(aside) / target.name
+    with whole_file(target) as fresh:
         yield fresh
-        fresh.replace(target)
 
 
 @contextmanager
 def replaced_directory(target: Path) -> Iterator[Path]:
-    """Give a directory to write into; when all went well it takes the place of ``target``, otherwise it goes away."""
-    parent = target.absolute().parent
-    parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=parent, prefix=f".{target.name}.") as aside:
-        fresh, old = Path(aside) / "new", Path(aside) / "old"
-        fresh.mkdir()
+    """Give a directory to write into; when all went well its files replace those that concio wrote there before."""
+    from concio.io.owned_dir import owned_directory
+
+    with owned_directory(target) as fresh:
         yield fresh
-        if target.exists():
-            target.rename(old)
-        try:
-            fresh.rename(target)
-        except OSError:
-            if old.exists():
-                old.rename(target)
-            raise

@@ -5,11 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from concio.fem.discretisation import RIGID, Discretisation
+from concio.units import GRAVITY
 
 Array = np.ndarray
-
-GRAVITY = 9.80665
-"""Standard gravity [m/s2]."""
 
 
 def lumped_masses(disc: Discretisation) -> Array:

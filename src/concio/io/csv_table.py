@@ -1,4 +1,7 @@
-"""Tables as CSV: a heading of names with units, numbers that read back to the last bit."""
+"""Tables as CSV: a heading of names with units, numbers that read back to the last bit.
+
+Texts that a spreadsheet would take for a formula get an apostrophe in front.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from concio.files import guarded
 from concio.post.tables import UNITS
 
 Array = np.ndarray
@@ -31,7 +35,7 @@ def write_csv(table: Mapping[str, Array], path: Path) -> Path:
     columns = [_texts(column) for column in table.values()]
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(heading)
+        writer.writerow([guarded(name) for name in heading])
         writer.writerows(zip(*columns, strict=True))
     return path
 
@@ -41,4 +45,4 @@ def _texts(column: Array) -> list[str]:
         return ["" if np.isnan(v) else repr(v) for v in column.tolist()]
     if column.dtype.kind == "b":
         return ["yes" if v else "no" for v in column.tolist()]
-    return [str(v) for v in column.tolist()]
+    return [guarded(v) if isinstance(v, str) else str(v) for v in column.tolist()]

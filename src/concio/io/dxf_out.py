@@ -6,16 +6,44 @@ Every outline becomes a closed LWPOLYLINE on the layer it is given, its name a T
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from concio.errors import InputError
+from concio.files import whole_file
+from concio.model.model import Body, Model
 
 Array = np.ndarray
-UNITS = {"mm": (4, 1e-3), "cm": (5, 1e-2), "m": (6, 1.0), "in": (1, 0.0254), "ft": (2, 0.3048)}
+UNITS = {
+    "mm": (4, 1e-3), "cm": (5, 1e-2), "dm": (14, 0.1), "m": (6, 1.0), "km": (7, 1e3), "in": (1, 0.0254),
+    "ft": (2, 0.3048), "yd": (10, 0.9144),
+}  # fmt: skip
 """Code of ``$INSUNITS`` and length [m] of each unit."""
+FORBIDDEN = re.compile(r"[<>/\\\":;?*|=`,\x00-\x1f]")
+"""Characters that names of layers must not hold."""
+
+
+def unit_of(model: Model) -> str:
+    """Return the unit of the drawing that a model was read from, "m" where there was none."""
+    metres = model.generator.get("metres", 1.0)
+    return next((name for name, (_, length) in UNITS.items() if length == metres), "m")
+
+
+def layer_of(model: Model, body: Body) -> str:
+    """Return the layer on which a body of a model is drawn so that it reads back as what it is.
+
+    That of the drawing it came from; otherwise one whose name says that it is fixed or rigid, or its own layer or
+    material.
+    """
+    if body.layer and model.generator.get("kind") == "dxf":
+        return body.layer
+    if body.kind == "fixed":
+        return "CONCIO_FIXED"
+    name = FORBIDDEN.sub("_", body.layer or body.material or "BLOCKS")
+    return f"CONCIO_RIGID_{name}" if body.kind == "rigid" else name
 
 
 def write_dxf(
@@ -42,7 +70,7 @@ def write_dxf(
     colours : mapping of layer to int, optional
         AutoCAD colour index of layers.
     unit : str
-        Unit of the drawing: "m", "cm", "mm", "in" or "ft".
+        Unit of the drawing, a key of :data:`UNITS`.
     texts : bool
         Write the names.
 
@@ -78,13 +106,8 @@ def write_dxf(
             height = 0.15 * float(np.ptp(points, axis=0).min())
             text = space.add_text(name, height=max(height, 1e-6), dxfattribs={"layer": "CONCIO_NAMES"})
             text.set_placement(_inside(points), align=TextEntityAlignment.LEFT)
-    path = Path(path)
-    unfinished = path.with_name(path.name + ".part")
-    try:
-        document.saveas(unfinished)
-        unfinished.replace(path)
-    finally:
-        unfinished.unlink(missing_ok=True)
+    with whole_file(Path(path)) as fresh:
+        document.saveas(fresh)
 
 
 def _inside(points: Array) -> tuple[float, float]:

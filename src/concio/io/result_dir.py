@@ -8,22 +8,22 @@
 | bodies.csv, joints.csv, contacts.csv, reactions.csv | tables with units |
 | figures/ | every figure that suits the outcome, PNG and SVG |
 | report.html | one file to open, to mail, to keep |
+| concio.json | which of the files in the directory are concio's |
 
-Everything is written into a directory beside the wanted one, which takes its place at the end by renaming. An
-interruption or a full disk therefore leaves what was there before, untouched.
+Everything is written into a hidden directory first and moved into place when it is complete; what belongs to concio is
+listed in ``concio.json`` (:mod:`concio.io.owned_dir`). An interruption or a full disk therefore leaves what was there
+before, and nothing that concio did not write is ever touched.
 """
 
 from __future__ import annotations
 
 import json
-import os
-import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from concio.arguments import strict
-from concio.errors import ConcioError, InputError
 from concio.io.csv_table import write_csv
+from concio.io.owned_dir import owned_directory
 from concio.io.result_file import save_result
 from concio.model.file.writing import dumps
 from concio.post.tables import Tables
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 @strict
 def write_result(result: Result, directory: Path | str, *, figures: bool = True, report: bool = True) -> list[Path]:
-    """Write a result directory; one that is there from an earlier run is replaced.
+    """Write a result directory; what an earlier run wrote there is replaced, anything else stays.
 
     Parameters
     ----------
@@ -51,29 +51,14 @@ def write_result(result: Result, directory: Path | str, *, figures: bool = True,
     Raises
     ------
     InputError
-        The place is taken by something that is not a result directory.
+        The place is taken by something that concio did not write, or that was changed since.
     ConcioError
         It cannot be written, for instance because the disk is full.
     """
     directory = Path(directory)
-    _check_free(directory)
-    partial = directory.with_name(f".{directory.name}.{os.getpid()}.partial")
-    try:
-        partial.parent.mkdir(parents=True, exist_ok=True)
-        if partial.exists():
-            shutil.rmtree(partial)
-        partial.mkdir()
-        written = _write_all(result, partial, figures, report)
-        _put_in_place(partial, directory)
-    except OSError as error:
-        shutil.rmtree(partial, ignore_errors=True)
-        msg = f"the result cannot be written: {error.strerror or error}"
-        hint = "choose another place with --out; nothing was changed"
-        raise ConcioError(msg, where=str(directory), hint=hint) from error
-    except BaseException:
-        shutil.rmtree(partial, ignore_errors=True)
-        raise
-    return [directory / path.relative_to(partial) for path in written]
+    with owned_directory(directory) as fresh:
+        written = _write_all(result, fresh, figures, report)
+    return [directory / path.relative_to(fresh) for path in written]
 
 
 def _write_all(result: Result, place: Path, figures: bool, report: bool) -> list[Path]:
@@ -96,27 +81,3 @@ def _write_all(result: Result, place: Path, figures: bool, report: bool) -> list
 
         written.append(write_report(result, place / "report.html"))
     return written
-
-
-def _check_free(directory: Path) -> None:
-    if not directory.exists():
-        return
-    if not directory.is_dir():
-        msg = "there is a file of this name"
-        raise InputError(msg, where=str(directory), hint="choose another directory for the result")
-    if any(directory.iterdir()) and not (directory / "summary.json").is_file():
-        msg = "the directory holds other files, and no result that could be replaced"
-        raise InputError(msg, where=str(directory), hint="choose an empty or new directory for the result")
-
-
-def _put_in_place(partial: Path, directory: Path) -> None:
-    old = partial.with_suffix(".old")
-    if directory.exists():
-        directory.rename(old)
-    try:
-        partial.rename(directory)
-    except OSError:
-        if old.exists():
-            old.rename(directory)
-        raise
-    shutil.rmtree(old, ignore_errors=True)

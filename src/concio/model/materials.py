@@ -36,7 +36,7 @@ class Elastic:
     nu : float
         Poisson's ratio, -1 < nu < 0.5.
     unit_weight : float or str
-        Weight per volume >= 0 [kN/m3].
+        Weight per volume >= 0 [kN/m3], or the mass: ``"2100 kg/m3"``.
 
     Raises
     ------
@@ -86,14 +86,14 @@ class JointLaw:
 
     Parameters
     ----------
-    friction : float
-        Coulomb coefficient mu >= 0.
+    friction : float or str
+        Coulomb coefficient mu >= 0, or its angle: ``"31 deg"``.
     cohesion : float or str
         Shear strength without compression c >= 0 [kN/m2].
     tensile_strength : float or str
         Tensile strength >= 0 [kN/m2], at most cohesion / friction.
-    dilatancy : float
-        tan(psi), 0 <= tan(psi) <= mu; opening for each unit of slip.
+    dilatancy : float or str
+        tan(psi), 0 <= tan(psi) <= mu; opening for each unit of slip. Or the angle psi: ``"5 deg"``.
     normal_stiffness, tangential_stiffness : float, str or None
         Stiffness of a compliant joint [kN/m3]; None is a hard joint.
     compressive_strength : float, str or None
@@ -110,10 +110,10 @@ class JointLaw:
 
     def __post_init__(self) -> None:
         kinds = {
-            "friction": "number",
+            "friction": "friction",
             "cohesion": "stress",
             "tensile_strength": "stress",
-            "dilatancy": "number",
+            "dilatancy": "friction",
             "normal_stiffness": "joint stiffness",
             "tangential_stiffness": "joint stiffness",
             "compressive_strength": "stress",

@@ -75,7 +75,7 @@ def report_html(
         raise InputError(msg, hint="write one report for each model")
     labels = [_label(s, i) for i, s in enumerate(steps)] if labels is None else list(labels)
     last = steps[-1]
-    data = json.dumps(view_data(steps, labels), allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
+    data = json.dumps(view_data(steps, labels), allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     parts = {
         "TITLE": escape(last.model.title or "Result"),
         "STYLE": _resource("report.css"),

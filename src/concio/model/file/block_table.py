@@ -5,7 +5,8 @@ JSON::
     {"format": "concio blocks", "version": 1, "unit": "m",
      "blocks": [{"name": "b1", "outline": [[0, 0], [0.4, 0], [0.4, 0.2], [0, 0.2]], "material": "block"}]}
 
-CSV has a header; an outline is a text of vertices separated by semicolons, in metres::
+CSV has a header; an outline is a text of vertices separated by semicolons, in metres. Names that a spreadsheet would
+take for a formula are written with an apostrophe in front, which reading takes away again::
 
     name,outline,material,kind,role,layer,thickness
     b1,0 0; 0.4 0; 0.4 0.2; 0 0.2,block,elastic,block,,1.0
@@ -20,6 +21,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -28,9 +30,10 @@ import numpy as np
 
 from concio.arguments import closest
 from concio.errors import InputError
+from concio.files import guarded, read_text, unguarded, whole_file
 from concio.model.interfaces.polygon_check import check_polygon
 from concio.model.model import Array, Body
-from concio.units import quantity
+from concio.units import DECIMAL_COMMA, quantity
 
 FORMAT, VERSION = "concio blocks", 1
 _TEXTS = ("material", "kind", "role", "layer")
@@ -54,7 +57,7 @@ def read_blocks(path: str | Path) -> tuple[Body, ...]:
         An outline has a fault.
     """
     path = Path(path)
-    text = _text(path)
+    text = read_text(path, hint="paths in a model file are relative to it")
     rows: Iterable[tuple[str, Mapping[str, Any]]]
     if path.suffix.lower() == ".json":
         rows, factor = _json_rows(text, str(path))
@@ -101,28 +104,13 @@ def write_blocks(path: str | Path, bodies: Sequence[Body]) -> None:
         table.writeheader()
         for row in rows:
             row["outline"] = "; ".join(f"{x!r} {y!r}" for x, y in row["outline"])
-        table.writerows(rows)
+            table.writerow({k: guarded(v) if k in ("name", *_TEXTS) else v for k, v in row.items()})
         text = stream.getvalue()
     else:
         msg = f"a table of blocks ends in .json or .csv, not in '{path.suffix}'"
         raise InputError(msg, where=str(path))
-    unfinished = path.with_name(path.name + ".part")
-    try:
-        unfinished.write_text(text, encoding="utf-8")
-        unfinished.replace(path)
-    finally:
-        unfinished.unlink(missing_ok=True)
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        msg = "there is no such file"
-        raise InputError(msg, where=str(path), hint="paths in a model file are relative to it") from None
-    except (OSError, UnicodeDecodeError) as error:
-        msg = f"the file cannot be read: {error}"
-        raise InputError(msg, where=str(path)) from None
+    with whole_file(path) as fresh:
+        fresh.write_text(text, encoding="utf-8")
 
 
 def _json_rows(text: str, where: str) -> tuple[list[tuple[str, Mapping[str, Any]]], float]:
@@ -131,6 +119,9 @@ def _json_rows(text: str, where: str) -> tuple[list[tuple[str, Mapping[str, Any]
     except json.JSONDecodeError as error:
         msg = f"line {error.lineno}, column {error.colno}: {error.msg}"
         raise InputError(msg, where=where, hint="the file is not valid JSON") from None
+    except (ValueError, RecursionError) as error:
+        what = "it is nested too deeply" if isinstance(error, RecursionError) else "a number has too many digits"
+        raise InputError(what, where=where) from None
     factor = 1.0
     if isinstance(data, dict):
         if data.get("format", FORMAT) != FORMAT or data.get("version", VERSION) != VERSION:
@@ -153,18 +144,29 @@ def _json_rows(text: str, where: str) -> tuple[list[tuple[str, Mapping[str, Any]
 
 def _csv_rows(text: str, where: str) -> Iterable[tuple[str, Mapping[str, Any]]]:
     reader = csv.DictReader(io.StringIO(text), skipinitialspace=True)
-    header = reader.fieldnames or []
-    for name in ("name", "outline"):
-        if name not in header:
-            msg = f"the header has no column '{name}'"
-            raise InputError(msg, where=where, hint="the first line must name the columns: " + ",".join(_COLUMNS[:-1]))
-    for row in reader:
-        place = f"{where}, line {reader.line_num}"
-        if None in row or None in row.values():
-            msg = f"{len(header)} values were expected"
-            raise InputError(msg, where=place, hint="outlines use spaces and semicolons, not commas")
-        kept = ("name", "outline", "material") if row.get("kind") == "fixed" else ("name", "outline")
-        yield place, {k: v for k, v in row.items() if v != "" or k in kept}
+    try:
+        header = list(reader.fieldnames or [])
+        for name in ("name", "outline"):
+            if name not in header:
+                msg = f"the header has no column '{name}'"
+                hint = "the first line must name the columns: " + ",".join(_COLUMNS[:-1])
+                if ";" in "".join(header):
+                    hint = "columns are separated by commas, vertices by semicolons"
+                raise InputError(msg, where=where, hint=hint)
+        twice = [name for name in header if header.count(name) > 1]
+        if twice:
+            msg = f"the header has the column '{twice[0]}' twice"
+            raise InputError(msg, where=where, hint="leave one of them out")
+        for row in reader:
+            place = f"{where}, line {reader.line_num}"
+            if None in row or None in row.values():
+                msg = f"{len(header)} values were expected"
+                raise InputError(msg, where=place, hint="outlines use spaces and semicolons, not commas")
+            kept = ("name", "outline", "material") if row.get("kind") == "fixed" else ("name", "outline")
+            yield place, {k: unguarded(v) for k, v in row.items() if v != "" or k in kept}
+    except csv.Error as error:
+        msg = f"line {reader.line_num} cannot be read: {error}"
+        raise InputError(msg, where=where, hint="tables with outlines as long as that go into a .json file") from None
 
 
 def _body(row: Mapping[str, Any], factor: float, where: str) -> Body:
@@ -196,13 +198,15 @@ def _body(row: Mapping[str, Any], factor: float, where: str) -> Body:
 
 
 def _outline(value: Any, where: str) -> Array:
+    commas = isinstance(value, str) and re.search(r"\d,\d", value)
     try:
         if isinstance(value, str):
             value = [vertex.split() for vertex in value.split(";") if vertex.strip()]
         points = np.array(value, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError, RecursionError):
         points = np.zeros(0)
     if points.ndim != 2 or points.shape[1] != 2:
         msg = "the outline is not a list of vertices with two numbers each"
-        raise InputError(msg, where=where, hint="write 0 0; 0.4 0; 0.4 0.2 in CSV, [[0, 0], [0.4, 0], ...] in JSON")
+        hint = "write 0 0; 0.4 0; 0.4 0.2 in CSV, [[0, 0], [0.4, 0], ...] in JSON"
+        raise InputError(msg, where=where, hint=DECIMAL_COMMA if commas else hint)
     return points

@@ -142,8 +142,29 @@ def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
         yield from _models_in(part)
 
 
+DEEPEST = 40
+"""Tables within tables within tables: more than this is no model file."""
+LARGEST_NUMBER = 2**63
+"""Whole numbers of a file are below this."""
+
+
+def check_depth(data: Any, where: str) -> None:
+    """Raise where tables and lists are nested deeper than :data:`DEEPEST`."""
+    level: list[Any] = [data]
+    for _ in range(DEEPEST):
+        level = [
+            value
+            for holder in level
+            for value in (holder.values() if isinstance(holder, dict) else holder)
+            if isinstance(value, dict | list)
+        ]
+    if level:
+        msg = f"tables are nested more than {DEEPEST} deep"
+        raise InputError(msg, where=where, hint="keys have at most a few dots")
+
+
 def check_finite(data: Any, where: str, location: Location = (), root: Any = None) -> None:
-    """Raise where a number of a file is NaN or infinite, whatever key it stands under."""
+    """Raise where a number of a file is NaN, infinite or too large, whatever key it stands under."""
     root = data if root is None else root
     if isinstance(data, dict):
         for key, value in data.items():
@@ -154,3 +175,6 @@ def check_finite(data: Any, where: str, location: Location = (), root: Any = Non
     elif isinstance(data, float) and not math.isfinite(data):
         msg = "the value is not a number (NaN)" if math.isnan(data) else "the value is not finite"
         raise InputError(msg, where=f"{where}, {key_path(root, location)}", hint="give a finite value")
+    elif isinstance(data, int) and not isinstance(data, bool) and abs(data) >= LARGEST_NUMBER:
+        msg = "the whole number is too large"
+        raise InputError(msg, where=f"{where}, {key_path(root, location)}", hint="write large numbers as 1e9")

@@ -33,6 +33,8 @@ KINDS: Mapping[str, str] = {
     **dict.fromkeys(LENGTHS, "length"),
     "top_pressure": "stress",
     "unit_weight": "unit weight",
+    "base_friction": "friction",
+    "wall_friction": "friction",
     "crown_load": "force",
     "top_force": "force",
     "thrust": "force",

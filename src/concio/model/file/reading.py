@@ -33,16 +33,14 @@ from pydantic import ValidationError
 
 from concio.arguments import strict
 from concio.errors import InputError
+from concio.files import read_text
 from concio.model.file.build import build
-from concio.model.file.errors import check_finite, first_fault
+from concio.model.file.errors import check_depth, check_finite, first_fault
 from concio.model.file.generator_tables import file_table
 from concio.model.file.tables import UnitsTable
 from concio.model.file.values import FileUnits
 from concio.model.model import Model
-from concio.units import quantity
-
-LARGEST_FILE = 200_000_000
-"""A larger model file is refused; blocks belong into a table of their own [bytes]."""
+from concio.units import DECIMAL_COMMA, quantity
 
 
 @strict
@@ -64,7 +62,9 @@ def load(path: str | os.PathLike[str]) -> Model:
 
 def read_tables(path: Path) -> dict[str, Any]:
     """Return the tables of a TOML file as they stand in it; raises as :func:`load`."""
-    return parse(_read(path), str(path))
+    too_large = "put the blocks into a table of their own: blocks_file = 'blocks.csv'"
+    text = read_text(path, hint="start one with: concio new panel", pipes=True, too_large=too_large)
+    return parse(text, str(path))
 
 
 @strict
@@ -117,9 +117,13 @@ def parse(text: str, name: str) -> dict[str, Any]:
     except RecursionError:
         msg = "the tables are nested too deeply"
         raise InputError(msg, where=name) from None
+    except ValueError:  # Python reads no whole number of more than 4,300 digits
+        msg = "a whole number has too many digits"
+        raise InputError(msg, where=name, hint="write large numbers as 1e9") from None
     if not data:
         msg = "the file holds only comments"
         raise InputError(msg, where=name, hint="start from a commented one: concio new panel")
+    check_depth(data, name)
     check_finite(data, name)
     return data
 
@@ -137,6 +141,8 @@ def _syntax_error(error: tomllib.TOMLDecodeError, text: str, name: str) -> Input
             hint += f"; the line reads: {line[:80]}" if line else ""
             if re.search(r"[=\[,]\s*[-+]?\.\d", line):
                 hint = "numbers begin with a digit: 0.5, not .5"
+            elif re.search(r"=\s*[-+]?\d+,\d+\s*(#.*)?$", line):
+                hint = DECIMAL_COMMA
         else:
             place = f"{name}, last line"
     return InputError(said[:1].lower() + said[1:], where=place, hint=hint)
@@ -149,30 +155,3 @@ def _units(data: dict[str, Any], name: str) -> FileUnits:
         fault = first_fault(error, data.get("units"), UnitsTable, f"{name}, [units]")
         raise fault from None
     return FileUnits(quantity(f"1 {table.force}", "force"), quantity(f"1 {table.length}", "length"))
-
-
-def _read(path: Path) -> str:
-    where = str(path)
-    try:
-        size = path.stat().st_size
-        if size > LARGEST_FILE:
-            msg = f"the file has {size / 1e6:.0f} MB, more than {LARGEST_FILE / 1e6:.0f} MB"
-            raise InputError(
-                msg, where=where, hint="put the blocks into a table of their own: blocks_file = 'blocks.csv'"
-            )
-        raw = path.read_bytes()
-    except FileNotFoundError:
-        msg = "there is no such file"
-        raise InputError(msg, where=where, hint="start one with: concio new panel") from None
-    except IsADirectoryError:
-        msg = "this is a directory, not a model file"
-        raise InputError(msg, where=where) from None
-    except OSError as error:
-        msg = f"the file cannot be read: {error.strerror or error}"
-        raise InputError(msg, where=where) from None
-    try:
-        return raw.decode("utf-8-sig").replace("\r\n", "\n")
-    except UnicodeDecodeError as error:
-        line = raw[: error.start].count(b"\n") + 1
-        msg = f"byte {error.start} (line {line}) is not UTF-8"
-        raise InputError(msg, where=where, hint="save the file with the encoding UTF-8") from None

@@ -5,6 +5,7 @@ Every table refuses keys it does not know. Values are in kN and m after validati
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Any, Literal
 
 from pydantic import (
@@ -20,6 +21,8 @@ from pydantic import (
 )
 
 from concio.model.file.values import (
+    Angle,
+    Coefficient,
     Force,
     JointStiffness,
     Length,
@@ -71,19 +74,23 @@ class MaterialTable(Table):
 class JointTable(Table):
     """A law of joints; see :class:`concio.model.materials.JointLaw`."""
 
-    friction: Number
+    friction: Coefficient
     cohesion: Stress = 0.0
     tensile_strength: Stress = 0.0
-    dilatancy: Number = 0.0
+    dilatancy: Coefficient = 0.0
     normal_stiffness: JointStiffness | None = None
     tangential_stiffness: JointStiffness | None = None
     compressive_strength: Stress | None = None
 
 
+ANGLE = re.compile(r"^\s*[-+.\d,]+\s*(deg|°|rad|gon)")
+"""How a text begins that is the angle of a coefficient, and no name."""
+
+
 def _branch(value: Any) -> str:
     if isinstance(value, dict | Table):
         return "<table>"
-    return "<name>" if isinstance(value, str) else "<number>"
+    return "<name>" if isinstance(value, str) and not ANGLE.search(value) else "<number>"
 
 
 def _material_branch(value: Any) -> str:
@@ -91,10 +98,12 @@ def _material_branch(value: Any) -> str:
 
 
 Friction = Annotated[
-    Annotated[Number, Tag("<number>")] | Annotated[JointTable, Tag("<table>")] | Annotated[StrictStr, Tag("<name>")],
+    Annotated[Coefficient, Tag("<number>")]
+    | Annotated[JointTable, Tag("<table>")]
+    | Annotated[StrictStr, Tag("<name>")],
     Discriminator(_branch),
 ]
-"""A coefficient, a table, or the name of a table in ``[joints]``."""
+"""A coefficient, its angle with a unit, a table, or the name of a table in ``[joints]``."""
 Material = Annotated[
     Annotated[MaterialTable, Tag("<table>")] | Annotated[StrictStr, Tag("<name>")], Discriminator(_material_branch)
 ]
@@ -167,7 +176,7 @@ class SupportTable(Table):
     at: Point | None = None
     directions: Literal["x", "y", "xy"] = "xy"
     displacement: Point = (0.0, 0.0)
-    rotation: Number = 0.0
+    rotation: Angle = 0.0
     group: Name = "settlement"
 
 

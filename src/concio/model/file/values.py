@@ -87,11 +87,16 @@ def _converter(kind: str) -> Callable[[Any, ValidationInfo], float]:
 def _schema(kind: str) -> dict[str, Any]:
     if kind == "number":
         return {"type": "number"}
+    if kind in ("friction", "angle"):
+        text = "a number, or an angle with a unit such as '31 deg'"
+        return {"anyOf": [{"type": "number"}, {"type": "string"}], "description": text}
     text = f"{kind}: a number in the file's system ({SYMBOL[kind]} by default), or a text with a unit"
     return {"anyOf": [{"type": "number"}, {"type": "string"}], "description": text}
 
 
 Number = Annotated[float, BeforeValidator(_converter("number")), WithJsonSchema(_schema("number"))]
+Coefficient = Annotated[float, BeforeValidator(_converter("friction")), WithJsonSchema(_schema("friction"))]
+Angle = Annotated[float, BeforeValidator(_converter("angle")), WithJsonSchema(_schema("angle"))]
 Length = Annotated[float, BeforeValidator(_converter("length")), WithJsonSchema(_schema("length"))]
 Force = Annotated[float, BeforeValidator(_converter("force")), WithJsonSchema(_schema("force"))]
 Stress = Annotated[float, BeforeValidator(_converter("stress")), WithJsonSchema(_schema("stress"))]
@@ -117,6 +122,7 @@ Size = Annotated[Length, AfterValidator(_size)]
 
 TYPES: dict[str, Any] = {
     "number": Number,
+    "friction": Coefficient,
     "length": Size,
     "force": Force,
     "stress": Stress,

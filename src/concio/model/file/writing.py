@@ -17,6 +17,7 @@ import numpy as np
 
 from concio.arguments import strict
 from concio.errors import InputError
+from concio.files import whole_file
 from concio.model.file.block_table import write_blocks
 from concio.model.materials import Elastic, Rigid
 from concio.model.model import Body, Load, Model, Support
@@ -96,17 +97,14 @@ def save(model: Model, path: str | os.PathLike[str], *, blocks_file: str | None 
     """
     path = Path(path)
     text = dumps(model, blocks_file=blocks_file)
-    unfinished = path.with_name(path.name + ".part")
     try:
         if blocks_file is not None:
             write_blocks(path.parent / blocks_file, model.bodies)
-        unfinished.write_text(text, encoding="utf-8")
-        unfinished.replace(path)
+        with whole_file(path) as fresh:
+            fresh.write_text(text, encoding="utf-8")
     except OSError as error:
         msg = f"the file cannot be written: {error.strerror or error}"
         raise InputError(msg, where=str(path)) from None
-    finally:
-        unfinished.unlink(missing_ok=True)
 
 
 _ANALYSIS = ("plane", "element", "mesh_size", "refinement", "gap_tolerance", "gap_reach")

@@ -24,9 +24,9 @@ class Common(TypedDict, total=False):
     ----
     block : Elastic, Rigid, "elastic" or "rigid"
         Material of the blocks; a word takes :data:`STONE`, or its weight alone. Default "elastic".
-    friction : float or JointLaw
-        Law of all joints; a number is a Coulomb coefficient. Default 0.6.
-    base_friction : float or None
+    friction : float, str or JointLaw
+        Law of all joints; a number is a Coulomb coefficient, a text its angle: ``"31 deg"``. Default 0.6.
+    base_friction : float, str or None
         Another coefficient against the ground or the abutments.
     unit_weight : float or str or None
         Weight per volume [kN/m3]; None takes the material's.
@@ -45,8 +45,8 @@ class Common(TypedDict, total=False):
     """
 
     block: Elastic | Rigid | Literal["elastic", "rigid"]
-    friction: float | JointLaw
-    base_friction: float | None
+    friction: float | str | JointLaw
+    base_friction: float | str | None
     unit_weight: float | str | None
     thickness: float | str
     horizontal: float
@@ -102,9 +102,9 @@ def checked(where: str, options: Mapping[str, Any]) -> Checked:
     if options.get("unit_weight") is not None:
         block = replace(block, unit_weight=not_negative(where, "unit_weight", options["unit_weight"], "unit weight"))
     friction = options.get("friction", 0.6)
-    law = friction if isinstance(friction, JointLaw) else JointLaw(friction=friction)
+    law = friction if isinstance(friction, JointLaw) else JointLaw(quantity(friction, "friction", where="friction"))
     base_friction = options.get("base_friction")
-    base_law = None if base_friction is None else replace(law, friction=quantity(base_friction, "number", where=where))
+    base_law = None if base_friction is None else replace(law, friction=base_friction)
     plane, horizontal = options.get("plane", "stress"), quantity(options.get("horizontal", 0.0), "number", where=where)
     if plane not in ("stress", "strain"):
         msg = f"plane = '{plane}' is not one of stress, strain"

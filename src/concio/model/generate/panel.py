@@ -39,9 +39,9 @@ def running_bond_panel(
     thickness: float | str = 0.10,
     block: Elastic | Rigid | None = None,
     mortar: Elastic | None = None,
-    friction: float | JointLaw = 1.0,
-    wall_friction: float | None = None,
-    base_friction: float | None = None,
+    friction: float | str | JointLaw = 1.0,
+    wall_friction: float | str | None = None,
+    base_friction: float | str | None = None,
     base: Base = "full",
     side_walls: bool = True,
     side_gap: float | str = 0.0,
@@ -146,11 +146,12 @@ def running_bond_panel(
 
     bodies, width, top = _bodies(n_c, n_b, length, height, t_m, depth, block, (nx, ny), bed_mortar)
     bodies += _obstacles(base, side_walls, width, top, length, depth)
-    law = friction if isinstance(friction, JointLaw) else JointLaw(friction=friction)
+    law = friction if isinstance(friction, JointLaw) else JointLaw(quantity(friction, "friction", where="friction"))
     laws, rules = {"joint": law}, [JointRule("joint")]
     for role, coefficient, opening in (("side wall", wall_friction, gap), ("base", base_friction, 0.0)):
         if coefficient is not None or opening:
-            laws[role] = law if coefficient is None else replace(law, friction=coefficient)
+            given = law.friction if coefficient is None else quantity(coefficient, "friction", where=f"{role} friction")
+            laws[role] = replace(law, friction=given)
             rules.append(JointRule(role, (role, "*"), opening))
     loads = []
     if block.unit_weight or (t_m and mortar.unit_weight):
