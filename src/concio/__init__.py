@@ -13,6 +13,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from concio.analysis.cells.moduli import homogenise
+    from concio.analysis.cells.path import strain_path
+    from concio.analysis.cells.strength import strength
     from concio.analysis.limit import friction_margin, limit
     from concio.analysis.margins import friction_by_solving, load_margin
     from concio.analysis.path import ControlPoint, PathResult, Stage, run_path
@@ -42,6 +45,9 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOMES = {
+    "concio.analysis.cells.moduli": ("homogenise",),
+    "concio.analysis.cells.path": ("strain_path",),
+    "concio.analysis.cells.strength": ("strength",),
     "concio.analysis.limit": ("friction_margin", "limit"),
     "concio.analysis.margins": ("friction_by_solving", "load_margin"),
     "concio.analysis.path": ("ControlPoint", "PathResult", "Stage", "run_path"),
@@ -111,6 +117,7 @@ __all__ = [
     "dumps",
     "friction_by_solving",
     "friction_margin",
+    "homogenise",
     "limit",
     "load",
     "load_margin",
@@ -124,6 +131,8 @@ __all__ = [
     "save",
     "settle",
     "solve",
+    "strain_path",
+    "strength",
     "study",
     "thrust_line",
     "variable",

@@ -186,7 +186,8 @@ def certify_collapse(problem: ContactProblem, live: Array, velocity: Array, iter
     multiplier = float(result.x[-1])
     t_n, t_t = programme.forces(result.x[:-1] * force)
     load = problem.f + multiplier * live
-    wrong = float(motion.flow_error(problem, t_n, t_t[:, 0]).max(initial=0.0)) / float(np.abs(load).sum())
+    size = float(np.abs(load).sum()) or force  # a live load may undo the dead one
+    wrong = float(motion.flow_error(problem, t_n, t_t[:, 0]).max(initial=0.0)) / size
     flow = max(wrong, motion.penetration())
     statics = static_residual(problem, load, t_n, t_t)
     state = CollapseState(multiplier, t_n, t_t, motion.velocity, statics, flow, iterations)

@@ -1,0 +1,180 @@
+"""What the path of a cell consists of: steps with macroscopic strain and stress, named events, tangent moduli."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from concio.analysis.cells.moduli import Moduli, homogenise
+from concio.analysis.cells.periodic_cell import PeriodicCell
+from concio.analysis.path_result import NamedEvent
+from concio.analysis.result import Result
+from concio.contact.periodic import COMPONENTS, STRAINS
+from concio.model.stages import Stage
+from concio.problem.certificate import Certificate
+from concio.problem.solution import Status, judge
+from concio.solvers.path.record import Outcome
+from concio.solvers.path.state import CLOSED, OPEN, STICK, PathState
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class CellStep:
+    """One point of the path of a cell.
+
+    Parameters
+    ----------
+    stage : int
+    parameter : float
+        0 at the beginning of the stage, 1 where its strains and stresses are reached.
+    strain : (3,) array
+        Macroscopic strain xx, yy and engineering shear xy.
+    stress : (3,) array
+        Macroscopic stress xx, yy, xy, from the contact forces [kN/m2].
+    state : PathState
+        Displacements of the bodies and states of the pairs.
+    certificate : Certificate
+        Of the step from the point before, macroscopic equilibrium included.
+    stored : float
+        Energy stored in bodies and compliant joints [kN m].
+    """
+
+    stage: int
+    parameter: float
+    strain: Array
+    stress: Array
+    state: PathState
+    certificate: Certificate
+    stored: float
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many pairs are open, slip or are crushed; the others are closed and stick."""
+        s = self.state
+        shut = s.contact != OPEN
+        return {
+            "open": int((~shut).sum()),
+            "slip": int((shut & (s.sliding != STICK) & (s.contact == CLOSED)).sum()),
+            "crushed": int((s.contact == 2).sum()),
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class CellPath:
+    """Response of a cell along a path of macroscopic strains and stresses.
+
+    Parameters
+    ----------
+    cell : PeriodicCell
+    stages : tuple of Stage
+    steps : tuple of CellStep
+        Every corner of the exact path; between two of them everything is linear.
+    events : tuple of NamedEvent
+    outcomes : tuple of Outcome
+        How each stage ended; stages after one that did not reach its end were not begun.
+    notes : tuple of str
+        What the program did that was not asked for.
+    """
+
+    cell: PeriodicCell
+    stages: tuple[Stage, ...]
+    steps: tuple[CellStep, ...]
+    events: tuple[NamedEvent, ...]
+    outcomes: tuple[Outcome, ...]
+    notes: tuple[str, ...]
+
+    @cached_property
+    def strain(self) -> Array:
+        """Macroscopic strains (n, 3) of all steps: xx, yy and engineering shear xy."""
+        return np.array([s.strain for s in self.steps])
+
+    @cached_property
+    def stress(self) -> Array:
+        """Macroscopic stresses (n, 3) of all steps [kN/m2]."""
+        return np.array([s.stress for s in self.steps])
+
+    @property
+    def complete(self) -> bool:
+        """True when every stage reached its end."""
+        return len(self.outcomes) == len(self.stages) and all(o is Outcome.REACHED for o in self.outcomes)
+
+    @property
+    def certificate(self) -> float:
+        """Worst certificate entry of all steps."""
+        return max((s.certificate.worst for s in self.steps), default=0.0)
+
+    @cached_property
+    def energy_error(self) -> float:
+        """Largest |work - stored - dissipated| of all steps, relative to the largest work or stored energy.
+
+        Where joints open without work, to a millionth of what the displacements could store.
+        """
+        gap = max(abs(s.state.work - s.state.dissipation - s.stored) for s in self.steps)
+        size = max(abs(s.state.work) + s.stored for s in self.steps)
+        K = abs(self.cell.problem(free=(False,) * 3).K)
+        could = max(float(np.abs(s.state.displacement) @ (K @ np.abs(s.state.displacement))) for s in self.steps)
+        size = max(size, 1e-6 * could)
+        return gap / size if size else 0.0
+
+    def moduli(self, step: int = -1) -> Moduli:
+        """Return the tangent moduli of the stretch of the path that ends at a step, joints in their states there."""
+        state = self.steps[step].state
+        return homogenise(self.cell, contact=state.contact, sliding=state.sliding)
+
+    def result(self, step: int = -1) -> Result:
+        """Return one step as a :class:`concio.Result`, its strain as load factors.
+
+        Displacements are those of the bodies of the cell, the macroscopic strain included; the certificate is that of
+        the step, whose slips count from the step before.
+        """
+        chosen = self.steps[step]
+        factors = {name: float(v) for name, v in zip(STRAINS, chosen.strain, strict=True)}
+        state = chosen.state
+        problem = self.cell.assembly.problem(factors)
+        judged = judge(problem, state.displacement, state.normal_force, state.friction, method="path")
+        status = Status.SOLVED if chosen.certificate.certified else Status.GAVE_UP
+        return Result(self.cell.assembly, factors, replace(judged, certificate=chosen.certificate, status=status), {})
+
+    def table(self) -> dict[str, list[Any]]:
+        """Return the steps as columns: stage, parameter, strains, stresses [kN/m2], pairs by state, energies [kN m]."""
+        columns: dict[str, list[Any]] = {
+            "stage": [self.stages[s.stage].name for s in self.steps],
+            "parameter": [s.parameter for s in self.steps],
+        }
+        for k, name in enumerate(COMPONENTS):
+            columns[f"strain_{name}"] = self.strain[:, k].tolist()
+        for k, name in enumerate(COMPONENTS):
+            columns[f"stress_{name}_kN_m2"] = self.stress[:, k].tolist()
+        for word in ("open", "slip", "crushed"):
+            columns[f"{word}_pairs"] = [s.counts[word] for s in self.steps]
+        columns["work_kNm"] = [s.state.work for s in self.steps]
+        columns["stored_kNm"] = [s.stored for s in self.steps]
+        columns["dissipated_kNm"] = [s.state.dissipation for s in self.steps]
+        return columns
+
+    def summary(self) -> dict[str, Any]:
+        """Return the numbers of the path as plain types."""
+        last = self.steps[-1]
+        return {
+            "title": self.cell.model.title,
+            "stages": [_stage(s) for s in self.stages],
+            "outcomes": [o.name.lower() for o in self.outcomes],
+            "complete": self.complete,
+            "steps": len(self.steps),
+            "events": len(self.events),
+            "strain": last.strain.tolist(),
+            "stress": last.stress.tolist(),
+            "pairs": last.counts,
+            "certificate": self.certificate,
+            "energy_error": self.energy_error,
+            "notes": list(self.notes),
+        }
+
+
+def _stage(stage: Stage) -> Mapping[str, Any]:
+    return {"name": stage.name, "factors": dict(stage.factors)}
