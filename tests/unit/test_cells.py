@@ -142,7 +142,7 @@ def test_files_hold_cells() -> None:
         ({"horizontal": 0.1}, "horizontal"),
         ({"base_friction": 0.3}, "base"),
         ({"bond": [[1.0], [0.7], [0.313]]}, "no common multiple"),
-        ({"stones": 4}, "unknown option"),
+        ({"stones": 4}, "no argument 'stones'"),
     ],
 )
 def test_what_is_no_cell_is_refused(arguments: dict[str, object], words: str) -> None:

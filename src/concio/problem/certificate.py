@@ -118,7 +118,13 @@ def imbalance(problem: ContactProblem, u: Array, t_n: Array, t_t: Array, force: 
 
 
 def certify(
-    problem: ContactProblem, u: Array, t_n: Array, t_t: Array, *, total_load: float | None = None
+    problem: ContactProblem,
+    u: Array,
+    t_n: Array,
+    t_t: Array,
+    *,
+    total_load: float | None = None,
+    moved: float = 0.0,
 ) -> Certificate:
     """Compute the certificate of an answer from the original problem.
 
@@ -133,13 +139,15 @@ def certify(
         Friction forces on side b along t [kN].
     total_load : float, optional
         F to measure forces by, where the problem's own loads are not the measure [kN].
+    moved : float
+        How far obstacles, or the edges of a periodic cell, have moved: U is not less [m].
     """
     cone = problem.cone
     t_t = t_t.reshape(problem.pairs, problem.dim - 1)
     if not (np.isfinite(u).all() and np.isfinite(t_n).all() and np.isfinite(t_t).all()):
         return Certificate(*([np.inf] * 5))
     force, length = scales(problem, u, t_n, t_t)
-    force = total_load or force
+    force, length = total_load or force, max(length, moved)
     kin = kinematics(problem, u, t_n, t_t)
     equilibrium = max(float(np.abs(part).max(initial=0.0)) for part in imbalance(problem, u, t_n, t_t, force))
     shifted = t_n + cone.tension

@@ -45,4 +45,4 @@ CLEARLY = 1e-9
 
 CHECKED = 1e-8
 """Largest residual, violation and duality gap of a limit load or collapse state that counts as checked from both
-sides."""
+sides; largest entry of the certificate of homogenised moduli."""

@@ -68,9 +68,10 @@ class HalfSpaces:
         matrix = np.hstack([self.normals, np.ones((count, 1))])
         bounds = [(-10.0, 10.0)] * 3 + [(0.0, 1.0)]
         found = linprog([0, 0, 0, -1], A_ub=matrix, b_ub=self.offsets / self.size, bounds=bounds, method="highs")
-        if found.status != 0 or found.x[3] <= SAME:
+        x: Array | None = found.x
+        if x is None or x[3] <= SAME:
             return None
-        return np.asarray(found.x[:3]) * self.size
+        return np.asarray(x[:3]) * self.size
 
     def distance(self, direction: Sequence[float] | Array, base: Sequence[float] | Array = (0, 0, 0)) -> float:
         """Return the largest multiplier of ``direction`` that, added to ``base``, stays inside; ``inf`` if any does."""
@@ -112,7 +113,7 @@ class HalfSpaces:
         assert self.interior is not None
         hull, count = self._polar
         points = self.interior / self.size - hull.equations[:, :3] / hull.equations[:, 3:]
-        own = (hull.simplices < count).all(1)
+        own: Array = np.asarray(hull.simplices).max(axis=1) < count
         near = np.round(points / (1e-9 * np.maximum(1.0, np.abs(points).max(1, keepdims=True))))
         _, first = np.unique(near, axis=0, return_index=True)
         return points[first] * self.size, own[first]

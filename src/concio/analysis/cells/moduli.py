@@ -26,19 +26,18 @@ from concio.analysis.cells.half_spaces import HalfSpaces
 from concio.analysis.cells.periodic_cell import PeriodicCell
 from concio.analysis.cells.tensors import rotation
 from concio.analysis.stress import Stress
+from concio.arguments import strict
 from concio.contact.assembly import Assembly
 from concio.contact.periodic import COMPONENTS, STRAINS
 from concio.errors import InputError, SolverError
 from concio.model.model import Model
 from concio.problem.certificate import imbalance
 from concio.problem.contact_problem import ContactProblem
+from concio.problem.tolerances import CHECKED
 from concio.solvers.path.state import CLOSED, OPEN, STICK, LinearPath
 from concio.solvers.path.state_rates import state_rates
 
 Array = np.ndarray
-
-CHECKED = 1e-8
-"""Largest entry of the certificate of moduli that are shown."""
 
 CONTRADICTION = 1e-7
 """Residual of the linear equations from which on the states of the joints forbid the strain."""
@@ -81,7 +80,7 @@ class ModuliCertificate:
 
     @property
     def certified(self) -> bool:
-        """True when the worst entry is at most :data:`CHECKED`."""
+        """True when the worst entry is at most :data:`concio.problem.tolerances.CHECKED`."""
         return self.worst <= CHECKED
 
 
@@ -218,6 +217,7 @@ def _table(faces: HalfSpaces) -> list[dict[str, Any]]:
     return [{"normal": n.tolist(), "offset": float(h)} for n, h in zip(faces.normals, faces.offsets, strict=True)]
 
 
+@strict
 def homogenise(
     cell: Model | Assembly | PeriodicCell, *, contact: Array | None = None, sliding: Array | None = None
 ) -> Moduli:
@@ -293,9 +293,8 @@ def _certify(
         unbalanced = max(unbalanced, float(np.abs(rigid).max(initial=0.0)), float(rest.max(initial=0.0)))
     tilted = opening - (law.dilatancy * sliding)[:, None] * slip
     kept = np.maximum(np.abs(tilted).max(1) * (contact == CLOSED), np.abs(slip).max(1) * (sliding == STICK))
-    stored = (
-        np.einsum("ik,ik->k", u, problem.K @ u) + law.normal_compliance @ t_n**2 + law.tangential_compliance @ t_t**2
-    )
+    stored = np.einsum("ik,ik->k", u, problem.K @ u)
+    stored += law.normal_compliance @ t_n**2 + law.tangential_compliance @ t_t**2
     lost = -np.einsum("ik,ik->k", t_n, opening) - np.einsum("ik,ik->k", t_t, slip)
     work = np.diag(matrix) * cell.volume
     sliding_pairs = bool((sliding != STICK).any())

@@ -19,20 +19,27 @@ from concio.analysis.cells.path_result import CellPath, CellStep
 from concio.analysis.cells.periodic_cell import PeriodicCell
 from concio.analysis.lent_compliance import SHEAR_TO_NORMAL, with_compliance
 from concio.analysis.path_result import NamedEvent, named_event
+from concio.arguments import strict
 from concio.contact.assembly import Assembly
 from concio.contact.periodic import COMPONENTS
 from concio.errors import InputError
 from concio.model.model import Model
 from concio.model.stages import Stage
+from concio.problem.certificate import Certificate, certify, scales
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback
 from concio.solvers.methods import find
 from concio.solvers.path.event_path import follow
 from concio.solvers.path.record import Outcome
-from concio.solvers.path.state import CLOSED, OPEN, LinearPath, PathState, certify_step, elastic_energy
+from concio.solvers.path.state import CLOSED, OPEN, LinearPath, PathState, elastic_energy, step_problem
 from concio.solvers.path.step_path import StepPath, follow_in_steps
 
 Array = np.ndarray
+
+LEAST = 1e-6
+"""Certificates measure forces and displacements by no less than this share of the largest of the path."""
+
+UNKNOWN = Certificate(*([np.inf] * 5))
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,9 +58,11 @@ class Drive:
     values: Array
 
 
+@strict
 def strain_path(
     cell: Model | Assembly | PeriodicCell,
-    *stages: Stage | Mapping[str, float],
+    stages: Sequence[Stage | Mapping[str, float]] | Mapping[str, float] = (),
+    *,
     method: Literal["events", "steps"] = "events",
     solver: str = "auto",
     max_events: int = 20_000,
@@ -65,8 +74,8 @@ def strain_path(
     ----------
     cell : Model or Assembly
         With periods.
-    *stages : mapping or Stage
-        What is reached at the end of each stage: ``{"stress yy": -100.0}`` [kN/m2], then ``{"strain xy": 1e-3}``, with
+    stages : sequence of mapping or Stage
+        What is reached at the end of each stage: ``[{"stress yy": -100.0}, {"strain xy": 1e-3}]`` [kN/m2], with
         components xx, yy, xy; the strain xy is the engineering shear. Components that a stage does not name keep what
         they had, a given stress or a given strain. By default the stages of the model.
     method : {"events", "steps"}
@@ -88,10 +97,11 @@ def strain_path(
         joints, whose forces it does not determine.
     """
     own = PeriodicCell.of(cell)
-    asked = [_stage(s, k) for k, s in enumerate(stages or own.model.stages, 1)]
+    given = (stages,) if isinstance(stages, Mapping | Stage) else stages or own.model.stages
+    asked = [_stage(s, k) for k, s in enumerate(given, 1)]
     if not asked:
         msg = "a path needs at least one stage"
-        raise InputError(msg, hint="for example strain_path(cell, {'strain xx': 1e-4})")
+        raise InputError(msg, hint="for example strain_path(cell, [{'strain xx': 1e-4}])")
     if method not in ("events", "steps"):
         msg = f"method = {method!r} is not one of events, steps"
         raise InputError(msg)
@@ -99,6 +109,7 @@ def strain_path(
     strain, lent = np.zeros(3), 0.0
     state: PathState | None = None
     steps: list[CellStep] = []
+    proofs: list[tuple[LinearPath, PathState, PathState]] = []
     events: list[NamedEvent] = []
     outcomes: list[Outcome] = []
     notes: list[str] = []
@@ -108,8 +119,8 @@ def strain_path(
         path, compliance = _linear(own, drive, strain, stress, lent)
         if compliance and not lent:
             notes.append(
-                f"hard joints between rigid blocks were lent a compliance of {compliance:.3g} m/kN, {SHEAR_TO_NORMAL:g} "
-                "times as much along the joint: without it their forces are not determined"
+                f"hard joints between rigid blocks were lent a compliance of {compliance:.3g} m/kN, "
+                f"{SHEAR_TO_NORMAL:g} times as much along the joint: without it their forces are not determined"
             )
         lent = compliance
         loose = ~drive.strain
@@ -125,8 +136,9 @@ def strain_path(
             here[loose] = after.displacement[path.problem.unknowns - int(loose.sum()) :] / own.size
             forces = own.stress(after.normal_force, after.friction_force)
             base = _with_strains(after, np.zeros(0), int(loose.sum()))
-            certificate, stored = certify_step(path, before, after), elastic_energy(path.problem, after)
-            steps.append(CellStep(number, after.parameter, here, forces, base, certificate, stored))
+            stored = elastic_energy(path.problem, after)
+            steps.append(CellStep(number, after.parameter, here, forces, base, UNKNOWN, stored))
+            proofs.append((path, before, after))
         events.extend(named_event(own.assembly, number, first, event) for event in found.events)
         outcomes.append(found.outcome)
         strain, state = steps[-1].strain, steps[-1].state
@@ -134,10 +146,41 @@ def strain_path(
             at = found.states[-1].parameter
             notes.append(f"stage '{stage.name}' ended at {at:.6g} of its way. {found.outcome.value}")
             break
-    return CellPath(own, tuple(asked), tuple(steps), tuple(events), tuple(outcomes), tuple(notes))
+    certified = _certified(own, steps, proofs)
+    return CellPath(own, tuple(asked), certified, tuple(events), tuple(outcomes), tuple(notes))
 
 
-def _stage(given: Stage | Mapping[str, float], number: int) -> Stage:
+def _certified(
+    cell: PeriodicCell, steps: Sequence[CellStep], proofs: Sequence[tuple[LinearPath, PathState, PathState]]
+) -> tuple[CellStep, ...]:
+    """Return the steps with their certificates.
+
+    Displacements are measured by the largest of the bodies or of the cell's edges. Where joints have opened and hardly
+    any force is left, or the cell has come back to rest, the path is the measure (:data:`LEAST`).
+    """
+    sizes = [
+        scales(path.at(after.parameter), after.displacement, after.normal_force, after.friction)[0]
+        if after.normal_force.any() or after.friction_force.any()
+        else 0.0
+        for path, _, after in proofs
+    ]
+    lengths = [
+        max(float(np.abs(after.displacement).max(initial=0.0)), float(np.abs(step.strain).max()) * cell.size)
+        for step, (_, _, after) in zip(steps, proofs, strict=True)
+    ]
+    force, length = (max(values, default=0.0) or 1.0 for values in (sizes, lengths))
+    done = []
+    for step, size, moved, (path, before, after) in zip(steps, sizes, lengths, proofs, strict=True):
+        problem = step_problem(path, before, after.parameter)
+        found = certify(
+            problem, after.displacement, after.normal_force, after.friction,
+            total_load=max(size, LEAST * force), moved=max(moved, LEAST * length),
+        )  # fmt: skip
+        done.append(replace(step, certificate=found))
+    return tuple(done)
+
+
+def _stage(given: object, number: int) -> Stage:
     """Return a stage whose factors are numbers for strains and stresses."""
     if not isinstance(given, Stage):
         if not isinstance(given, Mapping):
@@ -211,13 +254,9 @@ def _not_rigid(problem: ContactProblem, live: Array, lent: float) -> tuple[Conta
     if not lent:
         return with_compliance(problem, live if live.any() else np.ones_like(live))
     law = problem.laws
-    laws = replace(
-        law,
-        normal_compliance=np.where(law.normal_compliance == 0, lent, law.normal_compliance),
-        tangential_compliance=np.where(
-            law.tangential_compliance == 0, SHEAR_TO_NORMAL * lent, law.tangential_compliance
-        ),
-    )
+    normal = np.where(law.normal_compliance == 0, lent, law.normal_compliance)
+    tangential = np.where(law.tangential_compliance == 0, SHEAR_TO_NORMAL * lent, law.tangential_compliance)
+    laws = replace(law, normal_compliance=normal, tangential_compliance=tangential)
     return replace(problem, laws=laws), lent
 
 

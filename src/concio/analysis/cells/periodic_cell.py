@@ -27,6 +27,7 @@ from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
 
 Array = np.ndarray
+Three = Sequence[float] | np.ndarray
 
 ALL = (True, True, True)
 
@@ -99,7 +100,7 @@ class PeriodicCell:
         return float((force[:, 0] * shift[:, 1] - force[:, 1] * shift[:, 0]).sum()) / (2 * self.volume)
 
     def problem(
-        self, stress: Sequence[float] = (0, 0, 0), strain: Sequence[float] = (0, 0, 0), free: Sequence[bool] = ALL
+        self, stress: Three = (0.0, 0.0, 0.0), strain: Three = (0.0, 0.0, 0.0), free: Sequence[bool] = ALL
     ) -> ContactProblem:
         """Return the contact problem in which some strains are unknowns under given stresses, the others given.
 
@@ -130,7 +131,7 @@ class PeriodicCell:
             inertia=np.concatenate([base.inertia, np.full(count, float(base.inertia.mean()))]),
         )
 
-    def load(self, stress: Sequence[float] | Array) -> Array:
+    def load(self, stress: Three) -> Array:
         """Return the loads (N + 3,) that a macroscopic stress stands for in :meth:`problem` with free strains [kN]."""
         f = np.zeros(self.assembly.supported.T.shape[1] + 3)
         f[-3:] = np.asarray(stress, dtype=float) * self.volume / self.size
@@ -150,7 +151,7 @@ def component(name: str) -> int:
     return COMPONENTS.index(name)
 
 
-def three(value: Sequence[float] | Array, name: str) -> Array:
+def three(value: Three, name: str) -> Array:
     """Return components xx, yy, xy as an array (3,).
 
     Raises

@@ -1,9 +1,10 @@
 r"""Strength of a cell: how much macroscopic stress it carries in a direction, and the whole domain.
 
 For a stress that grows in proportion, Sigma_0 + lambda D, the numbers are those of :mod:`concio.analysis.limit`, of a
-cell in place of a wall: the *associated* multiplier, with forces and mechanism, above which no equilibrium exists; beside
-it the multiplier that the *Coulomb path* of the cell reaches under growing stress, and that of a certified Coulomb
-*collapse state*. Friction is not associated, and the cell, like a wall, may collapse before the associated bound.
+cell in place of a wall: the *associated* multiplier, with forces and mechanism, above which no equilibrium exists;
+beside it the multiplier that the *Coulomb path* of the cell reaches under growing stress, and that of a certified
+Coulomb *collapse state*. Friction is not associated, and the cell, like a wall, may collapse before the associated
+bound.
 
 The associated domain as a whole is a polyhedron, found exactly (:mod:`concio.analysis.cells.strength_faces`).
 """
@@ -21,6 +22,7 @@ from concio.analysis.cells.periodic_cell import PeriodicCell, three
 from concio.analysis.cells.strength_faces import StrengthFaces, strength_faces
 from concio.analysis.lent_compliance import with_compliance
 from concio.analysis.limit import coulomb_path, search_collapse
+from concio.arguments import strict
 from concio.contact.assembly import Assembly
 from concio.contact.periodic import COMPONENTS
 from concio.errors import InputError, NoEquilibriumError
@@ -184,6 +186,7 @@ class StrengthDomain:
         }
 
 
+@strict
 def strength(
     cell: Model | Assembly | PeriodicCell,
     directions: Sequence[Sequence[float]] | Array | int = (),
@@ -191,6 +194,7 @@ def strength(
     stress: Sequence[float] = (0.0, 0.0, 0.0),
     coulomb: bool = True,
     faces: bool = True,
+    programmes: int = 400,
     progress: ProgressCallback | None = None,
 ) -> StrengthDomain:
     """Find the strength of a periodic cell, in directions of stress and as a domain.
@@ -207,6 +211,9 @@ def strength(
         Whether the Coulomb path is followed and collapse states are searched for in each direction.
     faces : bool
         Whether the half-spaces of the domain are found.
+    programmes : int
+        Linear programmes spent on them at most. Bonds need some thirty to be exact; rubble may have hundreds of
+        half-spaces, and the result says how much was left open.
     progress : callable, optional
 
     Raises
@@ -228,7 +235,8 @@ def strength(
         if progress is not None and progress(Progress("strength", k, 0.0, f"direction {k + 1} of {len(wanted)}")):
             break
         rays.append(_ray(own, dead, base, direction, coulomb=coulomb, progress=progress))
-    found = strength_faces(own, [r.associated for r in rays], progress=progress) if faces else None
+    known = [ray.associated for ray in rays]
+    found = strength_faces(own, known, most=programmes, progress=progress) if faces else None
     return StrengthDomain(own, base, tuple(rays), found)
 
 

@@ -8,8 +8,10 @@ polyhedron, a polyhedron again. Every mechanism v with strain rate D bounds it f
 h the power its joints absorb; every stress that forces in balance carry lies inside. Both come out of each linear
 programme of limit analysis. From a point inside, rays are shot at the corners of the half-spaces found so far. A corner
 that is reached belongs to the domain; where the ray stops before, its mechanism is a new half-space. When all corners
-are reached nothing is between inside and outside, and the half-spaces are the domain, exactly. What is unbounded is
-closed by a distant box and its corners are reached or not like others. (An outer approximation as for polyhedral
+are reached nothing is between inside and outside, and the half-spaces are the domain, exactly. Corners farthest beyond
+the hull of all that is known to be carried come first, so that a search that is ended before (rubble has hundreds of
+half-spaces) has left little between, and says how much. What is unbounded is closed by a distant box and its corners
+are reached or not like others. (An outer approximation as for polyhedral
 projections; compare Löhne, Vector Optimization with Infimum and Supremum, 2011, for its cousins.)
 """
 
@@ -19,11 +21,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
-from concio.analysis.cells.half_spaces import HalfSpaces
+from concio.analysis.cells.half_spaces import FAR, HalfSpaces
 from concio.analysis.cells.periodic_cell import PeriodicCell
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Mechanism, Progress, ProgressCallback
+from concio.problem.tolerances import ADMISSIBLE, CHECKED
 from concio.solvers.statics.existence import absorbed_power
 from concio.solvers.statics.limit import LimitLoad, associated_limit
 
@@ -31,6 +35,9 @@ Array = np.ndarray
 
 REACHED = 1e-7
 """A corner counts as reached by a ray that ends within this share of its length before it."""
+
+BATCH = 12
+"""Corners that rays are shot at before the half-spaces are put together anew."""
 
 INSIDE = 1e-6
 """Distance from the point inside to the boundary, in sizes of the domain, below which there is no inside."""
@@ -51,7 +58,7 @@ class StrengthFaces:
     exact : bool
         Whether every corner of the half-spaces is carried: then they are the domain.
     shortfall : float
-        Largest share of the way from the inside to a corner that is not proven to be carried; 0 where exact.
+        Largest share of the way from a stress inside to a corner that is not proven to be carried; 0 where exact.
     programmes : int
         Linear programmes solved.
     """
@@ -100,6 +107,7 @@ class _Search:
         self.mechanisms: list[Mechanism] = []
         self.points: list[Array] = []
         self.programmes = 0
+        self.unit = 1.0
         self.rng = np.random.default_rng(0)
 
     def run(self, found: Sequence[LimitLoad]) -> StrengthFaces | None:
@@ -111,34 +119,48 @@ class _Search:
         for axis in (*np.eye(3), *-np.eye(3)):
             self.shoot(inside, axis)
         reached: set[bytes] = set()
-        shortfall: dict[bytes, float] = {}
+        stuck: set[bytes] = set()
         while True:
             faces = HalfSpaces(np.array(self.normals).reshape(-1, 3), np.array(self.offsets))
-            corners, _ = HalfSpaces.of(faces.normals, faces.offsets).vertices
-            size = max(faces.size, float(np.abs(inside).max()))
-            keys = {np.round(c / size, 6).tobytes(): c for c in corners}
-            shortfall = {k: v for k, v in shortfall.items() if k in keys}
-            left = [k for k in keys if k not in reached and k not in shortfall]
-            if not left or self.programmes >= self.most or self.stopped(len(left)):
-                break
-            for key in left:
-                share, new = self.shoot(inside, keys[key] - inside, 1.0)
+            corners = self.keyed(HalfSpaces.of(faces.normals, faces.offsets).vertices[0])
+            left = [k for k in corners if k not in reached and k not in stuck]
+            far = self.carried(inside, np.array([corners[k] for k in left]))
+            if not left or self.programmes >= self.most or self.stopped(len(left), 1.0 - float(far.min())):
+                open_ = [k for k in corners if k not in reached]
+                far = self.carried(inside, np.array([corners[k] for k in open_]))
+                return self.result(faces, 1.0 - float(far.min()) if open_ else 0.0)
+            for k in np.argsort(far)[:BATCH].tolist():
+                key, way = left[k], corners[left[k]] - inside
+                share, new = self.shoot(inside, way, 1.0)
                 if share >= 1.0 - REACHED:
                     reached.add(key)
-                elif not new:  # the programme's motion is a half-space known already: ask beside the corner
-                    shortfall[key] = 1.0 - share
-                    for _ in range(4):
-                        aside = 0.1 * share * self.rng.normal(size=3) * float(np.linalg.norm(keys[key] - inside))
-                        if self.shoot(inside, keys[key] - inside + aside, 1.0)[1]:
-                            shortfall.pop(key)
-                            break
-                if self.programmes >= self.most:
-                    break
-        return self.result(reached, shortfall, left)
+                elif not new and not any(self.shoot(inside, way + self.aside(share * way), 1.0)[1] for _ in range(4)):
+                    stuck.add(key)  # all that was found there is known already
 
-    def stopped(self, left: int) -> bool:
-        note = f"{len(self.offsets)} half-spaces, {left} corners to reach"
-        return bool(self.progress is not None and self.progress(Progress("strength", self.programmes, 0.0, note)))
+    def aside(self, way: Array) -> Array:
+        """Return a small vector (3,) in a random direction."""
+        return 0.1 * float(np.linalg.norm(way)) * self.rng.normal(size=3)
+
+    def keyed(self, corners: Array) -> dict[bytes, Array]:
+        """Return corners (v, 3) by keys that do not change with rounding."""
+        near = np.round(corners / (1e-6 * np.abs(corners).max(axis=1, keepdims=True).clip(self.unit)))
+        return {k.tobytes(): c for k, c in zip(near, corners, strict=True)}
+
+    def carried(self, inside: Array, corners: Array) -> Array:
+        """Return the shares (v,) of the ways to corners (v, 3) that the hull of all carried stresses holds."""
+        if not len(corners):
+            return np.ones(1)
+        hull = ConvexHull(np.array(self.points) / self.unit).equations
+        room = -(hull[:, :3] @ (inside / self.unit) + hull[:, 3])
+        rate = (corners - inside) / self.unit @ hull[:, :3].T
+        with np.errstate(divide="ignore"):
+            found: Array = np.where(rate > 0, np.maximum(room, 0.0) / rate, np.inf).min(axis=1)
+        shares: Array = np.minimum(found, 1.0)
+        return shares
+
+    def stopped(self, left: int, short: float) -> bool:
+        note = f"{len(self.offsets)} half-spaces, {left} corners to reach, at most {100 * short:.2g} % short"
+        return bool(self.progress is not None and self.progress(Progress("strength", self.programmes, short, note)))
 
     def inside(self) -> Array | None:
         """Return a stress inside the domain: under pressure from all sides, or at rest."""
@@ -146,34 +168,35 @@ class _Search:
         squeezed = self.limit(np.zeros(3), pressure)
         if not squeezed > 0:
             return None
-        finite = [o for o in self.offsets if o > 0]
-        unit = min(0.5 * squeezed, max(finite, default=1.0))
+        self.unit = min(squeezed, max((abs(o) for o in self.offsets if o), default=1.0))
+        self.points = []
         for share in (0.5, 0.1, 2.0):
-            point = min(share * unit, 0.9 * squeezed) * pressure
+            point = min(share * self.unit, 0.9 * squeezed) * pressure
             around = [self.limit(point, axis) for axis in (*np.eye(3), *-np.eye(3))]
-            if min(around) > INSIDE * unit:
+            if min(around) > INSIDE * self.unit:
                 return point
         return None
 
-    def limit(self, base: Array, direction: Array) -> float:
-        """Return the multiplier of a direction from a stress that is carried, and keep what it proves."""
+    def limit(self, base: Array, direction: Array, share: float = np.inf) -> float:
+        """Return the multiplier of a direction from a stress that is carried, at most ``share``; keep the proofs."""
         dead = self.problem.with_loads(self.cell.load(base))
         found = associated_limit(dead, self.cell.load(direction))
         self.programmes += 1
         self.add(found)
-        if np.isfinite(found.multiplier) and found.residual <= 1e-8:
-            self.points.append(base + found.multiplier * direction)
-        return found.multiplier
+        most = share if np.isfinite(share) else FAR * self.unit / float(np.abs(direction).max())
+        if found.residual <= CHECKED and not np.isnan(found.multiplier):
+            self.points.append(base + min(found.multiplier, most) * direction)
+        return min(found.multiplier, share)
 
     def shoot(self, inside: Array, direction: Array, share: float = np.inf) -> tuple[float, bool]:
         """Return the share of a direction that is carried, and whether a new half-space was found."""
         before = len(self.offsets)
-        carried = min(self.limit(inside, direction), share)
+        carried = self.limit(inside, direction, share)
         return carried, len(self.offsets) > before
 
     def add(self, limit: LimitLoad) -> None:
         """Keep the half-space of a mechanism, unless it is known."""
-        if limit.mechanism is None or limit.mechanism.violation > 1e-9:
+        if limit.mechanism is None or limit.mechanism.violation > ADMISSIBLE:
             return
         normal, offset = face_of(self.cell, self.problem, limit.mechanism)
         length = float(np.linalg.norm(normal))
@@ -188,16 +211,13 @@ class _Search:
         self.offsets.append(offset)
         self.mechanisms.append(limit.mechanism)
 
-    def result(self, reached: set[bytes], shortfall: dict[bytes, float], left: list[bytes]) -> StrengthFaces:
-        faces = HalfSpaces(np.array(self.normals).reshape(-1, 3), np.array(self.offsets))
+    def result(self, faces: HalfSpaces, shortfall: float) -> StrengthFaces:
         kept = faces.kept()
-        unknown = [key for key in left if key not in reached and key not in shortfall]
-        worst = max([1.0 if unknown else 0.0, *shortfall.values()])
         return StrengthFaces(
             HalfSpaces(faces.normals[kept], faces.offsets[kept]),
             tuple(self.mechanisms[k] for k in kept),
             np.array(self.points).reshape(-1, 3),
-            worst == 0.0,
-            worst,
+            shortfall == 0.0,
+            shortfall,
             self.programmes,
         )

@@ -229,13 +229,23 @@ class ControlTable(Table):
 
 
 class StageTable(Table):
-    """A stage of a load path; see :class:`concio.model.stages.Stage`."""
+    """A stage of a load path; see :class:`concio.model.stages.Stage`.
+
+    Factors are plain numbers, but those called "stress xx", "stress yy", "stress xy" (of a periodic cell) are stresses.
+    """
 
     name: Name
-    factors: dict[str, Number]
+    factors: dict[str, Any]
     control: ControlTable | None = None
     until: Length = 0.0
     steps: Annotated[StrictInt, Field(ge=1)] = 20
+
+    @field_validator("factors", mode="after")
+    @classmethod
+    def _factors(cls, value: dict[str, Any], info: ValidationInfo) -> dict[str, float]:
+        units = units_of(info)
+        kinds = {name: "stress" if name.startswith("stress ") else "number" for name in value}
+        return {name: converted(v, kinds[name], units) for name, v in value.items()}
 
 
 class AnalysisTable(Table):

@@ -19,6 +19,7 @@ from typing import Literal, Unpack
 
 import numpy as np
 
+from concio.arguments import strict_with
 from concio.errors import InputError
 from concio.model.generate.arguments import Checked, Common, checked, count, positive, two
 from concio.model.generate.bonds import Course, bond_courses
@@ -37,6 +38,7 @@ LARGEST_CELL = 100_000
 """More blocks than this are taken for a slip of the pen."""
 
 
+@strict_with(Common.__annotations__)
 def cell(
     *,
     bond: Bond = "running",

@@ -66,6 +66,11 @@ class LinearPath:
                 raise InputError(msg)
             object.__setattr__(self, name, value)
 
+    def moved(self, parameter: float) -> float:
+        """Return how far obstacles have moved at a value of the parameter [m]."""
+        rates = np.abs(self.gap_rate).max(initial=0.0), np.abs(self.tangent_rate).max(initial=0.0)
+        return abs(parameter) * float(max(rates))
+
     def at(self, parameter: float) -> ContactProblem:
         """Return the problem with the loads and obstacles at a value of the parameter, slip measured from s = 0."""
         return replace(
@@ -199,7 +204,7 @@ def step_problem(path: LinearPath, before: PathState, parameter: float) -> Conta
 def certify_step(path: LinearPath, before: PathState, after: PathState) -> Certificate:
     """Certify a state as the answer of the one-step problem that starts from ``before``."""
     problem = step_problem(path, before, after.parameter)
-    return certify(problem, after.displacement, after.normal_force, after.friction)
+    return certify(problem, after.displacement, after.normal_force, after.friction, moved=path.moved(after.parameter))
 
 
 def state_of(

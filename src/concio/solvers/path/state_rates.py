@@ -23,7 +23,8 @@ class StateRates:
     normal_force, friction_force : (m,) arrays
         [kN].
     residual : float
-        What the linear equations leave, relative to the largest term; not small where the states admit no response.
+        What the linear equations leave, relative to the largest displacement; not small where the states admit no
+        response.
     """
 
     displacement: Array
@@ -54,5 +55,5 @@ def state_rates(path: LinearPath, contact: Array, sliding: Array) -> StateRates:
     equations = PathEquations(replace(scaled, path=slow), contact, sliding, control)
     x, residual = equations.solve(control)
     length, force = scaled.length * unit, scaled.force * unit
-    size = max(1.0, float(np.abs(x).max()))
+    size = max(1.0, float(np.abs(x[:n]).max(initial=0.0)))  # not the forces: contradictory states drive them up
     return StateRates(x[:n] * length, x[n : n + m] * force, x[n + m : -1] * force, residual / size)
