@@ -177,9 +177,8 @@ def test_every_answer_is_complementary(wall):
     assert (c.normal_force + law.tension).min() >= -1e-9 * force
     assert np.minimum(c.gap / length, (c.normal_force + law.tension) / force).max() <= 1e-8
     strength = law.cohesion + law.friction * c.normal_force
-    assert (np.abs(c.friction_force) - strength).max() <= 1e-9 * force
-    slipping = np.abs(c.slip) > 1e-7 * length
-    np.testing.assert_allclose(
-        c.friction_force[slipping], -np.sign(c.slip[slipping]) * strength[slipping], atol=1e-8 * force
-    )
-    assert (c.friction_force * c.slip).max() <= 1e-9 * force * length
+    friction, slip = c.friction_force[:, 0], c.slip[:, 0]
+    assert (np.abs(friction) - strength).max() <= 1e-9 * force
+    slipping = np.abs(slip) > 1e-7 * length
+    np.testing.assert_allclose(friction[slipping], -np.sign(slip[slipping]) * strength[slipping], atol=1e-8 * force)
+    assert (friction * slip).max() <= 1e-9 * force * length

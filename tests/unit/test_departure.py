@@ -15,11 +15,11 @@ from concio.cli.lines import result_lines
 from concio.contact.inertia import GRAVITY, lumped_masses
 from concio.io import load_result, save_result
 from concio.problem.contact_problem import ContactProblem
+from concio.problem.pair_state import Normal, PairStates
 from concio.problem.solution import Departure
 from concio.report.wording import certificate_sentence, verdict
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.interior.engine import Run
-from concio.solvers.interior.exact_finish import States
 from concio.solvers.methods import find
 from concio.solvers.motion.departure import departure, verify_departure
 from concio.solvers.motion.release import associated_state, release
@@ -114,8 +114,8 @@ def test_block_on_an_incline_accelerates_as_galileo_says() -> None:
     problem = concio.assemble(model).problem()
     s = scale(problem)
     m = problem.pairs
-    sliding = States(np.ones(m, bool), np.sign(problem.C_t @ np.tile(-rotate[:, 0], problem.unknowns // 2)).astype(int),
-                     np.zeros(m, bool))  # fmt: skip
+    downhill = np.sign(problem.C_t @ np.tile(-rotate[:, 0], problem.unknowns // 2))
+    sliding = PairStates.plane(np.full(m, Normal.CLOSED), downhill)
     motion = departure(s, sliding, np.zeros(problem.unknowns), np.ones(m), np.zeros(m))
     assert motion is not None
     expected = -GRAVITY * (np.sin(angle) - mu * np.cos(angle)) * rotate[:, 0]
@@ -182,7 +182,7 @@ def test_held_bodies_have_no_departure() -> None:
     held = replace(problem, K=sp.csr_array(problem.K + sp.eye_array(problem.unknowns)), R=problem.R[:, :0])
     s = scale(held)
     m = held.pairs
-    states = States(np.zeros(m, bool), np.zeros(m, int), np.zeros(m, bool))
+    states = PairStates.plane(np.full(m, Normal.OPEN), np.zeros(m))
     assert departure(s, states, np.zeros(held.unknowns), np.zeros(m), np.zeros(m)) is None
 
 

@@ -49,9 +49,9 @@ def test_embedded_numbers_are_those_of_the_result(arched: Result) -> None:
     assert data["bodies"]["name"] == [b.name for b in arched.model.bodies]
     for name, values in (
         ("t_n", contacts.normal_force[pair]),
-        ("t_t", contacts.friction_force[pair]),
+        ("t_t", contacts.friction_force[pair, 0]),
         ("gap", contacts.gap[pair]),
-        ("slip", contacts.slip[pair]),
+        ("slip", contacts.slip[pair, 0]),
         ("pressure", contacts.pressure[pair]),
         ("N", joints.N),
         ("V", joints.V),

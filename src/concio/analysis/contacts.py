@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.contact.pairs import Pairs
+from concio.problem.pair_state import PairState, PairStates
 
 Array = np.ndarray
 
-STATE_NAMES = ("open", "stick", "slip", "slip")
-"""Name of each pair state code; the two slip codes differ by direction."""
+STATE_NAMES = tuple(state.name.lower() for state in PairState)
+"""Name of each pair state code."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,12 +25,13 @@ class Contacts:
         Geometry: points, frames, areas, bodies.
     normal_force : (m,) array
         t_n, compression positive [kN].
-    friction_force : (m,) array
-        t_t on side b along the tangent [kN].
-    gap, slip : (m,) arrays
-        y_n and y_t [m].
-    state : (m,) integer array
-        0 open, 1 stick, 2 slip along +t, 3 slip along -t.
+    friction_force : (m, d-1) array
+        t_t on side b along the tangents [kN].
+    gap : (m,) array
+        y_n [m].
+    slip : (m, d-1) array
+        y_t along the tangents [m].
+    states : PairStates
     """
 
     pairs: Pairs
@@ -37,10 +39,20 @@ class Contacts:
     friction_force: Array
     gap: Array
     slip: Array
-    state: Array
+    states: PairStates
 
     def __len__(self) -> int:
         return len(self.normal_force)
+
+    @property
+    def state(self) -> Array:
+        """Codes of :class:`concio.problem.pair_state.PairState`: 0 open, 1 stick, 2 slip, 3 crushed; (m,) integers."""
+        return self.states.code
+
+    @property
+    def slip_direction(self) -> Array:
+        """Unit vectors along which pairs slip, zero where they do not, (m, d-1)."""
+        return self.states.direction
 
     @property
     def point(self) -> Array:
@@ -55,21 +67,28 @@ class Contacts:
 
     @property
     def shear(self) -> Array:
-        """Friction stress t_t over tributary area (m,) [kN/m2]."""
-        shear: Array = self.friction_force / self.pairs.area
+        """Friction stress t_t over tributary area (m, d-1) [kN/m2]."""
+        shear: Array = self.friction_force / self.pairs.area[:, None]
         return shear
 
     @property
     def force_on_b(self) -> Array:
         """Force on side b of each pair (m, 2) [kN]."""
         force: Array = (
-            self.normal_force[:, None] * self.pairs.normal + self.friction_force[:, None] * self.pairs.tangent
+            self.normal_force[:, None] * self.pairs.normal + self.friction_force * self.pairs.tangent
         )
         return force
 
     def count(self, name: str) -> int:
-        """Return how many pairs are in the state called "open", "stick" or "slip"."""
-        return int(sum((self.state == code).sum() for code, word in enumerate(STATE_NAMES) if word == name))
+        """Return how many pairs are in the state called "open", "stick", "slip" or "crushed"."""
+        return int((self.state == STATE_NAMES.index(name)).sum())
+
+
+    @property
+    def counted(self) -> str:
+        """How many pairs are in each state, in words; crushed ones are named where there are any."""
+        words = [name for name in STATE_NAMES if name != "crushed" or self.count(name)]
+        return ", ".join(f"{self.count(name)} {name}" for name in words)
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,13 +149,13 @@ def joint_resultants(contacts: Contacts) -> JointResultants:
     centre = (low + high) / 2
     normal_part = (pairs.point[first] * pairs.normal[first]).sum(1)
     middle = centre[:, None] * tangent + normal_part[:, None] * pairs.normal[first]
-    N, V = total(contacts.normal_force), total(contacts.friction_force)
+    N, V = total(contacts.normal_force), total(contacts.friction_force[:, 0])
     arm = np.zeros(len(pairs))
     arm[inside] = along[inside] - centre[index]
     moment = total(contacts.normal_force * arm)
     scale = float(np.abs(N).max(initial=0.0))
     loaded = np.abs(N) > 1e-12 * scale
-    closed = contacts.state != 0
+    touching, slips = ~contacts.states.open, contacts.states.slips
     return JointResultants(
         body_a=pairs.body_a[first],
         body_b=pairs.body_b[first],
@@ -147,6 +166,6 @@ def joint_resultants(contacts: Contacts) -> JointResultants:
         N=N,
         V=V,
         eccentricity=np.where(loaded, moment / np.where(loaded, N, 1.0), np.nan),
-        open_share=total(pairs.length * ~closed) / safe,
-        slipping=(total((contacts.state == 1).astype(float)) == 0) & (total(closed.astype(float)) > 0),
+        open_share=total(pairs.length * ~touching) / safe,
+        slipping=(total((touching & ~slips).astype(float)) == 0) & (total(touching.astype(float)) > 0),
     )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from concio.analysis.contacts import Contacts, JointResultants, joint_resultants
+from concio.analysis.contacts import STATE_NAMES, Contacts, JointResultants, joint_resultants
 from concio.analysis.stress import Stress
 from concio.arguments import closest
 from concio.contact.assembly import Assembly
@@ -136,7 +136,7 @@ class Result:
         """State of every contact pair."""
         s = self.solution
         state = pair_states(self.assembly.problem(self.factors), s)
-        return Contacts(self.assembly.pairs, s.normal_force, s.friction_force[:, 0], s.gap, s.slip[:, 0], state)
+        return Contacts(self.assembly.pairs, s.normal_force, s.friction_force, s.gap, s.slip, state)
 
     @cached_property
     def joint_motion(self) -> JointMotion:
@@ -146,7 +146,7 @@ class Result:
         if not real.size:
             return JointMotion("", 0.0, 0.0)
         contacts = self.contacts
-        motion = np.maximum(contacts.gap - pairs.gap, np.abs(contacts.slip))[real]
+        motion = np.maximum(contacts.gap - pairs.gap, np.linalg.norm(contacts.slip, axis=1))[real]
         length = np.array([face.length for face in interfaces])[pairs.interface[real]]
         worst = int(np.argmax(motion / length))
         face = interfaces[int(pairs.interface[real[worst]])]
@@ -225,7 +225,7 @@ class Result:
         if self.assembly.supported.held:
             s = self.solution
             rest = self.assembly.K @ self.displacement - self.assembly.load(self.factors)
-            rest -= pairs.C_n.T @ s.normal_force + pairs.C_t.T @ s.friction_force[:, 0]
+            rest -= pairs.C_n.T @ s.normal_force + pairs.C_t.T @ s.friction_force.ravel()
             found.update(self.assembly.supported.reactions(disc, rest))
         return found
 
@@ -292,7 +292,7 @@ class Result:
             data["max_settlement"] = self.max_settlement
             data["joint_motion"] = asdict(self.joint_motion)
             data["reactions"] = {name: list(force) for name, force in self.reactions.items()}
-            data["pairs"] = {name: contacts.count(name) for name in ("open", "stick", "slip")}
+            data["pairs"] = {name: contacts.count(name) for name in STATE_NAMES}
         if len(self.assembly.pairs) <= EXISTENCE:
             condition = self.existence
             data["sufficient_condition"] = {"holds": condition.holds, "margin": _finite(condition.margin)}

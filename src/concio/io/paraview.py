@@ -84,9 +84,9 @@ def bodies_grid(result: Result) -> Grid:
 def contacts_grid(result: Result) -> Grid:
     """Return the contact pairs as points with all their numbers.
 
-    Point data: ``state`` (0 open, 1 stick, 2 and 3 slip), ``normal_force``, ``friction_force`` and ``force`` on side b
-    [kN], ``pressure``, ``shear`` [kN/m2], ``gap``, ``slip``, ``normal``, ``body_a``, ``body_b``, ``interface``. Without
-    a solution the geometry alone.
+    Point data: ``state`` (0 open, 1 stick, 2 slip, 3 crushed), ``normal_force``, ``friction_force`` and ``force`` on
+    side b [kN], ``pressure``, ``shear`` [kN/m2], ``gap``, ``slip``, ``normal``, ``body_a``, ``body_b``, ``interface``.
+    Without a solution the geometry alone.
     """
     pairs = result.assembly.pairs
     m = len(pairs)
@@ -97,9 +97,11 @@ def contacts_grid(result: Result) -> Grid:
     if result.solved:
         c = result.contacts
         data |= {
-            "state": c.state.astype(np.int32), "normal_force": c.normal_force, "friction_force": c.friction_force,
-            "force": c.force_on_b, "pressure": c.pressure, "shear": c.shear, "gap": c.gap, "slip": c.slip,
+            "state": c.state.astype(np.int32), "normal_force": c.normal_force, "force": c.force_on_b,
+            "pressure": c.pressure, "gap": c.gap,
         }  # fmt: skip
+        for name, along in (("friction_force", c.friction_force), ("shear", c.shear), ("slip", c.slip)):
+            data[name] = along[:, 0] if along.shape[1] == 1 else along
     return Grid(pairs.point, np.arange(m), np.arange(1, m + 1), np.full(m, VERTEX), data)
 
 

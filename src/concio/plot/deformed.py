@@ -13,6 +13,7 @@ from concio.post.joint_lines import JointLines, joint_lines
 from concio.post.mechanism import mechanism_states
 from concio.post.motion import body_motions
 from concio.post.outlines import display_scale, outlines
+from concio.problem.pair_state import PairState
 from concio.problem.solution import Status
 
 if TYPE_CHECKING:
@@ -54,6 +55,8 @@ def plot_deformed(result: Result, ax: Axes | None = None, *, scale: float | None
         f"displacements x {scale:g}; largest {style.number(largest, 'm')}",
     )  # fmt: skip
     handles: list[Any] = [style.handle(style.STICK), style.handle(style.SLIP)]
+    if (state == PairState.CRUSHED).any():
+        handles.append(style.handle(style.CRUSHED))
     handles.append(style.patch(style.FILL_OPEN, "open", style.OPEN.colour))
     style.legend(ax, handles)
     return ax
@@ -76,8 +79,8 @@ def plot_slip(result: Result, ax: Axes | None = None) -> Axes:
     ax, shown, box = style.draw_at_rest(result, ax)
     pieces = joint_lines(result, shown)
     contacts = result.contacts
-    gap, slip = np.maximum(contacts.gap[pieces.pair], 0.0), np.abs(contacts.slip[pieces.pair])
-    opened = contacts.state[pieces.pair] == 0
+    gap, slip = np.maximum(contacts.gap[pieces.pair], 0.0), np.linalg.norm(contacts.slip[pieces.pair], axis=1)
+    opened = contacts.states.open[pieces.pair]
     widest = max(float(gap[opened].max(initial=0.0)), float(slip[~opened].max(initial=0.0)))
     lines = pieces.ends
     for look, keep, value in ((style.OPEN, opened & (gap > 0), gap), (style.SLIP, ~opened & (slip > 0), slip)):
@@ -149,9 +152,9 @@ def plot_mechanism(
     largest = float(speed.max())
     state = mechanism_states(result, pieces)
     style.draw_bodies(ax, result.model, shown, scale, face=face)
-    opened = list(pieces.openings(scale)[state == 0])
+    opened = list(pieces.openings(scale)[state == PairState.OPEN])
     ax.add_collection(PolyCollection(opened, facecolors=style.FILL_OPEN, edgecolors="none", zorder=2))
-    style.draw_lines(ax, pieces.side("middle", scale)[state > 1], style.SLIP, zorder=3)
+    style.draw_lines(ax, pieces.side("middle", scale)[state == PairState.SLIP], style.SLIP, zorder=3)
     centre = result.assembly.disc.centroids
     motion = body_motions(result, velocity)[:, :2]
     arrows = moving & (np.hypot(*motion.T) > 0.02 * largest) if moving.sum() <= 400 else np.zeros(len(moving), bool)
@@ -177,7 +180,7 @@ def _draw_states(ax: Axes, pieces: JointLines, state: Array, scale: float) -> No
     from matplotlib.collections import PolyCollection
 
     code = state[pieces.pair]
-    opened = code == 0
+    opened = code == PairState.OPEN
     many = len(code) > 4 * style.LARGE
     ax.add_collection(
         PolyCollection(list(pieces.openings(scale)[opened]), facecolors=style.FILL_OPEN, edgecolors="none", zorder=2,
@@ -188,5 +191,6 @@ def _draw_states(ax: Axes, pieces: JointLines, state: Array, scale: float) -> No
         line = style.Line(style.OPEN.colour, style.OPEN.dash, 1.2, "")
         style.draw_lines(ax, pieces.side(side, scale)[opened], line, width=1.2 * thin, zorder=2.5)
     middle = pieces.side("middle", scale)
-    style.draw_lines(ax, middle[code == 1], style.STICK, width=style.STICK.width * thin, zorder=3)
-    style.draw_lines(ax, middle[code > 1], style.SLIP, width=style.SLIP.width * thin, zorder=3.1)
+    looks = {PairState.STICK: style.STICK, PairState.SLIP: style.SLIP, PairState.CRUSHED: style.CRUSHED}
+    for value, look in looks.items():
+        style.draw_lines(ax, middle[code == value], look, width=look.width * thin, zorder=3 + 0.1 * (value - 1))

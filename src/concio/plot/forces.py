@@ -54,7 +54,7 @@ def plot_pressure(result: Result, ax: Axes | None = None, *, scale: float | None
     ax.add_collection(
         PolyCollection(diagrams, facecolors="none", edgecolors=style.COMPRESSION.colour, linewidths=0.8, zorder=3.1)
     )
-    opened = contacts.state[pieces.pair] == 0
+    opened = contacts.states.open[pieces.pair]
     style.draw_lines(ax, pieces.ends[opened], style.OPEN, zorder=4)
     style.dress(ax, box, "Contact pressure along the joints", f"largest {style.number(largest, 'kN/m2')}")
     if largest > 0:

@@ -40,8 +40,7 @@ SLIP = Line("#CC79A7", (0, (2.2, 0.9)), 2.4, "closed, slips")
 OPEN = Line("#E69F00", (0, (0.8, 1.2)), 2.0, "open")
 LOAD = Line("#009E73", "-", 1.4, "load")
 THRUST = Line("#0072B2", "-", 2.0, "thrust line")
-STATES = (OPEN, STICK, SLIP, SLIP)
-"""Look of each pair state code."""
+CRUSHED = Line("#882255", "-", 3.2, "crushed")
 
 BLOCK, FILM, RIGID, OBSTACLE = "#F3EEE4", "#DDD5C6", "#E4E4E4", "#FFFFFF"
 EDGE, GHOST, HATCH, INK = "#8C8375", "#B8B2A8", "#9A9A9A", "#222222"

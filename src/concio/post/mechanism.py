@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.problem.pair_state import PairState
 from concio.problem.solution import Status
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ Array = np.ndarray
 
 
 def mechanism_states(result: Result, pieces: JointLines, tolerance: float = 1e-6) -> Array:
-    """Return the state (k,) of each joint piece in a mechanism: 0 opens, 1 stays, 2 slides along +t, 3 along -t.
+    """Return the state (k,) of each joint piece in a mechanism, codes of :class:`.PairState`.
 
     Parameters
     ----------
@@ -42,5 +43,5 @@ def mechanism_states(result: Result, pieces: JointLines, tolerance: float = 1e-6
     swelling = laws.dilatancy if result.status is Status.COLLAPSES else laws.friction
     opens = opening > swelling[pieces.pair] * np.abs(sliding) + little
     slides = ~opens & (np.abs(sliding) > little)
-    state = np.where(slides, np.where(sliding > 0, 2, 3), 1)
-    return np.where(opens, 0, state).astype(np.int8)
+    state = np.where(slides, PairState.SLIP, PairState.STICK)
+    return np.where(opens, PairState.OPEN, state).astype(np.int8)

@@ -23,6 +23,7 @@ UNITS: dict[str, str] = {
     **dict.fromkeys(("angle", "rotation"), "rad"),
     "area": "m2",
 }
+UNITS |= {f"{name}_{i}": UNITS[name] for name in ("friction_force", "shear", "slip") for i in (1, 2)}
 """Unit of each column that has one; stresses are tension positive, pressure and normal forces compression positive."""
 
 
@@ -95,11 +96,11 @@ class Tables:
             "area": p.area,
             "state": np.array(STATE_NAMES)[c.state],
             "normal_force": c.normal_force,
-            "friction_force": c.friction_force,
+            **_components("friction_force", c.friction_force),
             "pressure": c.pressure,
-            "shear": c.shear,
+            **_components("shear", c.shear),
             "gap": c.gap,
-            "slip": c.slip,
+            **_components("slip", c.slip),
         }
 
     def reactions(self) -> Table:
@@ -120,3 +121,10 @@ class Tables:
     def _names(self, a: Array, b: Array) -> Table:
         names = np.array([*(body.name for body in self.result.model.bodies), ""])  # -1: the free end of a tie
         return {"body_a": names[a], "body_b": names[b]}
+
+
+def _components(name: str, values: Array) -> Table:
+    """Return the columns of a tangential quantity (m, d-1): one in the plane, one for each tangent in space."""
+    if values.shape[1] == 1:
+        return {name: values[:, 0]}
+    return {f"{name}_{i + 1}": values[:, i] for i in range(values.shape[1])}

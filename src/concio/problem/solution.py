@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from enum import Enum, IntEnum
+from enum import Enum
 from typing import Any, Protocol
 
 import numpy as np
 
 from concio.problem.certificate import Certificate, Kinematics, certify, kinematics, scales
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.pair_state import Normal, PairStates
 from concio.problem.tolerances import AT_BOUND, CERTIFIED
 
 
@@ -38,15 +39,6 @@ class Status(Enum):
 
 PROVEN_FAILURES = (Status.NO_EQUILIBRIUM, Status.COLLAPSES, Status.NO_COULOMB_STATE)
 """Outcomes that are proofs that the structure does not stand."""
-
-
-class PairState(IntEnum):
-    """State of a contact pair."""
-
-    OPEN = 0
-    STICK = 1
-    SLIP_PLUS = 2
-    SLIP_MINUS = 3
 
 
 @dataclass(frozen=True)
@@ -227,18 +219,33 @@ def failed(problem: ContactProblem, status: Status, *, method: str, **extra: Any
     return Solution(status, u, t_n, t_t, kinematics(problem, u, t_n, t_t), certificate, method, **extra)
 
 
-def pair_states(problem: ContactProblem, solution: Solution, tolerance: float = AT_BOUND) -> Array:
-    """Return the state of each pair, (m,) integers of :class:`PairState`.
+def pair_states(problem: ContactProblem, solution: Solution, tolerance: float = AT_BOUND) -> PairStates:
+    """Return the states of the pairs in an answer, see :func:`read_pair_states`."""
+    return read_pair_states(
+        problem, solution.displacement, solution.normal_force, solution.friction_force, tolerance=tolerance
+    )
 
-    A pair is open when its force is below ``tolerance`` times the total load, slipping when its slip exceeds
-    ``tolerance`` times the largest displacement and friction is exhausted, sticking otherwise.
+
+def read_pair_states(
+    problem: ContactProblem, u: Array, t_n: Array, t_t: Array, *, tolerance: float = AT_BOUND
+) -> PairStates:
+    """Read the states of the pairs off displacements and forces.
+
+    A pair is open when its force is below ``tolerance`` times the total load, crushed when it is that near to its cap;
+    it slips when its slip exceeds ``tolerance`` times the largest displacement and friction is exhausted.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    u, t_n, t_t : (N,), (m,), (m, d-1) arrays
+        [m], [kN].
+    tolerance : float
     """
-    force, length = scales(problem, solution.displacement, solution.normal_force, solution.friction_force)
-    t_n, t_t = solution.normal_force, solution.friction_force
-    strength = problem.cone.strength(t_n)
-    used = np.linalg.norm(t_t, axis=1) >= strength - tolerance * force
-    slips = used & (np.linalg.norm(solution.slip, axis=1) > tolerance * length)
-    first = solution.slip[:, 0]
-    state = np.where(slips, np.where(first >= 0, PairState.SLIP_PLUS, PairState.SLIP_MINUS), PairState.STICK)
-    closed = t_n + problem.laws.tension > tolerance * force
-    return np.where(closed, state, PairState.OPEN).astype(np.int8)
+    force, length = scales(problem, u, t_n, t_t)
+    slip = kinematics(problem, u, t_n, t_t).slip
+    size = np.linalg.norm(slip, axis=1)
+    used = np.linalg.norm(t_t, axis=1) >= problem.cone.strength(t_n) - tolerance * force
+    slips = used & (size > tolerance * length)
+    normal = np.where(t_n + problem.cone.tension > tolerance * force, Normal.CLOSED, Normal.OPEN)
+    normal = np.where(problem.cone.cap - t_n <= tolerance * force, Normal.CRUSHED, normal)
+    return PairStates(normal.astype(np.int8), np.where(slips[:, None], slip / np.where(slips, size, 1.0)[:, None], 0.0))

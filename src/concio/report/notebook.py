@@ -25,7 +25,7 @@ def notebook_html(result: Result) -> str:
     rows.append(("size", f"{len(result.model.free_bodies)} bodies, {len(result.assembly.pairs)} contact pairs"))
     if result.solved:
         contacts = result.contacts
-        rows.append(("pairs", ", ".join(f"{contacts.count(s)} {s}" for s in ("open", "stick", "slip"))))
+        rows.append(("pairs", contacts.counted))
         rows.append(("largest settlement", number(result.max_settlement, "m")))
         for name, (x, y) in list(result.reactions.items())[:8]:
             rows.append((f"reaction of {name}", f"{number(x)}, {number(y)} kN"))

@@ -145,7 +145,7 @@ def _model(result: Result) -> str:
     if result.solved:
         contacts = result.contacts
         rows.append(("largest settlement", number(result.max_settlement, "m")))
-        rows.append(("contact pairs", ", ".join(f"{contacts.count(s)} {s}" for s in ("open", "stick", "slip"))))
+        rows.append(("contact pairs", contacts.counted))
     seconds = result.seconds.get("total", float("nan"))
     rows.append(("solved by", f"{result.method}, {result.solution.iterations} iterations, {seconds:.2g} s"))
     cells = "".join(f"<tr><th>{escape(k)}</th><td>{escape(v)}</td></tr>" for k, v in rows)

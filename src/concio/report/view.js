@@ -21,7 +21,7 @@
   const look = data.look, bodies = unpacked(data.bodies), pieces = unpacked(data.pieces), joints = unpacked(data.joints);
   const steps = data.steps.map(() => null);
   const count = bodies.name.length, pieceCount = pieces.pair.length;
-  const STATES = ["open", "sticks", "slips", "slips"];
+  const STATES = ["open", "sticks", "slips", "is crushed"];
   const canvas = $("canvas"), pen = canvas.getContext("2d");
   const view = { x: 0, y: 0, zoom: 1, scale: data.scale, step: data.steps.length - 1, colour: "none", states: true, crosses: true, picked: null };
   const moved = new Float32Array(bodies.point.length);
@@ -194,7 +194,8 @@
     }
     pen.fill(); pen.stroke();
     if (view.colour !== "pressure" && typical * view.zoom >= 10) strokePieces((k) => step.state[k] === 1, look.stick, 1.2 * thin, []);
-    strokePieces((k) => step.state[k] > 1, look.slip, 2.8 * thin, [6, 3]);
+    strokePieces((k) => step.state[k] === 2, look.slip, 2.8 * thin, [6, 3]);
+    strokePieces((k) => step.state[k] === 3, look.crushed, 3.2 * thin, []);
   }
   function drawCrosses(shown) {
     if (!view.crosses || !step.s2 || !(bigStress > 0)) return;
@@ -242,6 +243,7 @@
       parts.push(`<span>${WORDS[view.colour]} ${low}<i class="bar" style="background:linear-gradient(90deg,${order.join()})"></i>${high}</span>`);
     } else if (view.colour !== "none") parts.push(`<span>no ${WORDS[view.colour]} in this step</span>`);
     if (view.states && step.state) parts.push(item(look.stick, "sticks"), item(look.slip, "slips", "dashed"), item(look.open, "open"));
+    if (view.states && step.state && step.state.includes(3)) parts.push(item(look.crushed, "crushed"));
     if (view.crosses && step.s2) parts.push(item(look.compression, "compression"), item(look.tension, "tension", "dashed"));
     $("legend").innerHTML = parts.join("");
   }

@@ -100,7 +100,7 @@ def rows() -> list[Row]:
     total = 100.0 * WIDTH
     c = fine.contacts
     away = (np.abs(c.pairs.normal[:, 0]) > 0.9) & (c.point[:, 1] > 1e-6) & (c.normal_force > 1e-9 * total)
-    used = np.abs(c.friction_force[away]) / (MU * c.normal_force[away])
+    used = np.abs(c.friction_force[away, 0]) / (MU * c.normal_force[away])
     other = pressed(1, "lemke")
     return [
         Row(

@@ -129,7 +129,7 @@ def figure(axes: Any) -> None:
         order = np.argsort(c.point[low, 0])
         axes.plot(
             c.point[low, 0][order],
-            np.abs(c.shear[low][order]) / (MU * PRESSURE),
+            np.abs(c.shear[low, 0][order]) / (MU * PRESSURE),
             mark + "-",
             ms=2,
             label=f"{kind} joint",

@@ -167,7 +167,7 @@ def crossover(run: Run, progress: ProgressCallback | None) -> Solution | None:
         return None
     u, t_n, t_t = s.restore(best.u, best.t_n, best.t_t)
     answer = sparse_lemke.solve(
-        s.problem, start_states=best.states.codes(), start=(u, t_n, t_t[:, None]), limit=500, tries=0, progress=progress
+        s.problem, start_states=best.states, start=(u, t_n, t_t[:, None]), limit=500, tries=0, progress=progress
     )
     if answer.status is Status.CANCELLED:
         raise Cancelled

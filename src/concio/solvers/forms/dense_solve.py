@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.pair_state import Normal
 from concio.problem.solution import Progress, ProgressCallback, Solution, Status, failed, judge, pair_states
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.forms.condensation import condense
@@ -19,7 +20,6 @@ from concio.solvers.lcp.lemke_method import LemkeResult, Outcome, lemke
 from concio.solvers.lcp.linear_problem import LinearComplementarity
 from concio.solvers.pivoting import sparse_lemke
 from concio.solvers.pivoting.lemke_outcome import no_solution
-from concio.solvers.pivoting.pair_rows import Normal, Tangential
 from concio.solvers.pivoting.state_solution import finish
 
 Back = Callable[[LemkeResult], "tuple[Array, Array, Array | None]"]
@@ -124,9 +124,9 @@ class DenseRun:
         problem = reduction.system.problem
         t_n, t_t = reduction.forces(t)
         plain = judge(problem, reduction.displacement(t, alpha), t_n, t_t, method=self.method, **self.extra())
-        normal, tangential = read_states(form, z, w)
+        normal, sign = read_states(form, z, w)
         try:
-            exact = finish(reduction.system, normal, tangential, method=self.method, **self.extra())
+            exact = finish(reduction.system, normal, sign, method=self.method, **self.extra())
         except SingularMatrixError:
             exact = plain
         best = exact if exact.certificate.worst <= plain.certificate.worst else plain
@@ -158,25 +158,25 @@ class DenseRun:
 
 
 def read_states(form: MixedForm, z: Array, w: Array) -> tuple[Array, Array]:
-    """Return normal and tangential states (m,) of a complementary solution."""
+    """Return normal codes (m,) and signs of slip (m,) of a complementary solution."""
     reduction = form.reduction
     m, k, system = reduction.pairs, reduction.rough.size, reduction.system
     normal = np.where(w[:m] > z[:m], Normal.OPEN, Normal.CLOSED)
-    tangential = np.where(system.frictionless, Tangential.PLUS, Tangential.STICK)
+    sign = np.where(system.frictionless, 1, 0)
     if form.name == "normal" or not k:
-        return normal, np.full(m, Tangential.PLUS)
+        return normal, np.full(m, 1)
     if form.name == "3m":
         plus, minus = w[m : m + k] > z[m : m + k], z[m + k :] > w[m + k :]
     else:
         slips = z[m + 2 * k :] > w[m + 2 * k :]
         forward = w[m : m + k] >= w[m + k : m + 2 * k]
         plus, minus = slips & forward, slips & ~forward
-    side = np.where(plus, Tangential.PLUS, np.where(minus, Tangential.MINUS, Tangential.STICK))
+    side = np.where(plus, 1, np.where(minus, -1, 0))
     y_t = form.components(z, w)[m:]
     loose = (normal[reduction.rough] == Normal.OPEN) & system.weak[reduction.rough]
-    side = np.where(loose, np.where(y_t < 0, Tangential.MINUS, Tangential.PLUS), side)
-    tangential[reduction.rough] = side
-    return normal, tangential
+    side = np.where(loose, np.where(y_t < 0, -1, 1), side)
+    sign[reduction.rough] = side
+    return normal, sign
 
 
 def _standard(

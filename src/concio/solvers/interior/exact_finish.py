@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from concio.problem.contact_problem import Array
-from concio.problem.solution import PairState
+from concio.problem.pair_state import Normal, PairStates
 from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
@@ -41,32 +41,6 @@ REFINED = 1e-14
 
 
 @dataclass(frozen=True, eq=False)
-class States:
-    """States of the pairs: which are closed, which slip and how, which are crushed.
-
-    Parameters
-    ----------
-    closed : (m,) boolean array
-    slip : (m,) integer array
-        +1 or -1 where a closed pair slips, 0 where it sticks or is open.
-    crushed : (m,) boolean array
-    """
-
-    closed: Array
-    slip: Array
-    crushed: Array
-
-    def key(self) -> bytes:
-        """Return bytes that identify the states."""
-        return np.packbits(self.closed).tobytes() + self.slip.astype(np.int8).tobytes() + self.crushed.tobytes()
-
-    def codes(self) -> Array:
-        """Return the states as :class:`concio.problem.solution.PairState` (m,), for pivoting to begin with."""
-        slip = np.where(self.slip > 0, PairState.SLIP_PLUS, PairState.SLIP_MINUS)
-        return np.where(self.closed, np.where(self.slip == 0, PairState.STICK, slip), PairState.OPEN).astype(np.int8)
-
-
-@dataclass(frozen=True, eq=False)
 class Finished:
     """Outcome of the exact finish, scaled units.
 
@@ -74,7 +48,7 @@ class Finished:
     ----------
     u, t_n, t_t : arrays
         Shapes (N,), (m,), (m,).
-    states : States
+    states : PairStates
     error : float
         Natural-map residual: largest of imbalance and of the violation of the joint laws, relative.
     solves : int
@@ -86,7 +60,7 @@ class Finished:
     u: Array
     t_n: Array
     t_t: Array
-    states: States
+    states: PairStates
     error: float
     solves: int
     undecided: Array
@@ -116,7 +90,7 @@ def natural_residual(s: Scaled, u: Array, t_n: Array, t_t: Array) -> tuple[float
     return max(imbalance, float(laws.max(initial=0.0))), laws
 
 
-def read_states(s: Scaled, u: Array, t_n: Array, t_t: Array) -> States:
+def read_states(s: Scaled, u: Array, t_n: Array, t_t: Array) -> PairStates:
     """Return the states that the natural map assigns to a point."""
     force, length = sizes(u, t_n, t_t)
     slip = np.where(s.rough, s.slip(u, t_t), 0.0) * (force / length)
@@ -127,12 +101,13 @@ def read_states(s: Scaled, u: Array, t_n: Array, t_t: Array) -> States:
     tangential = t_t - slip
     sliding = np.where(tangential < -strength, 1, np.where(tangential > strength, -1, 0))
     sliding = np.where(closed & s.rough, sliding, 0)
-    return States(closed, sliding, closed & (trial > s.cap))
+    normal = np.where(trial > s.cap, Normal.CRUSHED, np.where(closed, Normal.CLOSED, Normal.OPEN))
+    return PairStates.plane(normal, sliding)
 
 
 def solve_states(
     s: Scaled,
-    states: States,
+    states: PairStates,
     u: Array,
     t_n: Array,
     t_t: Array,
@@ -157,10 +132,9 @@ def solve_states(
     SingularMatrixError
         The matrix of these states cannot be factorised.
     """
-    closed, slip = states.closed, states.slip
-    hard = closed & ~states.crushed
-    stick = closed & (slip == 0) & s.rough
-    sigma = slip.astype(float)
+    touching, hard = ~states.open, states.closed
+    sigma = states.direction[:, 0] * touching
+    stick = touching & (sigma == 0) & s.rough
     drag = -sigma * s.mu  # t_t = drag t_n - sigma c where slipping
     open_wide = s.dilatancy * sigma
     # gap of a slipping pair: x + C_n u + a_n t_n - d sigma (C_t u - s + a_t t_t)
@@ -172,8 +146,8 @@ def solve_states(
     if not again:
         d_tn = d_nn * drag
         s.factor.factorise(np.concatenate([d_nn, -d_nn * open_wide, d_tn, d_tt - d_tn * open_wide]), springs)
-    t_n = np.where(states.crushed, s.cap, np.where(closed, t_n, 0.0))
-    t_t = np.where(stick, t_t, drag * t_n - sigma * s.cohesion) * closed
+    t_n = np.where(states.crushed, s.cap, np.where(touching, t_n, 0.0))
+    t_t = np.where(stick, t_t, drag * t_n - sigma * s.cohesion) * touching
     anchor = u if anchor is None else anchor
     best, late = (u, t_n, t_t, np.inf), 0
     for _ in range(40):
@@ -217,7 +191,7 @@ def _least_norm(s: Scaled, found: Finished) -> Finished:
 
 
 def _far_from_anchor(
-    s: Scaled, states: States, u: Array, t_n: Array, t_t: Array, error: float, laws: Array
+    s: Scaled, states: PairStates, u: Array, t_n: Array, t_t: Array, error: float, laws: Array
 ) -> tuple[Array, Array, Array, float, Array]:
     """Anchor the springs of loose unknowns anew, as long as that lowers the error of settled states.
 
@@ -240,7 +214,7 @@ def finish(
     t_n: Array,
     t_t: Array,
     rounds: int = 12,
-    states: States | None = None,
+    states: PairStates | None = None,
     *,
     least: bool = True,
 ) -> Finished:
@@ -253,7 +227,7 @@ def finish(
         The point, scaled, ``t_n`` shifted.
     rounds : int
         Largest number of active-set rounds.
-    states : States, optional
+    states : PairStates, optional
         States to begin with; default are those the point suggests.
     least : bool
         Whether forces that are not unique are those of least norm; otherwise those near to the point.
@@ -275,10 +249,7 @@ def finish(
         if error >= EXACT and new.key() == states.key():
             u, t_n, t_t, error, laws = _far_from_anchor(s, states, u, t_n, t_t, error, laws)
             new = read_states(s, u, t_n, t_t)
-        undecided = np.flatnonzero(
-            (laws > 1e-10)
-            & ((new.closed != states.closed) | (new.slip != states.slip) | (new.crushed != states.crushed))
-        )
+        undecided = np.flatnonzero((laws > 1e-10) & new.differ(states))
         if best is None or error < best.error:
             best = Finished(u, t_n, t_t, states, error, solves, undecided)
         if error < EXACT:

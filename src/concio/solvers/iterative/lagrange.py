@@ -26,13 +26,12 @@ active set strategy as a semismooth Newton method, *SIAM J. Optim.* 13 (2003) 86
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import scipy.sparse as sp
 
 from concio.errors import MethodError
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.pair_state import Normal, PairStates
 from concio.problem.solution import ProgressCallback, Solution
 from concio.solvers.algebra.dimensionless import Dimensionless, dimensionless
 from concio.solvers.iterative.augmented import block_diagonal
@@ -43,28 +42,6 @@ STIFFNESS = 1e3
 
 TOGETHER = 15
 """Rounds in which all contradictions are corrected at once."""
-
-OPEN, CLOSED, CRUSHED = 0, 1, 2
-
-
-@dataclass(frozen=True, eq=False)
-class States:
-    """Guessed states.
-
-    Parameters
-    ----------
-    normal : (m,) integer array
-        OPEN, CLOSED, CRUSHED.
-    sign : (m,) integer array
-        Sign of the friction force of a slipping pair, 0 where it sticks.
-    """
-
-    normal: Array
-    sign: Array
-
-    def key(self) -> bytes:
-        """Identity of the set of states."""
-        return bytes(self.normal.astype(np.int8)) + bytes(self.sign.astype(np.int8))
 
 
 def solve(problem: ContactProblem, *, progress: ProgressCallback | None = None, limit: int = 600) -> Solution:
@@ -113,17 +90,17 @@ def solve(problem: ContactProblem, *, progress: ProgressCallback | None = None, 
     return answer(problem, record)
 
 
-def _guess(s: Dimensionless, u: Array, t: Array) -> States:
+def _guess(s: Dimensionless, u: Array, t: Array) -> PairStates:
     """States of the glued structure."""
     y = s.opening(u)
-    normal = np.where(t[:, 0] - y[:, 0] > -s.cone.tension, CLOSED, OPEN)
+    normal = np.where(t[:, 0] - y[:, 0] > -s.cone.tension, Normal.CLOSED, Normal.OPEN)
     slips = np.abs(t[:, 1]) >= s.cone.strength(t[:, 0])
-    return States(normal, np.where(slips, np.sign(t[:, 1]), 0).astype(int))
+    return PairStates.plane(normal, np.where(slips, -np.sign(t[:, 1]), 0))
 
 
-def _solve_states(s: Dimensionless, record: Record, states: States, u: Array, t: Array) -> tuple[Array, Array]:
+def _solve_states(s: Dimensionless, record: Record, states: PairStates, u: Array, t: Array) -> tuple[Array, Array]:
     """Return displacements and multipliers with the states imposed."""
-    cone, closed, sign = s.cone, states.normal == CLOSED, states.sign
+    cone, closed, sign = s.cone, states.closed, -states.direction[:, 0]  # of the friction force
     slips = sign != 0
     stiffness = 1.0 / (1.0 / STIFFNESS + s.compliance)
     r_n, r_t = stiffness[:, 0], stiffness[:, 1]
@@ -134,8 +111,8 @@ def _solve_states(s: Dimensionless, record: Record, states: States, u: Array, t:
     jacobian[:, 0, 1] = scale * kappa * sign
     jacobian[:, 1, 0] = sign * cone.friction * jacobian[:, 0, 0]
     jacobian[:, 1, 1] = np.where(slips, sign * cone.friction * jacobian[:, 0, 1], ~_idle(s, states))
-    imposed = np.where(states.normal == OPEN, -cone.tension, np.where(closed, -scale * kappa * cone.cohesion, 0.0))
-    imposed = np.where(states.normal == CRUSHED, cone.cap, imposed)
+    imposed = np.where(states.open, -cone.tension, np.where(closed, -scale * kappa * cone.cohesion, 0.0))
+    imposed = np.where(states.crushed, cone.cap, imposed)
     constant = np.column_stack([imposed, np.where(slips, sign * (cone.cohesion + cone.friction * imposed), 0.0)])
 
     def forces(v: Array, multiplier: Array) -> Array:
@@ -159,14 +136,14 @@ def _solve_states(s: Dimensionless, record: Record, states: States, u: Array, t:
     return u, t
 
 
-def _corrected(s: Dimensionless, states: States, u: Array, t: Array, *, single: bool) -> States:
+def _corrected(s: Dimensionless, states: PairStates, u: Array, t: Array, *, single: bool) -> PairStates:
     """Return the states with contradictions corrected: all of them, or only the worst."""
-    cone, normal, sign = s.cone, states.normal, states.sign
+    cone, normal, sign = s.cone, states.normal, -states.direction[:, 0]
     y = s.opening(u) + s.compliance * t
     gap = y[:, 0] - np.where(sign != 0, -s.dilatancy * sign * y[:, 1], 0.0)
     eps = 1e-12
     n_wrong = np.select(
-        [normal == OPEN, normal == CLOSED],
+        [states.open, states.closed],
         [-gap, np.maximum(-cone.tension - t[:, 0], t[:, 0] - cone.cap)],
         gap,
     )
@@ -178,13 +155,15 @@ def _corrected(s: Dimensionless, states: States, u: Array, t: Array, *, single: 
         worst = max(n_wrong.max(initial=0.0), t_wrong.max(initial=0.0))
         fix_n = n_wrong >= worst
         fix_t = (t_wrong >= worst) & ~fix_n
-    toggled = np.where(normal == CLOSED, np.where(t[:, 0] < -cone.tension + eps, OPEN, CRUSHED), CLOSED)
-    turned = np.where(sign != 0, 0, np.sign(t[:, 1])).astype(int)
+    toggled = np.where(t[:, 0] < -cone.tension + eps, Normal.OPEN, Normal.CRUSHED)
+    toggled = np.where(states.closed, toggled, Normal.CLOSED)
+    turned = np.where(sign != 0, 0.0, np.sign(t[:, 1]))
     closing = fix_n & _idle(s, states)
-    return States(np.where(fix_n, toggled, normal), np.where(fix_t, turned, np.where(closing, 0, sign)))
+    sign = np.where(fix_t, turned, np.where(closing, 0.0, sign))
+    return PairStates.plane(np.where(fix_n, toggled, normal), -sign)
 
 
-def _idle(s: Dimensionless, states: States) -> Array:
+def _idle(s: Dimensionless, states: PairStates) -> Array:
     """Open pairs without cohesion: they carry no friction, whatever their tangential state is called."""
-    idle: Array = (states.normal == OPEN) & (s.cone.spare == 0.0)
+    idle: Array = states.open & (s.cone.spare == 0.0)
     return idle

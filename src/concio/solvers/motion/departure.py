@@ -33,10 +33,11 @@ import numpy as np
 
 from concio.problem.certificate import certify
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.pair_state import PairStates
 from concio.problem.solution import Departure
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
-from concio.solvers.interior.exact_finish import States, solve_states
+from concio.solvers.interior.exact_finish import solve_states
 
 FINEST = (1e-6, 1e-8)
 """Values of e, scaled units, at which the acceleration of given states is worked out."""
@@ -48,13 +49,13 @@ STILL = 1e-9
 """Relative velocities up to this share of the largest velocity count as none."""
 
 
-def departure(s: Scaled, states: States, u: Array, t_n: Array, t_t: Array) -> Departure | None:
+def departure(s: Scaled, states: PairStates, u: Array, t_n: Array, t_t: Array) -> Departure | None:
     """Return the certified motion that pairs in given states would follow, or None.
 
     Parameters
     ----------
     s : Scaled
-    states : States
+    states : PairStates
         States of the pairs during the motion.
     u, t_n, t_t : arrays
         Any point in these states, scaled; where the linear solves begin.
@@ -71,7 +72,7 @@ def departure(s: Scaled, states: States, u: Array, t_n: Array, t_t: Array) -> De
     return None
 
 
-def _departure(s: Scaled, states: States, u: Array, t_n: Array, t_t: Array, e: float) -> Departure | None:
+def _departure(s: Scaled, states: PairStates, u: Array, t_n: Array, t_t: Array, e: float) -> Departure | None:
     """Let given states move by steps of (K + e M)(u' - u) = f - K u + C't until the step no longer changes."""
     step, last, size = np.zeros_like(u), np.inf, 0.0
     for k in range(STEPS):
@@ -94,8 +95,8 @@ def _departure(s: Scaled, states: States, u: Array, t_n: Array, t_t: Array, e: f
     rate_n, rate_t = s.C_n @ a, s.C_t @ a
     top = float(np.abs(a).max())
     gap, slip = s.normal_gap(u, t_n), s.slip(u, t_t)
-    opening = ~states.closed & (rate_n > STILL * top) & (gap < 0)
-    wrong = states.closed & (states.slip * rate_t > STILL * top) & (states.slip * slip < 0)
+    opening = states.open & (rate_n > STILL * top) & (gap < 0)
+    wrong = ~states.open & (states.sign * rate_t > STILL * top) & (states.sign * slip < 0)
     far = np.concatenate([-gap[opening] / rate_n[opening], -slip[wrong] / rate_t[wrong]]).max(initial=0.0)
     u, t_n, t_t = s.restore(u + 1.01 * far * a, t_n, t_t)
     return verify_departure(s.problem, s.acceleration(a), u, t_n, t_t[:, None])

@@ -21,11 +21,12 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array
+from concio.problem.pair_state import PairStates
 from concio.problem.solution import Departure, ProgressCallback, Status
 from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.interior.engine import STARTS, Cancelled, Run
-from concio.solvers.interior.exact_finish import Finished, States, finish, natural_residual, read_states
+from concio.solvers.interior.exact_finish import Finished, finish, natural_residual, read_states
 from concio.solvers.motion.departure import departure, verify_departure
 from concio.solvers.pivoting import sparse_lemke
 
@@ -180,13 +181,18 @@ def _most(s: Scaled) -> int:
 
 
 def pivot_from(
-    s: Scaled, states: States | None, point: Finished | None, *, limit: int, progress: ProgressCallback | None = None
+    s: Scaled,
+    states: PairStates | None,
+    point: Finished | None,
+    *,
+    limit: int,
+    progress: ProgressCallback | None = None,
 ) -> tuple[Finished | None, int]:
     """Pivot from a point in given states, or from nothing; return the answer, scaled, or None, and the pivots made."""
     known: dict[str, Any] = {"tries": TRIES}
     if states is not None and point is not None:
         u, t_n, t_t = s.restore(point.u, point.t_n, point.t_t)
-        known = {"tries": 0, "start_states": states.codes(), "start": (u, t_n, t_t[:, None])}
+        known = {"tries": 0, "start_states": states, "start": (u, t_n, t_t[:, None])}
     answer = sparse_lemke.solve(s.problem, progress=progress, limit=limit, **known)
     if answer.status is Status.CANCELLED:
         raise Cancelled

@@ -18,8 +18,8 @@ from dataclasses import replace
 import numpy as np
 
 from concio.problem.contact_problem import Array
-from concio.problem.solution import PairState
-from concio.solvers.pivoting.pair_rows import SIGN, Cover, Normal, PairSystem, Tangential
+from concio.problem.pair_state import Normal, PairStates
+from concio.solvers.pivoting.pair_rows import Cover, PairSystem
 from concio.solvers.pivoting.state_solution import state_solution
 
 USED = 1e-10
@@ -35,53 +35,55 @@ BASE = 0.01
 def cold_states(system: PairSystem) -> tuple[Array, Array]:
     """Return the glued states: all closed, all sticking but those without friction."""
     normal = np.full(system.m, Normal.CLOSED)
-    return normal, np.where(system.frictionless, Tangential.PLUS, Tangential.STICK)
+    return normal, np.where(system.frictionless, 1, 0)
 
 
 def open_states(system: PairSystem) -> tuple[Array, Array]:
     """Return the states of blocks apart, each held by the ground (see ``ground`` of :class:`PairSystem`)."""
     free = np.arange(system.m) < system.m - system.ground
-    return np.full(system.m, Normal.OPEN), np.where(free, Tangential.PLUS, Tangential.STICK)
+    return np.full(system.m, Normal.OPEN), np.where(free, 1, 0)
 
 
-def named_states(system: PairSystem, states: Array, start: tuple[Array, Array, Array] | None) -> tuple[Array, Array]:
-    """Return normal and tangential states from codes of :class:`.PairState` and an answer near."""
-    states = np.asarray(states)
+def named_states(
+    system: PairSystem, states: PairStates, start: tuple[Array, Array, Array] | None
+) -> tuple[Array, Array]:
+    """Return normal codes (m,) and signs of slip (m,) of given states and an answer near.
+
+    Pairs that cannot carry friction slip; open ones without strength slide to the side the answer shows.
+    """
     problem, law = system.problem, system.problem.laws
+    normal, sign, stuck = states.normal, states.sign * ~states.open, ~states.open & (states.sign == 0)
     slip = np.zeros(system.m)
-    normal = np.where(states == PairState.OPEN, Normal.OPEN, Normal.CLOSED)
     if start is not None:
         u, t_n, t_t = start
-        slip = problem.C_t @ u - problem.slip_origin[:, 0] + law.tangential_compliance * np.ravel(t_t)
+        t_t = np.ravel(t_t)
+        slip = problem.C_t @ u - problem.slip_origin[:, 0] + law.tangential_compliance * t_t
         capped = np.isfinite(law.cap) & (t_n >= (1.0 - 1e-9) * law.cap)
         normal = np.where(capped, Normal.CRUSHED, normal)
         # friction used up without slip: the force says which way the pair would slide
-        used = np.abs(np.ravel(t_t)) >= problem.cone.strength(t_n) - USED * np.abs(t_n).max(initial=0.0)
-        idle = (states == PairState.STICK) & used
-        states = np.where(idle, np.where(np.ravel(t_t) <= 0, PairState.SLIP_PLUS, PairState.SLIP_MINUS), states)
-    side = np.where(slip < 0, Tangential.MINUS, Tangential.PLUS)
-    side = np.where(states == PairState.SLIP_MINUS, Tangential.MINUS, side)
-    side = np.where(states == PairState.SLIP_PLUS, Tangential.PLUS, side)
-    sticks = (states == PairState.STICK) & ~system.frictionless
-    sticks |= (states == PairState.OPEN) & ~system.weak & (start is None)
-    return normal, np.where(sticks, Tangential.STICK, side)
+        used = np.abs(t_t) >= problem.cone.strength(t_n) - USED * np.abs(t_n).max(initial=0.0)
+        sign = np.where(stuck & used, np.where(t_t <= 0, 1, -1), sign)
+        stuck &= ~used
+    stuck = (stuck & ~system.frictionless) | (states.open & ~system.weak & (start is None))
+    side = np.where(sign != 0, sign, np.where(slip < 0, -1, 1))
+    return normal, np.where(stuck, 0, side)
 
 
 def cover_point(
-    system: PairSystem, normal: Array, tangential: Array, u: Array, p: Array, r: Array
+    system: PairSystem, normal: Array, sign: Array, u: Array, p: Array, r: Array
 ) -> tuple[Array, Array]:
     """Set the cover of ``system`` that makes a point the answer; return the states, open pairs turned as they slid.
 
     Parameters
     ----------
     system : PairSystem
-    normal, tangential : (m,) integer arrays
+    normal, sign : (m,) integer arrays
     u, p, r : (N,), (m,), (m,) arrays
         The point, in the units of ``system``; p is shifted by the tensile strength. The weak springs of ``system``
         are anchored there.
     """
     system.cover = Cover.none(system.m, system.n)
-    closed, stick = normal == Normal.CLOSED, tangential == Tangential.STICK
+    closed, stick = normal == Normal.CLOSED, sign == 0
     size = 1.0 + float(np.abs(np.concatenate([p, r])).max(initial=0.0))
     far = 1.0 + float(np.abs(u).max(initial=0.0))
     least = NEAR * np.random.default_rng(0).uniform(0.5, 1.5, system.m)
@@ -91,8 +93,7 @@ def cover_point(
     strength = system.cohesion + system.mu * p
     y = (system.C @ u).reshape(-1, 2) + system.x
     free = (normal == Normal.OPEN) & system.weak & ~system.frictionless
-    tangential = np.where(free & ~stick, np.where(y[:, 1] < 0, Tangential.MINUS, Tangential.PLUS), tangential)
-    sign = SIGN[tangential]
+    sign = np.where(free & ~stick, np.where(y[:, 1] < 0, -1, 1), sign)
     r = np.where(stick, np.clip(r, -(1.0 - least) * strength, (1.0 - least) * strength), -sign * strength)
     soft = system.a + system.delta
     y += soft * np.column_stack([p, r])
@@ -105,13 +106,13 @@ def cover_point(
     system.anchored = system.proximal * u
     loads = system.load + system.anchored - system.K @ u + system.C.T @ t.ravel()
     system.cover = replace(system.cover, g=opened + dilated - y[:, 0], h=slid - y[:, 1], load=loads)
-    return normal, tangential
+    return normal, sign
 
 
 def cover_states(
     system: PairSystem,
     normal: Array,
-    tangential: Array,
+    sign: Array,
     *,
     base: float = BASE,
     seed: int = 0,
@@ -123,7 +124,7 @@ def cover_states(
     Parameters
     ----------
     system : PairSystem
-    normal, tangential : (m,) integer arrays
+    normal, sign : (m,) integer arrays
     base : float
         Least cover of a pair, in units of the typical force and length.
     seed : int
@@ -140,16 +141,14 @@ def cover_states(
     """
     m = system.m
     system.cover = Cover.none(m, system.n)
-    v = state_solution(system, normal, tangential, swelling=swelling)
-    y_t = system.slacks(v, SIGN[tangential])["y_t"]
-    loose = (normal == Normal.OPEN) & system.weak & ~system.frictionless & (tangential != Tangential.STICK)
-    side = np.where(y_t < 0, Tangential.MINUS, Tangential.PLUS)
-    tangential = np.where(loose, side, tangential)
-    value = system.slacks(v, SIGN[tangential])
+    v = state_solution(system, normal, sign, swelling=swelling)
+    y_t = system.slacks(v, sign)["y_t"]
+    loose = (normal == Normal.OPEN) & system.weak & ~system.frictionless & (sign != 0)
+    sign = np.where(loose, np.where(y_t < 0, -1, 1), sign)
+    value = system.slacks(v, sign)
     least = base * np.random.default_rng(seed).uniform(0.5, 1.5, m)
     closed, open_ = normal == Normal.CLOSED, normal == Normal.OPEN
-    sign = SIGN[tangential]
-    stick = tangential == Tangential.STICK
+    stick = sign == 0
     weak = (system.cohesion == 0.0) & (glue == 0.0)
     slides = ~stick & ~system.frictionless & ~(open_ & weak & (system.dilatancy == 0.0))
     t = v[system.n : -1].reshape(-1, 2)
@@ -171,4 +170,4 @@ def cover_states(
     g = np.where(normal == Normal.CRUSHED, slope - least - np.maximum(value["y_n"], 0.0), g)
     g = np.where(closed, g - swelling, g)
     system.cover = replace(system.cover, P=P, Q=Q, g=g, h=h, c=c, X=X)
-    return normal, tangential
+    return normal, sign

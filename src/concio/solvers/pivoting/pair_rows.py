@@ -9,8 +9,8 @@ row                    equation                                                 
 equilibrium            K u - C'(p, r) + z0 (C'(P, Q) + l) = f - C_n' T                 every node
 closed                 y_n = x + C_n u + a_n (p - z0 P) - sigma tan(psi) y_t + z0 g = 0         normal CLOSED
 open, crushed          p = 0,    p = N + T + z0 X                                      OPEN, CRUSHED
-stick                  y_t = C_t u - s + a_t (r - z0 Q) + z0 h = 0                          tangential STICK
-slip +, slip -         r + sigma (c' + mu p + z0 c) = 0,  sigma = +1, -1               PLUS, MINUS
+stick                  y_t = C_t u - s + a_t (r - z0 Q) + z0 h = 0                          sigma = 0
+slip +, slip -         r + sigma (c' + mu p + z0 c) = 0                                sigma = +1, -1
 =====================  ==============================================================  =================
 
 so that (P, Q) shifts the strength domain of a pair (a prestress), g and h shift its gap and slip, and l is a load. Each
@@ -24,34 +24,15 @@ A pair that is open and has no strength left (c' = 0) is free tangentially; a pa
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
 
 import numpy as np
 import scipy.sparse as sp
 
 from concio.errors import MethodError
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.pair_state import Normal
 from concio.solvers.algebra.dimensionless import Dimensionless, dimensionless
 from concio.solvers.algebra.updated_factor import Row
-
-
-class Normal(IntEnum):
-    """Normal state of a pair."""
-
-    OPEN = 0
-    CLOSED = 1
-    CRUSHED = 2
-
-
-class Tangential(IntEnum):
-    """Tangential state of a pair; the sign of the slip is ``SIGN[state]``."""
-
-    STICK = 0
-    PLUS = 1
-    MINUS = 2
-
-
-SIGN = np.array([0.0, 1.0, -1.0])
 
 COMPLIANCE = 1e-5
 """Compliance given to hard pairs along the path: redundant corner pairs are singular without. The finish removes it."""
@@ -171,26 +152,24 @@ class PairSystem:
             z0 += slope * (cover.h[k] - (self.a[k, 1] + self.delta) * cover.Q[k])
         return np.concatenate([*parts[0], [last]]), np.concatenate([*parts[1], [z0]])
 
-    def tangential_row(self, k: int, state: int) -> Row:
-        """Return the row of pair k in tangential state ``state``."""
+    def tangential_row(self, k: int, sigma: int) -> Row:
+        """Return the row of pair k that slips with the sign ``sigma``, or sticks (0)."""
         n, last = self.n, self.size - 1
         p = n + 2 * k
-        if state == Tangential.STICK:
+        if sigma == 0:
             columns, values = _row(self.C, 2 * k + 1)
             soft = self.a[k, 1] + self.delta
             return (
                 np.concatenate([columns, [p + 1, last]]),
                 np.concatenate([values, [soft, self.cover.h[k] - soft * self.cover.Q[k]]]),
             )
-        sign = SIGN[state]
-        return np.array([p + 1, p, last]), np.array([1.0, sign * self.mu[k], sign * self.cover.c[k]])
+        return np.array([p + 1, p, last]), np.array([1.0, sigma * self.mu[k], sigma * self.cover.c[k]])
 
-    def right_hand_side(self, normal: Array, tangential: Array) -> tuple[Array, Array]:
+    def right_hand_side(self, normal: Array, sign: Array) -> tuple[Array, Array]:
         """Return the right-hand sides of the rows of all pairs in these states, (m,) and (m,)."""
-        sign = SIGN[tangential]
         closed = -self.x[:, 0] + sign * self.dilatancy * self.x[:, 1]
         b_n = np.where(normal == Normal.CLOSED, closed, np.where(normal == Normal.CRUSHED, self.cap, 0.0))
-        b_t = np.where(tangential == Tangential.STICK, -self.x[:, 1], -sign * self.cohesion)
+        b_t = np.where(sign == 0, -self.x[:, 1], -sign * self.cohesion)
         return b_n, b_t
 
     def slacks(self, v: Array, sign: Array, *, rate: bool = False) -> dict[str, Array]:

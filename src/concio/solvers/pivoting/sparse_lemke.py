@@ -18,7 +18,7 @@ swollen joints, blocks held apart by friction on the ground that fades away, and
 
 Parameters of :func:`solve`
 ---------------------------
-start_states : (m,) array of PairState, optional
+start_states : PairStates, optional
 start : (u, t_n, t_t), optional
     An approximate answer; the sign of its slips tells the direction in which open pairs would slide.
 limit : int, optional
@@ -38,6 +38,7 @@ import numpy as np
 
 from concio.errors import InputError
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.pair_state import PairStates
 from concio.problem.solution import ProgressCallback, Solution, Status, failed
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.pivoting.covering import cold_states, cover_point, cover_states, named_states, open_states
@@ -102,7 +103,7 @@ def solve(
     problem: ContactProblem,
     *,
     progress: ProgressCallback | None = None,
-    start_states: Array | None = None,
+    start_states: PairStates | None = None,
     start: Start | None = None,
     limit: int | None = None,
     tries: int = 7,
@@ -118,8 +119,8 @@ def solve(
         ``start_states`` has not one entry for each pair.
     """
     system = PairSystem(problem)
-    if start_states is not None and np.shape(start_states) != (problem.pairs,):
-        msg = f"start_states has shape {np.shape(start_states)}, expected ({problem.pairs},)"
+    if start_states is not None and len(start_states) != problem.pairs:
+        msg = f"start_states holds {len(start_states)} states, expected {problem.pairs}"
         raise InputError(msg)
     work, m = _Work(), problem.pairs
     most = limit or 20 * problem.pairs + 500
@@ -153,7 +154,7 @@ def solve(
         if end.outcome == "cancelled":
             return failed(problem, Status.CANCELLED, method=METHOD, **work.extra())
         if end.outcome == "solution":
-            ends = end.normal[:m], end.tangential[:m]
+            ends = end.normal[:m], end.sign[:m]
             try:
                 solution = finish(system if held.ground else held, *ends, method=METHOD, **work.extra(start=name))
             except SingularMatrixError:

@@ -29,10 +29,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.problem.contact_problem import Array
+from concio.problem.pair_state import Normal
 from concio.problem.solution import Progress, ProgressCallback
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.algebra.updated_factor import UpdatedFactor
-from concio.solvers.pivoting.pair_rows import SIGN, Normal, PairSystem, Tangential
+from concio.solvers.pivoting.pair_rows import PairSystem
 
 FAR = 1e8
 """A piece longer than this, relative to the vertex it starts from, has no end."""
@@ -53,8 +54,8 @@ class PathEnd:
     outcome : str
         "solution", "ray", "limit", "cancelled", "singular", or "lost": rounding took a wrong turn (no piece of a path
         is met twice).
-    normal, tangential : (m,) integer arrays
-        States of the pairs on the last piece.
+    normal, sign : (m,) integer arrays
+        States of the pairs on the last piece: normal codes, sign of the slip (0: sticks).
     unknowns : (N + 2 m + 1,) array
         u, (p, r) of each pair, z0.
     direction : (N + 2 m + 1,) array
@@ -64,7 +65,7 @@ class PathEnd:
 
     outcome: str
     normal: Array
-    tangential: Array
+    sign: Array
     unknowns: Array
     direction: Array
     events: int
@@ -78,23 +79,22 @@ class StatePath:
     ----------
     system : PairSystem
         Its ``cover`` makes the states right at z0 = 1.
-    normal, tangential : (m,) integer arrays
+    normal, sign : (m,) integer arrays
         States at the start.
     refresh : int
         Rows replaced between factorisations.
     """
 
-    def __init__(self, system: PairSystem, normal: Array, tangential: Array, refresh: int = 64) -> None:
+    def __init__(self, system: PairSystem, normal: Array, sign: Array, refresh: int = 64) -> None:
         self.system = system
-        self.normal, self.tangential = normal.copy(), tangential.copy()
+        self.normal, self.sign = normal.copy(), sign.copy()
         n, m = system.n, system.m
         rows = system.equilibrium_rows()
-        sign = SIGN[tangential]
         for k in range(m):
             rows.append(system.normal_row(k, int(normal[k]), sign[k]))
-            rows.append(system.tangential_row(k, int(tangential[k])))
+            rows.append(system.tangential_row(k, int(sign[k])))
         rows.append((np.array([system.size - 1]), np.array([1.0])))  # z0 = 1, the row given up at the start
-        b_n, b_t = system.right_hand_side(normal, tangential)
+        b_n, b_t = system.right_hand_side(normal, sign)
         self.b = np.concatenate([system.load + system.anchored, np.column_stack([b_n, b_t]).ravel(), [1.0]])
         self.place_n = n + 2 * np.arange(m)  # where the row of each pair stands
         self.place_t = self.place_n + 1
@@ -122,7 +122,7 @@ class StatePath:
             outcome, d = self._follow(limit, progress)
         except SingularMatrixError:
             outcome, d = "singular", np.zeros_like(self.v)
-        return PathEnd(outcome, self.normal, self.tangential, self.v, d, self.events, self.factor.factorisations)
+        return PathEnd(outcome, self.normal, self.sign, self.v, d, self.events, self.factor.factorisations)
 
     def _follow(self, limit: int, progress: ProgressCallback | None) -> tuple[str, Array]:
         visited: set[int] = set()
@@ -142,7 +142,7 @@ class StatePath:
                 self.v = self._vertex()  # exact again
             if self.v[-1] < -1e-8:
                 return "lost", d
-            seen = (self.normal.tobytes(), self.tangential.tobytes(), self.float)
+            seen = (self.normal.tobytes(), self.sign.tobytes(), self.float)
             key = hash(seen)
             if key in visited:
                 return "lost", d
@@ -157,11 +157,11 @@ class StatePath:
     def _first_event(self, d: Array) -> tuple[float, int, str]:
         """Return the step to the first slack that vanishes, its pair and its name ("" for a ray, "end" for z0)."""
         system = self.system
-        normal, tangential, sign = self.normal, self.tangential, SIGN[self.tangential]
+        normal, sign = self.normal, self.sign
         value = system.slacks(self.v, sign)
         rate = system.slacks(d, sign, rate=True)
         closed, open_ = normal == Normal.CLOSED, normal == Normal.OPEN
-        stick = tangential == Tangential.STICK
+        stick = sign == 0
         free = system.frictionless | (open_ & system.weak & (system.dilatancy == 0.0))
         watched = (
             ("p", closed, 1.0),
@@ -198,7 +198,7 @@ class StatePath:
 
     def _pass(self, k: int, kind: str) -> None:
         """Take pair ``k`` to the state beyond the event ``kind``."""
-        system, tangential = self.system, int(self.tangential[k])
+        system, sign = self.system, int(self.sign[k])
         if kind == "p":  # y_n grows
             self._exchange_normal(k, Normal.OPEN, 1.0)
         elif kind == "room":  # -y_n grows
@@ -206,17 +206,17 @@ class StatePath:
         elif kind == "crush":  # the room under the cap grows
             self._exchange_normal(k, Normal.CLOSED, -1.0)
         elif kind == "y_n":  # p grows
-            y_t = system.slacks(self.v, SIGN[self.tangential])["y_t"][k]
-            if system.weak[k] and not system.frictionless[k] and y_t * SIGN[tangential] < 0:
+            y_t = system.slacks(self.v, self.sign)["y_t"][k]
+            if system.weak[k] and not system.frictionless[k] and y_t * sign < 0:
                 self._turn(k)  # it slid freely while open
             self._exchange_normal(k, Normal.CLOSED, 1.0)
         elif kind == "slip" and self.normal[k] == Normal.OPEN and system.weak[k]:
             self._turn(k)  # no force, nothing changes but the side on which it dilates
         elif kind == "slip":  # the distance to slipping grows: + or - the row of slip
-            self._exchange_tangential(k, Tangential.STICK, SIGN[tangential])
+            self._exchange_tangential(k, 0, sign)
         else:
-            to = Tangential.PLUS if kind == "plus" else Tangential.MINUS
-            self._exchange_tangential(k, to, SIGN[to])
+            to = 1 if kind == "plus" else -1
+            self._exchange_tangential(k, to, to)
 
     def _exchange_normal(self, k: int, state: int, sign: float) -> None:
         """Let the normal row of ``state`` hold; what the old row held fixed grows in the direction ``sign``."""
@@ -225,7 +225,8 @@ class StatePath:
         self._write_normal(k)
 
     def _exchange_tangential(self, k: int, state: int, sign: float) -> None:
-        self.tangential[k] = state
+        """Let pair k slip with the sign ``state``, or stick; see :meth:`_exchange_normal`."""
+        self.sign[k] = state
         self.float, self.place_t[k], self.float_sign = int(self.place_t[k]), self.float, sign
         self._write_tangential(k)
         if self.system.dilatancy[k] and self.normal[k] == Normal.CLOSED:
@@ -233,15 +234,15 @@ class StatePath:
 
     def _turn(self, k: int) -> None:
         """Let an open pair without strength slide the other way."""
-        self.tangential[k] = Tangential.MINUS if self.tangential[k] == Tangential.PLUS else Tangential.PLUS
+        self.sign[k] = -self.sign[k]
         self._write_tangential(k)
 
     def _write_normal(self, k: int) -> None:
-        state, sign, place = int(self.normal[k]), float(SIGN[self.tangential[k]]), int(self.place_n[k])
-        self.b[place] = self.system.right_hand_side(self.normal, self.tangential)[0][k]
+        state, sign, place = int(self.normal[k]), float(self.sign[k]), int(self.place_n[k])
+        self.b[place] = self.system.right_hand_side(self.normal, self.sign)[0][k]
         self.factor.replace(place, self.system.normal_row(k, state, sign))
 
     def _write_tangential(self, k: int) -> None:
         place = int(self.place_t[k])
-        self.b[place] = self.system.right_hand_side(self.normal, self.tangential)[1][k]
-        self.factor.replace(place, self.system.tangential_row(k, int(self.tangential[k])))
+        self.b[place] = self.system.right_hand_side(self.normal, self.sign)[1][k]
+        self.factor.replace(place, self.system.tangential_row(k, int(self.sign[k])))

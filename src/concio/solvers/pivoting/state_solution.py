@@ -14,18 +14,19 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from concio.problem.contact_problem import Array
+from concio.problem.pair_state import Normal
 from concio.problem.solution import Solution, judge
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
-from concio.solvers.pivoting.pair_rows import SIGN, PairSystem
+from concio.solvers.pivoting.pair_rows import PairSystem
 
 ROUNDS = 40
 """Largest number of refinement steps."""
 
 
-def state_matrix(system: PairSystem, normal: Array, tangential: Array) -> tuple[sp.csr_array, Array]:
+def state_matrix(system: PairSystem, normal: Array, sign: Array) -> tuple[sp.csr_array, Array]:
     """Return matrix and right-hand side of the states at z0 = 0, (N + 2 m, N + 2 m) and (N + 2 m,)."""
-    n, m, sign = system.n, system.m, SIGN[tangential]
-    closed, stick = normal == 1, tangential == 0
+    n, m = system.n, system.m
+    closed, stick = normal == Normal.CLOSED, sign == 0
     delta = system.delta
     slope = np.where(closed, -sign * system.dilatancy, 0.0)
     C_n, C_t = system.C[::2], system.C[1::2]
@@ -43,13 +44,13 @@ def state_matrix(system: PairSystem, normal: Array, tangential: Array) -> tuple[
             [rows_t, sp.diags_array(tn), sp.diags_array(tt)],
         ]
     )
-    b_n, b_t = system.right_hand_side(normal, tangential)
+    b_n, b_t = system.right_hand_side(normal, sign)
     assert matrix.shape[0] == n + 2 * m
     return sp.csr_array(matrix), np.concatenate([system.load + system.anchored, b_n, b_t])
 
 
 def state_solution(
-    system: PairSystem, normal: Array, tangential: Array, *, hard: bool = False, swelling: float = 0.0
+    system: PairSystem, normal: Array, sign: Array, *, hard: bool = False, swelling: float = 0.0
 ) -> Array:
     """Return u, (p, r) of each pair and z0 = 0, (N + 2 m + 1,), for given states.
 
@@ -66,9 +67,9 @@ def state_solution(
         The states leave a body loose.
     """
     n, m = system.n, system.m
-    matrix, b = state_matrix(system, normal, tangential)
+    matrix, b = state_matrix(system, normal, sign)
     if swelling:
-        b[n : n + m] += np.where(normal == 1, swelling, 0.0)
+        b[n : n + m] += np.where(normal == Normal.CLOSED, swelling, 0.0)
     try:
         lu = splu(sp.csc_matrix(matrix))
     except RuntimeError as error:
@@ -77,7 +78,7 @@ def state_solution(
     if hard:
         held, springs, anchored = system.delta, system.K, system.anchored
         system.delta, system.K, system.anchored = 0.0, sp.csr_array(system.s.K), np.zeros(n)
-        target, b = state_matrix(system, normal, tangential)
+        target, b = state_matrix(system, normal, sign)
         system.delta, system.K, system.anchored = held, springs, anchored
     x = lu.solve(b)
     if not np.isfinite(x).all() or np.abs(x).max(initial=0.0) > 1e13:
@@ -97,17 +98,17 @@ def state_solution(
     return np.concatenate([best[:n], t.ravel(), [0.0]])
 
 
-def finish(system: PairSystem, normal: Array, tangential: Array, *, method: str, **extra: Any) -> Solution:
+def finish(system: PairSystem, normal: Array, sign: Array, *, method: str, **extra: Any) -> Solution:
     """Solve for the states without artificial compliance and judge the answer."""
     problem, s = system.problem, system.s
-    v = state_solution(system, normal, tangential, hard=True)
+    v = state_solution(system, normal, sign, hard=True)
     p, r = v[system.n : -1].reshape(-1, 2).T
-    p = np.maximum(np.where(normal == 0, 0.0, p), 0.0)
+    p = np.maximum(np.where(normal == Normal.OPEN, 0.0, p), 0.0)
     strength = system.cohesion + system.mu * p
-    r = np.clip(np.where(tangential == 0, r, -SIGN[tangential] * strength), -strength, strength)
+    r = np.clip(np.where(sign == 0, r, -sign * strength), -strength, strength)
     t = np.column_stack([p - system.tension, r])
     u, t_n, t_t = s.restore(v[: system.n], t)
-    t_n = np.where(normal == 0, -problem.laws.tension, t_n)
+    t_n = np.where(normal == Normal.OPEN, -problem.laws.tension, t_n)
     solution = judge(problem, u, t_n, t_t, method=method, **extra)
     if solution.solved:
         return solution
