@@ -23,8 +23,8 @@ from concio.problem.certificate import certify
 from concio.problem.solution import Solution, Status
 from concio.solvers.methods import find
 from concio.solvers.motion.departure import verify_departure
-from concio.solvers.statics.existence import verify_mechanism
 from concio.solvers.statics.limit import associated_limit
+from concio.solvers.statics.mechanism import verify_mechanism
 
 FAMILIES = ("dry wall", "dry panel", "mortar panel", "no base", "gaps", "loose blocks", "rigid wall", "mixed materials")
 

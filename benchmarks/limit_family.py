@@ -15,7 +15,7 @@ from wall_family import wall
 
 from concio.analysis.limit import search_collapse
 from concio.solvers.statics import programme as statics
-from concio.solvers.statics.existence import mechanism_from, statically_admissible
+from concio.solvers.statics.existence import find_mechanism
 from concio.solvers.statics.limit import associated_limit
 
 WALLS = ((30, 14), (50, 40))
@@ -41,7 +41,7 @@ def main() -> None:
         violation = found.mechanism.violation if found.mechanism else float("nan")
         above = dead.with_loads(dead.f + 1.1 * found.multiplier * live)
         begin = time.process_time()
-        mechanism = mechanism_from(above, statically_admissible(above).velocity)
+        mechanism = find_mechanism(above)
         proof = f"{mechanism.violation:9.0e}{mechanism.power:9.3g}" if mechanism else "      none"
         print(
             f"{units:3d} x {courses:3d} {dead.pairs:8d}  {found.multiplier:.9f} {found.gap:7.0e}  {found.residual:7.0e}"

@@ -41,22 +41,28 @@ def worst_certificate(path: LinearPath, found: EventPath) -> float:
     return max(certify_step(path, a, b).worst for a, b in pairwise(found.states))
 
 
+def energy_turned_over(path: LinearPath, found: EventPath) -> float:
+    """Return the largest of work and |f| . |u|, by which energies are measured [kN m].
+
+    What a toppling block gains from the push it loses in lifting its weight, so that their sum, the work, is far
+    smaller than the terms whose rounding it holds.
+    """
+    size = max(
+        float(np.abs(path.problem.f + s.parameter * path.load_rate) @ np.abs(s.displacement)) for s in found.states
+    )
+    return max(size, *(abs(s.work) for s in found.states))
+
+
 def energy_error(path: LinearPath, found: EventPath) -> float:
     """Largest |work - stored - dissipated| over the corners, relative to the energy turned over."""
     first = found.states[0]
     kept = [s.work - first.work - s.dissipation + first.dissipation for s in found.states]
     stored = [elastic_energy(path.problem, s) for s in found.states]
-    turned = max(max(abs(s.work) for s in found.states), max(stored))
+    turned = energy_turned_over(path, found)
     return max(abs(k - e + stored[0]) for k, e in zip(kept, stored, strict=True)) / turned
 
 
 def least_dissipation(path: LinearPath, found: EventPath) -> float:
-    """Smallest dissipation of a corner's step, relative to the energy turned over.
-
-    That is |f| . |u|: what a toppling block gains from the push it loses in lifting its weight, so that their sum, the
-    work, is far smaller than the terms whose rounding it holds.
-    """
-    turned = [
-        float(np.abs(path.problem.f + s.parameter * path.load_rate) @ np.abs(s.displacement)) for s in found.states
-    ]
-    return min(b.dissipation - a.dissipation for a, b in pairwise(found.states)) / (max(turned) or 1.0)
+    """Smallest dissipation of a corner's step, relative to the energy turned over."""
+    falls = min(b.dissipation - a.dissipation for a, b in pairwise(found.states))
+    return falls / (energy_turned_over(path, found) or 1.0)

@@ -15,7 +15,7 @@ from concio.model.generate.panel import running_bond_panel
 from concio.model.materials import JointLaw, Rigid
 from concio.model.model import JointRule, Load, Tie
 from concio.problem.certificate import certify
-from concio.solvers.statics.existence import proves, verify_mechanism
+from concio.solvers.statics.mechanism import proves, verify_mechanism
 from models import box, model_of, on_ground, weight
 
 few = settings(max_examples=12, deadline=None, derandomize=True)

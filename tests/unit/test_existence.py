@@ -9,15 +9,9 @@ import pytest
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import ContactProblem, Laws
-from concio.solvers.statics.existence import (
-    find_mechanism,
-    mechanism_from,
-    polish,
-    proves,
-    statically_admissible,
-    sufficient_condition,
-    verify_mechanism,
-)
+from concio.solvers.statics.existence import find_mechanism, statically_admissible
+from concio.solvers.statics.mechanism import mechanism_from, polish, proves, verify_mechanism
+from concio.solvers.statics.sufficient import sufficient_condition
 from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, running_bond, wall
 
 

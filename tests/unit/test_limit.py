@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -11,8 +13,10 @@ from concio.problem.contact_problem import ContactProblem, Laws
 from concio.solvers.statics import collapse_state
 from concio.solvers.statics import programme as statics
 from concio.solvers.statics.collapse_state import certify_collapse, find_collapse_state
-from concio.solvers.statics.limit import associated_limit, kinematic_bound, smallest_friction
-from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, wall
+from concio.solvers.statics.existence import statically_admissible
+from concio.solvers.statics.friction import smallest_friction
+from concio.solvers.statics.limit import associated_limit, kinematic_bound
+from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, semicircular_arch, wall
 
 
 @pytest.mark.parametrize(
@@ -85,7 +89,31 @@ def test_smallest_friction_of_an_incline_is_its_slope(angle):
 def test_smallest_friction_at_its_ends():
     a = block_on_incline(2.0, 0.5, 0.0)
     assert smallest_friction(a.problem(0.5, a.load(0, -1))).factor == 0.0
-    assert np.isnan(smallest_friction(a.problem(0.5, a.load(0.6, -1))).factor)
+    lifted = smallest_friction(a.problem(0.5, a.load(0, 1)))
+    assert lifted.factor == np.inf  # no friction holds it
+    assert lifted.below >= 1024
+    assert lifted.settled
+
+
+def test_smallest_friction_above_what_there_is():
+    """A push of 0.6 with friction 0.5: 1.2 times the friction is needed, and both sides of that are proofs."""
+    a = block_on_incline(2.0, 0.5, 0.0)
+    found = smallest_friction(a.problem(0.5, a.load(0.6, -1)))
+    assert found.factor == pytest.approx(1.2, abs=1e-6)
+    assert 1.2 - 1e-6 < found.below < 1.2 <= found.factor
+    assert found.settled
+
+
+def test_smallest_friction_of_a_thin_arch_is_bounded_by_proofs():
+    """400 voussoirs, weight on the centre line, thickness next to the least: factor was nan with below = 1, "shown"."""
+    a = semicircular_arch(400, 0.107428)
+    middle = np.pi * (np.arange(400) + 0.5) / 400
+    lumped = replace(a, centres=np.column_stack([np.cos(middle), np.sin(middle)]))
+    problem = lumped.problem(20.0, a.load(0, -1))
+    found = smallest_friction(problem)
+    assert 0 < found.below <= found.factor < 1
+    assert statically_admissible(problem.with_friction(found.factor)).exists
+    assert statically_admissible(problem.with_friction(found.below)).mechanism is not None
 
 
 def test_smallest_friction_agrees_with_the_limit_multiplier():

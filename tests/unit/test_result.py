@@ -17,7 +17,7 @@ from concio.model.materials import Elastic, JointLaw
 from concio.model.model import Load
 from concio.problem.solution import Status
 from concio.report.wording import verdict
-from concio.solvers.statics.existence import proves, verify_mechanism
+from concio.solvers.statics.mechanism import proves, verify_mechanism
 from models import box, on_ground, weight
 
 STONE = {"kind": "rigid", "material": "stone"}

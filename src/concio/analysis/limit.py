@@ -34,7 +34,8 @@ from concio.solvers.path.record import EventPath, Outcome
 from concio.solvers.path.state import CLOSED, OPEN, LinearPath, PathState
 from concio.solvers.statics.collapse_state import CollapseState, find_collapse_state
 from concio.solvers.statics.existence import find_mechanism
-from concio.solvers.statics.limit import FrictionMargin, LimitLoad, associated_limit, smallest_friction
+from concio.solvers.statics.friction import FrictionMargin, smallest_friction
+from concio.solvers.statics.limit import LimitLoad, associated_limit
 
 Array = np.ndarray
 

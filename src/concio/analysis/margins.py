@@ -15,8 +15,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from concio.analysis.limit import dead_and_live
 from concio.arguments import strict
 from concio.contact.assembly import Assembly, as_assembly
@@ -24,7 +22,8 @@ from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Status
 from concio.solvers.auto.chain import solve as solve_step
-from concio.solvers.statics.limit import associated_limit, smallest_friction
+from concio.solvers.statics.friction import smallest_friction
+from concio.solvers.statics.limit import associated_limit
 
 FAR = 1e6
 """A load that can grow beyond this factor counts as unlimited."""
@@ -107,8 +106,6 @@ def friction_by_solving(
     dead, load = dead_and_live(assembly, live)
     loaded = dead.with_loads(dead.f + factor * load)
     least = smallest_friction(loaded).factor
-    if np.isnan(least):
-        return Margin(float("nan"), float("nan"), None, least, 0)
     return _bisect(loaded.with_friction, 1.0, least, tolerance)
 
 

@@ -19,7 +19,7 @@ from concio.kinematics.rigid import rigid_operator, swept
 from concio.model.model import Model
 from concio.problem.certificate import Certificate
 from concio.problem.solution import Mechanism, Solution, Status, pair_states
-from concio.solvers.statics.existence import SufficientCondition, sufficient_condition
+from concio.solvers.statics.sufficient import SufficientCondition, sufficient_condition
 
 if TYPE_CHECKING:
     from concio.plot.accessor import Plots

@@ -15,7 +15,7 @@ from concio.cli.run import File, Json
 if TYPE_CHECKING:
     from concio.analysis.limit import LimitResult
     from concio.analysis.margins import Margin
-    from concio.solvers.statics.limit import FrictionMargin
+    from concio.solvers.statics.friction import FrictionMargin
 
 LARGEST_MARGIN = 10_000
 """Up to this number of pairs the friction margin is found unasked: it takes some twenty linear programmes."""
@@ -91,11 +91,16 @@ def limit(
 
 def margin_line(margin: FrictionMargin) -> str:
     """Return the friction margin in words: it is that of admissible forces, hence a bound."""
-    if margin.factor != margin.factor:
-        return "  friction             the load as given is not carried with the coefficients given"
+    head = "  friction             "
     if margin.factor == 0:
-        return "  friction             the load as given can be carried without any"
-    return f"  friction             the load as given needs at least {margin.factor:.6g} times the coefficients given"
+        return f"{head}the load as given can be carried without any"
+    if margin.factor == float("inf"):
+        shown = margin.below > 0
+        return f"{head}no friction carries the load as given" if shown else f"{head}undecided: no factor could be shown"
+    if not margin.settled:
+        low = f"{margin.below:.6g} is shown to be too little" if margin.below > 0 else "none is shown to be too little"
+        return f"{head}{margin.factor:.6g} times the coefficients given is shown to do, {low}: undecided between"
+    return f"{head}the load as given needs at least {margin.factor:.6g} times the coefficients given"
 
 
 def solving_line(name: str, margin: Margin) -> str:

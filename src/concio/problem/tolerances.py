@@ -37,8 +37,11 @@ AT_BOUND = 1e-9
 # -- proofs ---------------------------------------------------------------------------------------------------------
 
 ADMISSIBLE = 1e-9
-"""Largest violation of a motion, relative to its largest velocity, or imbalance of forces, relative to the load, that
-is accepted in a proof."""
+"""Largest violation of a motion, relative to its largest velocity, that is accepted in a proof."""
+
+BALANCED = 1e-11
+"""Largest imbalance of forces, relative to the load, that prove that the loads can be carried: well below the power at
+which a mechanism proves the contrary, so that both cannot be shown."""
 
 CLEARLY = 1e-9
 """A power counts as positive when it exceeds this share of the sum of |f_i v_i|."""

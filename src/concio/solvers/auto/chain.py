@@ -34,7 +34,7 @@ from concio.solvers.interior.engine import STARTS, Cancelled, Run, at_rest
 from concio.solvers.interior.exact_finish import Finished
 from concio.solvers.motion.release import associated_state, release
 from concio.solvers.pivoting import sparse_lemke
-from concio.solvers.statics.existence import mechanism_from, statically_admissible
+from concio.solvers.statics.existence import statically_admissible
 
 OTHERS = (3.0, 30.0, 300.0)
 """Sizes of starting points tried before anything slower: jammed structures have several states, and none suits all."""
@@ -191,7 +191,7 @@ def statics(run: Run) -> Solution | None:
             problem, np.zeros(problem.unknowns), state.normal_force, state.friction_force, method="linear-programme"
         )
         return merged(run, rest, "linear-programme") if rest.solved else None
-    mechanism = mechanism_from(problem, state.velocity)
+    mechanism = state.mechanism
     if mechanism is None:
         run.trace.append("no statically admissible forces found, but no mechanism could be verified either")
         return None

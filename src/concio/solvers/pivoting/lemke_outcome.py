@@ -6,7 +6,8 @@ from typing import Any
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Solution, Status, failed
-from concio.solvers.statics.existence import find_mechanism, mechanism_from
+from concio.solvers.statics.existence import find_mechanism
+from concio.solvers.statics.mechanism import mechanism_from
 
 
 def no_solution(

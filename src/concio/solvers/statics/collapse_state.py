@@ -25,8 +25,8 @@ import scipy.sparse as sp
 from concio.errors import InputError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.tolerances import CHECKED
-from concio.solvers.statics.existence import pair_velocities
 from concio.solvers.statics.limit import associated_limit, static_residual
+from concio.solvers.statics.mechanism import pair_velocities
 from concio.solvers.statics.programme import LARGE, Method, StaticProgramme, optimise
 
 MOVES = 1e-8

@@ -5,10 +5,9 @@ With dead load f and live load g, the *associated multiplier* is
 .. math:: \lambda^* = \max\{\lambda : R^T (f + \lambda g + C^T t) = 0,\ t_k \in S_k\}
                     = \min\{h(C v) - f^T v : v = R\alpha,\ g^T v = 1,\ w_n \ge \mu |w_t| \text{ without cap}\},
 
-the second by duality; h is the power the joints absorb (:mod:`concio.solvers.statics.existence`). It does not depend on
-the
-bodies' stiffness. Every forces-and-motion pair is rechecked: the forces give a lower bound, the motion an upper one,
-and what is between them is the duality gap. With Coulomb friction (no dilatancy) collapse may come earlier, never
+the second by duality; h is the power the joints absorb (:mod:`concio.solvers.statics.mechanism`). It does not depend on
+the bodies' stiffness. Every forces-and-motion pair is rechecked: the forces give a lower bound, the motion an upper
+one, and what is between them is the duality gap. With Coulomb friction (no dilatancy) collapse may come earlier, never
 later: lambda* is an upper bound there, and is not to be called the collapse load of a masonry wall.
 
 Reference: Livesley, Limit analysis of structures formed from rigid blocks, Int. J. Num. Meth. Engng 12 (1978).
@@ -25,11 +24,9 @@ from concio.errors import SolverError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Mechanism
 from concio.problem.tolerances import CHECKED
-from concio.solvers.statics.existence import absorbed_power, polish, statically_admissible, total_load, verify_mechanism
+from concio.solvers.statics.existence import statically_admissible
+from concio.solvers.statics.mechanism import absorbed_power, polish, total_load, verify_mechanism
 from concio.solvers.statics.programme import Method, StaticProgramme, optimise
-
-BALANCED = 1e-11
-"""Residual below which forces count as admissible where the least friction is sought."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,69 +176,3 @@ def kinematic_bound(
         if best is not None and best[1].violation <= 1e-12:
             break
     return best if best is not None else (np.nan, verify_mechanism(loaded, velocity))
-
-
-@dataclass(frozen=True)
-class FrictionMargin:
-    """Smallest common factor of the friction coefficients at which admissible forces still exist.
-
-    Parameters
-    ----------
-    factor : float
-        Factor of equilibrium; 0 where no friction is needed, ``nan`` where not even the largest factor tried holds.
-    below : float
-        Largest factor shown to be too small (-inf where none was).
-    programmes : int
-        Linear programmes solved.
-    """
-
-    factor: float
-    below: float
-    programmes: int
-
-
-def smallest_friction(problem: ContactProblem, *, largest: float = 1.0, tolerance: float = 1e-7) -> FrictionMargin:
-    """Find the smallest friction that still admits equilibrium under the problem's loads (associated bound).
-
-    What is left unbalanced, e(factor), falls to zero as friction grows and its slope is known from the dual
-    motion, -sum t_n mu |w_t|: Newton's method from below, kept within a bracket that bisection shrinks.
-
-    Parameters
-    ----------
-    problem : ContactProblem
-    largest : float
-        Largest factor considered.
-    tolerance : float
-        Width of the final bracket, relative to ``largest``. Forces count as admissible at a residual of 1e-11 of the
-        load.
-    """
-
-    def unbalanced(factor: float) -> tuple[bool, float]:
-        state = statically_admissible(problem.with_friction(factor))
-        if state.residual <= BALANCED:
-            return True, factor
-        v = state.velocity
-        w_t = np.linalg.norm((problem.C_t @ v).reshape(problem.pairs, -1), axis=1)
-        slope = float((state.normal_force * problem.laws.friction * w_t).sum())
-        loaded = problem.with_friction(factor)
-        short = float(loaded.f @ v) - absorbed_power(loaded, v)
-        return False, factor + short / slope if slope > 0 and short > 0 else np.nan
-
-    holds, _ = unbalanced(largest)
-    if not holds:
-        return FrictionMargin(np.nan, largest, 1)
-    low, high, count = 0.0, largest, 2
-    holds, guess = unbalanced(0.0)
-    if holds:
-        return FrictionMargin(0.0, -np.inf, count)
-    while high - low > tolerance * largest and count < 200:
-        step = 0.25 * tolerance * largest
-        inside = np.isfinite(guess) and low < guess < high
-        trial = min(max(guess + step, low + step), high - step) if inside and count % 4 else 0.5 * (low + high)
-        holds, found = unbalanced(trial)
-        count += 1
-        if holds:
-            high = trial
-        else:
-            low, guess = trial, found
-    return FrictionMargin(high, low, count)

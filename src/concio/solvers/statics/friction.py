@@ -1,0 +1,130 @@
+r"""The least friction that admits equilibrium, between two proofs.
+
+All friction coefficients are multiplied by one factor. At a factor that holds there are forces within the cones that
+balance the loads; at one that is too small a mechanism excludes them. Both are proofs
+(:mod:`concio.solvers.statics.existence`), and the answer is the pair of them, never a guess: where a programme decides
+neither way the search goes round it and, if it must, ends with the bounds further apart.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.problem.contact_problem import ContactProblem
+from concio.solvers.statics.existence import StaticState, statically_admissible
+from concio.solvers.statics.mechanism import absorbed_power
+
+LARGEST = 1024.0
+"""Factor beyond which no friction is looked for: what falls with it falls with any."""
+
+MOST = 200
+"""Largest number of linear programmes."""
+
+
+@dataclass(frozen=True)
+class FrictionMargin:
+    """Smallest common factor of the friction coefficients at which admissible forces still exist, as two proofs.
+
+    Parameters
+    ----------
+    factor : float
+        Smallest factor shown to hold: forces in balance were found with it. 0 where no friction is needed; above 1
+        where the structure does not hold with the friction it has; ``inf`` where none was shown to hold up to
+        :data:`LARGEST`.
+    below : float
+        Largest factor shown to be too small, by a mechanism; ``-inf`` where none was.
+    programmes : int
+        Linear programmes solved.
+    """
+
+    factor: float
+    below: float
+    programmes: int
+
+    @property
+    def settled(self) -> bool:
+        """True where the two bounds meet, to the tolerance asked for, or one of them is the end of the range."""
+        if self.factor == 0.0:
+            return True
+        if np.isinf(self.factor):
+            return self.below >= LARGEST
+        return self.factor - self.below <= WIDE * self.factor
+
+
+WIDE = 1e-5
+"""Distance of two bounds, relative to the upper one, from which on the least friction is not called settled."""
+
+
+class _Search:
+    """Asks whether factors hold, and keeps the closest proofs either way."""
+
+    def __init__(self, problem: ContactProblem) -> None:
+        self.problem, self.programmes = problem, 0
+        self.low, self.high = -np.inf, np.inf
+        self.guess = np.nan
+
+    def ask(self, factor: float) -> bool | None:
+        """Return True with forces, False with a mechanism, None with neither; the guess is the dual's next factor."""
+        scaled = self.problem.with_friction(factor)
+        state = statically_admissible(scaled)
+        self.programmes += 1
+        if state.exists:
+            self.high = min(self.high, factor)
+            return True
+        if state.mechanism is None:
+            return None
+        if factor > self.low:
+            self.low, self.guess = factor, self._next(scaled, state, factor)
+        return False
+
+    def _next(self, scaled: ContactProblem, state: StaticState, factor: float) -> float:
+        """Return the factor at which the motion to blame would no longer gain power: Newton's step from below."""
+        v, problem = state.velocity, self.problem
+        w_t = np.linalg.norm((problem.C_t @ v).reshape(problem.pairs, -1), axis=1)
+        slope = float((state.normal_force * problem.laws.friction * w_t).sum())
+        short = float(scaled.f @ v) - absorbed_power(scaled, v)
+        return factor + short / slope if slope > 0 and short > 0 else np.nan
+
+    def bracket(self) -> bool:
+        """Find one factor that holds, upwards from 1, and one that does not; return whether both were found."""
+        if self.ask(0.0):
+            return False
+        factor = 1.0
+        while factor <= LARGEST and not self.ask(factor):
+            factor *= 2.0
+        return bool(np.isfinite(self.high) and np.isfinite(self.low))
+
+    def close_in(self, width: float) -> None:
+        """Shrink the bracket: Newton's method from below, kept within it, and bisection; round what is undecided."""
+        shares = (0.5, 0.25, 0.75, 0.125, 0.875)
+        undecided = 0
+        while self.high - self.low > width and self.programmes < MOST:
+            step = 0.25 * width
+            inside = np.isfinite(self.guess) and self.low < self.guess < self.high
+            if inside and self.programmes % 4 and not undecided:
+                trial = min(max(self.guess + step, self.low + step), self.high - step)
+            else:
+                trial = self.low + shares[undecided] * (self.high - self.low)
+            undecided = undecided + 1 if self.ask(trial) is None else 0
+            if undecided == len(shares):
+                break
+
+
+def smallest_friction(problem: ContactProblem, *, tolerance: float = 1e-7) -> FrictionMargin:
+    """Find the smallest friction that still admits equilibrium under the problem's loads (associated bound).
+
+    What is left unbalanced falls to zero as friction grows, and its slope is known from the dual motion,
+    -sum t_n mu |w_t|: Newton's method from below, within a bracket of proofs that bisection shrinks.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    tolerance : float
+        Width of the final bracket.
+    """
+    search = _Search(problem)
+    if search.bracket():
+        search.close_in(tolerance * max(1.0, search.high))
+    return FrictionMargin(search.high, search.low, search.programmes)
