@@ -28,8 +28,8 @@ from concio.analysis.cells.periodic_cell import PeriodicCell
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Mechanism, Progress, ProgressCallback
 from concio.problem.tolerances import ADMISSIBLE, CHECKED
-from concio.solvers.statics.existence import absorbed_power
 from concio.solvers.statics.limit import LimitLoad, associated_limit
+from concio.solvers.statics.mechanism import absorbed_power
 
 Array = np.ndarray
 
