@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from concio.model.generate.walls import wall, wall_of_courses
     from concio.model.materials import Elastic, JointLaw, Rigid
     from concio.model.model import Body, JointRule, Load, Model, Support, Tie
+    from concio.model.polyhedron import Polyhedron
     from concio.problem.solution import Status
     from concio.studies.study import Stop, study
     from concio.studies.study_result import StudyResult, load_study
@@ -77,6 +78,7 @@ _HOMES = {
     "concio.model.file.writing": ("dumps", "save"),
     "concio.model.materials": ("Elastic", "JointLaw", "Rigid"),
     "concio.model.model": ("Body", "JointRule", "Load", "Model", "Support", "Tie"),
+    "concio.model.polyhedron": ("Polyhedron",),
     "concio.model.generate.panel": ("running_bond_panel",),
     "concio.model.generate.rubble": ("rubble",),
     "concio.model.generate.walls": ("wall", "wall_of_courses"),
@@ -98,6 +100,7 @@ __all__ = [
     "Model",
     "NoEquilibriumError",
     "PathResult",
+    "Polyhedron",
     "Result",
     "Rigid",
     "SolverError",

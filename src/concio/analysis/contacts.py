@@ -56,7 +56,7 @@ class Contacts:
 
     @property
     def point(self) -> Array:
-        """Positions (m, 2) [m]."""
+        """Positions (m, d) [m]."""
         return self.pairs.point
 
     @property
@@ -73,10 +73,10 @@ class Contacts:
 
     @property
     def force_on_b(self) -> Array:
-        """Force on side b of each pair (m, 2) [kN]."""
-        force: Array = (
-            self.normal_force[:, None] * self.pairs.normal + self.friction_force * self.pairs.tangent
-        )
+        """Force on side b of each pair (m, d) [kN]."""
+        pairs = self.pairs
+        tangential = np.einsum("mt,mtd->md", self.friction_force, pairs.tangents)
+        force: Array = self.normal_force[:, None] * pairs.normal + tangential
         return force
 
     def count(self, name: str) -> int:

@@ -169,7 +169,7 @@ def control_functional(assembly: Assembly, point: ControlPoint) -> tuple[Array, 
         hint = closest(point.body, names, otherwise="see the names with 'concio check'")
         raise InputError(msg, where="control point", hint=hint)
     b, disc = names.index(point.body), assembly.disc
-    size = float(np.hypot(*point.direction))
+    size = float(np.linalg.norm(point.direction))
     if not size > 0:
         msg = f"direction {point.direction} has no length"
         raise InputError(msg, where="control point", hint="for example (1, 0)")

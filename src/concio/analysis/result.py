@@ -147,7 +147,7 @@ class Result:
             return JointMotion("", 0.0, 0.0)
         contacts = self.contacts
         motion = np.maximum(contacts.gap - pairs.gap, np.linalg.norm(contacts.slip, axis=1))[real]
-        length = np.array([face.length for face in interfaces])[pairs.interface[real]]
+        length = np.array([face.size for face in interfaces])[pairs.interface[real]]
         worst = int(np.argmax(motion / length))
         face = interfaces[int(pairs.interface[real[worst]])]
         names = [self.model.bodies[b].name for b in (face.a, face.b)]
@@ -175,11 +175,11 @@ class Result:
         return body
 
     def nodes(self, body: int | str) -> Array:
-        """Return node coordinates (n, 2) of a body; outline vertices of a rigid or fixed one [m]."""
+        """Return node coordinates (n, d) of a body; vertices of a rigid or fixed one [m]."""
         return self.assembly.disc.nodes(self.body_index(body))
 
     def node_displacement(self, body: int | str, u: Array | None = None) -> Array:
-        """Return the displacements (n, 2) of :meth:`nodes` [m]; ``u`` (N_all,) may be given, such as a mechanism."""
+        """Return the displacements (n, d) of :meth:`nodes` [m]; ``u`` (N_all,) may be given, such as a mechanism."""
         b = self.body_index(body)
         disc = self.assembly.disc
         u = self.displacement if u is None else u
@@ -189,7 +189,7 @@ class Result:
         if disc.shape_of[b] == RIGID:
             moved: Array = rigid_operator(disc.nodes(b) - disc.centroids[b], disc.reach[b]) @ own
             return moved
-        return own.reshape(-1, 2)
+        return own.reshape(-1, disc.dim)
 
     def _obstacle_displacement(self, b: int) -> Array:
         nodes = self.assembly.disc.nodes(b)
@@ -198,7 +198,7 @@ class Result:
         for s in self.model.supports:
             if s.body == self.model.bodies[b].name:
                 factor = self.factors.get(s.group, 1.0)
-                total = total + factor * (np.array(s.displacement) + swept(s.rotation, arm))
+                total = total + factor * (np.array(s.displacement) + swept(np.asarray(s.rotation), arm))
         return total
 
     @cached_property
@@ -208,20 +208,20 @@ class Result:
         disc = self.assembly.disc
         elastic = np.concatenate([np.repeat(disc.shape_of >= 0, np.diff(disc.offsets)), np.zeros(1, dtype=bool)])[:-1]
         if elastic.any():
-            lowest = min(lowest, float(self.displacement[elastic].reshape(-1, 2)[:, 1].min()))
+            lowest = min(lowest, float(self.displacement[elastic].reshape(-1, disc.dim)[:, -1].min()))
         for b in np.flatnonzero(disc.shape_of == RIGID).tolist():
-            lowest = min(lowest, float(self.node_displacement(b)[:, 1].min()))
+            lowest = min(lowest, float(self.node_displacement(b)[:, -1].min()))
         return -lowest
 
     @cached_property
-    def reactions(self) -> dict[str, tuple[float, float]]:
-        """Force of each fixed body and each support on the structure, (x, y) [kN]."""
+    def reactions(self) -> dict[str, tuple[float, ...]]:
+        """Force of each fixed body and each support on the structure, (x, y) or (x, y, z) [kN]."""
         pairs, disc = self.assembly.pairs, self.assembly.disc
         force = self.contacts.force_on_b
-        found: dict[str, tuple[float, float]] = {}
+        found: dict[str, tuple[float, ...]] = {}
         for b in np.flatnonzero(disc.shape_of == FIXED):
             total = force[pairs.body_a == b].sum(0) - force[pairs.body_b == b].sum(0)
-            found[self.model.bodies[b].name] = (float(total[0]), float(total[1]))
+            found[self.model.bodies[b].name] = tuple(total.tolist())
         if self.assembly.supported.held:
             s = self.solution
             rest = self.assembly.K @ self.displacement - self.assembly.load(self.factors)
@@ -230,18 +230,18 @@ class Result:
         return found
 
     @property
-    def total_load(self) -> tuple[float, float]:
-        """Resultant of the loads (x, y) [kN]."""
+    def total_load(self) -> tuple[float, ...]:
+        """Resultant of the loads (x, y) or (x, y, z) [kN]."""
         f = self.assembly.load(self.factors)
         disc = self.assembly.disc
-        total = np.zeros(2)
+        total = np.zeros(disc.dim)
         for b, s in enumerate(disc.shape_of):
             own = f[disc.offsets[b] : disc.offsets[b + 1]]
             if s == RIGID:
-                total += own[:2]
+                total += own[: disc.dim]
             elif s != FIXED:
-                total += own.reshape(-1, 2).sum(0)
-        return float(total[0]), float(total[1])
+                total += own.reshape(-1, disc.dim).sum(0)
+        return tuple(total.tolist())
 
     @property
     def plot(self) -> Plots:
@@ -277,6 +277,7 @@ class Result:
             "title": self.model.title,
             "bodies": len(self.model.free_bodies),
             "contacts": len(self.assembly.pairs),
+            "contact_model": self.assembly.pairs.contact_model,
             "interfaces": len(self.assembly.detection.interfaces),
             "unknowns": self.assembly.disc.unknowns,
             "certificate": {k: _finite(v) for k, v in self.certificate.as_dict().items()},

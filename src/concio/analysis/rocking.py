@@ -221,7 +221,7 @@ def _close(blocks: _Blocks, hinges: list[tuple[int, int, Array]]) -> Array:
 
 
 def _read(model: Model) -> tuple[_Blocks, tuple[str, ...]]:
-    bodies = model.bodies
+    bodies = model.outlines
     for body in bodies:
         if body.kind == "elastic":
             msg = "rocking needs rigid blocks, this one is elastic"

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from concio.fem.constitutive import principal
+from concio.fem.constitutive import principal, principal_in_space
 from concio.fem.discretisation import Discretisation
 
 Array = np.ndarray
@@ -31,13 +31,16 @@ class Stress:
         return self.displacement[self.disc.offsets[b] : self.disc.offsets[b + 1]]
 
     def at_points(self, b: int) -> tuple[Array, Array]:
-        """Return integration points (q, 2) [m] and stresses (q, 3) = (s_x, s_y, t_xy) [kN/m2] of an elastic body."""
+        """Return integration points (q, d) [m] and stresses (q, s) [kN/m2] of an elastic body.
+
+        In the plane (s_x, s_y, t_xy), in space (s_x, s_y, s_z, t_xy, t_yz, t_xz).
+        """
         shape = self.disc.shapes[self.disc.shape_of[b]]
-        stress = (shape.stress_operator @ self._u(b)).reshape(-1, 3)
+        stress = (shape.stress_operator @ self._u(b)).reshape(-1, len(shape.D))
         return shape.elements.points + self.disc.origins[b], stress
 
     def at_nodes(self, b: int) -> Array:
-        """Return nodal stresses (n, 3) of an elastic body: the least-squares fit to those at the points [kN/m2]."""
+        """Return nodal stresses (n, s) of an elastic body: the least-squares fit to those at the points [kN/m2]."""
         shape = self.disc.shapes[self.disc.shape_of[b]]
         _, stress = self.at_points(b)
         el = shape.elements
@@ -47,8 +50,8 @@ class Stress:
 
     @cached_property
     def mean(self) -> Array:
-        """Mean stress of each body of the model (B, 3) [kN/m2]."""
-        found = np.full((len(self.disc.shape_of), 3), np.nan)
+        """Mean stress of each body of the model (B, s) [kN/m2]."""
+        found = np.full((len(self.disc.shape_of), 3 if self.disc.dim == 2 else 6), np.nan)
         for s, shape in enumerate(self.disc.shapes):
             bodies = np.flatnonzero(self.disc.shape_of == s)
             u = self.displacement[self.disc.offsets[bodies][:, None] + np.arange(shape.unknowns)]
@@ -57,5 +60,13 @@ class Stress:
 
     @cached_property
     def principal(self) -> tuple[Array, Array, Array]:
-        """Mean principal stresses of each body: s1 >= s2 [kN/m2] and the angle of s1 to the x axis [rad], each (B,)."""
+        """Mean principal stresses of each body: s1 >= s2 [kN/m2] and the angle of s1 to the x axis [rad], each (B,).
+
+        Of plane models; in space see :attr:`principal_in_space`.
+        """
         return principal(self.mean)
+
+    @cached_property
+    def principal_in_space(self) -> tuple[Array, Array]:
+        """Mean principal stresses (B, 3) of each body, s1 >= s2 >= s3 [kN/m2], and directions (B, 3, 3), one a row."""
+        return principal_in_space(self.mean)

@@ -51,7 +51,7 @@ def check_lines(
     fault : str
         The error that will be told after these lines; an overlap that it names is not listed.
     """
-    width, height = np.ptp(np.vstack([body.outline for body in model.bodies]), axis=0)
+    width, height = np.ptp(np.vstack([body.outline for body in model.outlines]), axis=0)
     lines = [
         model.title or "model without a title",
         f"size         {width:.4g} x {height:.4g} m, plane {model.plane}, elements {model.element}",
@@ -95,7 +95,7 @@ def _bodies(model: Model, size: float, *, every: bool) -> list[str]:
         of = f" of '{material}'" if material else ""
         lines.append(f"bodies       {number:,} {kind}, role '{role}'{of}")
     if every or len(model.bodies) <= MOST_LINES:
-        for body in model.bodies:
+        for body in model.outlines:
             x, y = np.round(body.centroid / size, 9) * size + 0.0
             lines.append(
                 f"  '{body.name}': {len(body.outline)} vertices, area {body.area:.4g} m2, centroid ({x:.4g}, {y:.4g}) m"
@@ -107,7 +107,7 @@ def _interfaces(model: Model, detection: Detection) -> list[str]:
     number: Counter[str] = Counter()
     length: dict[str, float] = defaultdict(float)
     apart: Counter[str] = Counter()
-    for interface in detection.interfaces:
+    for interface in detection.segments:
         rule = model.rule_between(model.bodies[interface.a], model.bodies[interface.b])
         number[rule.law] += 1
         length[rule.law] += interface.length

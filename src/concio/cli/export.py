@@ -78,6 +78,6 @@ def _write_file(result: Result, to: str, fresh: Path, scale: float, unit: str | 
     drawn = outlines(result)
     points = drawn.points + scale * drawn.displacement
     closed = [points[a : b - 1] for a, b in pairwise(drawn.starts.tolist())]
-    bodies = result.model.bodies
+    bodies = result.model.outlines
     layers = [layer_of(result.model, body) for body in bodies]
     write_dxf(fresh, [b.name for b in bodies], closed, layers=layers, unit=unit or unit_of(result.model))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -102,9 +103,9 @@ def _ties(result: Result) -> list[str]:
     ]
 
 
-def force(value: tuple[float, float]) -> str:
+def force(value: Sequence[float]) -> str:
     """Return a force as text."""
-    return f"{_clean(value[0]):+.4f} kN along x, {_clean(value[1]):+.4f} kN along y"
+    return ", ".join(f"{_clean(v):+.4f} kN along {axis}" for v, axis in zip(value, "xyz", strict=False))
 
 
 def moving_bodies(result: Result) -> list[tuple[str, float]]:

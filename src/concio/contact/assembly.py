@@ -11,17 +11,16 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.arguments import closest, strict
+from concio.contact.geometry import GEOMETRIES
 from concio.contact.inertia import lumped_masses
 from concio.contact.loads import load_vectors
-from concio.contact.pairs import Pairs, make_pairs, pair_laws
+from concio.contact.pairs import Pairs, pair_laws
 from concio.contact.periodic import STRAINS, held_at_a_point, strain_groups
-from concio.contact.sides import interface_breaks
 from concio.contact.supports import Supported, apply_supports, moved_obstacles
 from concio.contact.ties import add_ties
 from concio.errors import GeometryError, InputError
 from concio.fem.discretisation import Discretisation, discretise
-from concio.model.interfaces.detect import Detection, detect_interfaces
-from concio.model.interfaces.periodic import detect_periodic
+from concio.model.interfaces.detect import Detection
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem, Laws
 
@@ -45,7 +44,7 @@ class Assembly:
         Stiffness of all bodies before supports.
     loads : dict of (N_all,) arrays
         Nodal forces of each load group [kN].
-    moved : dict of ((m,), (m,)) arrays
+    moved : dict of ((m,), (m, d-1)) arrays
         Change of gap and of tangential position by moved obstacles, for each group [m].
     """
 
@@ -94,7 +93,7 @@ class Assembly:
         u0 = self.imposed(factors)
         C_n, C_t = self.pairs.C_n, self.pairs.C_t
         gap = self.pairs.gap + C_n @ u0
-        origin = -(C_t @ u0)
+        origin = -(C_t @ u0).reshape(len(gap), self.model.dim - 1)
         for group, (normal, tangential) in self.moved.items():
             gap = gap + _factor(factors, group) * normal
             origin = origin - _factor(factors, group) * tangential
@@ -109,7 +108,7 @@ class Assembly:
             laws=self.laws,
             R=self.supported.R,
             bodies=self.supported.bodies,
-            slip_origin=origin[:, None],
+            slip_origin=origin,
             area=self.pairs.area,
             inertia=self.inertia,
         )
@@ -129,11 +128,13 @@ class Assembly:
 
 def _no_pairs(disc: Discretisation) -> Pairs:
     """Return the pairs of a model in which no two bodies touch and supports or ties hold the blocks: none."""
-    number, value, vector = np.zeros(0, dtype=int), np.zeros(0), np.zeros((0, 2))
+    d = disc.dim
+    number, value, vector = np.zeros(0, dtype=int), np.zeros(0), np.zeros((0, d))
     operator = sp.csr_array((0, disc.unknowns))
     return Pairs(
-        body_a=number, body_b=number, interface=number, point=vector, normal=vector, tangent=vector, length=value,
-        area=value, gap=value, law=number, law_names=tuple(disc.model.laws), C_n=operator, C_t=operator,
+        body_a=number, body_b=number, interface=number, point=vector, normal=vector, tangents=np.zeros((0, d - 1, d)),
+        length=value, area=value, gap=value, law=number, law_names=tuple(disc.model.laws), C_n=operator, C_t=operator,
+        rule=number,
     )  # fmt: skip
 
 
@@ -146,15 +147,12 @@ def default_tolerance(model: Model) -> float:
     """Return the distance within which edges touch: the model's, or 1e-6 of its size [m]."""
     if model.gap_tolerance is not None:
         return model.gap_tolerance
-    corners = np.vstack([b.outline for b in model.bodies])
-    return 1e-6 * float(np.ptp(corners, axis=0).max())
+    return 1e-6 * model.size
 
 
 def detect(model: Model) -> Detection:
     """Return the interfaces of a model with the report of what was dropped or overlaps."""
-    if model.periods is not None:
-        return detect_periodic(model.bodies, model.periods, tolerance=default_tolerance(model))
-    return detect_interfaces(model.bodies, tolerance=default_tolerance(model), reach=model.gap_reach)
+    return GEOMETRIES[model.dim].detect(model, default_tolerance(model))
 
 
 def require_model(thing: object) -> None:
@@ -220,9 +218,13 @@ def assemble(model: Model) -> Assembly:
         others = len(detection.overlaps) - 1
         msg = first.sentence + (f", and {others} more overlap{'s' if others > 1 else ''}" if others else "")
         raise GeometryError(msg, hint="raise gap_tolerance only where the overlap is no more than inaccurate drawing")
-    disc = discretise(held_at_a_point(model) if periodic else model, interface_breaks(model, detection.interfaces))
+    geometry = GEOMETRIES[model.dim]
+    disc = discretise(held_at_a_point(model) if periodic else model, geometry.marks(model, detection))
     held = bool(model.ties) or bool({s.body for s in model.supports} & {b.name for b in model.free_bodies})
-    pairs = make_pairs(disc, detection.interfaces) if detection.interfaces or not held else _no_pairs(disc)
+    if not detection.interfaces and not held:
+        msg = "no two bodies touch: there is no interface at all"
+        raise InputError(msg, hint="look at the model with 'concio check'; raise gap_tolerance if the drawing has gaps")
+    pairs = geometry.pairs(disc, detection) if detection.interfaces else _no_pairs(disc)
     laws = pair_laws(model, pairs)
     pairs, laws = add_ties(disc, pairs, laws)
     return Assembly(
@@ -234,5 +236,5 @@ def assemble(model: Model) -> Assembly:
         supported=apply_supports(disc),
         K=disc.stiffness(),
         loads=load_vectors(disc),
-        moved=strain_groups(pairs, detection.interfaces) if periodic else moved_obstacles(disc, pairs),
+        moved=strain_groups(pairs, detection.segments) if periodic else moved_obstacles(disc, pairs),
     )

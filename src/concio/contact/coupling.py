@@ -65,12 +65,15 @@ class Coupling:
         Tributary length of each pair [m].
     a, b : Side or None
         None where that side is rigid or fixed and moves as the point at ``at``.
+    model : str
+        How contact is stated, in words.
     """
 
     at: Array
     length: Array
     a: Side | None
     b: Side | None
+    model: str = "dual mortar"
 
 
 def cut(line: Line, length: float) -> Line:
@@ -111,11 +114,13 @@ def couple(a: Line | None, b: Line | None, length: float, points: int = 2) -> Co
     """
     a, b = (None if line is None else cut(line, length) for line in (a, b))
     if a is None and b is None:
-        return Coupling(np.linspace(0.0, length, points), _rule(points) * length, None, None)
+        model = "ends of the joint" if points == 2 else "points along the joint"
+        return Coupling(np.linspace(0.0, length, points), _rule(points) * length, None, None, model)
     if a is not None and b is not None and match(a, b, length):
         weights = edge_weights(a.at, a.order, 0.0, length)
         pair = np.arange(len(a.at))
-        return Coupling(a.at, weights, Side(pair, a.nodes, np.ones(len(pair))), Side(pair, b.nodes, np.ones(len(pair))))
+        one = np.ones(len(pair))
+        return Coupling(a.at, weights, Side(pair, a.nodes, one), Side(pair, b.nodes, one), "node pairs")
     if a is None or (b is not None and len(b.at) > len(a.at)):
         assert b is not None
         at, weights, own, other = _mortar(b, a, length)

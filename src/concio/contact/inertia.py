@@ -29,10 +29,10 @@ def lumped_masses(disc: Discretisation) -> Array:
         density = weights[body.material] / GRAVITY if heavy else 1.0
         at = disc.offsets[b]
         if s == RIGID:
-            masses[at : at + 3] = density * body.area * body.thickness
+            masses[at : disc.offsets[b + 1]] = density * body.volume
             continue
         nodal = disc.shapes[s].volume_weights
         if nodal.min() <= 0:  # corners of eight-node elements: share the volume equally
             nodal = np.full(nodal.size, nodal.sum() / nodal.size)
-        masses[at : disc.offsets[b + 1]] = density * np.repeat(nodal, 2)
+        masses[at : disc.offsets[b + 1]] = density * np.repeat(nodal, disc.dim)
     return masses

@@ -138,15 +138,14 @@ def loaded_faces(model: Model, load: Load) -> list[LoadedFace]:
 
 def line_tolerance(model: Model) -> float:
     """Return how far an edge may lie from the line of a load [m]: twice the gap tolerance, for joints wobble by it."""
-    corners = np.vstack([b.outline for b in model.bodies])
-    return max(1e-6 * float(np.ptp(corners, axis=0).max()), 2 * (model.gap_tolerance or 0.0))
+    return max(1e-6 * model.size, 2 * (model.gap_tolerance or 0.0))
 
 
 def _on_line(model: Model, chosen: list[int], p: Array, along: Array, length: float, tolerance: float) -> list[_Found]:
     across = np.array([-along[1], along[0]])
     found = []
     for b in chosen:
-        outline = model.bodies[b].outline
+        outline = model.outlines[b].outline
         off = np.abs((outline - p) @ across) <= tolerance
         for e in np.flatnonzero(off & np.roll(off, -1)).tolist():
             a, c = outline[e], outline[(e + 1) % len(outline)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from concio.contact.face_loads import add_face_load
 from concio.contact.load_faces import loaded_bodies, loaded_faces
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID, Discretisation
@@ -13,8 +14,7 @@ from concio.model.model import Load
 
 Array = np.ndarray
 
-COMPONENTS = {"weight": 2, "body": 2, "pressure": 1, "traction": 2, "point": 2}
-"""Number of values of each kind of load."""
+KINDS = ("weight", "pressure", "traction", "point", "body")
 
 
 def load_vectors(disc: Discretisation) -> dict[str, Array]:
@@ -31,14 +31,15 @@ def load_vectors(disc: Discretisation) -> dict[str, Array]:
         if not np.isfinite(load.value).all():
             msg = f"a {load.kind} load has a value that is not finite"
             raise InputError(msg, where=f"load group '{load.group}'")
-        if load.kind in COMPONENTS and len(load.value) != COMPONENTS[load.kind]:
-            wanted = "one value" if COMPONENTS[load.kind] == 1 else "two components"
+        count = 1 if load.kind == "pressure" else disc.dim
+        if load.kind in KINDS and len(load.value) != count:
+            wanted = {1: "one value", 2: "two components", 3: "three components"}[count]
             msg = f"a {load.kind} load has {len(load.value)} values, it takes {wanted}"
             raise InputError(msg, where=f"load group '{load.group}'")
         if load.kind in ("weight", "body"):
             _volume(disc, load, loaded_bodies(disc.model, load), f)
         elif load.kind in ("pressure", "traction"):
-            _edges(disc, load, f)
+            (_edges if disc.dim == 2 else add_face_load)(disc, load, f)
         elif load.kind == "point":
             _point(disc, load, loaded_bodies(disc.model, load), f)
         else:
@@ -60,7 +61,7 @@ def _volume(disc: Discretisation, load: Load, chosen: list[int], f: Array) -> No
             continue
         at = disc.offsets[b]
         if disc.shape_of[b] == RIGID:
-            f[at : at + 2] += density * body.area * body.thickness * vector
+            f[at : at + disc.dim] += density * body.volume * vector
         else:
             nodal = density * disc.shapes[disc.shape_of[b]].volume_weights
             f[at : disc.offsets[b + 1]] += np.outer(nodal, vector).ravel()
@@ -81,7 +82,7 @@ def _line_load(disc: Discretisation, b: int, edge: int, part: tuple[float, float
     """Add a uniform line load ``vector`` [kN/m] on part of an edge."""
     at = disc.offsets[b]
     if disc.shape_of[b] == RIGID:
-        outline = disc.model.bodies[b].outline
+        outline = disc.model.outlines[b].outline
         p, q = outline[edge], outline[(edge + 1) % len(outline)]
         middle = p + (q - p) / np.linalg.norm(q - p) * (part[0] + part[1]) / 2
         rows = rigid_operator(middle - disc.centroids[b], disc.reach[b])

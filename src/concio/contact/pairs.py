@@ -15,7 +15,6 @@ import scipy.sparse as sp
 
 from concio.contact.coupling import Line, Side, couple
 from concio.contact.sides import FacingSides
-from concio.errors import InputError
 from concio.fem.discretisation import FIXED, Discretisation
 from concio.kinematics.frames import turned_left
 from concio.kinematics.rigid import rigid_row
@@ -25,6 +24,13 @@ from concio.model.model import Model
 from concio.problem.contact_problem import Laws
 
 Array = np.ndarray
+
+CONTACT_MODELS = (
+    "ends of the joint", "points along the joint", "node pairs", "dual mortar", "corners of the patch",
+    "points over the patch", "tie",
+)  # fmt: skip
+"""Where contact is stated: between two blocks that are not meshed at the ends or corners of their interface or at
+quadrature points over it, else at pairs of nodes or at the nodes of one side with dual functions."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,12 +43,14 @@ class Pairs:
         Bodies of the two sides.
     interface : (m,) integer array
         Interface each pair belongs to; -1 for a tie.
-    point : (m, 2) array
+    point : (m, d) array
         Position [m].
-    normal, tangent : (m, 2) arrays
-        Unit vectors; n points from a to b, t is n turned left.
+    normal : (m, d) array
+        Unit vector from a to b.
+    tangents : (m, d-1, d) array
+        Unit vectors: in the plane n turned left, in space two that are right-handed with n.
     length : (m,) array
-        Tributary length along the interface [m].
+        Tributary length along the interface; in space the root of the tributary area [m].
     area : (m,) array
         Tributary area [m2].
     gap : (m,) array
@@ -50,8 +58,12 @@ class Pairs:
     law : (m,) integer array
         Index into ``law_names``.
     law_names : tuple of str
-    C_n, C_t : (m, N) CSR arrays
-        Relative displacement b - a along n and t, on all unknowns of the discretisation.
+    C_n : (m, N) CSR array
+        Relative displacement b - a along n, on all unknowns of the discretisation.
+    C_t : (m (d-1), N) CSR array
+        The same along the tangents, pair by pair.
+    rule : (m,) integer array
+        Where contact of the pair is stated and what area it stands for: index into :data:`CONTACT_MODELS`.
     """
 
     body_a: Array
@@ -59,7 +71,7 @@ class Pairs:
     interface: Array
     point: Array
     normal: Array
-    tangent: Array
+    tangents: Array
     length: Array
     area: Array
     gap: Array
@@ -67,9 +79,22 @@ class Pairs:
     law_names: tuple[str, ...]
     C_n: sp.csr_array
     C_t: sp.csr_array
+    rule: Array
 
     def __len__(self) -> int:
         return len(self.gap)
+
+    @property
+    def tangent(self) -> Array:
+        """The first tangent of each pair (m, d); in the plane the only one."""
+        first: Array = self.tangents[:, 0]
+        return first
+
+    @property
+    def contact_model(self) -> dict[str, int]:
+        """Number of pairs by the way in which their contact is stated."""
+        count = np.bincount(self.rule, minlength=len(CONTACT_MODELS))
+        return {name: int(n) for name, n in zip(CONTACT_MODELS, count, strict=True) if n}
 
 
 def make_pairs(disc: Discretisation, interfaces: Sequence[Interface]) -> Pairs:
@@ -83,12 +108,9 @@ def make_pairs(disc: Discretisation, interfaces: Sequence[Interface]) -> Pairs:
     InputError
         No joint law matches an interface.
     """
-    if not interfaces:
-        msg = "no two bodies touch: there is no interface at all"
-        raise InputError(msg, hint="look at the model with 'concio check'; raise gap_tolerance if the drawing has gaps")
     model = disc.model
-    sides = FacingSides.of(model.bodies, interfaces)
-    law, opening = _laws_of(model, sides)
+    sides = FacingSides.of(model.outlines, interfaces)
+    law, opening = laws_of(model, sides.a, sides.b)
     along = sides.end - sides.start
     length = np.hypot(*along.T)
     along = along / length[:, None]
@@ -145,7 +167,7 @@ def make_pairs(disc: Discretisation, interfaces: Sequence[Interface]) -> Pairs:
         interface=face,
         point=sides.start[face] + at[:, None] * along[face],
         normal=sides.normal[face],
-        tangent=tangent[face],
+        tangents=tangent[face][:, None],
         length=own_length,
         area=own_length * np.minimum(thickness[sides.a], thickness[sides.b])[face],
         gap=gap,
@@ -153,6 +175,7 @@ def make_pairs(disc: Discretisation, interfaces: Sequence[Interface]) -> Pairs:
         law_names=tuple(model.laws),
         C_n=_clean(sp.csr_array((v_n, (row, column)), shape=shape)),
         C_t=_clean(sp.csr_array((v_t, (row, column)), shape=shape)),
+        rule=np.array([CONTACT_MODELS.index(c.model) for c in couplings])[group][face],
     )
 
 
@@ -187,17 +210,17 @@ def _points(law: JointLaw) -> int:
     return 9 if law.compressive_strength is not None else 5 if law.normal_stiffness is not None else 2
 
 
-def _laws_of(model: Model, sides: FacingSides) -> tuple[Array, Array]:
-    """Return the number of the law (i,) and the opening (i,) [m] that the rules give each interface."""
+def laws_of(model: Model, a: Array, b: Array) -> tuple[Array, Array]:
+    """Return number of the law (i,) and opening (i,) [m] that the rules give the interfaces of bodies a, b (i,)."""
     names = {b.name for b in model.bodies}
     if any(word in names for rule in model.rules for word in rule.between):
         sort = np.arange(len(model.bodies))
     else:
         known: dict[tuple[str, ...], int] = {}
         sort = np.array([known.setdefault((b.kind, b.role, b.layer, b.material), len(known)) for b in model.bodies])
-    pairs = np.column_stack([sort[sides.a], sort[sides.b]])
+    pairs = np.column_stack([sort[a], sort[b]])
     _, example, group = np.unique(pairs, axis=0, return_index=True, return_inverse=True)
-    rules = [model.rule_between(model.bodies[sides.a[i]], model.bodies[sides.b[i]]) for i in example]
+    rules = [model.rule_between(model.bodies[a[i]], model.bodies[b[i]]) for i in example]
     number = {name: k for k, name in enumerate(model.laws)}
     group = group.ravel()
     return np.array([number[rule.law] for rule in rules])[group], np.array([rule.gap for rule in rules])[group]

@@ -45,13 +45,13 @@ def strain_columns(pairs: Pairs, interfaces: Sequence[Interface]) -> tuple[Array
 
 
 def strain_groups(pairs: Pairs, interfaces: Sequence[Interface]) -> dict[str, tuple[Array, Array]]:
-    """Return for each strain component the change (m,) of the normal and tangential relative displacement [m]."""
+    """Return for each strain component the change of normal (m,) and tangential (m, 1) relative displacement [m]."""
     normal, tangential = strain_columns(pairs, interfaces)
-    return {name: (normal[:, k].copy(), tangential[:, k].copy()) for k, name in enumerate(STRAINS)}
+    return {name: (normal[:, k].copy(), tangential[:, [k]]) for k, name in enumerate(STRAINS)}
 
 
 def held_at_a_point(model: Model) -> Model:
     """Return a cell with a support that holds the first corner of its first body."""
-    body = model.bodies[0]
+    body = model.outlines[0]
     x, y = (float(v) for v in body.outline[0])
     return replace(model, periods=None, supports=(Support(ORIGIN, body.name, ((x, y), (x, y))),))

@@ -55,7 +55,7 @@ class FacingSides:
 def interface_breaks(model: Model, interfaces: Sequence[Interface]) -> Mapping[int, list[Array]]:
     """Return for each meshed body where interfaces begin and end on each edge of its outline [m]."""
     meshed = np.array([b.kind == "elastic" and b.grid is None for b in model.bodies])
-    sides = FacingSides.of(model.bodies, interfaces)
+    sides = FacingSides.of(model.outlines, interfaces)
     found: dict[int, list[list[float]]] = {}
     for body, edge, p, q in (
         (sides.a, sides.edge_a, sides.p_a, sides.q_a),
@@ -66,8 +66,8 @@ def interface_breaks(model: Model, interfaces: Sequence[Interface]) -> Mapping[i
             at = ((end - p) * (q - p)).sum(1) / length
             inside = meshed[body] & (at > 1e-6 * length) & (at < (1 - 1e-6) * length)
             for b, e, mark in zip(body[inside].tolist(), edge[inside].tolist(), at[inside].tolist(), strict=True):
-                found.setdefault(b, [[] for _ in model.bodies[b].outline])[e].append(mark)
-    return {b: [_distinct(v, model.bodies[b]) for v in edges] for b, edges in found.items()}
+                found.setdefault(b, [[] for _ in model.outlines[b].outline])[e].append(mark)
+    return {b: [_distinct(v, model.outlines[b]) for v in edges] for b, edges in found.items()}
 
 
 def _distinct(marks: list[float], body: Body) -> Array:

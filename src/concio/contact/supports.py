@@ -9,6 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.arguments import closest
+from concio.contact.face_loads import near_polygon
 from concio.contact.pairs import Pairs
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID, Discretisation
@@ -26,8 +27,8 @@ class Condition:
     ----------
     support : int
         Number of the support in the model.
-    axis : {0, 1}
-        Along x or y.
+    axis : {0, 1, 2}
+        Along x, y or z.
     unknowns, coefficients : (k,) arrays
         The component is ``coefficients @ u_body[unknowns]``.
     value : float
@@ -64,8 +65,8 @@ class Supported:
     R: sp.csc_array
     held: dict[int, tuple[Condition, ...]]
 
-    def reactions(self, disc: Discretisation, rest: Array) -> dict[str, tuple[float, float]]:
-        """Return the force (x, y) of each support on the structure [kN].
+    def reactions(self, disc: Discretisation, rest: Array) -> dict[str, tuple[float, ...]]:
+        """Return the force (x, y) or (x, y, z) of each support on the structure [kN].
 
         Parameters
         ----------
@@ -77,7 +78,7 @@ class Supported:
         -----
         Where several supports hold the same unknown, the force is shared among them by least norm.
         """
-        total = np.zeros((len(disc.model.supports), 2))
+        total = np.zeros((len(disc.model.supports), disc.dim))
         for b, conditions in self.held.items():
             own = rest[disc.offsets[b] : disc.offsets[b + 1]]
             if disc.shape_of[b] == RIGID:
@@ -90,7 +91,7 @@ class Supported:
                 total[condition.support, condition.axis] += force
         supports = disc.model.supports
         named = {c.support for conditions in self.held.values() for c in conditions}
-        return {supports[i].name: (float(total[i, 0]), float(total[i, 1])) for i in sorted(named)}
+        return {supports[i].name: tuple(total[i].tolist()) for i in sorted(named)}
 
 
 def apply_supports(disc: Discretisation) -> Supported:
@@ -111,7 +112,7 @@ def apply_supports(disc: Discretisation) -> Supported:
             msg = f"holds '{support.body}', but no body has that name"
             hint = closest(support.body, number, otherwise="see the names with 'concio check'")
             raise InputError(msg, where=where, hint=hint)
-        if not np.isfinite([*support.displacement, support.rotation]).all():
+        if not np.isfinite([*support.displacement, *np.atleast_1d(support.rotation)]).all():
             msg = "an imposed displacement is not finite"
             raise InputError(msg, where=where)
         b = number[support.body]
@@ -132,7 +133,7 @@ def apply_supports(disc: Discretisation) -> Supported:
         n = last - first
         if n == 0:
             continue
-        R = np.eye(3) if disc.shape_of[b] == RIGID else disc.shapes[disc.shape_of[b]].R
+        R = np.eye(n) if disc.shape_of[b] == RIGID else disc.shapes[disc.shape_of[b]].R
         if b not in held:
             row, column, value, free = np.arange(n), np.arange(n), np.ones(n), R
         else:
@@ -152,7 +153,7 @@ def apply_supports(disc: Discretisation) -> Supported:
 
 
 def moved_obstacles(disc: Discretisation, pairs: Pairs) -> dict[str, tuple[Array, Array]]:
-    """Return for each group the change (m,) of the normal and tangential relative displacement by moved obstacles."""
+    """Return what moved obstacles add to the normal (m,) and tangential (m, d-1) displacement, by group [m]."""
     moved: dict[str, tuple[Array, Array]] = {}
     number = {b.name: i for i, b in enumerate(disc.model.bodies)}
     rough = pairs.interface >= 0  # ties have no tangential motion; along a tie a rigid motion is the same everywhere
@@ -160,11 +161,12 @@ def moved_obstacles(disc: Discretisation, pairs: Pairs) -> dict[str, tuple[Array
         b = number[support.body]
         if disc.shape_of[b] != FIXED:
             continue
-        normal, tangential = moved.setdefault(support.group, (np.zeros(len(pairs)), np.zeros(len(pairs))))
-        motion = np.array(support.displacement) + swept(support.rotation, pairs.point - disc.centroids[b])
+        none = (np.zeros(len(pairs)), np.zeros((len(pairs), disc.dim - 1)))
+        normal, tangential = moved.setdefault(support.group, none)
+        motion = _moved(support, pairs.point, disc.centroids[b])
         sign = (pairs.body_b == b).astype(float) - (pairs.body_a == b)
         normal += sign * (motion * pairs.normal).sum(1)
-        tangential += sign * rough * (motion * pairs.tangent).sum(1)
+        tangential += (sign * rough)[:, None] * np.einsum("md,mtd->mt", motion, pairs.tangents)
     return moved
 
 
@@ -172,37 +174,43 @@ def _conditions(disc: Discretisation, b: int, number: int) -> list[Condition]:
     """Return what one support holds of body b."""
     support = disc.model.supports[number]
     where = f"support '{support.name}'"
-    axes = [i for i, axis in enumerate("xy") if axis in support.directions]
-    if not axes or set(support.directions) - set("xy"):
-        msg = f"directions '{support.directions}' are not 'x', 'y' or 'xy'"
+    known = "xyz"[: disc.dim]
+    axes = [i for i, axis in enumerate(known) if axis in support.directions]
+    if not axes or set(support.directions) - set(known):
+        msg = f"directions '{support.directions}' are not made of '{known}'"
         raise InputError(msg, where=where)
     points = disc.nodes(b)
     chosen = np.arange(len(points))
-    if support.edge is not None:
-        p, q = (np.array(end, dtype=float) for end in support.edge)
-        size = float(np.ptp(disc.model.bodies[b].outline, axis=0).max())
+    region = support.edge if support.edge is not None else support.polygon
+    if region is not None:
+        corners = np.array(region, dtype=float)
+        size = float(np.ptp(disc.model.bodies[b].vertices, axis=0).max())
         if disc.shape_of[b] == RIGID:
-            points = np.unique(np.vstack([p, q]), axis=0)
+            points = np.unique(corners, axis=0)
             chosen = np.arange(len(points))
+        elif support.edge is not None:
+            chosen = _near(points, corners[0], corners[1], 1e-6 * size)
         else:
-            chosen = _near(points, p, q, 1e-6 * size)
+            chosen = np.flatnonzero(near_polygon(points, corners, 1e-6 * size))
         if not len(chosen):
-            msg = f"no node of '{support.body}' lies on ({p[0]:g}, {p[1]:g}) - ({q[0]:g}, {q[1]:g})"
-            raise InputError(msg, where=where, hint="give a segment on the outline of the block")
+            text = " - ".join(f"({', '.join(f'{v:g}' for v in point)})" for point in corners)
+            msg = f"no node of '{support.body}' lies on {text}"
+            raise InputError(msg, where=where, hint="give a segment or a polygon on the surface of the block")
     found = []
     for k in chosen:
         motion = _moved(support, points[k], disc.centroids[b])
         for axis in axes:
             if disc.shape_of[b] == RIGID:
                 row = rigid_operator(points[k] - disc.centroids[b], disc.reach[b])[axis]
-                found.append(Condition(number, axis, np.arange(3), row, float(motion[axis])))
+                found.append(Condition(number, axis, np.arange(len(row)), row, float(motion[axis])))
             else:
-                found.append(Condition(number, axis, np.array([2 * k + axis]), np.ones(1), float(motion[axis])))
+                own = np.array([disc.dim * k + axis])
+                found.append(Condition(number, axis, own, np.ones(1), float(motion[axis])))
     return found
 
 
 def _moved(support: Support, point: Array, centroid: Array) -> Array:
-    moved: Array = np.array(support.displacement) + swept(support.rotation, point - centroid)
+    moved: Array = np.array(support.displacement) + swept(np.asarray(support.rotation), point - centroid)
     return moved
 
 

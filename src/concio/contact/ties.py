@@ -12,10 +12,10 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.arguments import closest
-from concio.contact.pairs import Pairs
+from concio.contact.pairs import CONTACT_MODELS, Pairs
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, Discretisation
-from concio.kinematics.frames import turned_left
+from concio.kinematics.frames import tangents
 from concio.problem.contact_problem import Laws
 
 Array = np.ndarray
@@ -36,7 +36,7 @@ def add_ties(disc: Discretisation, pairs: Pairs, laws: Laws) -> tuple[Pairs, Law
     rows: list[Array] = []
     columns: list[Array] = []
     values: list[Array] = []
-    normals = np.zeros((len(ties), 2))
+    normals = np.zeros((len(ties), disc.dim))
     ends = np.zeros((len(ties), 2), dtype=int)
     for k, tie in enumerate(ties):
         where = f"tie '{tie.name}'"
@@ -77,13 +77,14 @@ def add_ties(disc: Discretisation, pairs: Pairs, laws: Laws) -> tuple[Pairs, Law
         interface=np.concatenate([pairs.interface, np.full(n, -1)]),
         point=np.vstack([pairs.point, [(np.array(t.at_a) + np.array(t.at_b)) / 2 for t in ties]]),
         normal=np.vstack([pairs.normal, normals]),
-        tangent=np.vstack([pairs.tangent, turned_left(normals)]),
+        tangents=np.concatenate([pairs.tangents, tangents(normals)]),
         length=np.concatenate([pairs.length, zero]),
         area=np.concatenate([pairs.area, one]),
         gap=np.concatenate([pairs.gap, -prestress / stiffness]),
         law=np.concatenate([pairs.law, np.full(n, -1)]),
         C_n=sp.csr_array(sp.vstack([pairs.C_n, C_n])),
-        C_t=sp.csr_array(sp.vstack([pairs.C_t, sp.csr_array(shape)])),
+        C_t=sp.csr_array(sp.vstack([pairs.C_t, sp.csr_array((n * (disc.dim - 1), disc.unknowns))])),
+        rule=np.concatenate([pairs.rule, np.full(n, CONTACT_MODELS.index("tie"))]),
     )
     tie_laws = Laws(zero, zero, zero, zero, 1.0 / stiffness, zero, np.full(n, np.inf))
     names = Laws.__dataclass_fields__

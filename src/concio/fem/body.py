@@ -34,9 +34,67 @@ class EdgeNodes:
     order: int
 
 
+class Meshed:
+    """What follows from the elements of a shape alone, in the plane and in space: d dimensions, s strain components."""
+
+    elements: Elements
+    D: Array
+    thickness: float
+
+    @property
+    def dim(self) -> int:
+        """Dimension d."""
+        return int(self.elements.nodes.shape[1])
+
+    @property
+    def unknowns(self) -> int:
+        """Number of displacement unknowns."""
+        return int(self.elements.nodes.size)
+
+    @cached_property
+    def K(self) -> sp.csr_array:
+        """Stiffness (d n, d n) [kN/m], symmetric to the last bit."""
+        el = self.elements
+        weighted = sp.kron(sp.diags_array(el.weights * self.thickness), self.D, format="csr")
+        K = el.B.T @ (weighted @ el.B)
+        K = sp.csr_array((K + K.T) * 0.5)
+        K.sum_duplicates()
+        return K
+
+    @cached_property
+    def R(self) -> Array:
+        """Rigid motions (d n, 3 or 6), orthonormal: translations, then rotations about the nodes' mean."""
+        return rigid_modes(self.elements.nodes)
+
+    @cached_property
+    def volume_weights(self) -> Array:
+        """Volume belonging to each node (n,): the load of a unit body force [m3]."""
+        el = self.elements
+        weights: Array = el.N.T @ (el.weights * self.thickness)
+        return weights
+
+    @cached_property
+    def stress_operator(self) -> sp.csr_array:
+        """D B (s q, d n): stresses at the integration points from displacements."""
+        return sp.csr_array(sp.kron(sp.eye_array(len(self.elements.weights)), self.D) @ self.elements.B)
+
+    @cached_property
+    def projection(self) -> Array:
+        """(n, n): inverse of the mass matrix of the interpolation, for least-squares fits at the nodes."""
+        el = self.elements
+        return np.linalg.inv((el.N.T @ (sp.diags_array(el.weights) @ el.N)).toarray())
+
+    @cached_property
+    def mean_stress_operator(self) -> Array:
+        """(s, d n): mean stress of the body from displacements."""
+        w = self.elements.weights / self.elements.weights.sum()
+        mean = sp.csr_array(sp.kron(w[None, :], np.eye(len(self.D))))
+        return np.asarray((mean @ self.stress_operator).todense())
+
+
 @dataclass(frozen=True, eq=False)
-class Shape:
-    """A meshed elastic shape, placed with its first vertex at the origin.
+class Shape(Meshed):
+    """A meshed elastic shape in the plane, placed with its first vertex at the origin.
 
     Parameters
     ----------
@@ -54,33 +112,6 @@ class Shape:
     D: Array
     thickness: float
 
-    @property
-    def unknowns(self) -> int:
-        """Number of displacement unknowns."""
-        return 2 * len(self.elements.nodes)
-
-    @cached_property
-    def K(self) -> sp.csr_array:
-        """Stiffness (2n, 2n) [kN/m], symmetric to the last bit."""
-        el = self.elements
-        weighted = sp.kron(sp.diags_array(el.weights * self.thickness), self.D, format="csr")
-        K = el.B.T @ (weighted @ el.B)
-        K = sp.csr_array((K + K.T) * 0.5)
-        K.sum_duplicates()
-        return K
-
-    @cached_property
-    def R(self) -> Array:
-        """Rigid motions (2n, 3), orthonormal: translations along x and y, rotation about the nodes' mean."""
-        return rigid_modes(self.elements.nodes)
-
-    @cached_property
-    def volume_weights(self) -> Array:
-        """Volume belonging to each node (n,): the load of a unit body force [m3]."""
-        el = self.elements
-        weights: Array = el.N.T @ (el.weights * self.thickness)
-        return weights
-
     @cached_property
     def edges(self) -> tuple[EdgeNodes, ...]:
         """Boundary nodes of each edge of the outline, in order."""
@@ -96,21 +127,3 @@ class Shape:
             on = on[np.argsort(at[on])]
             found.append(EdgeNodes(on, at[on], self.elements.edge_order))
         return tuple(found)
-
-    @cached_property
-    def stress_operator(self) -> sp.csr_array:
-        """D B (3q, 2n): stresses at the integration points from displacements."""
-        return sp.csr_array(sp.kron(sp.eye_array(len(self.elements.weights)), self.D) @ self.elements.B)
-
-    @cached_property
-    def projection(self) -> Array:
-        """(n, n): inverse of the mass matrix of the interpolation, for least-squares fits at the nodes."""
-        el = self.elements
-        return np.linalg.inv((el.N.T @ (sp.diags_array(el.weights) @ el.N)).toarray())
-
-    @cached_property
-    def mean_stress_operator(self) -> Array:
-        """(3, 2n): mean stress of the body from displacements."""
-        w = self.elements.weights / self.elements.weights.sum()
-        mean = sp.csr_array(sp.kron(w[None, :], np.eye(3)))
-        return np.asarray((mean @ self.stress_operator).todense())

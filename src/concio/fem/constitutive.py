@@ -1,4 +1,4 @@
-"""Isotropic elasticity in the plane. Ours and tested, because its meaning must never change under a user."""
+"""Isotropic elasticity, plane and in space. Ours and tested, because its meaning must never change under a user."""
 
 from __future__ import annotations
 
@@ -40,3 +40,30 @@ def principal(stress: Array) -> tuple[Array, Array, Array]:
     centre, half = (sx + sy) / 2, (sx - sy) / 2
     radius = np.hypot(half, txy)
     return centre + radius, centre - radius, 0.5 * np.arctan2(txy, half)
+
+
+def solid_matrix(material: Elastic) -> Array:
+    """Return D (6, 6) with sigma = D (e_x, e_y, e_z, g_xy, g_yz, g_xz) [kN/m2]."""
+    E, nu = material.E, material.nu
+    shear = E / (2 * (1 + nu))
+    D = np.diag([2 * shear] * 3 + [shear] * 3)
+    D[:3, :3] += E * nu / ((1 + nu) * (1 - 2 * nu))
+    return D
+
+
+def principal_in_space(stress: Array) -> tuple[Array, Array]:
+    """Return principal stresses (..., 3), s1 >= s2 >= s3, and their unit directions (..., 3, 3), one a row.
+
+    Parameters
+    ----------
+    stress : (..., 6) array
+        (s_x, s_y, s_z, t_xy, t_yz, t_xz); where a component is nan all results are.
+    """
+    s = np.asarray(stress, dtype=float)
+    index = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]])
+    tensor = s[..., index]
+    known = np.isfinite(tensor).all((-1, -2))
+    values, vectors = np.linalg.eigh(np.where(known[..., None, None], tensor, 0.0))
+    values, vectors = values[..., ::-1], np.swapaxes(vectors[..., ::-1], -1, -2)
+    values = np.where(known[..., None], values, np.nan)
+    return values, np.where(known[..., None, None], vectors, np.nan)

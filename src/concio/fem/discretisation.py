@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 
 from concio.errors import InputError
 from concio.fem.body import Shape
-from concio.fem.constitutive import constitutive_matrix
-from concio.fem.elements import build
-from concio.fem.mesh import mesh_body
-from concio.kinematics.frames import cross
-from concio.kinematics.rigid import rigid_operator
-from concio.model.materials import Elastic
+from concio.fem.elements import TETRAHEDRA
+from concio.fem.plane_shape import Plan, plane_shape
+from concio.fem.solid import SolidShape
+from concio.fem.solid_shape import solid_shape
+from concio.kinematics.rigid import motions, rigid_operator
 from concio.model.model import Body, Model
+from concio.model.polyhedron import Polyhedron
 
 Array = np.ndarray
 
@@ -40,18 +40,18 @@ class Discretisation:
     shape_of : (B,) integer array
         Shape of each body of the model; ``RIGID`` or ``FIXED`` where there is none.
     offsets : (B+1,) integer array
-        Unknowns of body b are ``offsets[b]:offsets[b+1]``: (x, y) node by node for an elastic body; for a rigid body
-        the displacement of its centroid and its rotation times ``reach[b]``; none for a fixed body.
-    origins : (B, 2) array
+        Unknowns of body b are ``offsets[b]:offsets[b+1]``: d components node by node for an elastic body; for a
+        rigid body the displacement of its centroid and its rotation times ``reach[b]``; none for a fixed body.
+    origins : (B, d) array
         First vertex of each body [m]; node coordinates of a shape are relative to it.
-    centroids : (B, 2) array
+    centroids : (B, d) array
         [m].
     reach : (B,) array
         Radius of gyration of each body, which turns rotations into lengths [m].
     """
 
     model: Model
-    shapes: tuple[Shape, ...]
+    shapes: tuple[Shape | SolidShape, ...]
     shape_of: Array
     offsets: Array
     origins: Array
@@ -63,16 +63,20 @@ class Discretisation:
         """Number of unknowns before supports are applied."""
         return int(self.offsets[-1])
 
-    @cached_property
+    @property
+    def dim(self) -> int:
+        """Dimension d, 2 or 3."""
+        return self.model.dim
+
+    @property
     def size(self) -> float:
-        """Longer side of the box around all bodies [m]; it does not depend on where the origin is."""
-        corners = np.array([(b.outline.min(0), b.outline.max(0)) for b in self.model.bodies])
-        return float((corners[:, 1].max(0) - corners[:, 0].min(0)).max())
+        """Longest side of the box around all bodies [m]."""
+        return self.model.size
 
     def nodes(self, b: int) -> Array:
-        """Node coordinates (n, 2) of an elastic body; outline vertices of any other [m]."""
+        """Node coordinates (n, d) of an elastic body; vertices of any other [m]."""
         if self.shape_of[b] < 0:
-            return self.model.bodies[b].outline
+            return self.model.bodies[b].vertices
         points: Array = self.shapes[self.shape_of[b]].elements.nodes + self.origins[b]
         return points
 
@@ -86,7 +90,7 @@ class Discretisation:
                 columns.append(K.indices.astype(np.int64) + self.offsets[b])
                 values.append(K.data)
             elif s == RIGID:
-                counts.append(np.zeros(3, dtype=np.int64))
+                counts.append(np.zeros(motions(self.dim), dtype=np.int64))
         n = self.unknowns
         if not values:
             return sp.csr_array((n, n))
@@ -94,18 +98,19 @@ class Discretisation:
         return sp.csr_array((np.concatenate(values), np.concatenate(columns), indptr), shape=(n, n))
 
     def point_operator(self, b: int, point: Array) -> tuple[Array, Array]:
-        """Return (unknowns (k,), coefficients (2, k)) giving the displacement of a point that moves with body b.
+        """Return (unknowns (k,), coefficients (d, k)) giving the displacement of a point that moves with body b.
 
         Raises
         ------
         InputError
             The point lies outside the meshed body.
         """
-        s = self.shape_of[b]
+        s, d = self.shape_of[b], self.dim
         if s == FIXED:
-            return np.zeros(0, dtype=int), np.zeros((2, 0))
+            return np.zeros(0, dtype=int), np.zeros((d, 0))
         if s == RIGID:
-            return self.offsets[b] + np.arange(3), rigid_operator(np.asarray(point) - self.centroids[b], self.reach[b])
+            own = self.offsets[b] + np.arange(motions(d))
+            return own, rigid_operator(np.asarray(point) - self.centroids[b], self.reach[b])
         elements = self.shapes[s].elements
         local = np.asarray(point, dtype=float) - self.origins[b]
         distance = np.linalg.norm(elements.nodes - local, axis=1)
@@ -114,38 +119,46 @@ class Discretisation:
         if distance[nearest] <= 1e-9 * size:
             nodes, weights = np.array([nearest]), np.ones(1)
         else:
-            nodes, weights = _interpolate(elements.nodes, elements.cells, local, size)
+            nodes, weights = interpolated(elements.nodes, elements.cells, local)
             if not len(nodes):
                 name = self.model.bodies[b].name
-                msg = f"the point ({point[0]:g}, {point[1]:g}) lies outside the block"
+                msg = f"the point ({', '.join(f'{v:g}' for v in point)}) lies outside the block"
                 raise InputError(msg, where=f"block '{name}'", hint="give a point inside it or on its outline")
-        dofs = self.offsets[b] + (2 * nodes[:, None] + np.arange(2)).ravel()
-        rows = np.zeros((2, 2 * len(nodes)))
-        rows[0, 0::2] = rows[1, 1::2] = weights
-        return dofs, rows
+        dofs = self.offsets[b] + (d * nodes[:, None] + np.arange(d)).ravel()
+        return dofs, np.kron(weights, np.eye(d))
 
 
-def _interpolate(nodes: Array, cells: Array, point: Array, size: float) -> tuple[Array, Array]:
-    """Return corner nodes and linear weights of a point, by splitting elements into triangles."""
-    triangles = cells if cells.shape[1] == 3 else np.vstack([cells[:, [0, 1, 2]], cells[:, [0, 2, 3]]])
-    a, b, c = (nodes[triangles[:, i]] for i in range(3))
-    det = cross(b - a, c - a)
-    beta, gamma = cross(point - a, c - a) / det, cross(b - a, point - a) / det
-    weights = np.column_stack([1 - beta - gamma, beta, gamma])
+def interpolated(nodes: Array, cells: Array, point: Array) -> tuple[Array, Array]:
+    """Return corner nodes and linear weights of a point, by splitting elements into simplices; none where it is out."""
+    simplices = np.vstack([cells[:, list(corners)] for corners in SIMPLICES[nodes.shape[1], cells.shape[1]]])
+    first = nodes[simplices[:, 0]]
+    edges = np.moveaxis(nodes[simplices[:, 1:]] - first[:, None], 1, 2)
+    inner = np.linalg.solve(edges, (point - first)[..., None])[..., 0]
+    weights = np.column_stack([1 - inner.sum(1), inner])
     best = int(np.argmax(weights.min(axis=1)))
     if weights[best].min() < -1e-6:
         return np.zeros(0, dtype=int), np.zeros(0)
-    return triangles[best], weights[best]
+    return simplices[best], weights[best]
 
 
-def discretise(model: Model, breaks: Mapping[int, Sequence[Array]] | None = None) -> Discretisation:
+SIMPLICES: dict[tuple[int, int], tuple[tuple[int, ...], ...]] = {
+    (2, 3): ((0, 1, 2),),
+    (2, 4): ((0, 1, 2), (0, 2, 3)),
+    (3, 4): ((0, 1, 2, 3),),
+    (3, 8): TETRAHEDRA,
+}
+"""Corners of the simplices that fill an element, by dimension and number of its corners."""
+
+
+def discretise(model: Model, breaks: Mapping[int, Sequence[Any]] | None = None) -> Discretisation:
     """Mesh every body of a model.
 
     Parameters
     ----------
     model : Model
-    breaks : mapping of body number to list of arrays
-        For each edge of a body, where interfaces begin or end [m from the edge's first vertex].
+    breaks : mapping of body number to list
+        Where interfaces lie on a body: in the plane for each edge where they begin or end [m from the edge's first
+        vertex], in space a :class:`concio.fem.solid_mesh.Mark` each.
 
     Raises
     ------
@@ -153,7 +166,7 @@ def discretise(model: Model, breaks: Mapping[int, Sequence[Array]] | None = None
         A body cannot be meshed, or the mesh would be too large.
     """
     known: dict[tuple[object, ...], int] = {}
-    shapes: list[Shape] = []
+    shapes: list[Shape | SolidShape] = []
     count = len(model.bodies)
     shape_of = np.full(count, FIXED)
     sizes = np.zeros(count, dtype=np.int64)
@@ -161,23 +174,27 @@ def discretise(model: Model, breaks: Mapping[int, Sequence[Array]] | None = None
         if body.kind == "fixed":
             continue
         if body.kind == "rigid":
-            shape_of[b], sizes[b] = RIGID, 3
+            shape_of[b], sizes[b] = RIGID, motions(model.dim)
             continue
-        cuts = list(breaks[b]) if breaks and b in breaks else [np.zeros(0)] * len(body.outline)
         size = _target_size(model, body)
-        key = _key(body, size, cuts)
+        if body.grid is None:
+            measure = body.volume / body.thickness
+            _check_size(model.dim * measure * (model.refinement / size) ** model.dim, f"block '{body.name}'")
+        marks = breaks[b] if breaks and b in breaks else ()
+        plan: Plan[Shape] | Plan[SolidShape] = (
+            plane_shape(model, body, size, marks) if isinstance(body, Body) else solid_shape(model, body, size, marks)
+        )
+        key = plan.key
         if key not in known:
-            if body.grid is None:
-                _check_size(2 * body.area * (model.refinement / size) ** 2, f"block '{body.name}'")
             known[key] = len(shapes)
-            shapes.append(_shape(model, body, size, cuts))
+            shapes.append(plan.build())
         shape_of[b] = known[key]
         sizes[b] = shapes[known[key]].unknowns
     offsets = np.concatenate([[0], np.cumsum(sizes)])
     _check_size(float(offsets[-1]))
     centroids = np.array([b.centroid for b in model.bodies])
     reach = np.array([b.moments.radius_of_gyration for b in model.bodies])
-    origins = np.array([b.outline[0] for b in model.bodies])
+    origins = np.array([b.vertices[0] for b in model.bodies])
     return Discretisation(model, tuple(shapes), shape_of, offsets, origins, centroids, reach)
 
 
@@ -187,36 +204,11 @@ def _check_size(unknowns: float, where: str | None = None) -> None:
         raise InputError(msg, where=where, hint="use larger elements or a smaller model")
 
 
-def _target_size(model: Model, body: Body) -> float:
+def _target_size(model: Model, body: Body | Polyhedron) -> float:
     size = body.mesh_size or model.mesh_size
     if size is None:
-        size = float(np.ptp(body.outline, axis=0).max()) / 4
+        size = float(np.ptp(body.vertices, axis=0).max()) / (4 if body.dim == 2 else 2)
     if not (0 < size < np.inf):
         msg = f"mesh size {size:g} must be positive and finite"
         raise InputError(msg, where=f"block '{body.name}'")
     return size
-
-
-def _key(body: Body, size: float, cuts: list[Array]) -> tuple[object, ...]:
-    unit = 1e-9 * float(np.ptp(body.outline, axis=0).max())
-
-    def rounded(values: Array) -> bytes:
-        return np.round(values / unit).astype(np.int64).tobytes()
-
-    origin = body.outline[0]
-    grid = (
-        None if body.grid is None else tuple(rounded(np.asarray(g) - o) for g, o in zip(body.grid, origin, strict=True))
-    )
-    pieces = tuple(rounded(c) for c in cuts) if body.grid is None else ()
-    return (rounded(body.outline - origin), body.material, body.thickness, grid, round(size / unit), pieces)
-
-
-def _shape(model: Model, body: Body, size: float, cuts: list[Array]) -> Shape:
-    material = model.materials[body.material]
-    if not isinstance(material, Elastic):
-        msg = f"material '{body.material}' is not elastic"
-        raise InputError(msg, where=f"block '{body.name}'")
-    D = constitutive_matrix(material, model.plane)
-    points, cells = mesh_body(body, size, model.refinement, cuts)
-    elements = build(points - body.outline[0], cells, model.element, D)
-    return Shape(body.outline - body.outline[0], elements, D, body.thickness)

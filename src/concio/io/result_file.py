@@ -29,11 +29,14 @@ from concio.errors import InputError
 from concio.fem.body import Shape
 from concio.fem.discretisation import Discretisation
 from concio.fem.elements import Elements
+from concio.fem.solid import SolidShape
 from concio.io.codec import Decoder, Encoder
 from concio.model.interfaces.detect import Detection, Interface
 from concio.model.interfaces.near import NearMiss, Overlap
+from concio.model.interfaces.patches import Patch
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Body, JointRule, Load, Model, Support, Tie
+from concio.model.polyhedron import Polyhedron
 from concio.model.stages import ControlPoint, Stage
 from concio.problem.certificate import Certificate, Kinematics
 from concio.problem.contact_problem import Laws
@@ -47,8 +50,8 @@ CLASSES: dict[str, type] = {
     cls.__name__: cls
     for cls in (
         Assembly, Body, Certificate, Detection, Discretisation, Elastic, Elements, Interface, JointLaw, JointRule,
-        Condition, ControlPoint, Departure, Kinematics, Laws, Load, Mechanism, Model, NearMiss, Overlap, Pairs, Result,
-        Rigid, Shape, Solution, Stage, Status, Support, Supported, Tie,
+        Condition, ControlPoint, Departure, Kinematics, Laws, Load, Mechanism, Model, NearMiss, Overlap, Pairs, Patch,
+        Polyhedron, Result, Rigid, Shape, SolidShape, Solution, Stage, Status, Support, Supported, Tie,
     )
 }  # fmt: skip
 """Classes that may appear in a file, by the names they have there. A renamed class keeps its name here."""
@@ -129,15 +132,26 @@ def load_result(directory: Path | str) -> Result:
     except (ValueError, OSError, zipfile.BadZipFile) as error:
         msg = "the file is damaged"
         raise InputError(msg, where=str(arrays), hint="write the result again") from error
-    result = Decoder(CLASSES, found, {"Assembly": _add_stiffness}, str(text)).decode(tree["result"])
+    result = Decoder(CLASSES, found, COMPUTED, str(text)).decode(tree["result"])
     if not isinstance(result, Result):
         msg = f"the file holds a {type(result).__name__}, not a result"
         raise InputError(msg, where=str(text))
     return result
 
 
+def _with_tangents(fields: dict[str, Any]) -> None:
+    """Read the pairs of a version that knew the plane alone."""
+    if "tangent" in fields:
+        fields["tangents"] = fields.pop("tangent")[:, None]
+        fields["rule"] = np.zeros(len(fields["gap"]), dtype=int)
+
+
 def _add_stiffness(fields: dict[str, Any]) -> None:
     fields["K"] = fields["disc"].stiffness()
+
+
+COMPUTED = {"Assembly": _add_stiffness, "Pairs": _with_tangents}
+"""What is put right in the fields of a class before it is made."""
 
 
 def _storable(solution: Solution) -> Solution:

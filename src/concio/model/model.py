@@ -6,14 +6,16 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal, get_args
+from typing import ClassVar, Literal, get_args
 
 import numpy as np
 
 from concio.arguments import closest, strict_class
 from concio.errors import GeometryError, InputError
 from concio.kinematics.mass import Moments, polygon_moments, signed_area
+from concio.model.dimensions import WORDS, resolved
 from concio.model.materials import Elastic, JointLaw, Rigid
+from concio.model.polyhedron import Polyhedron
 from concio.model.stages import Stage
 
 Array = np.ndarray
@@ -22,6 +24,8 @@ Kind = Literal["elastic", "rigid", "fixed"]
 Face = Literal["lower", "upper", "left", "right", "both"]
 FACES: tuple[str, ...] = get_args(Face)
 """Faces of a joint that a load along it may act on."""
+Point = tuple[float, ...]
+"""A point or a vector with as many coordinates as the model has dimensions."""
 
 
 @strict_class
@@ -60,6 +64,8 @@ class Body:
     thickness: float = 1.0
     grid: tuple[Array, Array] | None = None
     mesh_size: float | None = None
+
+    dim: ClassVar[int] = 2
 
     def __post_init__(self) -> None:
         points = np.array(self.outline, dtype=float)
@@ -105,6 +111,16 @@ class Body:
         """Centroid (2,) [m]."""
         return self.moments.centroid
 
+    @property
+    def vertices(self) -> Array:
+        """Vertices (n, 2) of the outline [m]."""
+        return self.outline
+
+    @property
+    def volume(self) -> float:
+        """Area times thickness [m3]."""
+        return self.area * self.thickness
+
 
 @strict_class
 @dataclass(frozen=True)
@@ -131,10 +147,10 @@ class JointRule:
             msg = f"initial gap = {self.gap:g} must be zero or positive and finite"
             raise InputError(msg, hint="a gap is an opening in m; overlaps are not gaps")
 
-    def matches(self, a: Body, b: Body) -> bool:
+    def matches(self, a: Body | Polyhedron, b: Body | Polyhedron) -> bool:
         """Return whether the rule speaks of interfaces between ``a`` and ``b``."""
 
-        def fits(word: str, body: Body) -> bool:
+        def fits(word: str, body: Body | Polyhedron) -> bool:
             material = "" if body.kind == "fixed" else body.material
             return word == "*" or (word != "" and word in (body.name, body.role, body.layer, material))
 
@@ -152,25 +168,34 @@ class Support:
     name : str
     body : str
         Body by name; a fixed body may be moved, which pushes or drags what touches it.
-    edge : ((x1, y1), (x2, y2)) or None
-        Segment of the outline that is held; None holds the whole body. A point is a segment of length zero.
+    edge : (point, point) or None
+        Segment of the outline that is held, in space a line; a point is a segment of length zero. Without edge and
+        polygon the whole body is held.
     directions : str
-        "x", "y" or "xy".
-    displacement : (ux, uy)
-        Imposed displacement [m].
-    rotation : float
+        Any of "x", "y" and, in space, "z"; or "all".
+    displacement : (ux, uy) or (ux, uy, uz)
+        Imposed displacement [m]; empty is none.
+    rotation : float, or (rx, ry, rz) in space
         Imposed rotation about the body's centroid, fixed and rigid bodies only [rad].
     group : str
         Load group that scales the imposed displacement.
+    polygon : tuple of points, or None
+        In space: the part of the body's faces that is held, as a planar polygon [m].
     """
 
     name: str
     body: str
-    edge: tuple[tuple[float, float], tuple[float, float]] | None = None
-    directions: str = "xy"
-    displacement: tuple[float, float] = (0.0, 0.0)
-    rotation: float = 0.0
+    edge: tuple[Point, Point] | None = None
+    directions: str = "all"
+    displacement: Point = ()
+    rotation: float | Point = 0.0
     group: str = "settlement"
+    polygon: tuple[Point, ...] | None = None
+
+    @property
+    def moves(self) -> bool:
+        """Whether a displacement or a rotation is imposed."""
+        return bool(np.any(self.displacement) or np.any(self.rotation))
 
 
 @strict_class
@@ -181,30 +206,33 @@ class Load:
     Parameters
     ----------
     kind : {"weight", "pressure", "traction", "point", "body"}
-        weight: unit weight times area times thickness, times the vector ``value``: (0, -1) is gravity, (0.1, 0) a
-        horizontal share of a tenth. pressure: ``value[0]`` [kN/m2], positive pushes against the edge. traction:
-        vector [kN/m2] on an edge. point: vector [kN] at ``at``. body: vector per volume [kN/m3].
+        weight: unit weight times volume, times the vector ``value``: (0, -1) is gravity, in space (0, 0, -1);
+        (0.1, 0) a horizontal share of a tenth. pressure: ``value[0]`` [kN/m2], positive pushes against the face.
+        traction: vector [kN/m2] on an edge or polygon. point: vector [kN] at ``at``. body: vector per volume [kN/m3].
     value : tuple of float
     bodies : tuple of str
         Names, roles or layers; empty means every body that is not fixed.
-    edge : ((x1, y1), (x2, y2)) or None
-        Segment for pressure and traction; only outline parts that lie on it are loaded.
-    at : (x, y) or None
+    edge : (point, point) or None
+        Segment for pressure and traction in the plane; only outline parts that lie on it are loaded.
+    at : point or None
         Point of a point load [m].
     group : str
         Load group; groups are scaled by load factors.
     face : {"lower", "upper", "left", "right", "both"} or None
         Which of the two faces of a joint a pressure or traction acts on that lies in a joint between two of the
         bodies; None is the lower one, the top of the body below. Where the edge lies on one face only, it is that one.
+    polygon : tuple of points, or None
+        Planar polygon for pressure and traction in space; only parts of faces that lie in it are loaded [m].
     """
 
     kind: Literal["weight", "pressure", "traction", "point", "body"]
     value: tuple[float, ...]
     bodies: tuple[str, ...] = ()
-    edge: tuple[tuple[float, float], tuple[float, float]] | None = None
-    at: tuple[float, float] | None = None
+    edge: tuple[Point, Point] | None = None
+    at: Point | None = None
     group: str = "dead"
     face: Face | None = None
+    polygon: tuple[Point, ...] | None = None
 
 
 @strict_class
@@ -217,7 +245,7 @@ class Tie:
     name : str
     body_a, body_b : str
         Body names; ``body_b`` may be "" for a fixed point in space.
-    at_a, at_b : (x, y)
+    at_a, at_b : points
         Ends [m].
     stiffness : float
         E A / L > 0 [kN/m].
@@ -227,9 +255,9 @@ class Tie:
 
     name: str
     body_a: str
-    at_a: tuple[float, float]
+    at_a: Point
     body_b: str
-    at_b: tuple[float, float]
+    at_b: Point
     stiffness: float
     prestress: float = 0.0
 
@@ -237,25 +265,28 @@ class Tie:
 @strict_class
 @dataclass(frozen=True, eq=False)
 class Model:
-    """A masonry structure in the plane.
+    """A masonry structure in the plane or in space.
 
     Parameters
     ----------
-    bodies : tuple of Body
+    bodies : tuple of Body, or of Polyhedron
+        Outlines make a model in the plane, polyhedra one in space.
     materials : mapping of str to Elastic or Rigid
     laws : mapping of str to JointLaw
     rules : tuple of JointRule
         The last rule that matches an interface gives its law.
     supports, loads, ties : tuples
     plane : {"stress", "strain"}
+        Of plane models.
     element : str
-        "Q4", "Q4I" (incompatible modes), "Q8", "Q9", "T3", "T6".
+        In the plane "Q4", "Q4I" (incompatible modes), "Q8", "Q9", "T3", "T6"; in space "H8I" (hexahedra with
+        incompatible modes), "H8", "H27", "T4", "T10". Empty takes the first.
     mesh_size : float or None
         Target element size [m]; None takes a quarter of each body's longer side.
     refinement : int
         Every element is split ``refinement`` times more (1: as described).
     gap_tolerance : float or None
-        Edges closer than this touch [m]; None takes 1e-6 of the size of the model.
+        Edges or faces closer than this touch [m]; None takes 1e-6 of the size of the model.
     gap_reach : float
         Edges further apart than the tolerance but within this become pairs with an initial gap [m].
     title : str
@@ -266,9 +297,13 @@ class Model:
     periods : ((x1, y1), (x2, y2)) or None
         The model is a *cell* that these two vectors repeat in the plane without end [m]: its interfaces wrap round, and
         nothing else may hold or load it. See :mod:`concio.model.periodic`.
+    contact_points : {"auto", "corners"} or int
+        Where contact is stated between two blocks in space that are not meshed: at the corners of each patch, or at
+        n x n points over it, which distribute pressure. "auto" takes corners for hard joints, 4 x 4 points for joints
+        with stiffness, 6 x 6 for joints that crush.
     """
 
-    bodies: tuple[Body, ...]
+    bodies: tuple[Body | Polyhedron, ...]
     materials: Mapping[str, Elastic | Rigid]
     laws: Mapping[str, JointLaw]
     rules: tuple[JointRule, ...] = (JointRule("joint"),)
@@ -276,7 +311,7 @@ class Model:
     loads: tuple[Load, ...] = ()
     ties: tuple[Tie, ...] = ()
     plane: Literal["stress", "strain"] = "stress"
-    element: str = "Q4"
+    element: str = ""
     mesh_size: float | None = None
     refinement: int = 1
     gap_tolerance: float | None = None
@@ -285,11 +320,18 @@ class Model:
     generator: Mapping[str, object] = field(default_factory=dict)
     stages: tuple[Stage, ...] = ()
     periods: Periods | None = None
+    contact_points: str | int = "auto"
 
     def __post_init__(self) -> None:
         if not self.bodies:
             msg = "the model has no bodies"
             raise InputError(msg, hint="describe at least one block")
+        for name, value in resolved(self).items():
+            object.__setattr__(self, name, value)
+        points = self.contact_points
+        if points not in ("auto", "corners") and not (isinstance(points, int) and 2 <= points <= 20):
+            msg = f"contact_points = {points!r} is not 'auto', 'corners' or a whole number from 2 to 20"
+            raise InputError(msg, hint="4 means 4 x 4 points on each patch")
         names = [b.name for b in self.bodies]
         if len(set(names)) != len(names):
             twice = next(n for n in names if names.count(n) > 1)
@@ -313,7 +355,49 @@ class Model:
             check_cell(self)
 
     @property
-    def free_bodies(self) -> tuple[Body, ...]:
+    def dim(self) -> int:
+        """Dimension: 2 in the plane, 3 in space."""
+        return int(self.bodies[0].dim)
+
+    @cached_property
+    def outlines(self) -> tuple[Body, ...]:
+        """The bodies of a plane model.
+
+        Raises
+        ------
+        InputError
+            The model is in space.
+        """
+        found = tuple(b for b in self.bodies if isinstance(b, Body))
+        self._require(len(found) == len(self.bodies), 2)
+        return found
+
+    @cached_property
+    def polyhedra(self) -> tuple[Polyhedron, ...]:
+        """The bodies of a model in space.
+
+        Raises
+        ------
+        InputError
+            The model is plane.
+        """
+        found = tuple(b for b in self.bodies if isinstance(b, Polyhedron))
+        self._require(len(found) == len(self.bodies), 3)
+        return found
+
+    def _require(self, right: bool, dim: int) -> None:
+        if not right:
+            msg = f"this is for models {WORDS[dim]}; the model is {WORDS[self.dim]}"
+            raise InputError(msg, hint="concio.extrude makes a model in space of a plane one" if dim == 3 else None)
+
+    @cached_property
+    def size(self) -> float:
+        """Longest side of the box around all bodies [m]; it does not depend on where the origin is."""
+        low, high = (np.array([f(b.vertices, axis=0) for b in self.bodies]) for f in (np.min, np.max))
+        return float((high.max(0) - low.min(0)).max())
+
+    @property
+    def free_bodies(self) -> tuple[Body | Polyhedron, ...]:
         """Bodies that have unknowns."""
         return tuple(b for b in self.bodies if b.kind != "fixed")
 
@@ -322,7 +406,7 @@ class Model:
         """Names of the load groups, in order of appearance."""
         return tuple(dict.fromkeys([load.group for load in self.loads] + [s.group for s in self.supports]))
 
-    def body(self, name: str) -> Body:
+    def body(self, name: str) -> Body | Polyhedron:
         """Return the body called ``name``."""
         for body in self.bodies:
             if body.name == name:
@@ -331,7 +415,7 @@ class Model:
         hint = closest(name, (b.name for b in self.bodies), otherwise="see the names with 'concio check'")
         raise InputError(msg, hint=hint)
 
-    def rule_between(self, a: Body, b: Body) -> JointRule:
+    def rule_between(self, a: Body | Polyhedron, b: Body | Polyhedron) -> JointRule:
         """Return the rule of an interface between two bodies: the last that matches.
 
         Raises

@@ -17,15 +17,15 @@ class ControlPoint:
     ----------
     body : str
         Name of the body.
-    at : (x, y)
+    at : (x, y) or (x, y, z)
         Position; the nearest node of an elastic body is taken [m].
-    direction : (x, y)
+    direction : (x, y) or (x, y, z)
         Direction in which the displacement is measured; scaled to length one.
     """
 
     body: str
-    at: tuple[float, float]
-    direction: tuple[float, float] = (1.0, 0.0)
+    at: tuple[float, ...]
+    direction: tuple[float, ...] = (1.0, 0.0)
 
 
 @strict_class

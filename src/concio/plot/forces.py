@@ -45,7 +45,8 @@ def plot_pressure(result: Result, ax: Axes | None = None, *, scale: float | None
     contacts = result.contacts
     pressure = contacts.pressure[pieces.pair]
     largest = float(pressure.max(initial=0.0))
-    typical = float(np.sqrt(np.median([b.area for b in result.model.free_bodies if b.role != "mortar"] or [1.0])))
+    areas = [b.area for b in result.model.outlines if b.kind != "fixed" and b.role != "mortar"]
+    typical = float(np.sqrt(np.median(areas or [1.0])))
     scale = (0.8 * typical / largest if largest > 0 else 1.0) if scale is None else scale
     diagrams = pressure_diagrams(result, pieces, scale)
     ax.add_collection(
@@ -99,7 +100,7 @@ def plot_forces(result: Result, ax: Axes | None = None, *, chains: bool = True, 
         size = np.hypot(*force.T)
         largest = float(size[keep].max(initial=0.0))
         keep &= size > 1e-3 * largest
-        typical = float(np.sqrt(np.median([b.area for b in result.model.free_bodies])))
+        typical = float(np.sqrt(np.median([b.area for b in result.model.outlines if b.kind != "fixed"])))
         scale = typical / (largest or 1.0)
         half = 0.5 * scale * force[keep]
         point = result.contacts.point[keep]
@@ -175,11 +176,12 @@ def _chain_lines(ax: Axes, lines: Array, force: Array, largest: float) -> None:
 
 
 def _reactions(ax: Axes, result: Result, box: Array) -> None:
+    body_of = {b.name: b for b in result.model.outlines}
     for name, (fx, fy) in result.reactions.items():
-        body = next((b for b in result.model.bodies if b.name == name), None)
+        body = body_of.get(name)
         if body is None:
             support = next(s for s in result.model.supports if s.name == name)
-            body = result.model.body(support.body)
+            body = body_of[support.body]
         if not np.hypot(fx, fy) > 0 or len(result.reactions) > 12:
             continue
         text = f"{name}\n{style.number(fx)}, {style.number(fy)} kN"

@@ -40,13 +40,13 @@ def plot_model(model: Model, ax: Axes | None = None, *, names: bool | None = Non
     """
     from matplotlib.collections import PolyCollection
 
-    box = style.box_of(*[b.outline for b in model.bodies])
+    box = style.box_of(*[b.outline for b in model.outlines])
     if any(load.edge is not None or load.at is not None for load in model.loads):
         box = box + np.array([[-1.0], [1.0]]) * 0.05 * float((box[1] - box[0]).max())
     size = float((box[1] - box[0]).max())
     ax = style.axes_for(box, ax)
-    fixed = [b for b in model.bodies if b.kind == "fixed"]
-    free = [b for b in model.bodies if b.kind != "fixed"]
+    fixed = [b for b in model.outlines if b.kind == "fixed"]
+    free = [b for b in model.outlines if b.kind != "fixed"]
     many = len(free) > style.LARGE
     ax.add_collection(
         PolyCollection([b.outline for b in free], facecolors=[style.body_colour(b) for b in free],
@@ -93,7 +93,7 @@ def plot_result_model(result: Result, ax: Axes | None = None, *, names: bool | N
 
 def _names(ax: Axes, model: Model, box: Array) -> None:
     points_per_metre = 72 * 9.0 / float((box[1] - box[0])[0])
-    for body in model.bodies:
+    for body in model.outlines:
         span = np.ptp(body.outline, axis=0)
         upright = span[1] > 1.6 * span[0]
         room, width = (span[1], span[0]) if upright else (span[0], span[1])

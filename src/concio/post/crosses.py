@@ -62,7 +62,7 @@ def crosses(result: Result, of: Literal["bodies", "elements"] = "bodies") -> Cro
     if of == "bodies":
         body = np.flatnonzero(disc.shape_of >= 0)
         s1, s2, angle = (v[body] for v in result.stress.principal)
-        area = np.array([result.model.bodies[b].area for b in body])
+        area = np.array([result.model.outlines[b].area for b in body])
         return Crosses(disc.centroids[body], s1, s2, angle, np.sqrt(area), body)
     centre: list[Array] = []
     stress: list[Array] = []

@@ -72,7 +72,7 @@ def force_chains(result: Result, threshold: float = 1e-3) -> Chains:
     """
     found = joint_forces(result, threshold)
     joints = result.joints
-    bodies = result.model.bodies
+    bodies = result.model.outlines
     compact = np.array([b.kind != "fixed" and not _is_film(b.outline, b.area) for b in bodies])
     centres = result.assembly.disc.centroids
     lines, force = [], []

@@ -51,7 +51,7 @@ def joint_lines(result: Result, shown: Outlines) -> JointLines:
     Each interface is cut into as many pieces as it has pairs, each as long as the pair's tributary length.
     """
     pairs = result.assembly.pairs
-    faces = result.assembly.detection.interfaces
+    faces = result.assembly.detection.segments
     pair = np.flatnonzero(pairs.interface >= 0)
     if not len(pair):
         empty = np.zeros((0, 2, 2))
@@ -73,7 +73,7 @@ def joint_lines(result: Result, shown: Outlines) -> JointLines:
     moved = []
     for side in ("a", "b"):
         base = np.array([shown.vertices[getattr(f, side)][getattr(f, f"edge_{side}")] for f in faces])
-        corner = np.array([result.model.bodies[getattr(f, side)].outline[getattr(f, f"edge_{side}")] for f in faces])
+        corner = np.array([result.model.outlines[getattr(f, side)].outline[getattr(f, f"edge_{side}")] for f in faces])
         edge_end = np.array([shown.vertices[getattr(f, side)][getattr(f, f"edge_{side}") + 1] for f in faces])
         away = np.abs(((ends - corner[face][:, None]) * tangent[:, None]).sum(-1))
         arc = np.minimum(base[face][:, None] + away, edge_end[face][:, None])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.fem.body import Shape
 from concio.fem.discretisation import FIXED
 from concio.kinematics.rigid import swept
 from concio.post.motion import body_motions
@@ -68,8 +69,9 @@ def outlines(result: Result, u: Array | None = None) -> Outlines:
     disc = result.assembly.disc
     own = result.displacement if u is None else u
     motion = body_motions(result, u)
-    loops = [np.concatenate([e.nodes[:-1] for e in s.edges] + [s.edges[0].nodes[:1]]) for s in disc.shapes]
-    cuts = [np.cumsum([0] + [len(e.nodes) - 1 for e in s.edges]) for s in disc.shapes]
+    shapes = [s for s in disc.shapes if isinstance(s, Shape)]
+    loops = [np.concatenate([e.nodes[:-1] for e in s.edges] + [s.edges[0].nodes[:1]]) for s in shapes]
+    cuts = [np.cumsum([0] + [len(e.nodes) - 1 for e in s.edges]) for s in shapes]
     points, moved, vertices, arcs = [], [], [], []
     starts, begin = [0], 0.0
     for b, s in enumerate(disc.shape_of):
@@ -78,7 +80,7 @@ def outlines(result: Result, u: Array | None = None) -> Outlines:
             place = disc.shapes[s].elements.nodes[loop] + disc.origins[b]
             displaced = own[disc.offsets[b] : disc.offsets[b + 1]].reshape(-1, 2)[loop]
         else:
-            outline = disc.model.bodies[b].outline
+            outline = disc.model.outlines[b].outline
             place, corner = np.vstack([outline, outline[:1]]), np.arange(len(outline) + 1)
             arm = place - disc.centroids[b]
             displaced = motion[b, :2] + swept(motion[b, 2], arm)

@@ -315,7 +315,7 @@ def _mean_stress(cell: PeriodicCell, matrix: Array, u: Array) -> float:
     worst = 0.0
     for k in range(3):
         stress = Stress(cell.assembly.disc, cell.assembly.supported.T @ u[:, k])
-        volumes = np.array([b.area * b.thickness for b in cell.model.bodies])
+        volumes = np.array([b.volume for b in cell.model.bodies])
         mean = volumes @ stress.mean / cell.volume
         worst = max(worst, float(np.abs(mean - matrix[:, k]).max()))
     return worst

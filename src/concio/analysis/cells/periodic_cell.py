@@ -84,7 +84,7 @@ class PeriodicCell:
     @cached_property
     def columns(self) -> tuple[Array, Array]:
         """Relative displacements of the pairs along n and t, (m, 3), under unit macroscopic strains [m]."""
-        return strain_columns(self.assembly.pairs, self.assembly.detection.interfaces)
+        return strain_columns(self.assembly.pairs, self.assembly.detection.segments)
 
     def stress(self, normal_force: Array, friction_force: Array) -> Array:
         """Return the macroscopic stress (3,) or (3, k) of contact forces (m,) or (m, k) [kN/m2]."""
@@ -94,7 +94,7 @@ class PeriodicCell:
 
     def turning(self, normal_force: Array, friction_force: Array) -> float:
         """Return half the difference of the stresses xy and yx of contact forces (m,), zero in balance [kN/m2]."""
-        pairs, faces = self.assembly.pairs, self.assembly.detection.interfaces
+        pairs, faces = self.assembly.pairs, self.assembly.detection.segments
         shift = np.array([face.shift for face in faces], dtype=float).reshape(-1, 2)[pairs.interface]
         force = normal_force[:, None] * pairs.normal + friction_force[:, None] * pairs.tangent
         return float((force[:, 0] * shift[:, 1] - force[:, 1] * shift[:, 0]).sum()) / (2 * self.volume)

@@ -52,14 +52,14 @@ from concio.errors import InputError
 from concio.model.arcs import with_arcs
 from concio.model.drawing.dxf_entities import Entity, read_sheet
 from concio.model.drawing.layers import Layers, LayerUse
-from concio.model.model import Array, Load
+from concio.model.model import Array, Load, Point
 from concio.units import quantity
 
 CHORD_TOLERANCE = 5e-4
 """Largest distance of a chord from its arc where none is given [m]."""
 
 DxfFaultKind = Literal["open", "outline", "duplicate", "overlap", "layer", "place", "ignored", "thin", "hole"]
-Edge = tuple[tuple[float, float], tuple[float, float]]
+Edge = tuple[Point, Point]
 
 
 @dataclass(frozen=True, eq=False)

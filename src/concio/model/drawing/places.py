@@ -10,7 +10,7 @@ import shapely
 
 from concio.model.drawing.dxf import Drawing, DxfFault, Edge
 from concio.model.generate.masonry import Piece
-from concio.model.model import Load, Support
+from concio.model.model import Load, Point, Support
 
 
 def supports_and_loads(
@@ -41,7 +41,7 @@ def supports_and_loads(
             chosen = np.flatnonzero(common > 8 * tolerance)  # a side that is crossed covers half of that
         return [pieces[k].name for k in chosen.tolist()]
 
-    def under(place: tuple[float, float]) -> list[str]:
+    def under(place: Point) -> list[str]:
         """Return the block that a point lies in; of several that it lies between, the lowest."""
         point = shapely.Point(place)
         near = np.flatnonzero(shapely.distance(shapes, point) <= tolerance)
@@ -50,7 +50,7 @@ def supports_and_loads(
         heights = shapely.get_y(shapely.centroid(shapes[chosen]))
         return [pieces[int(chosen[np.argmin(heights)])].name] if len(chosen) else []
 
-    def nowhere(handle: str, at: tuple[float, float], what: str) -> None:
+    def nowhere(handle: str, at: Point, what: str) -> None:
         text = f"entity {handle} at ({at[0]:.6g}, {at[1]:.6g}) m: this {what} lies on no block (move it onto an edge)"
         lost.append(DxfFault("place", handle, "", np.array(at), text))
 

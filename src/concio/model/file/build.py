@@ -61,7 +61,7 @@ def build(data: FileTable, folder: Path, where: str) -> Model:
         materials = {name: _material(table, f"[materials.{name}]") for name, table in data.materials.items()}
         laws = {name: _law(table, f"[joints.{name}]") for name, table in data.joints.items()}
         start = _start(data, materials, laws, folder)
-        bodies = [*(start.bodies if start else ()), *_blocks_of_file(data, materials, folder)]
+        bodies = [*(start.outlines if start else ()), *_blocks_of_file(data, materials, folder)]
         bodies += [_body(b, k, materials, data.analysis.thickness) for k, b in enumerate(data.blocks, 1)]
         if not bodies:
             msg = "the file describes no blocks"

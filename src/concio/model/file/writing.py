@@ -47,7 +47,7 @@ def dumps(model: Model, *, blocks_file: str | None = None) -> str:
     for rule in model.rules:
         lines += _table("rules", {"law": rule.law, "between": rule.between, "gap": rule.gap or None}, many=True)
     if blocks_file is None:
-        for body in model.bodies:
+        for body in model.outlines:
             lines += _table("blocks", _body(body), many=True)
     for support in model.supports:
         lines += _table("supports", _support(support), many=True)
@@ -99,7 +99,7 @@ def save(model: Model, path: str | os.PathLike[str], *, blocks_file: str | None 
     text = dumps(model, blocks_file=blocks_file)
     try:
         if blocks_file is not None:
-            write_blocks(path.parent / blocks_file, model.bodies)
+            write_blocks(path.parent / blocks_file, model.outlines)
         with whole_file(path) as fresh:
             fresh.write_text(text, encoding="utf-8")
     except OSError as error:

@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -33,6 +34,9 @@ from concio.model.interfaces.facing import Edges, FacingPairs, facing_pairs
 from concio.model.interfaces.near import MissKind, NearMiss, Overlap, find_overlaps, find_point_touches, size_of_bodies
 from concio.model.interfaces.sight import visible_parts
 from concio.model.model import Array, Body
+
+if TYPE_CHECKING:
+    from concio.model.interfaces.patches import Patch
 
 FACING_ANGLE = np.deg2rad(5.0)
 """Edges turned against each other by more than this are not joined, only reported [rad]."""
@@ -81,6 +85,13 @@ class Interface:
     length: float
     shift: tuple[float, float] = (0.0, 0.0)
 
+    dim: ClassVar[int] = 2
+
+    @property
+    def size(self) -> float:
+        """Length [m]."""
+        return self.length
+
 
 @dataclass(frozen=True)
 class Detection:
@@ -88,15 +99,25 @@ class Detection:
 
     Parameters
     ----------
-    interfaces : tuple of Interface
-        In order of the bodies a, b and of their edges.
+    interfaces : tuple of Interface, in space of Patch
+        In order of the bodies a, b and of their edges or faces.
     near_misses : tuple of NearMiss
     overlaps : tuple of Overlap
     """
 
-    interfaces: tuple[Interface, ...]
+    interfaces: tuple[Interface, ...] | tuple[Patch, ...]
     near_misses: tuple[NearMiss, ...] = ()
     overlaps: tuple[Overlap, ...] = ()
+
+    @property
+    def segments(self) -> tuple[Interface, ...]:
+        """The interfaces of a plane model; none in space."""
+        return tuple(i for i in self.interfaces if isinstance(i, Interface))
+
+    @property
+    def patches(self) -> tuple[Patch, ...]:
+        """The interfaces of a model in space; none in the plane."""
+        return tuple(i for i in self.interfaces if not isinstance(i, Interface))
 
     def report(self) -> tuple[str, ...]:
         """Return one sentence for each overlap and each near miss, overlaps first."""

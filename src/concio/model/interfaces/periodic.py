@@ -88,7 +88,7 @@ def detect_periodic(bodies: Sequence[Body], periods: Periods, *, tolerance: floa
         return pair if pair[1] < count else (pair[0], around[pair[1] - count].of)
 
     interfaces = []
-    for face in found.interfaces:
+    for face in found.segments:
         if face.b < count:
             interfaces.append(face)
         elif around[face.b - count].kept:

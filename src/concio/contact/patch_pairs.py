@@ -1,0 +1,177 @@
+"""Contact pairs of all patches of a model in space: points, frames, areas, laws, and the operators C_n and C_t."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import scipy.sparse as sp
+import shapely
+
+from concio.contact.pairs import CONTACT_MODELS, Pairs, laws_of
+from concio.contact.patch_coupling import FaceSide, PatchCoupling, couple_faces
+from concio.contact.patch_points import CRUSHING, STIFF, corner_points, spread_points
+from concio.fem.discretisation import FIXED, Discretisation
+from concio.fem.solid import SolidShape
+from concio.fem.solid_mesh import Mark
+from concio.kinematics.frames import tangents
+from concio.kinematics.rigid import motions, rigid_row
+from concio.model.interfaces.patches import Patch
+from concio.model.materials import JointLaw
+from concio.model.model import Model
+
+Array = np.ndarray
+
+
+def patch_marks(model: Model, patches: Sequence[Patch]) -> Mapping[int, list[Mark]]:
+    """Return for each meshed body the polygons of its patches, face by face."""
+    found: dict[int, list[Mark]] = {}
+    for patch in patches:
+        for body, face in ((patch.a, patch.face_a), (patch.b, patch.face_b)):
+            if model.bodies[body].kind == "elastic":
+                found.setdefault(body, []).append(Mark(face, patch.polygon))
+    return found
+
+
+def make_patch_pairs(disc: Discretisation, patches: Sequence[Patch]) -> Pairs:
+    """Return the pairs of all patches of a discretised model, patch by patch.
+
+    Patches between two blocks that are not meshed are written together; those with a meshed side whose two sides are
+    alike (shape, face, place on it) share one coupling.
+
+    Raises
+    ------
+    InputError
+        No joint law matches a patch.
+    """
+    model = disc.model
+    a, b = np.array([(p.a, p.b) for p in patches]).T
+    law, opening = laws_of(model, a, b)
+    normal = np.array([p.normal for p in patches])
+    frame = np.concatenate([normal[:, None], tangents(normal)], axis=1)  # (p, 3, 3): n, t1, t2
+    points = np.array([_points(model, model.laws[name]) for name in model.laws])[law]
+    meshed = (disc.shape_of[a] >= 0) | (disc.shape_of[b] >= 0)
+
+    place: list[Array] = [np.zeros((0, 3))] * len(patches)
+    area: list[Array] = [np.zeros(0)] * len(patches)
+    rule = np.zeros(len(patches), dtype=int)
+    corner = np.flatnonzero(~meshed & (points == 0))
+    if len(corner):
+        at, share, count = corner_points([patches[k] for k in corner.tolist()])
+        ends = np.cumsum(count)[:-1]
+        for k, x, w in zip(corner.tolist(), np.split(at, ends), np.split(share, ends), strict=True):
+            place[k], area[k] = x, w
+        rule[corner] = CONTACT_MODELS.index("corners of the patch")
+    for k in np.flatnonzero(~meshed & (points > 0)).tolist():
+        place[k], area[k] = spread_points(patches[k], int(points[k]))
+        rule[k] = CONTACT_MODELS.index("points over the patch")
+    couplings: dict[tuple[object, ...], PatchCoupling] = {}
+    of_patch: dict[int, PatchCoupling] = {}
+    for k in np.flatnonzero(meshed).tolist():
+        coupling = _coupling(disc, patches[k], couplings)
+        of_patch[k] = coupling
+        axes = tangents(patches[k].normal)
+        place[k], area[k] = patches[k].polygon[0] + coupling.at @ axes, coupling.area
+        rule[k] = CONTACT_MODELS.index(coupling.model)
+
+    count = np.array([len(x) for x in place])
+    face = np.repeat(np.arange(len(patches)), count)
+    begin = np.concatenate([[0], np.cumsum(count)])
+    where = np.concatenate(place)
+    blocks = []
+    for body, sign, side in ((a, -1.0, "a"), (b, 1.0, "b")):
+        own = {k: s for k, c in of_patch.items() if (s := getattr(c, side)) is not None}
+        rigid = np.ones(len(patches), dtype=bool)
+        rigid[list(own)] = False
+        rigid &= disc.shape_of[body] != FIXED
+        blocks.append(_rigid_rows(disc, np.flatnonzero(rigid[face]), body[face], where, frame[face], sign))
+        for k, entries in own.items():
+            row = begin[k] + entries.pair
+            column = disc.offsets[body[k]] + 3 * entries.node[:, None] + np.arange(3)
+            value = sign * frame[k][:, None, :] * entries.weight[:, None]  # (3, e, 3)
+            blocks.append((np.repeat(row, 3), column.ravel(), value.reshape(3, -1)))
+    row, column = (np.concatenate([block[k] for block in blocks]) for k in (0, 1))
+    value = np.concatenate([block[2] for block in blocks], axis=1)
+    total = len(where)
+    gap = np.concatenate([patches[k].gap_at(place[k]) for k in range(len(patches))]) + opening[face]
+    patch_area = np.concatenate(area)
+    C_n = sp.csr_array((value[0], (row, column)), shape=(total, disc.unknowns))
+    C_t = sp.csr_array(
+        (np.concatenate([value[1], value[2]]), (np.concatenate([2 * row, 2 * row + 1]), np.tile(column, 2))),
+        shape=(2 * total, disc.unknowns),
+    )
+    for matrix in (C_n, C_t):
+        matrix.sum_duplicates()
+        matrix.eliminate_zeros()
+    return Pairs(
+        body_a=a[face],
+        body_b=b[face],
+        interface=face,
+        point=where,
+        normal=normal[face],
+        tangents=frame[face, 1:],
+        length=np.sqrt(patch_area),
+        area=patch_area,
+        gap=gap,
+        law=law[face],
+        law_names=tuple(model.laws),
+        C_n=C_n,
+        C_t=C_t,
+        rule=rule[face],
+    )
+
+
+def _points(model: Model, law: JointLaw) -> int:
+    """Return how many points along each side a patch of two unmeshed blocks gets under a law; 0 for its corners."""
+    if model.contact_points == "corners":
+        return 0
+    if model.contact_points != "auto":
+        return int(model.contact_points)
+    return CRUSHING if law.compressive_strength is not None else STIFF if law.normal_stiffness is not None else 0
+
+
+def _rigid_rows(
+    disc: Discretisation, pairs: Array, body: Array, at: Array, frame: Array, sign: float
+) -> tuple[Array, Array, Array]:
+    """Return rows and columns (e,) and values (3, e) of the displacement along n, t1, t2 of rigid sides."""
+    own = body[pairs]
+    columns = disc.offsets[own][:, None] + np.arange(motions(3))
+    arm = (at[pairs] - disc.centroids[own])[:, None]
+    value = sign * rigid_row(frame[pairs], arm, disc.reach[own][:, None])  # (q, 3, 6)
+    return np.repeat(pairs, columns.shape[1]), columns.ravel(), np.moveaxis(value, 1, 0).reshape(3, -1)
+
+
+def _coupling(
+    disc: Discretisation, patch: Patch, known: dict[tuple[object, ...], PatchCoupling]
+) -> PatchCoupling:
+    """Return the coupling of a patch with a meshed side, the same for patches that are alike."""
+    unit = 1e-9 * float(np.median(disc.reach))
+    axes = tangents(patch.normal)
+    key: list[object] = []
+    sides: list[FaceSide | None] = []
+    for body, face in ((patch.a, patch.face_a), (patch.b, patch.face_b)):
+        s = int(disc.shape_of[body])
+        if s < 0:
+            key.append(-1)
+            continue
+        from_first = np.vstack([patch.polygon, *patch.holes]) - disc.origins[body]
+        key += [s, face, np.round(from_first / unit).astype(np.int64).tobytes()]
+    if all(part == -1 for part in key[1:]) or key[0] == -1:
+        shape = np.round((patch.polygon - patch.polygon[0]) / unit).astype(np.int64)
+        key.append(shape.tobytes())
+    found = known.get(tuple(key))
+    if found is not None:
+        return found
+    for body, face in ((patch.a, patch.face_a), (patch.b, patch.face_b)):
+        s = int(disc.shape_of[body])
+        if s < 0:
+            sides.append(None)
+            continue
+        solid = disc.shapes[s]
+        assert isinstance(solid, SolidShape)
+        flat = (solid.elements.nodes + disc.origins[body] - patch.polygon[0]) @ axes.T
+        sides.append(FaceSide(solid.facets[face], flat))
+    rings = [(ring - patch.polygon[0]) @ axes.T for ring in (patch.polygon, *patch.holes)]
+    coupling = couple_faces(sides[0], sides[1], shapely.Polygon(rings[0], rings[1:]))
+    known[tuple(key)] = coupling
+    return coupling

@@ -1,0 +1,393 @@
+"""Interfaces between blocks in space: the common polygons of faces that face each other.
+
+Two faces of two bodies form a *patch* where their outward normals are opposite within an angle and their distance along
+the mean normal n from a to b,
+
+    g = n . (x_b - x_a),
+
+lies between minus the tolerance and the larger of tolerance and reach. g is linear over the patch. The faces are cut in
+their mean plane as polygons, so that faces which are not convex, have holes, or meet in several pieces need no cases of
+their own; each piece is a patch.
+
+Nothing is dropped in silence: see :class:`concio.model.interfaces.detect.Detection`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+import shapely
+
+from concio.errors import InputError
+from concio.kinematics.frames import cross, tangents
+from concio.kinematics.mass import polygon_moments
+from concio.model.interfaces.detect import FACING_ANGLE, NEAR_ANGLE, NEAR_SHARE, SLIVER_SHARE, Detection
+from concio.model.interfaces.faces import FacePairs, Faces, facing_faces, neighbours
+from concio.model.interfaces.near import MissKind, NearMiss
+from concio.model.interfaces.near_space import find_overlaps_in_space, find_touches, miss_in_space
+from concio.model.polyhedron import Polyhedron
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """The common polygon of two faces that face each other.
+
+    Parameters
+    ----------
+    a, b : int
+        Indices of the bodies, ``a < b``.
+    face_a, face_b : int
+        Numbers of the faces.
+    polygon : (k, 3) array
+        Boundary on the face of ``a``, counter-clockwise about the normal [m].
+    normal : (3,) array
+        Unit normal from a to b.
+    gap : (k,) array
+        Initial gap at the vertices of the boundary, zero or positive [m]; zero wherever the faces are within the
+        tolerance.
+    signed_gap : (k,) array
+        Distance as drawn, negative where the faces overlap (by at most the tolerance) [m].
+    area : float
+        [m2].
+    holes : tuple of (h, 3) arrays
+        Boundaries of holes, clockwise about the normal [m].
+    """
+
+    a: int
+    b: int
+    face_a: int
+    face_b: int
+    polygon: Array
+    normal: Array
+    gap: Array
+    signed_gap: Array
+    area: float
+    holes: tuple[Array, ...] = ()
+
+    dim: ClassVar[int] = 3
+
+    def __repr__(self) -> str:
+        return f"Patch({self.a}-{self.b}, {len(self.polygon)} vertices, area {self.area:.4g} m2)"
+
+    @cached_property
+    def frame(self) -> Array:
+        """The two tangents (2, 3), right-handed with the normal."""
+        return tangents(self.normal)
+
+    @cached_property
+    def middle(self) -> Array:
+        """Centroid (3,) [m]."""
+        flat = (self.polygon - self.polygon[0]) @ self.frame.T
+        holes = [(hole - self.polygon[0]) @ self.frame.T for hole in self.holes]
+        return np.asarray(self.polygon[0] + polygon_moments(flat, holes).centroid @ self.frame)
+
+    @property
+    def size(self) -> float:
+        """Longest side of the box around it in its plane [m]."""
+        return float(np.ptp(self.polygon @ self.frame.T, axis=0).max())
+
+    def gap_at(self, points: Array) -> Array:
+        """Return the initial gap (n,) at points (n, 3) of the patch, zero or positive [m]."""
+        if not self.gap.any():
+            return np.zeros(len(points))
+        flat = (self.polygon - self.polygon[0]) @ self.frame.T
+        system = np.column_stack([np.ones(len(flat)), flat])
+        plane, *_ = np.linalg.lstsq(system, self.signed_gap, rcond=None)
+        arm = (points - self.polygon[0]) @ self.frame.T
+        return np.asarray(np.maximum(plane[0] + arm @ plane[1:], 0.0))
+
+
+def detect_patches(
+    bodies: Sequence[Polyhedron], *, tolerance: float, reach: float = 0.0, facing_angle: float = FACING_ANGLE
+) -> Detection:
+    """Return the patches between polyhedra, with near misses and overlaps.
+
+    Parameters
+    ----------
+    bodies : sequence of Polyhedron
+        Pairs of two fixed bodies are skipped.
+    tolerance : float
+        Faces closer than this touch, and overlap by up to this without being an overlap [m].
+    reach : float
+        Faces further apart than the tolerance but within the reach become patches with an initial gap [m].
+    facing_angle : float
+        Largest angle between faces that are joined [rad].
+
+    Raises
+    ------
+    InputError
+        Tolerance not positive, or a reach that is negative or not finite.
+    """
+    if not (0 < tolerance < np.inf):
+        msg = f"gap tolerance = {tolerance:g} must be positive"
+        raise InputError(msg, hint="give about a hundredth of the thinnest joint, in m")
+    if not (0 <= reach < np.inf):
+        msg = f"gap reach = {reach:g} must be zero or positive"
+        raise InputError(msg, hint="give the largest initial gap that should become a joint, in m")
+    table = Faces.of(bodies)
+    size = sizes(bodies)
+    fixed = np.array([b.kind == "fixed" for b in bodies])
+    within = max(tolerance, reach)
+    low, high = (f.reduceat(v, table.of_body[:-1]) for f, v in ((np.minimum, table.low), (np.maximum, table.high)))
+    around = 0.5 * np.maximum(NEAR_SHARE * size, 2 * within)[:, None]
+    i, j = neighbours(low - around, high + around)
+    some = ~(fixed[i] & fixed[j])
+    i, j = i[some], j[some]
+    smaller = np.minimum(size[i], size[j])
+    near = np.maximum(NEAR_SHARE * smaller, 2 * within)
+    pairs = facing_faces(table, (i, j), near, max(facing_angle, NEAR_ANGLE))
+
+    common = _Common.of(table, pairs, tolerance)
+    small = np.minimum(*size[table.body[pairs.faces]].T)[common.pair]
+    thin = np.maximum(SLIVER_SHARE * small, tolerance)
+    limit = np.maximum(NEAR_SHARE * small, 2 * within)
+    turned = pairs.angle[common.pair] > facing_angle
+    clipped = common.clipped(pairs, table, -tolerance, within, tolerance)
+    width = common.width()
+    faces_each_other = (width >= thin) & (common.g_max >= -tolerance) & (common.g_min <= limit)
+    own_width = np.zeros(len(common.pair))
+    np.maximum.at(own_width, clipped.source, clipped.width())
+    kept = (clipped.width() >= thin[clipped.source]) & ~turned[clipped.source]
+    patches = clipped.patches(pairs, table, np.flatnonzero(kept), tolerance)
+    joined = {(p.a, p.b) for p in patches}
+
+    area = np.zeros(len(common.pair))
+    np.add.at(area, clipped.source[kept], clipped.area[kept])
+    has = np.zeros(len(common.pair), dtype=bool)
+    has[clipped.source[kept]] = True
+    partial = has & (common.area - area > np.maximum(thin * np.sqrt(common.area), 0.01 * common.area))
+    touching = own_width > tolerance
+    sliver = ~has & ~turned & touching & ~(faces_each_other & (common.g_max > within))
+    angle = ~has & ~sliver & faces_each_other & (common.g_min <= within)
+    apart = ~has & ~turned & faces_each_other & (common.g_min > within)
+    misses: list[NearMiss] = []
+    for k in np.flatnonzero(partial | sliver | angle | apart).tolist():
+        kind: MissKind = "partial" if partial[k] else "sliver" if sliver[k] else "angle" if angle[k] else "gap"
+        p = common.pair[k]
+        a, b = pairs.faces[p]
+        misses.append(
+            miss_in_space(
+                kind, bodies, (int(table.body[a]), int(table.body[b])), (int(table.number[a]), int(table.number[b])),
+                common.middle(pairs, table, k), gap=float(common.g_max[k] if kind == "partial" else common.g_min[k]),
+                area=float(common.area[k]), joined=float(area[k]), width=float(own_width[k]),
+                angle=float(pairs.angle[p]), within=within,
+            )
+        )  # fmt: skip
+    rest = np.array([(p, q) not in joined for p, q in zip(i.tolist(), j.tolist(), strict=True)], dtype=bool)
+    convex = np.array([b.convex for b in bodies])
+    doubtful = rest | ~(convex[i] & convex[j])
+    overlaps = find_overlaps_in_space(bodies, (i[doubtful], j[doubtful]), tolerance)
+    known = joined | {o.bodies for o in overlaps} | {m.bodies for m in misses}
+    free = np.array([(p, q) not in known for p, q in zip(i.tolist(), j.tolist(), strict=True)], dtype=bool)
+    misses += find_touches(bodies, table, (i[free], j[free]), tolerance)
+    misses = _without_hidden(misses, joined, bodies)
+    return Detection(tuple(patches), tuple(misses), tuple(overlaps))
+
+
+def sizes(bodies: Sequence[Polyhedron]) -> Array:
+    """Return the side of a cube of the volume of each body (n,) [m]."""
+    groups: dict[object, list[int]] = {}
+    for k, body in enumerate(bodies):
+        groups.setdefault((body.faces, body.holes), []).append(k)
+    found = np.zeros(len(bodies))
+    for members in groups.values():
+        top = bodies[members[0]].topology
+        points = np.stack([bodies[k].vertices for k in members])
+        points = points - points[:, :1]
+        near, p, q = (points[:, index] for index in top.corners)
+        found[members] = (near * cross(p - near, q - near)).sum((1, 2)) / 6
+    return np.cbrt(found)
+
+
+def _without_hidden(
+    misses: list[NearMiss], joined: set[tuple[int, int]], bodies: Sequence[Polyhedron]
+) -> list[NearMiss]:
+    """Return the misses without gaps between bodies that have another body between them."""
+    kept = []
+    between: dict[int, set[int]] = {}
+    for a, b in joined:
+        between.setdefault(a, set()).add(b)
+        between.setdefault(b, set()).add(a)
+    for miss in misses:
+        a, b = miss.bodies
+        shared = between.get(a, set()) & between.get(b, set())
+        if miss.kind == "gap" and any(
+            bool((bodies[c].normals @ miss.at - bodies[c].offsets <= miss.gap).all())
+            for c in shared
+        ):
+            continue
+        kept.append(miss)
+    return kept
+
+
+@dataclass(frozen=True, eq=False)
+class _Common:
+    """Pieces of the common areas of pairs of faces, in the coordinates of their mean planes; c in all."""
+
+    pair: Array
+    source: Array
+    shape: Array  # shapely polygons
+    area: Array
+    g_min: Array
+    g_max: Array
+
+    @classmethod
+    def of(cls, table: Faces, pairs: FacePairs, tolerance: float) -> _Common:
+        """Return the pieces of the common area of each pair that are wider than the tolerance."""
+        first = table.polygons(pairs.faces[:, 0], pairs.origin, pairs.frame)
+        second = table.polygons(pairs.faces[:, 1], pairs.origin, pairs.frame)
+        box_a, box_b = shapely.bounds(first), shapely.bounds(second)
+        low, high = np.maximum(box_a[:, :2], box_b[:, :2]), np.minimum(box_a[:, 2:], box_b[:, 2:])
+        meet = np.flatnonzero((high - low > tolerance).all(1))
+        boxes = _are_boxes(first[meet], box_a[meet]) & _are_boxes(second[meet], box_b[meet])
+        plain, other = meet[boxes], meet[~boxes]  # rectangles along the axes of their plane need no cutting
+        parts, index = shapely.get_parts(shapely.intersection(first[other], second[other]), return_index=True)
+        both = shapely.box(*low[plain].T, *high[plain].T)
+        pair = np.concatenate([plain, other[index]])
+        return cls.described(table, pairs, np.concatenate([both, parts]), pair, pair, tolerance)
+
+    @classmethod
+    def described(
+        cls, table: Faces, pairs: FacePairs, parts: Array, pair: Array, source: Array, tolerance: float
+    ) -> _Common:
+        """Return pieces with their areas and gaps; lines, points and what is thinner than the tolerance go."""
+        area, around = shapely.area(parts), shapely.length(parts)
+        some = 2 * area > tolerance * around
+        parts, pair, source, area = parts[some], pair[some], source[some], area[some]
+        flat, owner = shapely.get_coordinates(parts, return_index=True)
+        at = pairs.on_first(table, pair[owner], flat)
+        gap = pairs.height(table, 1, pair[owner], at)
+        g_min, g_max = np.full(len(parts), np.inf), np.full(len(parts), -np.inf)
+        np.minimum.at(g_min, owner, gap)
+        np.maximum.at(g_max, owner, gap)
+        return cls(pair, source, parts, area, g_min, g_max)
+
+    def width(self) -> Array:
+        """Mean width (c,) of each piece, twice its area over its perimeter [m]."""
+        around = shapely.length(self.shape)
+        return np.asarray(np.divide(2 * self.area, around, out=np.zeros_like(self.area), where=around > 0))
+
+    def clipped(self, pairs: FacePairs, table: Faces, least: float, most: float, tolerance: float) -> _Common:
+        """Return the pieces where the gap lies between two values; ``source`` is the piece each comes from."""
+        whole = (self.g_min >= least) & (self.g_max <= most)
+        cut = np.flatnonzero(~whole & (self.g_min <= most) & (self.g_max >= least))
+        shapes, pair, source = [self.shape[whole]], [self.pair[whole]], [np.flatnonzero(whole)]
+        for k in cut.tolist():
+            p = int(self.pair[k])
+            probe = pairs.on_first(table, np.full(3, p), np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
+            g0, g1, g2 = pairs.height(table, 1, np.full(3, p), probe)
+            slope = np.array([g1 - g0, g2 - g0])
+            band = _band(self.shape[k], slope, g0, least, most)
+            parts = shapely.get_parts(shapely.intersection(self.shape[k], band))
+            shapes.append(parts)
+            pair.append(np.full(len(parts), p))
+            source.append(np.full(len(parts), k))
+        return _Common.described(
+            table, pairs, np.concatenate(shapes), np.concatenate(pair), np.concatenate(source), tolerance
+        )
+
+    def middle(self, pairs: FacePairs, table: Faces, k: int) -> Array:
+        """Return a point of the first face in piece k (3,) [m]."""
+        inside = shapely.point_on_surface(self.shape[k])
+        at = pairs.on_first(table, self.pair[[k]], np.array([[inside.x, inside.y]]))
+        found: Array = at[0]
+        return found
+
+    def patches(self, pairs: FacePairs, table: Faces, chosen: Array, tolerance: float) -> list[Patch]:
+        """Return chosen pieces as patches, in order of bodies and faces."""
+        pair = self.pair[chosen]
+        a, b = pairs.faces[pair].T
+        order = np.lexsort([table.number[b], table.number[a], table.body[b], table.body[a]])
+        chosen, pair = chosen[order], pair[order]
+        shapes = shapely.orient_polygons(self.shape[chosen])
+        flat, ring_ends, part_ends = _ragged(shapes)
+        ring_of = np.repeat(np.arange(len(ring_ends) - 1), np.diff(ring_ends))
+        part_of = np.repeat(np.arange(len(chosen)), np.diff(part_ends))
+        keep = _kept_vertices(flat, ring_ends, tolerance)
+        flat, ring_of = flat[keep], ring_of[keep]
+        owner = part_of[ring_of]
+        at = pairs.on_first(table, pair[owner], flat)
+        signed = pairs.height(table, 1, pair[owner], at)
+        gap = np.where(signed <= tolerance, 0.0, signed)
+        begin = np.searchsorted(ring_of, np.arange(len(ring_ends)))
+        for array in (at, gap, signed, pairs.normal):
+            array.setflags(write=False)
+        found = []
+        area = self.area[chosen].tolist()
+        faces = pairs.faces[pair]
+        columns = (table.body[faces].tolist(), table.number[faces].tolist(), part_ends[:-1].tolist(),
+                   part_ends[1:].tolist(), pair.tolist(), area)  # fmt: skip
+        starts = begin.tolist()
+        for (i, j), (f, g), r0, r1, p, size in zip(*columns, strict=True):
+            ring = slice(starts[r0], starts[r0 + 1])
+            holes = tuple(at[starts[r] : starts[r + 1]] for r in range(r0 + 1, r1))
+            found.append(Patch(i, j, f, g, at[ring], pairs.normal[p], gap[ring], signed[ring], size, holes))
+        return found
+
+
+def _are_boxes(shapes: Array, box: Array) -> Array:
+    """Return which polygons are rectangles along the axes, given their bounds (n, 4)."""
+    size = (box[:, 2:] - box[:, :2]).max(1, initial=0.0)
+    full = (box[:, 2] - box[:, 0]) * (box[:, 3] - box[:, 1])
+    found: Array = (shapely.get_num_coordinates(shapes) == 5) & (full - shapely.area(shapes) <= 1e-14 * size * size)
+    return found
+
+
+def _ragged(shapes: Array) -> tuple[Array, Array, Array]:
+    """Return coordinates (without closing repetitions), ends of rings, and rings of each polygon."""
+    if not len(shapes):
+        return np.zeros((0, 2)), np.zeros(1, dtype=int), np.zeros(1, dtype=int)
+    _, flat, (rings, parts) = shapely.to_ragged_array(shapes)
+    inner = np.ones(len(flat), dtype=bool)
+    inner[rings[1:] - 1] = False
+    return np.asarray(flat)[inner], rings - np.arange(len(rings)), np.asarray(parts)
+
+
+def _kept_vertices(flat: Array, rings: Array, tolerance: float) -> Array:
+    """Return which vertices stay when doubles and those on straight sides are dropped from all rings."""
+    keep = np.ones(len(flat), dtype=bool)
+    count = np.diff(rings)
+    ring = np.repeat(np.arange(len(count)), count)
+    last = rings[1:][ring] - 1
+    number = np.arange(len(flat))
+    ahead = np.where(number == last, rings[:-1][ring], number + 1)
+    behind = np.where(number == rings[:-1][ring], last, number - 1)
+    along, back = flat[ahead] - flat, flat - flat[behind]
+    turn = back[:, 0] * along[:, 1] - back[:, 1] * along[:, 0]
+    base = np.linalg.norm(flat[ahead] - flat[behind], axis=1)
+    suspect = (np.linalg.norm(along, axis=1) <= tolerance) | (np.abs(turn) <= 0.1 * tolerance * base)
+    for r in np.unique(ring[suspect]).tolist():
+        members = list(range(rings[r], rings[r + 1]))
+        k, idle = 0, 0
+        while len(members) > 3 and idle < len(members):
+            p, v, q = members[k - 1], members[k], members[(k + 1) % len(members)]
+            e, d = flat[q] - flat[p], flat[v] - flat[p]
+            length = float(np.hypot(*e))
+            off = abs(float(e[0] * d[1] - e[1] * d[0])) / length if length > 0 else 0.0
+            if off <= 0.1 * tolerance or float(np.hypot(*d)) <= tolerance:
+                keep[v] = False
+                del members[k]
+                k, idle = max(k - 1, 0) % len(members), 0
+            else:
+                k, idle = (k + 1) % len(members), idle + 1
+    return keep
+
+
+def _band(shape: shapely.Polygon, slope: Array, start: float, least: float, most: float) -> shapely.Polygon:
+    """Return the strip of the plane where ``start + slope . x`` lies between two values, as far as a shape reaches."""
+    steep = float(np.hypot(*slope))
+    across = slope / steep
+    along = np.array([-across[1], across[0]])
+    corners = shapely.get_coordinates(shape)
+    s = corners @ along
+    reach = float(np.ptp(corners, axis=0).sum()) + 1.0
+    lo, hi = (least - start) / steep, (most - start) / steep
+    s0, s1 = float(s.min()) - reach, float(s.max()) + reach
+    ends = [across * d + along * e for d, e in ((lo, s0), (lo, s1), (hi, s1), (hi, s0))]
+    return shapely.Polygon(ends)

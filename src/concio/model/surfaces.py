@@ -1,0 +1,232 @@
+"""Surfaces of polyhedra: triangles, coplanar faces put together, grids of hexahedra and prisms as closed surfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import scipy.sparse as sp
+import shapely
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from concio.errors import GeometryError
+from concio.kinematics.frames import tangents
+from concio.kinematics.mass import signed_area
+from concio.model.polyhedron import Polyhedron
+from concio.model.topology import Loop, topology
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+Array = np.ndarray
+Surface = tuple[Array, tuple[Loop, ...], tuple[tuple[int, Loop], ...]]
+"""Vertices (n, 3), faces, and holes of faces as in :class:`Polyhedron`."""
+
+COPLANAR = 1e-6
+"""Share of the longest side of a block by which two faces may leave one plane and still be put together."""
+
+
+def merged_faces(points: Array, faces: Sequence[Loop], holes: Sequence[tuple[int, Loop]] = ()) -> Surface:
+    """Return a closed surface with neighbouring coplanar faces put together and needless vertices left out.
+
+    Faces that do not close are returned as they are.
+    """
+    top = topology(tuple(faces), tuple(holes))
+    if top.fault is not None:
+        return points, tuple(faces), tuple(holes)
+    size = float(np.ptp(points, axis=0).max())
+    area = top.area_vectors(points)
+    length = np.linalg.norm(area, axis=1)
+    normal = area / np.where(length > 0, length, 1.0)[:, None]
+    count = np.bincount(top.face)
+    middle = np.stack([np.bincount(top.face, points[top.start][:, k]) / count for k in range(3)], 1)
+    a, b = top.edge_faces.T
+    off = np.zeros(len(faces) * 2)
+    vertex = points[top.start]
+    worst = np.zeros(len(a))
+    for first, second in ((a, b), (b, a)):  # vertices of the second off the plane of the first
+        for k in range(len(a)):
+            own = vertex[top.face == second[k]]
+            worst[k] = max(worst[k], float(np.abs((own - middle[first[k]]) @ normal[first[k]]).max()))
+    del off
+    same = (worst <= COPLANAR * size) & ((normal[a] * normal[b]).sum(1) > 0.5)
+    graph = sp.coo_array((np.ones(same.sum()), (a[same], b[same])), shape=(len(faces), len(faces)))
+    number, group = connected_components(graph, directed=False)
+    if number == len(faces):
+        return straightened(points, tuple(faces), tuple(holes))
+    inner = same[_edge_of_side(top)]
+    new_faces: list[Loop] = []
+    new_holes: list[tuple[int, Loop]] = []
+    for g in range(number):
+        sides = np.flatnonzero((group[top.face] == g) & ~inner)
+        loops = _chained(top.start[sides].tolist(), top.end[sides].tolist())
+        frame = tangents(normal[int(np.flatnonzero(group == g)[np.argmax(length[group == g])])])
+        areas = [signed_area(points[list(loop)] @ frame.T) for loop in loops]
+        outer = [loop for loop, value in zip(loops, areas, strict=True) if value > 0]
+        first = len(new_faces)
+        new_faces += outer
+        for loop, value in zip(loops, areas, strict=True):
+            if value <= 0:
+                new_holes.append((first + _holder(points, frame, outer, loop), loop))
+    return straightened(points, tuple(new_faces), tuple(new_holes))
+
+
+def _edge_of_side(top: Any) -> Array:
+    """Return the number of the edge (s,) of each side."""
+    low, high = np.minimum(top.start, top.end), np.maximum(top.start, top.end)
+    base = int(top.edges.max()) + 1
+    found: Array = np.searchsorted(top.edges[:, 0] * base + top.edges[:, 1], low * base + high)
+    return found
+
+
+def _chained(start: list[int], end: list[int]) -> list[Loop]:
+    """Return closed loops of directed sides."""
+    following: dict[int, list[int]] = {}
+    for p, q in zip(start, end, strict=True):
+        following.setdefault(p, []).append(q)
+    loops = []
+    while following:
+        first = next(iter(following))
+        loop, at = [], first
+        while True:
+            loop.append(at)
+            ways = following[at]
+            at_next = ways.pop()
+            if not ways:
+                del following[at]
+            at = at_next
+            if at == first:
+                break
+        loops.append(tuple(loop))
+    return loops
+
+
+def _holder(points: Array, frame: Array, outer: Sequence[Loop], hole: Loop) -> int:
+    if len(outer) == 1:
+        return 0
+    at = points[hole[0]] @ frame.T
+    for k, loop in enumerate(outer):
+        if shapely.intersects_xy(shapely.Polygon(points[list(loop)] @ frame.T), *at):
+            return k
+    return 0
+
+
+def straightened(points: Array, faces: tuple[Loop, ...], holes: tuple[tuple[int, Loop], ...]) -> Surface:
+    """Return the surface without vertices in the middle of straight edges, and without those no face uses."""
+    top = topology(faces, holes)
+    size = float(np.ptp(points, axis=0).max())
+    degree = np.bincount(top.edges.ravel(), minlength=len(points))
+    keep = degree > 0
+    for v in np.flatnonzero(degree == 2).tolist():
+        p, q = (int(e.sum()) - v for e in top.edges[(top.edges == v).any(1)])
+        along = points[q] - points[p]
+        arm = points[v] - points[p]
+        off = np.linalg.norm(np.cross(along, arm)) / max(float(np.linalg.norm(along)), 1e-300)
+        keep[v] = off > 1e-9 * size
+    if keep.all():
+        return points, faces, holes
+    new = (np.cumsum(keep) - 1).tolist()
+
+    def renamed(loop: Loop) -> Loop:
+        return tuple(new[v] for v in loop if keep[v])
+
+    return points[keep], tuple(map(renamed, faces)), tuple((face, renamed(loop)) for face, loop in holes)
+
+
+def welded(points: Array, faces: Iterable[Sequence[int]], tolerance: float) -> tuple[Array, tuple[Loop, ...]]:
+    """Return vertices put together within a tolerance [m], and the faces without repeated or lost vertices."""
+    pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
+    n = len(points)
+    graph = sp.coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    number, group = connected_components(graph, directed=False)
+    count = np.bincount(group, minlength=number)
+    mean = np.stack([np.bincount(group, points[:, k], number) / count for k in range(3)], 1)
+    kept = []
+    for face in faces:
+        loop = [int(group[v]) for v in face]
+        loop = [v for k, v in enumerate(loop) if v != loop[k - 1]]
+        if len(set(loop)) >= 3:
+            kept.append(tuple(loop))
+    return mean, tuple(kept)
+
+
+def grid_surface(grid: Array) -> Surface:
+    """Return the closed surface of a grid of hexahedra (nx + 1, ny + 1, nz + 1, 3).
+
+    The first three indices run along directions that turn like x, y and z; coplanar cell faces become one face.
+    """
+    grid = np.asarray(grid, dtype=float)
+    number = np.arange(int(np.prod(grid.shape[:3]))).reshape(grid.shape[:3])
+    faces: list[Loop] = []
+    for axis in range(3):
+        for end in (0, -1):
+            sheet = np.take(number, end, axis=axis)  # (p, q) in the order of the other two axes
+            quads = np.stack([sheet[:-1, :-1], sheet[1:, :-1], sheet[1:, 1:], sheet[:-1, 1:]], -1).reshape(-1, 4)
+            outward = (end == -1) == (axis != 1)  # x: (y, z) turn like x; y: (x, z) turn against y; z: (x, y) like z
+            faces += [tuple(q) for q in (quads if outward else quads[:, ::-1]).tolist()]
+    points = grid.reshape(-1, 3)
+    return merged_faces(*_collapsed(points, faces))
+
+
+def _collapsed(points: Array, faces: list[Loop]) -> tuple[Array, tuple[Loop, ...]]:
+    """Return a surface with coinciding vertices put together: a grid may end in an edge or a point."""
+    size = float(np.ptp(points, axis=0).max())
+    used = np.unique(np.array([v for f in faces for v in f]))
+    new = np.zeros(len(points), dtype=int)
+    new[used] = np.arange(len(used))
+    return welded(points[used], [[int(new[v]) for v in f] for f in faces], 1e-9 * size)
+
+
+def from_grid(name: str, grid: Array, **fields: Any) -> Polyhedron:
+    """Return the block that a grid of hexahedra fills; it keeps the grid for its mesh.
+
+    Parameters
+    ----------
+    name : str
+    grid : (nx + 1, ny + 1, nz + 1, 3) array
+        Corners of the hexahedra [m]; the indices run along directions that turn like x, y and z.
+    **fields
+        Further fields of :class:`Polyhedron`.
+    """
+    points, faces, holes = grid_surface(grid)
+    return Polyhedron(name, points, faces, holes=holes, grid=grid, **fields)
+
+
+def prism(name: str, rings: Sequence[Array], direction: Array, **fields: Any) -> Polyhedron:
+    """Return the block that a planar polygon sweeps along a vector.
+
+    Parameters
+    ----------
+    name : str
+    rings : sequence of (n, 3) arrays
+        Boundary of the polygon counter-clockwise about ``direction``, then those of its holes clockwise [m].
+    direction : (3,) array
+        [m].
+    **fields
+        Further fields of :class:`Polyhedron`.
+    """
+    low = np.concatenate(rings)
+    if not np.linalg.norm(direction) > 0:
+        msg = "the prism has no height"
+        raise GeometryError(msg, where=f"block '{name}'")
+    n = len(low)
+    faces: list[Loop] = []
+    holes: list[tuple[int, Loop]] = []
+    first = 0
+    for k, ring in enumerate(rings):
+        loop = tuple(range(first, first + len(ring)))
+        lower, upper = loop[::-1], tuple(v + n for v in loop)
+        if k == 0:
+            faces += [lower, upper]
+        else:
+            holes += [(0, lower), (1, upper)]
+        first += len(ring)
+    first = 0
+    for ring in rings:
+        for k in range(len(ring)):
+            p, q = first + k, first + (k + 1) % len(ring)
+            faces.append((p, q, q + n, p + n))
+        first += len(ring)
+    return Polyhedron(name, np.vstack([low, low + direction]), tuple(faces), holes=tuple(holes), **fields)

@@ -1,0 +1,319 @@
+"""From a model in space to its contact problem: frames, areas, rigid operators, loads, supports, ties, patch tests."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import shapely
+
+import concio
+from concio import Elastic, InputError, JointLaw, Load, Model, Polyhedron, Rigid, Support, Tie
+from concio.analysis.stress import Stress
+from concio.contact.assembly import Assembly
+from concio.contact.patch_points import corner_points, spread_points
+from concio.fem.constitutive import principal_in_space, solid_matrix
+from concio.fem.elements import SOLID_FAMILIES
+from concio.kinematics.frames import tangents
+from concio.model.interfaces.patches import Patch
+from solids import TURN, box, frame_block, l_block, turned
+
+STONE = Elastic(1e6, 0.25, 22.0)
+GROUND = box("ground", (-5, -5, -1), (5, 5, 0), kind="fixed")
+
+
+def model(*blocks: Polyhedron, **fields: object) -> Model:
+    laws = {"joint": fields.pop("law", JointLaw(0.6))}
+    return Model(blocks, {"block": STONE, "rock": Rigid(22.0)}, laws, **fields)  # type: ignore[arg-type]
+
+
+def rigid(name: str, low: tuple[float, ...], high: tuple[float, ...]) -> Polyhedron:
+    return box(name, low, high, kind="rigid", material="rock")
+
+
+def polygon(*flat: tuple[float, float], holes: tuple[np.ndarray, ...] = ()) -> Patch:
+    points = np.column_stack([np.array(flat), np.zeros(len(flat))])
+    rings = tuple(np.column_stack([h, np.zeros(len(h))]) for h in holes)
+    area = shapely.Polygon(points[:, :2], list(holes)).area
+    zero = np.zeros(len(points))
+    return Patch(0, 1, 0, 0, points, np.array([0, 0, 1.0]), zero, zero, area, rings)
+
+
+HOLE = np.array([[1, 1], [1, 2], [2.5, 2], [2.5, 1]], dtype=float)
+PATCHES = [
+    polygon((0, 0), (2, 0), (2, 1), (0, 1)),
+    polygon((0, 0), (2, 0), (2, 1), (1, 1), (1, 3), (0, 3)),
+    polygon((0, 0), (1, 0), (0, 2)),
+    polygon((0, 0), (2, 0), (3, 1), (1, 3), (-1, 1)),
+    polygon((0, 0), (3, 0), (3, 4), (0, 3), holes=(HOLE,)),
+]
+
+
+def test_corners_share_the_area_and_keep_its_centroid() -> None:
+    points, share, count = corner_points(PATCHES)
+    ends = np.cumsum(count)[:-1]
+    for patch, x, w in zip(PATCHES, np.split(points, ends), np.split(share, ends), strict=True):
+        assert (w > 0).all()
+        assert w.sum() == pytest.approx(patch.area, rel=1e-13)
+        assert np.allclose(w @ x / w.sum(), patch.middle, atol=1e-13)
+    assert share[:4].tolist() == pytest.approx([0.5] * 4)
+
+
+@pytest.mark.parametrize("n", [2, 3, 4, 6])
+def test_points_over_a_patch_integrate_linear_pressures(n: int) -> None:
+    for patch in PATCHES:
+        x, w = spread_points(patch, n)
+        assert (w > 0).all()
+        assert w.sum() == pytest.approx(patch.area, rel=1e-13)
+        assert np.allclose(w @ x / w.sum(), patch.middle, atol=1e-12)
+
+
+def test_points_over_a_square_carry_the_torsion_of_uniform_pressure() -> None:
+    square = polygon((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
+    exact = (np.sqrt(2) + np.log(1 + np.sqrt(2))) / 6
+
+    def torsion(points: np.ndarray, weights: np.ndarray) -> float:
+        return float(weights @ np.linalg.norm(points, axis=1))
+
+    assert exact == pytest.approx(0.382598, abs=1e-6)
+    assert torsion(*spread_points(square, 4)) == pytest.approx(exact, rel=0.025)
+    assert torsion(*spread_points(square, 12)) == pytest.approx(exact, rel=0.002)
+    x, w, _ = corner_points([square])
+    assert torsion(x, w) == pytest.approx(1 / np.sqrt(2))
+
+
+def test_second_moments_of_points_over_a_rectangle_are_exact() -> None:
+    x, w = spread_points(polygon((0, 0), (2, 0), (2, 1), (0, 1)), 4)
+    arm = x - [1, 0.5, 0]
+    assert w @ arm[:, 0] ** 2 == pytest.approx(8 / 12)
+    assert w @ arm[:, 1] ** 2 == pytest.approx(2 / 12)
+    assert w @ (arm[:, 0] * arm[:, 1]) == pytest.approx(0.0, abs=1e-15)
+
+
+def test_rigid_blocks_by_hand() -> None:
+    assembly = concio.assemble(model(GROUND, rigid("a", (0, 0, 0), (2, 1, 1)), rigid("b", (1, 0, 1), (3, 1, 2)),
+                                     loads=(Load("weight", (0, 0, -1)),)))  # fmt: skip
+    problem = assembly.problem()
+    assert (problem.dim, problem.pairs, problem.unknowns, problem.rigid_motions) == (3, 8, 12, 12)
+    assert assembly.pairs.contact_model == {"corners of the patch": 8}
+    assert assembly.pairs.area.tolist() == pytest.approx([0.5] * 4 + [0.25] * 4)
+    assert problem.f[[2, 8]].tolist() == pytest.approx([-44.0, -44.0])
+    # b falls by 0.1, moves by 0.2 along x and turns by 0.3 about y
+    reach = assembly.disc.reach[2]
+    u = np.concatenate([np.zeros(6), [0.2, 0, -0.1, 0, 0.3 * reach, 0]])
+    upper = assembly.pairs.interface == 1
+    arm = assembly.pairs.point[upper] - assembly.disc.centroids[2]
+    moved = np.array([0.2, 0, -0.1]) + np.cross([0, 0.3, 0], arm)
+    assert np.allclose((problem.C_n @ u)[upper], moved[:, 2])
+    slip = (problem.C_t @ u).reshape(-1, 2)[upper]
+    assert np.allclose(np.einsum("mt,mtd->md", slip, assembly.pairs.tangents[upper]), moved * [1, 1, 0])
+
+
+def test_frames_are_right_handed_and_point_from_a_to_b() -> None:
+    blocks = [turned(b) for b in (GROUND, rigid("a", (0, 0, 0), (2, 1, 1)), rigid("b", (2, 0, 0), (3, 1, 2)))]
+    pairs = concio.assemble(model(*blocks)).pairs
+    t1, t2 = pairs.tangents[:, 0], pairs.tangents[:, 1]
+    assert np.allclose(np.cross(t1, t2), pairs.normal, atol=1e-14)
+    assert np.allclose(np.linalg.norm(t1, axis=1), 1)
+    expected = np.array([[0, 0, 1.0], [0, 0, 1], [1, 0, 0]]) @ TURN.T
+    assert np.allclose(pairs.normal, np.repeat(expected, 4, axis=0), atol=1e-13)
+
+
+def test_the_choice_of_contact_points_is_stated() -> None:
+    blocks = (GROUND, rigid("a", (0, 0, 0), (2, 1, 1)))
+    for choice, law, name, number in (
+        ("auto", JointLaw(0.6), "corners of the patch", 4),
+        ("auto", JointLaw(0.6, normal_stiffness=1e6), "points over the patch", 16),
+        ("auto", JointLaw(0.6, compressive_strength=1e3), "points over the patch", 36),
+        ("corners", JointLaw(0.6, normal_stiffness=1e6), "corners of the patch", 4),
+        (5, JointLaw(0.6), "points over the patch", 25),
+    ):
+        pairs = concio.assemble(model(*blocks, law=law, contact_points=choice)).pairs
+        assert pairs.contact_model == {name: number}
+        assert pairs.area.sum() == pytest.approx(2.0)
+    with pytest.raises(InputError, match="contact_points = 'middle'"):
+        model(*blocks, contact_points="middle")
+
+
+LONG = box("a", (0, 0, 0), (1, 1, 1), mesh_size=0.5)
+OTHER = box("b", (0, 0, 1), (1, 1, 2), mesh_size=0.35)
+ASKEW = Polyhedron(
+    "b", (OTHER.vertices - [0.5, 0.5, 0]) @ np.array([[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1]]) + [0.5, 0.5, 0],
+    OTHER.faces, mesh_size=0.35,
+)  # fmt: skip
+PAIRS = {
+    "same mesh": (LONG, box("b", (0, 0, 1), (1, 1, 2), mesh_size=0.5)),
+    "finer above": (LONG, OTHER),
+    "shifted": (LONG, box("b", (0.3, 0.2, 1), (1.3, 1.2, 2), mesh_size=0.35)),
+    "askew": (LONG, ASKEW),
+    "not convex": (l_block("a", mesh_size=0.6), box("b", (0.2, 0.1, 1), (1.7, 1.6, 2), mesh_size=0.4)),
+    "with a hole": (frame_block("a", mesh_size=0.8), box("b", (0.2, 0.1, 1), (2.7, 1.6, 2), mesh_size=0.6)),
+}
+
+
+@pytest.mark.parametrize("element", list(SOLID_FAMILIES))
+@pytest.mark.parametrize("name", list(PAIRS))
+def test_a_uniform_stress_passes_through_any_two_meshes(name: str, element: str) -> None:
+    """Every component of stress at once, the whole turned: relative displacements and all nodal forces vanish."""
+    stress = np.array([3.0, -2.0, 5.0, 1.2, -0.7, 0.4])
+    strain = np.linalg.solve(solid_matrix(STONE), stress)
+    index = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]])
+    E, S = strain[index] * (0.5 + 0.5 * np.eye(3)), stress[index]
+    blocks = [turned(b) for b in PAIRS[name]]
+    assembly = concio.assemble(
+        model(*blocks, box("far", (50, 50, 50), (51, 51, 51), kind="fixed"), element=element, gap_tolerance=1e-6)
+    )
+    pairs, disc = assembly.pairs, assembly.disc
+    assert ("node pairs" in pairs.contact_model) == (name == "same mesh" and element != "T10")
+    u = np.concatenate([(disc.nodes(b) @ E).ravel() for b in (0, 1)])
+    size = np.abs(u).max()
+    assert np.abs(pairs.C_n @ u).max() <= 1e-12 * size
+    assert np.abs(pairs.C_t @ u).max() <= 1e-12 * size
+    force = -(pairs.normal @ S) * pairs.area[:, None]
+    t_n = (force * pairs.normal).sum(1)
+    t_t = np.einsum("md,mtd->mt", force, pairs.tangents).ravel()
+    rest = assembly.K @ u - pairs.C_n.T @ t_n - pairs.C_t.T @ t_t - free_surface(assembly, S)
+    assert np.abs(rest).max() <= 1e-11 * np.abs(force).max()
+    nodal = Stress(disc, u).at_nodes(0)
+    assert np.allclose(nodal, stress, atol=1e-9)
+
+
+def free_surface(assembly: Assembly, S: np.ndarray) -> np.ndarray:
+    """Nodal forces of the traction S n on all that no patch covers."""
+    disc, f = assembly.disc, np.zeros(assembly.disc.unknowns)
+    for b in (0, 1):
+        body = assembly.model.polyhedra[b]
+        for face, normal in enumerate(body.normals):
+            axes, origin = tangents(normal), body.vertices[body.faces[face][0]]
+            rings = [(body.vertices[list(loop)] - origin) @ axes.T for loop in body.loops_of(face)]
+            shape = shapely.Polygon(rings[0], rings[1:])
+            for p in assembly.detection.patches:
+                if (b, face) in ((p.a, p.face_a), (p.b, p.face_b)):
+                    holes = [(h - origin) @ axes.T for h in p.holes]
+                    shape = shape.difference(shapely.Polygon((p.polygon - origin) @ axes.T, holes))
+            if shape.area > 1e-9:
+                nodes, weights = disc.shapes[disc.shape_of[b]].face_weights(face, shape, origin - disc.origins[b], axes)
+                np.add.at(f, disc.offsets[b] + 3 * nodes[:, None] + np.arange(3), np.outer(weights, S @ normal))
+    return f
+
+
+def test_matching_blocks_of_a_bond_share_their_nodes() -> None:
+    blocks = [box("a", (0, 0, 0), (2, 1, 1)), box("b", (2, 0, 0), (4, 1, 1)), box("c", (1, 0, 1), (3, 1, 2))]
+    pairs = concio.assemble(model(GROUND, *blocks)).pairs
+    above = pairs.interface >= 3
+    assert {name for name, n in pairs.contact_model.items() if n} == {"node pairs", "dual mortar"}
+    assert (pairs.rule[above] == 2).all()
+    assert pairs.area.sum() == pytest.approx(4 + 1 + 2)
+
+
+@pytest.mark.parametrize("kind", ["rigid", "elastic"])
+@pytest.mark.parametrize("element", ["H8I", "T10"])
+def test_loads_have_their_resultants(kind: str, element: str) -> None:
+    block = box("a", (0, 0, 0), (2, 1, 1), kind=kind, material="rock" if kind == "rigid" else "block")
+    top = ((0.5, 0.25, 1), (1.5, 0.25, 1), (1.5, 1, 1), (0.5, 1, 1))
+    loads = (
+        Load("weight", (0, 0.1, -1), group="w"),
+        Load("body", (1, 2, 3), group="b"),
+        Load("pressure", (8.0,), polygon=top, group="p"),
+        Load("traction", (1, -2, 0.5), polygon=top, group="t"),
+        Load("point", (4, 5, 6), bodies=("a",), at=(0.3, 0.6, 1), group="f"),
+    )
+    wanted = {
+        "w": ((0, 4.4, -44), (1, 0.5, 0.5)), "b": ((2, 4, 6), (1, 0.5, 0.5)), "p": ((0, 0, -6), (1, 0.625, 1)),
+        "t": ((0.75, -1.5, 0.375), (1, 0.625, 1)), "f": ((4, 5, 6), (0.3, 0.6, 1)),
+    }  # fmt: skip
+    assembly = concio.assemble(model(GROUND, block, loads=loads, element=element))
+    disc = assembly.disc
+    for group, (force, at) in wanted.items():
+        f = assembly.loads[group]
+        if kind == "rigid":
+            total = f[:3]
+            moment = f[3:] * disc.reach[1] + np.cross(disc.centroids[1], total)
+        else:
+            nodal = f.reshape(-1, 3)
+            total, moment = nodal.sum(0), np.cross(disc.nodes(1), nodal).sum(0)
+        assert np.allclose(total, force, atol=1e-11), group
+        assert np.allclose(moment, np.cross(at, force), atol=1e-10), group
+
+
+def test_loads_that_cannot_be_are_refused() -> None:
+    block = rigid("a", (0, 0, 0), (2, 1, 1))
+    off = ((0, 0, 3), (1, 0, 3), (1, 1, 3))
+    bent = ((0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1.2))
+    for load, words in (
+        (Load("pressure", (8.0,)), "needs a polygon"),
+        (Load("pressure", (8.0,), polygon=off), r"on the polygon from \(0, 0, 3\) lies on no face"),
+        (Load("pressure", (8.0,), polygon=bent), "not planar: a vertex stands 50.48 mm"),
+        (Load("traction", (1, 2), polygon=off), "takes three components"),
+        (Load("pressure", (8.0,), polygon=((0, 0, 1), (1, 1, 1), (1, 0, 1), (0, 1, 1))), "crosses itself"),
+    ):
+        with pytest.raises(InputError, match=words):
+            concio.assemble(model(GROUND, block, loads=(load,)))
+
+
+def test_supports_move_in_six_ways() -> None:
+    block = rigid("a", (0, 0, 0), (2, 1, 1))
+    support = Support("jack", "ground", displacement=(0.01, 0.02, 0.03), rotation=(0.1, 0.2, 0.3))
+    assembly = concio.assemble(model(GROUND, block, supports=(support,)))
+    pairs = assembly.pairs
+    normal, tangential = assembly.moved["settlement"]
+    moved = np.array([0.01, 0.02, 0.03]) + np.cross([0.1, 0.2, 0.3], pairs.point - GROUND.centroid)
+    assert np.allclose(normal, -moved[:, 2])
+    assert np.allclose(np.einsum("mt,mtd->md", tangential, pairs.tangents), -moved * [1, 1, 0], atol=1e-15)
+    problem = assembly.problem({"settlement": 2.0})
+    assert np.allclose(problem.gap, 2 * normal)
+    assert np.allclose(problem.slip_origin, -2 * tangential)
+
+
+@pytest.mark.parametrize("kind", ["rigid", "elastic"])
+def test_a_held_face_imposes_its_motion(kind: str) -> None:
+    block = box("a", (0, 0, 0), (2, 1, 1), kind=kind, material="rock" if kind == "rigid" else "block")
+    top = ((0, 0, 1), (2, 0, 1), (2, 1, 1), (0, 1, 1))
+    support = Support("jack", "a", polygon=top, displacement=(0.01, 0.0, 0.03), rotation=(0, 0, 0.2))
+    assembly = concio.assemble(model(GROUND, block, supports=(support,)))
+    u = assembly.imposed()
+    dofs, rows = assembly.disc.point_operator(1, np.array([2.0, 1.0, 1.0]))
+    assert np.allclose(rows @ u[dofs], np.array([0.01, 0, 0.03]) + np.cross([0, 0, 0.2], [1, 0.5, 0.5]))
+    assert assembly.supported.R.shape[1] == 0
+    roller = Support("roller", "a", polygon=top, directions="z")
+    held = concio.assemble(model(GROUND, block, supports=(roller,)))
+    assert held.supported.R.shape[1] == 3
+
+
+def test_ties_pull_along_their_line() -> None:
+    block = rigid("a", (0, 0, 0), (2, 1, 1))
+    tie = Tie("rod", "a", (2, 0.5, 1), "", (5, 4.5, 1), stiffness=500.0, prestress=10.0)
+    assembly = concio.assemble(model(GROUND, block, ties=(tie,)))
+    pairs = assembly.pairs
+    assert pairs.contact_model == {"corners of the patch": 4, "tie": 1}
+    assert np.allclose(pairs.normal[-1], [-0.6, -0.8, 0])
+    assert pairs.gap[-1] == pytest.approx(-10 / 500)
+    stretch = pairs.C_n[[4]] @ np.concatenate([[-0.3, -0.4, 0.7], np.zeros(3)])
+    assert stretch == pytest.approx([-0.5])
+    assert pairs.C_t.shape == (10, 6)
+
+
+def test_what_does_not_fit_the_dimension_is_told() -> None:
+    block = rigid("a", (0, 0, 0), (2, 1, 1))
+    plane = concio.Body("p", np.array([[0, 0], [1, 0], [1, 1]]), kind="fixed")
+    for words, build in (
+        ("'ground' is in space, 'p' in the plane", lambda: model(GROUND, plane)),
+        (r"displacement = \[0.1, 0.2\]: 3 numbers expected", lambda: model(
+            GROUND, block, supports=(Support("s", "a", displacement=(0.1, 0.2)),))),
+        (r"rotation = \[0.1\]: 3 numbers expected", lambda: model(
+            GROUND, block, supports=(Support("s", "a", rotation=0.1),))),
+        (r"at = \[1.0, 2.0\]: 3 numbers expected", lambda: model(
+            GROUND, block, loads=(Load("point", (1, 2, 3), bodies=("a",), at=(1.0, 2.0)),))),
+        ("unknown element 'Q8' for a model in space", lambda: model(GROUND, block, element="Q8")),
+        ("this is for models in the plane; the model is in space", lambda: model(GROUND, block).outlines),
+    ):  # fmt: skip
+        with pytest.raises(InputError, match=words):
+            build()
+
+
+def test_principal_stresses_and_their_directions() -> None:
+    values, directions = principal_in_space(np.array([[3.0, -2.0, 5.0, 1.2, -0.7, 0.4], [np.nan] * 6]))
+    tensor = np.array([[3, 1.2, 0.4], [1.2, -2, -0.7], [0.4, -0.7, 5]])
+    assert (np.diff(values[0]) <= 0).all()
+    for s, n in zip(values[0], directions[0], strict=True):
+        assert np.allclose(tensor @ n, s * n)
+    assert np.isnan(values[1]).all()
