@@ -28,6 +28,9 @@ DOORS = {
     ("analysis/result.py", "concio.plot.accessor"),
     ("analysis/result.py", "concio.post.tables"),
     ("analysis/result.py", "concio.report.notebook"),
+    ("analysis/cells/moduli.py", "concio.plot.cell_accessor"),
+    ("analysis/cells/strength.py", "concio.plot.cell_accessor"),
+    ("analysis/cells/path_result.py", "concio.plot.cell_accessor"),
 }
 """The only imports upward: what a result offers by name, loaded where it is asked for."""
 MODULES = sorted(ROOT.rglob("*.py"))

@@ -8,13 +8,14 @@ import numpy as np
 
 from concio.arguments import strict
 from concio.kinematics.frames import turned_right
+from concio.model.interfaces.periodic import images
 from concio.plot import style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from concio.analysis.result import Result
-    from concio.model.model import Load, Model
+    from concio.model.model import Load, Model, Periods
 
 Array = np.ndarray
 
@@ -41,6 +42,8 @@ def plot_model(model: Model, ax: Axes | None = None, *, names: bool | None = Non
     from matplotlib.collections import PolyCollection
 
     box = style.box_of(*[b.outline for b in model.outlines])
+    if model.periods is not None:
+        box = box + np.array([[-1.0], [1.0]]) * 0.35 * (box[1] - box[0])
     if any(load.edge is not None or load.at is not None for load in model.loads):
         box = box + np.array([[-1.0], [1.0]]) * 0.05 * float((box[1] - box[0]).max())
     size = float((box[1] - box[0]).max())
@@ -56,6 +59,8 @@ def plot_model(model: Model, ax: Axes | None = None, *, names: bool | None = Non
         PolyCollection([b.outline for b in fixed], facecolors=style.OBSTACLE, edgecolors=style.HATCH, hatch="/////",
                        linewidths=0.8, zorder=0.9)
     )  # fmt: skip
+    if model.periods is not None:
+        _neighbours(ax, model, model.periods)
     if names if names is not None else len(model.bodies) <= NAMED:
         _names(ax, model, box)
     kinds = {("rigid" if b.kind == "rigid" else b.role) for b in free}
@@ -66,6 +71,8 @@ def plot_model(model: Model, ax: Axes | None = None, *, names: bool | None = Non
         handles.append(style.patch(style.RIGID, "rigid block"))
     if "mortar" in kinds:
         handles.append(style.patch(style.FILM, "mortar"))
+    if model.periods is not None:
+        handles += [style.patch(style.NEIGHBOUR, "neighbouring cells"), style.handle(style.CELL)]
     if fixed:
         handles.append(style.patch(style.OBSTACLE, "fixed", style.HATCH, "/////"))
     for support in model.supports:
@@ -81,6 +88,7 @@ def plot_model(model: Model, ax: Axes | None = None, *, names: bool | None = Non
     if _loads(ax, model, size):
         handles.append(style.handle(style.LOAD, "load"))
     count = f"{len(free)} bodies" + (f", {len(fixed)} fixed" if fixed else "")
+    count += " repeat without end" if model.periods is not None else ""
     style.dress(ax, box, model.title or "model", f"{count}; plane {model.plane}, element {model.element}")
     style.legend(ax, handles, 6)
     return ax
@@ -89,6 +97,22 @@ def plot_model(model: Model, ax: Axes | None = None, *, names: bool | None = Non
 def plot_result_model(result: Result, ax: Axes | None = None, *, names: bool | None = None) -> Axes:
     """Draw the model of a result; see :func:`plot_model`."""
     return plot_model(result.model, ax, names=names)
+
+
+def _neighbours(ax: Axes, model: Model, periods: Periods) -> None:
+    """Draw the images of the bodies around a periodic cell in grey, and the cell that the two periods span."""
+    from matplotlib.collections import PolyCollection
+
+    p, corners = np.asarray(periods, dtype=float), np.vstack([b.outline for b in model.outlines])
+    size = float(np.ptp(corners, axis=0).max())
+    around = [image.body.outline for image in images(model.outlines, periods, 0.6 * size)]
+    ax.add_collection(
+        PolyCollection(around, facecolors=style.NEIGHBOUR, edgecolors=style.GHOST, linewidths=0.5, zorder=0.7)
+    )
+    low, own = corners.min(0), model.outlines[0].outline.min(0)
+    start = low if np.abs(own - low).max() <= 1e-6 * size else (low + corners.max(0) - p.sum(0)) / 2
+    ring = start + np.array([[0, 0], p[0], p[0] + p[1], p[1], [0, 0]])
+    ax.plot(*ring.T, color=style.CELL.colour, ls=style.CELL.dash, lw=style.CELL.width, zorder=3.5)
 
 
 def _names(ax: Axes, model: Model, box: Array) -> None:

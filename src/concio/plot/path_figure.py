@@ -74,6 +74,7 @@ def plot_path(
     parameter_label: str = "load factor [-]",
     title: str = "Load path",
     bound: float | None = None,
+    unit: str = "",
 ) -> Axes:
     """Draw a load path, its events and its peak.
 
@@ -87,6 +88,8 @@ def plot_path(
         Words of the axes, with units; an axis in [m] of which only the first 0.1 m are used is written in mm.
     bound : float, optional
         A bound on the load factor to draw beside it, such as the associated limit.
+    unit : str
+        Of the load, where it is no factor.
 
     Returns
     -------
@@ -111,9 +114,10 @@ def plot_path(
         handles += drawn
     if len(load):
         top = int(np.argmax(load))
+        word = f"peak {style.number(float(load[top]), unit)}"
         ax.annotate(
-            f"peak {style.number(float(load[top]))}", (motion[top], load[top]), (0, 7), textcoords="offset points",
-            ha="center", fontsize=8.5, color=style.INK,
+            word, (motion[top], load[top]), (0, 7), textcoords="offset points", ha="center", fontsize=8.5,
+            color=style.INK,
         )  # fmt: skip
     if bound is not None:
         line = ax.axhline(bound, color=style.COMPRESSION.colour, ls="--", lw=1.1, label=f"bound {style.number(bound)}")

@@ -41,8 +41,10 @@ OPEN = Line("#E69F00", (0, (0.8, 1.2)), 2.0, "open")
 LOAD = Line("#009E73", "-", 1.4, "load")
 THRUST = Line("#0072B2", "-", 2.0, "thrust line")
 CRUSHED = Line("#882255", "-", 3.2, "crushed")
+CELL = Line("#009E73", (0, (5, 2)), 1.6, "the cell")
 
 BLOCK, FILM, RIGID, OBSTACLE = "#F3EEE4", "#DDD5C6", "#E4E4E4", "#FFFFFF"
+NEIGHBOUR = "#ECECEC"
 EDGE, GHOST, HATCH, INK = "#8C8375", "#B8B2A8", "#9A9A9A", "#222222"
 FILL_OPEN = "#FBDFA6"
 SEQUENTIAL = "cividis"

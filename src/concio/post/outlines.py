@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.contact.periodic import STRAINS
 from concio.fem.body import Shape
 from concio.fem.discretisation import FIXED
 from concio.kinematics.rigid import swept
@@ -34,6 +35,8 @@ class Outlines:
         before ended, plus one [m]. Places on outlines are found by one interpolation in it.
     vertices : tuple of (v+1,) arrays
         For each body, ``arc`` of the vertices of ``Body.outline``.
+    strain : (2, 2) array
+        Macroscopic strain of a periodic cell: images of its bodies at the shift s move by ``strain @ s`` more.
     """
 
     points: Array
@@ -41,6 +44,7 @@ class Outlines:
     starts: Array
     arc: Array
     vertices: tuple[Array, ...]
+    strain: Array = field(default_factory=lambda: np.zeros((2, 2)))
 
     def moved(self, scale: float = 1.0) -> list[Array]:
         """Return the outlines (n, 2) of the bodies with displacements times ``scale`` [m]."""
@@ -67,6 +71,7 @@ def outlines(result: Result, u: Array | None = None) -> Outlines:
         Displacements to show in place of the result's, such as a mechanism; fixed bodies then stay.
     """
     disc = result.assembly.disc
+    xx, yy, xy = (result.factors.get(name, 0.0) if u is None else 0.0 for name in STRAINS)
     own = result.displacement if u is None else u
     motion = body_motions(result, u)
     shapes = [s for s in disc.shapes if isinstance(s, Shape)]
@@ -93,7 +98,14 @@ def outlines(result: Result, u: Array | None = None) -> Outlines:
         vertices.append(along[corner])
         starts.append(starts[-1] + len(place))
         begin = along[-1] + 1.0
-    return Outlines(np.vstack(points), np.vstack(moved), np.array(starts), np.concatenate(arcs), tuple(vertices))
+    return Outlines(
+        np.vstack(points),
+        np.vstack(moved),
+        np.array(starts),
+        np.concatenate(arcs),
+        tuple(vertices),
+        np.array([[xx, xy / 2], [xy / 2, yy]]),
+    )
 
 
 def display_scale(largest: float, size: float, share: float = 0.05) -> float:

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -36,6 +36,9 @@ from concio.problem.contact_problem import ContactProblem
 from concio.problem.tolerances import CHECKED
 from concio.solvers.path.state import CLOSED, OPEN, STICK, LinearPath
 from concio.solvers.path.state_rates import state_rates
+
+if TYPE_CHECKING:
+    from concio.plot.cell_accessor import ModuliPlots
 
 Array = np.ndarray
 
@@ -193,6 +196,13 @@ class Moduli:
         """Return the macroscopic stress (3,) of a strain (3,) [kN/m2]."""
         found: Array = self.matrix @ np.asarray(strain, dtype=float)
         return found
+
+    @property
+    def plot(self) -> ModuliPlots:
+        """Figures by name; matplotlib is loaded here."""
+        from concio.plot.cell_accessor import ModuliPlots
+
+        return ModuliPlots(self)
 
     def summary(self) -> dict[str, Any]:
         """Return the numbers as plain types, kN and m."""

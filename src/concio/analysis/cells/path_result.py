@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from concio.problem.certificate import Certificate
 from concio.problem.solution import Status, judge
 from concio.solvers.path.record import Outcome
 from concio.solvers.path.state import CLOSED, OPEN, STICK, PathState
+
+if TYPE_CHECKING:
+    from concio.plot.cell_accessor import CellPathPlots
 
 Array = np.ndarray
 
@@ -139,6 +142,13 @@ class CellPath:
         judged = judge(problem, state.displacement, state.normal_force, state.friction, method="path")
         status = Status.SOLVED if chosen.certificate.certified else Status.GAVE_UP
         return Result(self.cell.assembly, factors, replace(judged, certificate=chosen.certificate, status=status), {})
+
+    @property
+    def plot(self) -> CellPathPlots:
+        """Figures by name; matplotlib is loaded here."""
+        from concio.plot.cell_accessor import CellPathPlots
+
+        return CellPathPlots(self)
 
     def table(self) -> dict[str, list[Any]]:
         """Return the steps as columns: stage, parameter, strains, stresses [kN/m2], pairs by state, energies [kN m]."""

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -32,6 +32,9 @@ from concio.problem.solution import Progress, ProgressCallback
 from concio.solvers.statics.collapse_state import CollapseState
 from concio.solvers.statics.existence import find_mechanism
 from concio.solvers.statics.limit import LimitLoad, associated_limit
+
+if TYPE_CHECKING:
+    from concio.plot.cell_accessor import StrengthPlots
 
 Array = np.ndarray
 
@@ -134,6 +137,13 @@ class StrengthDomain:
             return None
         rate = ray.associated.mechanism.velocity[-3:]
         return np.asarray(rate / (float(np.abs(rate).max()) or 1.0))
+
+    @property
+    def plot(self) -> StrengthPlots:
+        """Figures by name; matplotlib is loaded here."""
+        from concio.plot.cell_accessor import StrengthPlots
+
+        return StrengthPlots(self)
 
     def table(self) -> dict[str, list[Any]]:
         """Return the directions as columns: direction, multipliers, stress at the bound, strain rate, checks."""
