@@ -77,8 +77,10 @@ class StrengthRay:
     @property
     def stress(self) -> Array:
         """Stress (3,) at the associated multiplier [kN/m2]."""
-        found: Array = self.base + self.multiplier * self.direction
-        return found
+        acts = self.direction != 0  # an infinite multiple of nothing is nothing
+        grown: Array = np.zeros(3)
+        grown[acts] = self.multiplier * self.direction[acts]
+        return self.base + grown
 
     @property
     def coulomb(self) -> float:
