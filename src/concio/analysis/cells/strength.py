@@ -78,9 +78,9 @@ class StrengthRay:
     def stress(self) -> Array:
         """Stress (3,) at the associated multiplier [kN/m2]."""
         acts = self.direction != 0  # an infinite multiple of nothing is nothing
-        grown: Array = np.zeros(3)
-        grown[acts] = self.multiplier * self.direction[acts]
-        return self.base + grown
+        found: Array = self.base.copy()
+        found[acts] += self.multiplier * self.direction[acts]
+        return found
 
     @property
     def coulomb(self) -> float:
