@@ -104,7 +104,7 @@ def test_a_step_is_a_result_with_tables_and_a_certificate():
     assert {len(column) for column in result.tables.joints().values()} == {6}
     table = path.table()
     assert {len(column) for column in table.values()} == {len(path.steps)}
-    assert table["stress_yy_kN_m2"][-1] == pytest.approx(-100.0)
+    assert table["stress_yy"][-1] == pytest.approx(-100.0)
     assert path.summary()["complete"]
 
 

@@ -159,7 +159,7 @@ def test_coulomb_numbers_stand_beside_the_bound():
     assert shear.collapse_shown
     assert found.strain_rate(shear) == pytest.approx([0.557769, 0.414343, 1.0], abs=1e-6)
     table = found.table()
-    assert table["associated"] == [along.multiplier, shear.multiplier]
+    assert table["associated"].tolist() == [along.multiplier, shear.multiplier]
     assert found.summary()["faces"] is None
 
 

@@ -59,7 +59,7 @@ def solve(
     solver: Solver = find(method)
     check_options(method, options, function="solve()", others=("method", *options_of(solve)))
     begin = time.perf_counter()
-    assembly = as_assembly(model, jointless=True)
+    assembly = as_assembly(model, jointless=True, periodic=bool(factors))
     problem = assembly.problem(factors)
     if not problem.pairs:  # K u = f: there are no states to find, whatever the method
         solver, options = find("sparse-lemke"), {}

@@ -27,6 +27,7 @@ def check_facts(model: Model, detection: Detection) -> dict[str, Any]:
         "bodies": len(model.free_bodies),
         "fixed_bodies": len(model.bodies) - len(model.free_bodies),
         "interfaces": len(detection.interfaces),
+        **({} if model.periods is None else {"periods": [list(p) for p in model.periods]}),
         "near_misses": [m.sentence for m in detection.near_misses],
         "overlaps": [o.sentence for o in detection.overlaps],
         "drawing_faults": list(_noted(model, "faults")),
@@ -57,6 +58,11 @@ def check_lines(
         f"size         {width:.4g} x {height:.4g} m, plane {model.plane}, elements {model.element}",
         *_bodies(model, float(max(width, height)), every=every),
     ]
+    if model.periods is not None:
+        (a, b), (c, d) = model.periods
+        share = sum(body.area for body in model.bodies) / abs(a * d - b * c)
+        voids = "" if share > 1 - 1e-6 else f", {100 * (1 - share):.3g} % of it empty"
+        lines.append(f"cell         repeats by ({a:.6g}, {b:.6g}) and ({c:.6g}, {d:.6g}) m{voids}")
     lines += [f"material     {name}: {_material(material)}" for name, material in model.materials.items()]
     lines += [f"joint law    {name}: {_law(law)}" for name, law in model.laws.items()]
     lines += _interfaces(model, detection)
@@ -70,7 +76,7 @@ def check_lines(
         total = facts.get("total_load", {}).get(group)
         force = f", {total[0]:+.4g} kN along x and {total[1]:+.4g} kN along y in all" if total else ""
         lines.append(f"load group   {group}: {', '.join(words)}{force}")
-    if not model.loads and not any(any(s.displacement) or s.rotation for s in model.supports):
+    if model.periods is None and not model.loads and not any(any(s.displacement) or s.rotation for s in model.supports):
         lines.append("attention    there are no loads and nothing is moved: everything stays as it is")
     lines += _edge_loads(model, every=every)
     for tie in model.ties:

@@ -7,7 +7,7 @@ import sys
 
 import typer
 
-from concio.cli import check, compare, export, limit, new, outcome, path, run, schema, study, view
+from concio.cli import cell, check, compare, export, limit, new, outcome, path, run, schema, study, view
 
 app = typer.Typer(
     name="concio",
@@ -47,6 +47,7 @@ app.command("check")(check.check)
 app.command("run")(run.run)
 app.command("path")(path.path)
 app.command("limit")(limit.limit)
+app.command("cell")(cell.cell)
 app.command("compare")(compare.compare)
 app.command("study")(study.study)
 app.command("view")(view.view)

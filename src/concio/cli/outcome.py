@@ -128,15 +128,16 @@ def silence() -> None:
 
 def print_json(data: Mapping[str, Any]) -> None:
     """Print one JSON object on standard output; numbers that JSON does not know become null."""
-    _print(json_text.dumps(_plain(data), allow_nan=False, ensure_ascii=False) + "\n")
+    _print(json_text.dumps(plain(data), allow_nan=False, ensure_ascii=False) + "\n")
     flush()
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
+    """Return a value with numbers that JSON does not know as None, and mappings and sequences of its own."""
     if isinstance(value, Mapping):
-        return {str(key): _plain(v) for key, v in value.items()}
+        return {str(key): plain(v) for key, v in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
+        return [plain(v) for v in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 

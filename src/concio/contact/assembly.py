@@ -169,7 +169,7 @@ def require_model(thing: object) -> None:
         raise InputError(msg, hint="concio.load reads a model from a file")
 
 
-def as_assembly(model: Model | Assembly, *, jointless: bool = False) -> Assembly:
+def as_assembly(model: Model | Assembly, *, jointless: bool = False, periodic: bool = False) -> Assembly:
     """Return the assembly of a model; an assembly as it is.
 
     Parameters
@@ -177,13 +177,19 @@ def as_assembly(model: Model | Assembly, *, jointless: bool = False) -> Assembly
     model : Model or Assembly
     jointless : bool
         Whether a model in which nothing can open, slip or go slack will do.
+    periodic : bool
+        Whether a periodic cell will do, which has no loads of its own.
 
     Raises
     ------
     GeometryError, InputError
-        As :func:`assemble`; or there is no joint and no tie.
+        As :func:`assemble`; or there is no joint and no tie; or the model is a periodic cell.
     """
     assembly = model if isinstance(model, Assembly) else assemble(model)
+    if assembly.model.periods is not None and not periodic:
+        msg = "this is a periodic cell, which has no loads of its own"
+        hint = "use 'concio cell', or concio.homogenise, concio.strength and concio.strain_path"
+        raise InputError(msg, hint=hint)
     if not jointless and not len(assembly.pairs):
         msg = "there is no joint and no tie: nothing can open or slip, and the answer is linear in the loads"
         raise InputError(msg, hint="solve one load step, with concio.solve or 'concio run'")

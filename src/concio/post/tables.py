@@ -20,6 +20,8 @@ UNITS: dict[str, str] = {
     **dict.fromkeys(("n_x", "n_y", "open_share", "friction_used"), "-"),
     **dict.fromkeys(("normal_force", "friction_force", "shear_force", "force_x", "force_y"), "kN"),
     **dict.fromkeys(("s_x", "s_y", "t_xy", "s_1", "s_2", "pressure", "shear"), "kN/m2"),
+    **dict.fromkeys(("stress_xx", "stress_yy", "stress_xy", "h"), "kN/m2"),
+    **dict.fromkeys(("work", "stored", "dissipated"), "kN m"),
     **dict.fromkeys(("angle", "rotation"), "rad"),
     "area": "m2",
 }

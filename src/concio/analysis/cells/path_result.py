@@ -150,21 +150,19 @@ class CellPath:
 
         return CellPathPlots(self)
 
-    def table(self) -> dict[str, list[Any]]:
+    def table(self) -> dict[str, Array]:
         """Return the steps as columns: stage, parameter, strains, stresses [kN/m2], pairs by state, energies [kN m]."""
-        columns: dict[str, list[Any]] = {
-            "stage": [self.stages[s.stage].name for s in self.steps],
-            "parameter": [s.parameter for s in self.steps],
+        columns = {
+            "stage": np.array([self.stages[s.stage].name for s in self.steps]),
+            "parameter": np.array([s.parameter for s in self.steps]),
         }
-        for k, name in enumerate(COMPONENTS):
-            columns[f"strain_{name}"] = self.strain[:, k].tolist()
-        for k, name in enumerate(COMPONENTS):
-            columns[f"stress_{name}_kN_m2"] = self.stress[:, k].tolist()
+        columns |= {f"strain_{name}": self.strain[:, k] for k, name in enumerate(COMPONENTS)}
+        columns |= {f"stress_{name}": self.stress[:, k] for k, name in enumerate(COMPONENTS)}
         for word in ("open", "slip", "crushed"):
-            columns[f"{word}_pairs"] = [s.counts[word] for s in self.steps]
-        columns["work_kNm"] = [s.state.work for s in self.steps]
-        columns["stored_kNm"] = [s.stored for s in self.steps]
-        columns["dissipated_kNm"] = [s.state.dissipation for s in self.steps]
+            columns[f"{word}_pairs"] = np.array([s.counts[word] for s in self.steps])
+        columns["work"] = np.array([s.state.work for s in self.steps])
+        columns["stored"] = np.array([s.stored for s in self.steps])
+        columns["dissipated"] = np.array([s.state.dissipation for s in self.steps])
         return columns
 
     def summary(self) -> dict[str, Any]:

@@ -147,30 +147,33 @@ class StrengthDomain:
 
         return StrengthPlots(self)
 
-    def table(self) -> dict[str, list[Any]]:
+    def table(self) -> dict[str, Array]:
         """Return the directions as columns: direction, multipliers, stress at the bound, strain rate, checks."""
-        columns: dict[str, list[Any]] = {}
-        for k, name in enumerate(COMPONENTS):
-            columns[f"direction_{name}"] = [float(r.direction[k]) for r in self.rays]
-        columns["associated"] = [r.multiplier for r in self.rays]
-        columns["associated_upper"] = [r.associated.upper for r in self.rays]
-        columns["coulomb_carried"] = [r.carried for r in self.rays]
-        columns["coulomb_collapse_shown"] = [r.collapse_shown for r in self.rays]
-        columns["collapse_state"] = [r.collapse_state.multiplier if r.collapse_state else np.nan for r in self.rays]
-        for k, name in enumerate(COMPONENTS):
-            columns[f"stress_{name}_kN_m2"] = [float(r.stress[k]) for r in self.rays]
-        rates = [self.strain_rate(r) for r in self.rays]
-        for k, name in enumerate(COMPONENTS):
-            columns[f"strain_rate_{name}"] = [np.nan if v is None else float(v[k]) for v in rates]
-        columns["worst_residual"] = [r.associated.worst for r in self.rays]
+        rays = self.rays
+        states = [r.collapse_state for r in rays]
+        stress = np.array([r.stress for r in rays]).reshape(-1, 3)
+        rates = [self.strain_rate(r) for r in rays]
+        rate = np.array([np.full(3, np.nan) if v is None else v for v in rates]).reshape(-1, 3)
+        direction = np.array([r.direction for r in rays]).reshape(-1, 3)
+        columns = {f"direction_{name}": direction[:, k] for k, name in enumerate(COMPONENTS)}
+        columns |= {
+            "associated": np.array([r.multiplier for r in rays]),
+            "associated_upper": np.array([r.associated.upper for r in rays]),
+            "coulomb_carried": np.array([r.carried for r in rays]),
+            "coulomb_collapse_shown": np.array([r.collapse_shown for r in rays], dtype=bool),
+            "collapse_state": np.array([np.nan if s is None else s.multiplier for s in states]),
+        }
+        columns |= {f"stress_{name}": stress[:, k] for k, name in enumerate(COMPONENTS)}
+        columns |= {f"strain_rate_{name}": rate[:, k] for k, name in enumerate(COMPONENTS)}
+        columns["worst_residual"] = np.array([r.associated.worst for r in rays])
         return columns
 
-    def face_table(self) -> dict[str, list[float]]:
+    def face_table(self) -> dict[str, Array]:
         """Return the half-spaces as columns: a_xx s_xx + a_yy s_yy + a_xy s_xy <= h, the largest |a| being one."""
         faces = self.faces
         size = np.abs(faces.normals).max(axis=1)
-        columns = {f"a_{name}": (faces.normals[:, k] / size).tolist() for k, name in enumerate(COMPONENTS)}
-        columns["h_kN_m2"] = (faces.offsets / size).tolist()
+        columns = {f"a_{name}": faces.normals[:, k] / size + 0.0 for k, name in enumerate(COMPONENTS)}
+        columns["h"] = faces.offsets / size + 0.0
         return columns
 
     def summary(self) -> dict[str, Any]:
@@ -191,7 +194,7 @@ class StrengthDomain:
                 }
                 for r in self.rays
             ],
-            "faces": None if domain is None else self.face_table(),
+            "faces": None if domain is None else {name: v.tolist() for name, v in self.face_table().items()},
             "faces_exact": None if domain is None else domain.exact,
             "faces_shortfall": None if domain is None else domain.shortfall,
             "worst": self.worst,

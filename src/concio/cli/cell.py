@@ -1,0 +1,156 @@
+"""``concio cell FILE``: a periodic cell homogenised: moduli, strength, response to strains and stresses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from concio.cli.outcome import guarded, print_json, say
+from concio.cli.output import check_directory, replaced_directory
+from concio.cli.progress import progress_bar
+from concio.cli.run import File, Json
+
+if TYPE_CHECKING:
+    from concio.analysis.cells.moduli import Moduli
+    from concio.analysis.cells.path_result import CellPath
+    from concio.analysis.cells.periodic_cell import PeriodicCell
+    from concio.analysis.cells.strength import StrengthDomain
+    from concio.model.stages import Stage
+
+
+@guarded
+def cell(
+    file: File,
+    direction: Annotated[
+        list[str] | None,
+        typer.Option("--direction", "-d", help="Direction of stress: xx=1,yy=-1 (repeatable)."),
+    ] = None,
+    stress: Annotated[
+        str | None, typer.Option("--stress", "-s", help="Stress the directions begin from: yy=-100 [kN/m2].")
+    ] = None,
+    stage: Annotated[
+        list[str] | None,
+        typer.Option("--stage", help="Stage of a path: 'stress yy=-100,strain xy=1e-3' (repeatable, in order)."),
+    ] = None,
+    strength: Annotated[bool, typer.Option("--strength/--no-strength", help="Find the strength domain.")] = True,
+    coulomb: Annotated[
+        bool, typer.Option("--coulomb/--no-coulomb", help="Coulomb path and collapse state in each direction.")
+    ] = True,
+    programmes: Annotated[int, typer.Option("--programmes", help="Linear programmes for the domain at most.")] = 400,
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for tables and figures.")] = None,
+    json: Json = False,
+) -> int:
+    """Homogenise a periodic cell: moduli, strength domain, and its response to macroscopic strains and stresses.
+
+    The stages of the file, or those given, are followed as a path; components are xx, yy, xy, tension is positive.
+
+    The exit code is 0, or for a path as of 'concio path'.
+
+    Example: concio cell cell.toml --stress yy=-100 --direction xy=1 --out result
+    """
+    import concio
+    from concio.analysis.cells.path import strain_path
+    from concio.analysis.cells.periodic_cell import PeriodicCell
+    from concio.analysis.cells.strength import strength as strength_of
+    from concio.cli.cell_files import write_cell
+    from concio.cli.cell_lines import cell_facts, cell_lines
+    from concio.errors import InputError
+
+    if out is not None:
+        check_directory(out)
+    directions = [components(text, "--direction") for text in direction or ()]
+    base = components(stress, "--stress") if stress is not None else (0.0, 0.0, 0.0)
+    model = concio.load(file)
+    if model.periods is None:
+        msg = "this model is no periodic cell"
+        hint = "start from: concio new cell; or give the blocks of a model periods = [[x1, y1], [x2, y2]]"
+        raise InputError(msg, where=str(file), hint=hint)
+    asked = [stage_of(text, k) for k, text in enumerate(stage or (), 1)] or list(model.stages)
+    own = PeriodicCell.of(model)
+    moduli, none = _moduli(own)
+    domain: StrengthDomain | None = None
+    path: CellPath | None = None
+    with progress_bar(shown=not json) as progress:
+        if strength or directions:
+            domain = strength_of(
+                own, directions, stress=base, coulomb=coulomb, faces=strength, programmes=programmes, progress=progress
+            )
+        if asked:
+            path = strain_path(own, asked, progress=progress)
+    written: list[str] = []
+    if out is not None:
+        with replaced_directory(out) as fresh:
+            written = write_cell(own, moduli, domain, path, fresh)
+    if json:
+        print_json(cell_facts(own, moduli, domain, path))
+    else:
+        for line in cell_lines(own, moduli, domain, path, none=none):
+            say(line)
+        if written:
+            say(f"  written      {out}: {', '.join(written)}")
+    return exit_code(domain, path)
+
+
+def _moduli(cell: PeriodicCell) -> tuple[Moduli | None, str]:
+    """Return the moduli, or None and why there are none."""
+    from concio.analysis.cells.moduli import homogenise
+    from concio.errors import InputError
+
+    try:
+        return homogenise(cell), ""
+    except InputError as error:
+        return None, error.what
+
+
+def exit_code(domain: StrengthDomain | None, path: CellPath | None) -> int:
+    """Return 0, 3 where a path ended because the cell carries no more, 4 where something was not decided."""
+    if path is not None and not path.complete:
+        return 3 if path.outcomes[-1].name in ("LIMIT", "MECHANISM") else 4
+    return 0 if domain is None or domain.checked else 4
+
+
+def components(text: str, where: str) -> tuple[float, float, float]:
+    """Return a stress from a text such as ``xx=1,yy=-50 kPa``; components that are not named are zero.
+
+    Raises
+    ------
+    InputError
+        The text is not of that form.
+    """
+    from concio.contact.periodic import COMPONENTS
+    from concio.errors import InputError
+    from concio.units import quantity
+
+    values = dict.fromkeys(COMPONENTS, 0.0)
+    for part in text.split(","):
+        name, sign, value = part.partition("=")
+        if not sign or name.strip() not in COMPONENTS:
+            msg = f"'{part}' is no component of a stress"
+            raise InputError(msg, where=where, hint=f"write for example {where} xx=1,yy=-0.5; components xx, yy, xy")
+        values[name.strip()] = quantity(value.strip(), "stress", where=where)
+    return values["xx"], values["yy"], values["xy"]
+
+
+def stage_of(text: str, number: int) -> Stage:
+    """Return a stage of a path from a text such as ``stress yy=-100,strain xy=1e-3``.
+
+    Raises
+    ------
+    InputError
+        The text is not of that form.
+    """
+    from concio.errors import InputError
+    from concio.model.stages import Stage
+    from concio.units import quantity
+
+    factors = {}
+    for part in text.split(","):
+        name, sign, value = part.partition("=")
+        word = " ".join(name.split())
+        if not sign or not word:
+            msg = f"'{part}' is neither a strain nor a stress"
+            raise InputError(msg, where="--stage", hint="write for example --stage 'stress yy=-100,strain xy=1e-3'")
+        factors[word] = quantity(value.strip(), "stress" if word.startswith("stress ") else "number", where="--stage")
+    return Stage(f"{number}: {text}", factors)

@@ -1,0 +1,159 @@
+"""What ``concio cell`` prints: moduli with what they hold for, half-spaces of the strength, directions, the path."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from concio.analysis.cells.half_spaces import HalfSpaces
+from concio.analysis.cells.moduli import Moduli
+from concio.analysis.cells.path_result import CellPath
+from concio.analysis.cells.periodic_cell import PeriodicCell
+from concio.analysis.cells.strength import StrengthDomain, StrengthRay
+from concio.contact.periodic import COMPONENTS
+
+Array = np.ndarray
+
+MOST_FACES = 12
+"""More half-spaces than this are counted; the table in --out has them all."""
+
+
+def cell_facts(
+    cell: PeriodicCell, moduli: Moduli | None, domain: StrengthDomain | None, path: CellPath | None
+) -> dict[str, Any]:
+    """Return everything as plain types: the object of ``--json``."""
+    done = (domain is None or domain.checked) and (path is None or path.complete)
+    return {
+        "status": "solved" if done else "incomplete",
+        "title": cell.model.title,
+        "bodies": len(cell.model.bodies),
+        "contacts": len(cell.assembly.pairs),
+        "periods": cell.periods.tolist(),
+        "components": list(COMPONENTS),
+        "moduli": None if moduli is None else moduli.summary(),
+        "strength": None if domain is None else domain.summary(),
+        "path": None if path is None else path.summary(),
+        "units": {"force": "kN", "length": "m", "stress": "kN/m2"},
+    }
+
+
+def cell_lines(
+    cell: PeriodicCell, moduli: Moduli | None, domain: StrengthDomain | None, path: CellPath | None, *, none: str = ""
+) -> list[str]:
+    """Return everything in words; ``none`` says why there are no moduli."""
+    (a, b), (c, d) = cell.periods
+    count = len(cell.model.bodies)
+    lines = [
+        cell.model.title or "cell without a title",
+        f"  cell         {count} {'body' if count == 1 else 'bodies'}, {len(cell.assembly.pairs):,} contact pairs; "
+        f"repeats by ({a:.6g}, {b:.6g}) and ({c:.6g}, {d:.6g}) m",
+    ]
+    lines += [f"  moduli       none: {none}"] if moduli is None else moduli_lines(moduli)
+    if domain is not None:
+        lines += strength_lines(domain)
+    if path is not None:
+        lines += path_lines(path)
+    return lines
+
+
+def moduli_lines(moduli: Moduli) -> list[str]:
+    """Return the moduli, what they hold for and how they were checked."""
+    size = float(np.abs(moduli.matrix).max())
+    rows = [
+        "  ".join(f"{v if abs(v) > 1e-9 * size else 0.0:12.6g}" for v in row)
+        for row in moduli.matrix
+    ]  # fmt: skip
+    lines = [
+        f"  moduli       E_x {moduli.E_x:.6g}, E_y {moduli.E_y:.6g}, G_xy {moduli.G_xy:.6g} kN/m2; "
+        f"nu_xy {_round(moduli.nu_xy)}, nu_yx {_round(moduli.nu_yx)}",
+        f"  matrix       {rows[0]}   stresses xx, yy, xy [kN/m2]",
+        f"               {rows[1]}   by strains xx, yy and",
+        f"               {rows[2]}   engineering shear xy",
+    ]
+    faces = None if moduli.holds is None else moduli.holds.reduced()
+    hold = "  hold         with all joints closed and none slipping"
+    if faces is None:
+        lines.append(hold)
+    else:
+        lines += [f"{hold}: as long as", *_faces(faces)]
+    lines.append(f"  checked      worst residual {moduli.certificate.worst:.0e}: balance, joints, symmetry, energy")
+    return lines
+
+
+def strength_lines(domain: StrengthDomain) -> list[str]:
+    """Return the half-spaces of the strength domain and the strength in directions."""
+    lines = []
+    found = domain.domain
+    if found is not None:
+        word = (
+            "exactly" if found.exact else f"within it by at most {100 * found.shortfall:.2g} % of the way to a corner"
+        )
+        lines.append(f"  strength     the stresses carried (associated friction) are those with, {word}")
+        lines += _faces(found.faces)
+    elif not domain.rays:
+        lines.append("  strength     no stress is carried with something to spare: there is no domain")
+    for ray in domain.rays:
+        lines += ray_lines(ray)
+    return lines
+
+
+def ray_lines(ray: StrengthRay) -> list[str]:
+    """Return the strength in one direction."""
+    words = ", ".join(f"{name} {v:g}" for name, v in zip(COMPONENTS, ray.direction, strict=True) if v)
+    head = f"  direction    {words}: "
+    if math.isinf(ray.multiplier):
+        return [head + "any multiple is carried"]
+    bound = ray.associated
+    state = "checked from both sides" if bound.checked else "NOT checked"
+    lines = [f"{head}associated bound {ray.multiplier:.6g}, {state}: {bound.worst:.0e}"]
+    if math.isfinite(ray.carried):
+        shown = "collapses at" if ray.collapse_shown else "carries at least"
+        lines.append(f"               Coulomb path {shown} {ray.carried:.6g}")
+    if ray.collapse_state is not None:
+        least = (
+            0.0 if abs(ray.collapse_state.multiplier) < 1e-9 * abs(ray.multiplier) else ray.collapse_state.multiplier
+        )
+        lines.append(f"               Coulomb collapse state at {least:.6g} ({ray.search})")
+    elif ray.search != "not asked for":
+        lines.append(f"               Coulomb collapse state: {ray.search}")
+    return lines
+
+
+def path_lines(path: CellPath) -> list[str]:
+    """Return the stages of a path with the strain and stress at the end of each."""
+    lines = []
+    for k, outcome in enumerate(path.outcomes):
+        own = [step for step in path.steps if step.stage == k]
+        events = sum(event.stage == k for event in path.events)
+        lines.append(f"  stage        {path.stages[k].name}: {outcome.value} {events:,} events")
+        if own:
+            lines.append(f"               strain {_three(own[-1].strain)}; stress {_three(own[-1].stress)} kN/m2")
+    lines += [f"  note         {note}" for note in path.notes]
+    lines += [f"  stage        {later.name}: not begun" for later in path.stages[len(path.outcomes) :]]
+    lines.append(
+        f"  certificate  worst {path.certificate:.1e} of {len(path.steps):,} states; energy closed to "
+        f"{path.energy_error:.1e}"
+    )
+    return lines
+
+
+def _faces(faces: HalfSpaces) -> list[str]:
+    lines = []
+    for normal, offset in list(zip(faces.normals, faces.offsets, strict=True))[:MOST_FACES]:
+        size = float(np.abs(normal).max())
+        terms = [f"{v:+.6g} s_{name}" for name, v in zip(COMPONENTS, normal / size, strict=True) if abs(v) > 1e-9]
+        lines.append(f"               {' '.join(terms)} <= {_round(offset / size)}")
+    if len(faces) > MOST_FACES:
+        lines.append(f"               ... and {len(faces) - MOST_FACES} more (--out writes them all)")
+    return lines or ["               (no condition at all)"]
+
+
+def _three(values: Array) -> str:
+    size = float(np.abs(values).max())
+    return "(" + ", ".join(f"{v if abs(v) > 1e-9 * size else 0.0:.6g}" for v in values) + ")"
+
+
+def _round(value: float) -> str:
+    return f"{value if abs(value) > 1e-12 else 0.0:.6g}"
