@@ -60,7 +60,7 @@ def check_lines(
     ]
     if model.periods is not None:
         (a, b), (c, d) = model.periods
-        share = sum(body.area for body in model.bodies) / abs(a * d - b * c)
+        share = sum(body.area for body in model.outlines) / abs(a * d - b * c)
         voids = "" if share > 1 - 1e-6 else f", {100 * (1 - share):.3g} % of it empty"
         lines.append(f"cell         repeats by ({a:.6g}, {b:.6g}) and ({c:.6g}, {d:.6g}) m{voids}")
     lines += [f"material     {name}: {_material(material)}" for name, material in model.materials.items()]
