@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from concio.model.generate.arches import arch
     from concio.model.generate.cells import cell
     from concio.model.generate.columns import buttress, column
+    from concio.model.generate.extrusion import extrude
     from concio.model.generate.panel import running_bond_panel
     from concio.model.generate.rubble import rubble
     from concio.model.generate.walls import wall, wall_of_courses
@@ -73,6 +74,7 @@ _HOMES = {
     "concio.model.generate.arches": ("arch",),
     "concio.model.generate.cells": ("cell",),
     "concio.model.generate.columns": ("buttress", "column"),
+    "concio.model.generate.extrusion": ("extrude",),
     "concio.model.drawing.drawing": ("model_from_dxf",),
     "concio.model.file.reading": ("load", "loads"),
     "concio.model.file.writing": ("dumps", "save"),
@@ -118,6 +120,7 @@ __all__ = [
     "cell",
     "column",
     "dumps",
+    "extrude",
     "friction_by_solving",
     "friction_margin",
     "homogenise",

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
-from concio.contact.load_faces import loaded_bodies
+from concio.contact.load_faces import line_tolerance, loaded_bodies, prefers
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID, Discretisation
 from concio.fem.solid import SolidShape
 from concio.kinematics.frames import tangents
 from concio.kinematics.rigid import rigid_operator
-from concio.model.model import Load
+from concio.model.model import Load, Model
 
 Array = np.ndarray
 
@@ -33,20 +33,23 @@ def near_polygon(points: Array, polygon: Array, tolerance: float) -> Array:
 
 
 def add_face_load(disc: Discretisation, load: Load, f: Array) -> None:
-    """Add the nodal forces of a pressure or traction on the parts of faces that lie in its polygon.
+    """Add the nodal forces of a pressure or traction: on parts of faces that lie in its polygon, or along its edge.
 
     Raises
     ------
     InputError
-        There is no polygon, it has no area or is not planar, or no face of the bodies lies in it.
+        There is neither polygon nor edge, the polygon has no area or is not planar, or no face of a body lies in it.
     """
     where = f"load group '{load.group}'"
+    if load.edge is not None:
+        _along_line(disc, load, f)
+        return
     if load.polygon is None:
         msg = f"a {load.kind} load in space needs a polygon"
         raise InputError(msg, where=where, hint="give the vertices of the loaded area, in order")
     corners = np.array(load.polygon, dtype=float)
     middle, normal, axes = plane_of(corners)
-    tolerance = max(1e-6 * disc.size, disc.model.gap_tolerance or 0.0)
+    tolerance = line_tolerance(disc.model)
     off = float(np.abs((corners - middle) @ normal).max())
     area = shapely.Polygon((corners - middle) @ axes.T)
     if off > tolerance:
@@ -55,23 +58,93 @@ def add_face_load(disc: Discretisation, load: Load, f: Array) -> None:
     if not area.is_valid or area.area <= tolerance * area.length:
         msg = f"the polygon of a {load.kind} load crosses itself or has no area"
         raise InputError(msg, where=where, hint="list its vertices in order round the area")
-    loaded = 0.0
-    for b in loaded_bodies(disc.model, load):
+    found = _in_polygon(disc.model, load, area, middle, normal, axes, tolerance)
+    if not found:
+        msg = f"the {load.kind} load on the polygon from {_text(corners[0])} lies on no face of a body"
+        raise InputError(msg, where=where, hint="give a polygon in the plane of a face")
+    for b, face, part in found:
         body = disc.model.polyhedra[b]
+        pull = -load.value[0] * body.normals[face] if load.kind == "pressure" else np.array(load.value)
+        _uniform(disc, b, face, part, middle, axes, pull, f)
+
+
+def _text(point: Array) -> str:
+    return f"({', '.join(f'{v:g}' for v in point)})"
+
+
+def _in_polygon(
+    model: Model, load: Load, area: shapely.Polygon, middle: Array, normal: Array, axes: Array, tolerance: float
+) -> list[tuple[int, int, shapely.Geometry]]:
+    """Return bodies, faces and the parts of them that a load acts on: of the two faces of a joint one alone."""
+    found = []
+    for b in loaded_bodies(model, load):
+        body = model.polyhedra[b]
         lies = np.abs(body.normals @ middle - body.offsets) <= tolerance
         lies &= np.abs(body.normals @ normal) >= np.cos(np.deg2rad(0.1))
         for face in np.flatnonzero(lies).tolist():
             rings = [(body.vertices[list(loop)] - middle) @ axes.T for loop in body.loops_of(face)]
             part = shapely.Polygon(rings[0], rings[1:]).intersection(area)
+            if part.area > tolerance * max(part.length, tolerance):
+                found.append((b, face, part))
+    if load.face == "both" or len(found) < 2:
+        return found
+    up = np.array([float(model.polyhedra[b].normals[face] @ normal) > 0 for b, face, _ in found])
+    tree = shapely.STRtree([part for _, _, part in found])
+    kept = []
+    for k, (b, face, part) in enumerate(found):
+        others = [j for j in tree.query(part).tolist() if up[j] != up[k] and found[j][0] != b]
+        shared = [part.intersection(found[j][2]) for j in others]
+        shared = [s for s in shared if s.area > tolerance * max(s.length, tolerance)]
+        what = f"{load.kind} load on the polygon from {_text(np.array(load.polygon)[0])}"
+        outward = model.polyhedra[b].normals[face]
+        if shared and not prefers(load, outward, what, f"load group '{load.group}'"):
+            part = part.difference(shapely.union_all(shared))
             if part.area <= tolerance * max(part.length, tolerance):
                 continue
-            loaded += part.area
-            pull = -load.value[0] * body.normals[face] if load.kind == "pressure" else np.array(load.value)
-            _uniform(disc, b, face, part, middle, axes, pull, f)
-    if loaded == 0.0:
-        text = f"({', '.join(f'{v:g}' for v in corners[0])})"
-        msg = f"the {load.kind} load on the polygon from {text} lies on no face of a body"
-        raise InputError(msg, where=where, hint="give a polygon in the plane of a face")
+        kept.append((b, face, part))
+    return kept
+
+
+def _along_line(disc: Discretisation, load: Load, f: Array) -> None:
+    """Add the nodal forces of a traction per length along a line on one body [kN/m]."""
+    where = f"load group '{load.group}'"
+    assert load.edge is not None
+    p, q = (np.array(end, dtype=float) for end in load.edge)
+    bodies = loaded_bodies(disc.model, load)
+    if load.kind != "traction" or len(bodies) != 1 or not np.linalg.norm(q - p) > 0:
+        msg = f"a {load.kind} load in space along the line from {_text(p)} to {_text(q)} needs one body and a vector"
+        raise InputError(msg, where=where, hint="name the block and give kN/m; loads on faces take a polygon")
+    b = bodies[0]
+    body = disc.model.polyhedra[b]
+    heights = np.column_stack([body.normals @ p - body.offsets, body.normals @ q - body.offsets])
+    tolerance = line_tolerance(disc.model)
+    if body.convex and heights.max() > tolerance:
+        msg = f"the line from {_text(p)} to {_text(q)} leaves '{body.name}' by {1e3 * heights.max():.4g} mm"
+        raise InputError(msg, where=where, hint="give a line on the block")
+    force = np.array(load.value) * float(np.linalg.norm(q - p))
+    if disc.shape_of[b] == RIGID:
+        first, last = disc.offsets[b], disc.offsets[b + 1]
+        f[first:last] += rigid_operator(0.5 * (p + q) - disc.centroids[b], disc.reach[b]).T @ force
+        return
+    for share, weight in zip(*_line_points(disc, b, p, q), strict=True):
+        dofs, rows = disc.point_operator(b, p + share * (q - p))
+        np.add.at(f, dofs, rows.T @ (weight * force))
+
+
+def _line_points(disc: Discretisation, b: int, p: Array, q: Array) -> tuple[Array, Array]:
+    """Return places (k,) on a line as shares of it and their weights: Gauss points between the nodes that lie on it."""
+    along = q - p
+    length2 = float(along @ along)
+    arm = disc.nodes(b) - p
+    share = arm @ along / length2
+    off = np.linalg.norm(arm - share[:, None] * along, axis=1)
+    on = (off <= 1e-7 * np.sqrt(length2)) & (share > 1e-7) & (share < 1 - 1e-7)
+    marks = np.unique(np.concatenate([[0.0, 1.0], np.round(share[on], 9)]))
+    if len(marks) == 2:
+        marks = np.linspace(0.0, 1.0, 21)
+    x, w = np.polynomial.legendre.leggauss(2)
+    width = np.diff(marks)
+    return (marks[:-1, None] + width[:, None] * (x + 1) / 2).ravel(), (width[:, None] * w / 2).ravel()
 
 
 def _uniform(

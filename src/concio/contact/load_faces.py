@@ -15,8 +15,9 @@ Array = np.ndarray
 
 UPRIGHT = float(np.sin(np.deg2rad(10.0)))
 """Joints whose normal rises by less than this have no lower face."""
-SIDES: dict[str, tuple[int, float]] = {"lower": (1, 1.0), "upper": (1, -1.0), "left": (0, 1.0), "right": (0, -1.0)}
-"""Component and sign of the outward normal of each face of a joint: the lower one is the top of the body below."""
+SIDES: dict[str, tuple[int, float]] = {"lower": (-1, 1.0), "upper": (-1, -1.0), "left": (0, 1.0), "right": (0, -1.0)}
+"""Component (the last is the vertical) and sign of the outward normal of each face of a joint: the lower one is the top
+of the body below."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +126,7 @@ def loaded_faces(model: Model, load: Load) -> list[LoadedFace]:
         shared = 0.0
         for other in others:
             low, high = max(other.low, face.low), min(other.high, face.high)
-            if load.face != "both" and not _preferred(load, face, f"{load.kind} load {line}", where):
+            if load.face != "both" and not prefers(load, face.outward, f"{load.kind} load {line}", where):
                 parts = _without(parts, low, high, tolerance)
             else:
                 shared += high - low
@@ -158,19 +159,19 @@ def _on_line(model: Model, chosen: list[int], p: Array, along: Array, length: fl
     return found
 
 
-def _preferred(load: Load, face: _Found, what: str, where: str) -> bool:
-    """Tell whether a face of a joint is the one that a load acts on."""
-    rise = abs(float(face.outward[1]))
+def prefers(load: Load, outward: Array, what: str, where: str) -> bool:
+    """Tell whether the face of a joint with this outward normal is the one that a load acts on."""
+    rise = abs(float(outward[-1]))
     named = load.face or ("lower" if rise >= UPRIGHT else "")
     if not named:
         msg = f"the {what} lies in an upright joint, which has two faces"
         raise InputError(msg, where=where, hint="say which with face = 'left', 'right' or 'both', or name one body")
     component, sign = SIDES[named]
-    if abs(float(face.outward[component])) < UPRIGHT:
+    if abs(float(outward[component])) < UPRIGHT:
         msg = f"the {what} lies in a joint that has no {named} face"
-        fitting = "'left' or 'right'" if component == 1 else "'lower' or 'upper'"
+        fitting = "'left' or 'right'" if component == -1 else "'lower' or 'upper'"
         raise InputError(msg, where=where, hint=f"take face = {fitting}")
-    return bool(sign * face.outward[component] > 0)
+    return bool(sign * outward[component] > 0)
 
 
 def _without(
