@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from concio.contact.assembly import assemble
 from concio.errors import InputError, MethodError
 from concio.model.generate.panel import running_bond_panel
+from concio.problem.pair_state import PairStates
 from concio.problem.solution import Status, pair_states
 from concio.solvers.algebra.updated_factor import UpdatedFactor
 from concio.solvers.methods import find
@@ -115,8 +116,10 @@ def test_crossover_from_wrong_states_reaches_the_same_answer(seed: int) -> None:
     states = pair_states(problem, cold)
     rng = np.random.default_rng(seed)
     wrong = rng.choice(problem.pairs, 6, replace=False)
-    states[wrong] = rng.integers(0, 4, 6)
-    warm = solve(problem, start_states=states, start=(cold.displacement, cold.normal_force, cold.friction_force))
+    normal, sign = states.normal.copy(), states.sign.copy()
+    normal[wrong], sign[wrong] = rng.integers(0, 2, 6), rng.integers(-1, 2, 6)
+    given = PairStates.plane(normal, sign)
+    warm = solve(problem, start_states=given, start=(cold.displacement, cold.normal_force, cold.friction_force))
     assert warm.solved
     np.testing.assert_allclose(warm.displacement, cold.displacement, atol=1e-9 * np.abs(cold.displacement).max())
 
