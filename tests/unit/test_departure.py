@@ -116,7 +116,7 @@ def test_block_on_an_incline_accelerates_as_galileo_says() -> None:
     m = problem.pairs
     downhill = np.sign(problem.C_t @ np.tile(-rotate[:, 0], problem.unknowns // 2))
     sliding = PairStates.plane(np.full(m, Normal.CLOSED), downhill)
-    motion = departure(s, sliding, np.zeros(problem.unknowns), np.ones(m), np.zeros(m))
+    motion = departure(s, sliding, np.zeros(problem.unknowns), np.tile([1.0, 0.0], (m, 1)))
     assert motion is not None
     expected = -GRAVITY * (np.sin(angle) - mu * np.cos(angle)) * rotate[:, 0]
     np.testing.assert_allclose(motion.acceleration.reshape(-1, 2), np.tile(expected, (problem.unknowns // 2, 1)),
@@ -172,8 +172,8 @@ def test_what_stands_comes_to_rest() -> None:
         ended = release(run, begin)
         assert not isinstance(ended, Departure)
         assert ended is not None
-        u, t_n, t_t = run.scaled.restore(ended.u, ended.t_n, ended.t_t)
-        assert concio.problem.certificate.certify(problem, u, t_n, t_t[:, None]).certified
+        u, t_n, t_t = run.scaled.restore(ended.u, ended.t)
+        assert concio.problem.certificate.certify(problem, u, t_n, t_t).certified
         np.testing.assert_allclose(u, whole.displacement, rtol=0, atol=1e-8 * np.abs(u).max())
 
 
@@ -183,7 +183,7 @@ def test_held_bodies_have_no_departure() -> None:
     s = scale(held)
     m = held.pairs
     states = PairStates.plane(np.full(m, Normal.OPEN), np.zeros(m))
-    assert departure(s, states, np.zeros(held.unknowns), np.zeros(m), np.zeros(m)) is None
+    assert departure(s, states, np.zeros(held.unknowns), np.zeros((m, 2))) is None
 
 
 def test_verdict_of_a_motion_reaches_the_result() -> None:

@@ -175,7 +175,7 @@ def test_exact_finish_forgets_where_it_began(begin):
     run = Run(scale(_arch(1.0)))
     found = run.plain(10.0)
     start = {"rest": 0.0 * found.u, "the other way": -3.0 * found.u, "far off": found.u + 1e4}[begin]
-    again = finish(run.scaled, start, found.t_n, found.t_t, rounds=2, states=found.states)
+    again = finish(run.scaled, start, found.t, rounds=2, states=found.states)
     assert again.error <= 1e-11
     assert again.u == pytest.approx(found.u, abs=1e-8 * np.abs(found.u).max())
 

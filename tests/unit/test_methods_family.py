@@ -12,7 +12,6 @@ import scipy.sparse as sp
 from concio.errors import MethodError
 from concio.problem.contact_problem import ContactProblem, Laws
 from concio.problem.solution import Progress, Status
-from concio.solvers.algebra.dimensionless import dimensionless
 from concio.solvers.iterative import (
     admm,
     alart_curnier,
@@ -250,15 +249,6 @@ def test_records(method: str) -> None:
     assert work[-1] >= solution.factorisations
     if solution.solved:
         assert solution.certificate.worst <= 10 * min(history)
-
-
-def test_dimensionless_typical_pair_carries_one() -> None:
-    for problem in (wall(2, 3), wall(2, 3, alpha=0.2, soil=1.0)):
-        scaled = dimensionless(problem)
-        u, t_n, _ = scaled.restore(scaled.u, scaled.t)
-        assert 0.3 < np.sqrt((scaled.t**2).sum(axis=1).mean()) < 1.5
-        assert t_n.sum() == pytest.approx(scaled.t[:, 0].sum() * scaled.force)
-        np.testing.assert_allclose(u, scaled.u * scaled.length)
 
 
 def test_jammed_arch_between_walls() -> None:

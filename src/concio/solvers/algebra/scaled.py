@@ -1,94 +1,137 @@
-r"""The plane problem in units of its own, with what the engine factorises again and again.
+r"""A contact problem in units of its own, in the plane and in space, with what is factorised again and again.
 
-Lengths and forces are divided by ``U`` and ``F`` so that a typical pair carries one and a typical stiffness is one;
-``F`` is measured on the glued structure (every pair held by two-sided springs of the typical stiffness), which costs
-one factorisation. Strengths are shifted so that every pair reads ``t_n' = t_n + T >= 0``, ``|t_t| <= c' + mu t_n'``.
+Lengths and forces are divided by ``U`` and ``F`` so that a typical pair carries one and a typical stiffness is one.
+``F`` is measured on the *glued* structure (every pair held by two-sided springs of the typical stiffness in series with
+its own compliance), which costs one factorisation and is regular although ``K`` is singular. Penalties, step lengths
+and tolerances of the methods mean something in these units only, and no answer depends on the user's.
+
+Strengths are shifted by the tensile strength, so that every pair reads ``p = t_n + T >= 0``, ``|t_t| <= c' + mu p``:
+the cone has no tension, loads hold the share ``-C_n' T`` of the shift and gaps the share ``-a_n T``. Rows of ``C`` are
+interleaved: pair k owns rows ``k d`` (normal) to ``k d + d - 1`` (tangential). Forces and gaps are (m, d) arrays, and
+``[:, 0]`` and ``[:, 1:]`` their normal and tangential parts.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 
 from concio.errors import MethodError
+from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.tolerances import GRANTED, ROUNDING, SMOOTH
-from concio.solvers.algebra.sparse_factor import Engine, PatternFactor
+from concio.solvers.algebra.block_factor import BlockFactor
+from concio.solvers.algebra.sparse_factor import Engine
+
+HELD = 1e-9
+"""Stiffness that holds what no pair holds in the glued structure, scaled units."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scaled:
-    """A plane contact problem divided by its own force and length; all fields dimensionless.
+    """A contact problem divided by its own force and length; all fields dimensionless.
 
     Parameters
     ----------
     problem : ContactProblem
     force, length : float
         F [kN] and U [m].
-    K, C_n, C_t : CSR arrays
-        Stiffness over F/U, and the operators of the problem.
+    K : (N, N) CSR array
+        Stiffness over F/U.
+    C : (m d, N) CSR array
+        Interleaved rows, normal first.
     f : (N,) array
-        Loads over F.
-    gap, origin : (m,) arrays
-        Initial gap and slip origin over U. The gap holds the share of the tension shift: x_n - a_n T.
-    mu, cohesion, tension, dilatancy, a_n, a_t, cap : (m,) arrays
-        Shifted laws: ``cohesion`` is c - mu T, ``cap`` is N + T.
-    rough : (m,) boolean array
-        Pairs that can carry friction at all; coefficients below 1e-12 count as none.
-    share : (m,) array
-        Tributary area of each pair over the mean, kept between 0.05 and 20.
+        Loads over F, with the share of the shift.
+    x : (m, d) array
+        Initial gap with the share of the shift, and minus the slip origin, over U.
+    cone : Cone
+        Shifted: without tension.
+    dilatancy : (m,) array
+        tan(psi); zero where a pair cannot carry friction.
+    compliance : (m, d) array
+        a_n and a_t.
     inertia : (N,) array
         Mass of each unknown over the mean.
     rigid : (N, r) CSC array
         Rigid motions K does nothing to, orthonormal; none where K holds them (:meth:`step_from`).
-    factor : PatternFactor
-        Factorises K + C' D C; couples are (n,n), (n,t), (t,n), (t,t), pair after pair within each.
+    factor : BlockFactor
+        Factorises K + C' D C + diagonal for blocks D (m, d, d).
+    glued : (N,) array
+        Displacements of the glued structure.
     """
 
     problem: ContactProblem
     force: float
     length: float
     K: sp.csr_array
-    C_n: sp.csr_array
-    C_t: sp.csr_array
+    C: sp.csr_array
     f: Array
-    gap: Array
-    origin: Array
-    mu: Array
-    cohesion: Array
-    tension: Array
+    x: Array
+    cone: Cone
     dilatancy: Array
-    a_n: Array
-    a_t: Array
-    cap: Array
-    rough: Array
-    share: Array
+    compliance: Array
     inertia: Array
     rigid: sp.csc_array
-    factor: PatternFactor
+    factor: BlockFactor
+    glued: Array
 
     @property
     def pairs(self) -> int:
         """Number m of pairs."""
-        return len(self.gap)
+        return len(self.x)
+
+    @property
+    def dim(self) -> int:
+        """Space dimension d."""
+        return int(self.x.shape[1])
+
+    @property
+    def rough(self) -> Array:
+        """Pairs that can carry friction at all, (m,) booleans."""
+        return self.cone.rough
+
+    @property
+    def share(self) -> Array:
+        """Tributary area of each pair over the mean, kept between 0.05 and 20 (m,)."""
+        return self.problem.area_share
+
+    @property
+    def deforms(self) -> bool:
+        """False for rigid bodies in hard joints: displacements have no scale of their own there."""
+        return bool(self.K.nnz) or bool(self.compliance.any())
 
     @cached_property
-    def transposed(self) -> tuple[sp.csr_array, sp.csr_array]:
-        """C_n' and C_t' in compressed rows, for fast products."""
-        return sp.csr_array(self.C_n.T), sp.csr_array(self.C_t.T)
-
-    def pull(self, t_n: Array, t_t: Array) -> Array:
-        """Return C_n' t_n + C_t' t_t (N,)."""
-        nodal: Array = self.transposed[0] @ t_n + self.transposed[1] @ t_t
-        return nodal
+    def transposed(self) -> sp.csr_array:
+        """C' in compressed rows, for fast products."""
+        return sp.csr_array(self.C.T)
 
     @cached_property
     def stiffness_size(self) -> sp.csr_array:
         """Absolute values of K."""
         return abs(self.K)
+
+    # -- equations ------------------------------------------------------------------------------------------------
+
+    def along(self, v: Array) -> Array:
+        """Return C v (m, d), the relative displacements of the pairs in a motion v (N,)."""
+        return np.asarray(self.C @ v).reshape(self.x.shape)
+
+    def opening(self, u: Array) -> Array:
+        """Return x + C u (m, d): gap and slip, compliance and dilatancy not yet counted."""
+        return np.asarray(self.x + self.along(u))
+
+    def position(self, u: Array, t: Array) -> Array:
+        """Return x + C u + a t (m, d): gap without dilatancy, and slip."""
+        return np.asarray(self.opening(u) + self.compliance * t)
+
+    def pull(self, t: Array) -> Array:
+        """Return the nodal forces C' t (N,) of pair forces (m, d)."""
+        nodal: Array = self.transposed @ t.ravel()
+        return nodal
 
     def elastic(self, u: Array) -> Array:
         """Return K u (N,), free of the resultants that rounding gives it on bodies that float."""
@@ -97,25 +140,31 @@ class Scaled:
             forces -= self.rigid @ (self.rigid.T @ forces)
         return forces
 
-    def imbalance(self, u: Array, t_n: Array, t_t: Array) -> Array:
-        """Return K u - f - C' t with shifted normal forces t_n' (N,)."""
-        rest: Array = self.elastic(u) - self.f - self.pull(t_n - self.tension, t_t)
+    def imbalance(self, u: Array, t: Array) -> Array:
+        """Return K u - f - C' t (N,), equation (12)."""
+        rest: Array = self.elastic(u) - self.f - self.pull(t)
         return rest
 
-    def unbalanced(self, u: Array, t_n: Array, t_t: Array, force: float) -> float:
+    def unbalanced(self, u: Array, t: Array, force: float) -> float:
         """Return the largest imbalance beyond what the rounding of u explains, over the largest force."""
         known = np.minimum(ROUNDING * (self.stiffness_size @ np.abs(u)), GRANTED * force)
-        return float((np.abs(self.imbalance(u, t_n, t_t)) - known).max(initial=0.0)) / force
+        return float((np.abs(self.imbalance(u, t)) - known).max(initial=0.0)) / force
 
-    def normal_gap(self, u: Array, t_n: Array) -> Array:
-        """Return x_n + C_n u + a_n t_n without dilatancy, t_n' shifted (m,)."""
-        gap: Array = self.gap + self.C_n @ u + self.a_n * t_n
-        return gap
+    def natural_map(self, u: Array, t: Array, unit: float = 1.0) -> Array:
+        """Return t minus the return map of t - unit y, (m, d); zero exactly where the joint laws hold.
 
-    def slip(self, u: Array, t_t: Array) -> Array:
-        """Return y_t = C_t u - s + a_t t_t (m,)."""
-        slip: Array = self.C_t @ u - self.origin + self.a_t * t_t
-        return slip
+        Parameters
+        ----------
+        u, t : (N,), (m, d) arrays
+        unit : float
+            Force that counts as much as a length of one.
+        """
+        y = self.position(u, t) * unit
+        y[:, 1:][~self.rough] = 0.0
+        distance: Array = t - self.cone.project(t - y, self.dilatancy)
+        return distance
+
+    # -- other data, other units ----------------------------------------------------------------------------------
 
     def step_from(self, u: Array, e: float) -> Scaled:
         """Return the problem of one step of slow motion from ``u`` (N,), its unknowns counted from there.
@@ -123,35 +172,58 @@ class Scaled:
         K + e M stands for K; loads, gaps and slip origins are those left at ``u``.
         """
         added = e * self.inertia
-        moved = self.problem.C @ (u * self.length)
-        m = self.pairs
+        moved = self.along(u)
+        problem, m = self.problem, self.pairs
         return replace(
             self,
             problem=replace(
-                self.problem,
-                gap=self.problem.gap + moved[:m],
-                slip_origin=self.problem.slip_origin - moved[m:, None],
+                problem,
+                K=sp.csr_array((self.K + sp.diags_array(added)) * (self.force / self.length)),
+                f=problem.f - self.elastic(u) * self.force,
+                R=sp.csc_array((len(u), 0)),
+                gap=problem.gap + moved[:, 0] * self.length,
+                slip_origin=problem.slip_origin - moved[:, 1:].reshape(m, -1) * self.length,
             ),
             K=sp.csr_array(self.K + sp.diags_array(added)),
             f=self.f - self.elastic(u),
             rigid=sp.csc_array((len(u), 0)),
-            gap=self.gap + moved[:m] / self.length,
-            origin=self.origin - moved[m:] / self.length,
+            x=self.x + moved,
             factor=self.factor.with_diagonal(added),
         )
+
+    def renewed(self, other: ContactProblem) -> Scaled:
+        """Return another problem of the same bodies and pairs in the same units: other loads, gaps, origins, laws.
+
+        K, C, ordering and factor are shared, and so is what is kept with the factor.
+        """
+        return replace(self, problem=other, **_in_units(other, self.C, self.force, self.length))
 
     def acceleration(self, a: Array) -> Array:
         """Return the accelerations [m/s2] that belong to scaled ones, M a = F m' a'."""
         physical: Array = a * (self.force / self.problem.inertia.mean())
         return physical
 
-    def restore(self, u: Array, t_n: Array, t_t: Array) -> tuple[Array, Array, Array]:
-        """Return u [m], t_n and t_t [kN] of the original problem."""
-        return u * self.length, (t_n - self.tension) * self.force, t_t * self.force
+    def restore(self, u: Array, t: Array) -> tuple[Array, Array, Array]:
+        """Return u (N,) [m], t_n (m,) and t_t (m, d-1) [kN] of the original problem."""
+        return u * self.length, t[:, 0] * self.force - self.problem.laws.tension, t[:, 1:] * self.force
+
+    def bring(self, u: Array, t_n: Array, t_t: Array) -> tuple[Array, Array]:
+        """Return u (N,) and t (m, d), scaled, of displacements [m] and forces [kN] of the original problem."""
+        t = np.column_stack([t_n + self.problem.laws.tension, t_t.reshape(self.pairs, -1)]) / self.force
+        return u / self.length, t
+
+    @cached_property
+    def start(self) -> Array:
+        """Forces of the glued structure brought into the cones (m, d): where iterations start."""
+        springs = 1.0 / (1.0 + self.compliance)
+        held = self.x if not self.problem.f.any() else np.minimum(self.x, 0.0)
+        t = -springs * (held + self.along(self.glued))
+        t[:, 0] += self.problem.laws.tension / self.force
+        return self.cone.project(t)
 
 
-def scale(problem: ContactProblem, engine: Engine = "superlu") -> Scaled:
-    """Bring a plane problem to units of its own.
+def require_plane(problem: ContactProblem) -> None:
+    """Refuse a problem in space.
 
     Raises
     ------
@@ -160,48 +232,14 @@ def scale(problem: ContactProblem, engine: Engine = "superlu") -> Scaled:
     """
     if problem.dim != 2:
         msg = "this method solves plane problems"
-        raise MethodError(msg, hint="use a method that lists three dimensions")
-    law, m = problem.laws, problem.pairs
-    stiffness = typical_stiffness(problem)
-    K = sp.csr_array(problem.K * (1.0 / stiffness))
-    C = problem.C
-    n, t = np.arange(m), m + np.arange(m)
-    couples = np.column_stack([np.concatenate([n, n, t, t]), np.concatenate([n, t, n, t])])
-    factor = PatternFactor(K, C, couples, engine)
-    spring = 1.0 / (1.0 + law.normal_compliance * stiffness)
-    shear = 1.0 / (1.0 + law.tangential_compliance * stiffness)
-    zero = np.zeros(m)
-    factor.factorise(np.concatenate([spring, zero, zero, shear]), 1e-9)
-    loads, gaps = problem.f / stiffness, np.concatenate([problem.gap, -problem.slip_origin[:, 0]])
-    pressed = np.concatenate([spring, shear]) * (gaps if not problem.f.any() else np.minimum(gaps, 0.0))
-    u = factor.solve(loads - C.T @ pressed)
-    t = np.concatenate([spring, shear]) * (C @ u) + pressed
-    size = np.sqrt(np.mean(t**2)) if m else 0.0
-    length = float(size) if np.isfinite(size) and size > 0 else 1.0
-    force = length * stiffness
-    return Scaled(
-        problem=problem,
-        force=force,
-        length=length,
-        K=K,
-        C_n=sp.csr_array(problem.C_n),
-        C_t=sp.csr_array(problem.C_t),
-        f=problem.f / force,
-        gap=(problem.gap - law.normal_compliance * law.tension) / length,
-        origin=problem.slip_origin[:, 0] / length,
-        mu=np.where(law.friction > SMOOTH, law.friction, 0.0),
-        cohesion=law.cone.spare / force,
-        tension=law.tension / force,
-        dilatancy=law.dilatancy,
-        a_n=law.normal_compliance * stiffness,
-        a_t=law.tangential_compliance * stiffness,
-        cap=(law.cap + law.tension) / force,
-        rough=law.cone.rough,
-        share=problem.area_share,
-        inertia=problem.inertia / problem.inertia.mean(),
-        rigid=problem.R,
-        factor=factor,
-    )
+        raise MethodError(msg, hint="use a method that works in three dimensions, such as alart-curnier")
+
+
+def interleaved(problem: ContactProblem) -> sp.csr_array:
+    """Return C with the rows of each pair together, normal first, shape (m d, N)."""
+    m, d = problem.pairs, problem.dim
+    order = np.column_stack([np.arange(m), m + np.arange(m * (d - 1)).reshape(m, d - 1)]).ravel()
+    return sp.csr_array(sp.csr_array(problem.C)[order])
 
 
 def typical_stiffness(problem: ContactProblem) -> float:
@@ -213,3 +251,64 @@ def typical_stiffness(problem: ContactProblem) -> float:
     if found.size:
         return float(np.exp(np.log(found).mean()))
     return float(np.abs(problem.f).sum()) or 1.0
+
+
+def scale(problem: ContactProblem, engine: Engine = "superlu", *, loads: Array | None = None) -> Scaled:
+    """Bring a problem to units of its own.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    engine : {"superlu", "pardiso"}
+        Sparse factorisation.
+    loads : (N,) array, optional
+        Loads by which forces are measured where those of the problem are not the measure (a load path) [kN].
+    """
+    m, d = problem.pairs, problem.dim
+    stiffness = typical_stiffness(problem)
+    K, C = sp.csr_array(problem.K * (1.0 / stiffness)), interleaved(problem)
+    factor = BlockFactor(K, C, m, problem.bodies, engine)
+    springs = 1.0 / (1.0 + _compliance(problem) * stiffness)
+    factor.factorise(springs[:, :, None] * np.eye(d), HELD)
+    measured = problem.f if loads is None else loads
+    gaps = np.column_stack([problem.gap, -problem.slip_origin])
+    held = springs * (gaps if not measured.any() else np.minimum(gaps, 0.0))
+    u = factor.solve(measured / stiffness - C.T @ held.ravel())
+    t = springs * (C @ u).reshape(m, d) + held
+    size = float(np.sqrt(np.mean(t**2))) if m else 0.0
+    length = size if np.isfinite(size) and size > 0 else 1.0
+    force = length * stiffness
+    return Scaled(
+        problem=problem,
+        force=force,
+        length=length,
+        K=K,
+        C=C,
+        **_in_units(problem, C, force, length),
+        inertia=problem.inertia / problem.inertia.mean(),
+        rigid=problem.R,
+        factor=factor,
+        glued=u / length,
+    )
+
+
+def _in_units(problem: ContactProblem, C: sp.csr_array, force: float, length: float) -> dict[str, Any]:
+    """Return loads, gaps and laws of :class:`Scaled` for given units."""
+    law, m, d = problem.laws, problem.pairs, problem.dim
+    compliance = _compliance(problem) * (force / length)
+    shift = np.column_stack([law.tension / force, np.zeros((m, d - 1))])
+    cone = law.cone.shifted.in_units(force)
+    cone = replace(cone, friction=np.where(cone.friction > SMOOTH, cone.friction, 0.0))
+    return {
+        "f": problem.f / force - C.T @ shift.ravel(),
+        "x": np.column_stack([problem.gap, -problem.slip_origin]) / length - compliance * shift,
+        "cone": cone,
+        "dilatancy": np.where(cone.rough, law.dilatancy, 0.0),
+        "compliance": compliance,
+    }
+
+
+def _compliance(problem: ContactProblem) -> Array:
+    """Return a_n and a_t of each pair, (m, d) [m/kN]."""
+    law = problem.laws
+    return np.column_stack([law.normal_compliance, *[law.tangential_compliance] * (problem.dim - 1)])

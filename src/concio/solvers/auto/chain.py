@@ -165,9 +165,8 @@ def crossover(run: Run, progress: ProgressCallback | None) -> Solution | None:
     s = run.scaled
     if not s.problem.laws.plain:
         return None
-    u, t_n, t_t = s.restore(best.u, best.t_n, best.t_t)
-    answer = sparse_lemke.solve(
-        s.problem, start_states=best.states, start=(u, t_n, t_t[:, None]), limit=500, tries=0, progress=progress
+    answer = sparse_lemke.pivot(
+        s, start_states=best.states, start=s.restore(best.u, best.t), limit=500, tries=0, progress=progress
     )
     if answer.status is Status.CANCELLED:
         raise Cancelled

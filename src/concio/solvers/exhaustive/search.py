@@ -230,8 +230,8 @@ class Search:
             u = np.zeros_like(u)  # nothing moves: rounding has no length to be measured by
         if judge(self.problem, u, t_n, t_t, method="exhaustive").solved:
             return u, t_n, t_t
-        close = finish(s, u / s.length, t_n / s.force, t_t / s.force)
-        answer = s.restore(close.u, close.t_n, close.t_t)
+        close = finish(s, *s.bring(u, t_n, t_t))
+        answer = s.restore(close.u, close.t)
         return answer if judge(self.problem, *answer, method="exhaustive").solved else None
 
     def branch(self, found: Point | None) -> bool:

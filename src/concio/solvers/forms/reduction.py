@@ -19,6 +19,7 @@ from scipy.sparse.linalg import splu
 
 from concio.errors import MethodError
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.solvers.algebra.scaled import scale
 from concio.solvers.pivoting.pair_rows import PairSystem
 
 
@@ -81,7 +82,7 @@ class Reduction:
         m, force = self.pairs, self.system.s.force
         t_t = np.zeros(m)
         t_t[self.rough] = t[m:] * force
-        return (t[:m] - self.system.tension) * force, t_t
+        return t[:m] * force - self.system.problem.laws.tension, t_t
 
     def best_motion(self, t: Array, y: Array) -> Array:
         """Return the rigid motions alpha (r,) that bring y0 + F t + G alpha nearest to the components y (m + k,)."""
@@ -99,7 +100,7 @@ def reduce(problem: ContactProblem) -> Reduction:
     MethodError
         The problem is not plane, or a pair has a cap on compression.
     """
-    system = PairSystem(problem)
+    system = PairSystem(scale(problem))
     if np.isfinite(system.cap).any():
         msg = "the dense forms have no cap on compression"
         raise MethodError(msg, hint="use sparse-lemke or interior-point")

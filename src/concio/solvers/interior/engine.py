@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from concio.problem.certificate import certify
-from concio.problem.contact_problem import ContactProblem
+from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Progress, ProgressCallback, Solution, Status, judge
 from concio.problem.tolerances import EXACT
-from concio.solvers.algebra.scaled import Scaled, scale
+from concio.solvers.algebra.scaled import Scaled, require_plane, scale
 from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.interior.exact_finish import Finished, finish
 from concio.solvers.interior.homotopy import walk
@@ -62,6 +62,7 @@ def solve(
     rest = at_rest(problem)
     if rest is not None:
         return rest
+    require_plane(problem)
     scaled = scale(problem, engine)
     run = Run(scaled, progress)
     try:
@@ -122,7 +123,7 @@ class Run:
         """Iterate to ever smaller targets, trying the exact finish at each, until it succeeds or nothing moves."""
         found = None
         for target in TARGETS:
-            outcome = self.engine.run(z, theta=theta, target=target, most=most, watch=self.watch(stage))
+            z, outcome = self.engine.run(z, theta=theta, target=target, most=most, watch=self.watch(stage))
             self.iterations += outcome.iterations
             close = outcome.converged or outcome.residual < 1e-5
             self.trace.append(
@@ -130,7 +131,7 @@ class Run:
                 + ("" if outcome.converged else ", stopped")
             )
             if close:
-                found = self.finish(z.u, z.t_n, z.t_t, rounds=3 if outcome.converged else 12)
+                found = self.finish(z.u, z.t, rounds=3 if outcome.converged else 12)
             if found is not None or not outcome.converged:
                 break
         return found
@@ -145,13 +146,13 @@ class Run:
         )
         return self.close_in(z, "interior point from there") if path.theta == 0 else None
 
-    def finish(self, u: np.ndarray, t_n: np.ndarray, t_t: np.ndarray, rounds: int = 12) -> Finished | None:
+    def finish(self, u: Array, t: Array, rounds: int = 12) -> Finished | None:
         """Exact finish of a point; return it if exact, None (and keep the best) if not.
 
         The finish measures against the largest force and displacement of the point itself. A point that runs off has
         them as large as it likes; it is exact only where the certificate, which measures against the load, says so.
         """
-        found = finish(self.scaled, u, t_n, t_t, rounds)
+        found = finish(self.scaled, u, t, rounds)
         settled = found.error <= EXACT
         exact = settled and self.certified(found)
         left = f", {len(found.undecided)} pairs undecided" if not settled else ", runs off" if not exact else ""
@@ -169,19 +170,20 @@ class Run:
         s = self.scaled
         point = found or self.best
         if point is None:
-            u, t_n, t_t = np.zeros(len(s.f)), s.tension.copy(), np.zeros(s.pairs)
+            shift = s.problem.laws.tension / s.force
+            u, t = np.zeros(len(s.f)), np.column_stack([shift, np.zeros((s.pairs, s.dim - 1))])
         else:
-            u, t_n, t_t = point.u, point.t_n, point.t_t
+            u, t = point.u, point.t
         small = float(np.abs(u).max(initial=0.0)) < AT_REST
-        u, t_n, t_t = s.restore(u, t_n, t_t)
+        u, t_n, t_t = s.restore(u, t)
         rest = np.zeros_like(u)
-        if small and certify(s.problem, rest, t_n, t_t[:, None]).certified:
+        if small and certify(s.problem, rest, t_n, t_t).certified:
             u = rest  # nothing moves: rounding must not be measured against itself
         return judge(
             s.problem,
             u,
             t_n,
-            t_t[:, None],
+            t_t,
             method=method,
             failure=failure,
             iterations=self.iterations,

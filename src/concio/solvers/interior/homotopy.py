@@ -11,8 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
 from concio.solvers.interior.interior_point import InteriorPoint, Iterate
 
 LEVEL = 1e-2
@@ -54,16 +52,14 @@ def walk(
         See :meth:`InteriorPoint.run`.
     """
     z = engine.start()
-    outcome = engine.run(z, theta=1.0, level=level, most=80, watch=watch)
+    z, outcome = engine.run(z, theta=1.0, level=level, most=80, watch=watch)
     total = outcome.iterations
     if not outcome.converged:
         return z, Walk(1.0, total)
     theta, stride = 1.0, 0.2
     while theta > 0 and total < most:
         new = max(0.0, theta - stride)
-        trial = z.copy()
-        recentre(trial, level)
-        outcome = engine.run(trial, theta=new, level=2 * level, most=25, watch=watch)
+        trial, outcome = engine.run(z.recentred(level), theta=new, level=2 * level, most=25, watch=watch)
         total += outcome.iterations
         if outcome.converged:
             z, theta = trial, new
@@ -73,13 +69,3 @@ def walk(
             if stride < 2e-4:
                 return z, Walk(theta, total)
     return z, Walk(theta, total)
-
-
-def recentre(z: Iterate, level: float) -> None:
-    """Raise products below ``level`` to it by enlarging the smaller factor."""
-    for a, b in (("t_n", "y_n"), ("s_p", "y_p"), ("s_m", "y_m"), ("q", "p")):
-        x, y = getattr(z, a), getattr(z, b)
-        grow = np.maximum(level / np.maximum(x * y, 1e-300), 1.0)
-        small = x < y
-        setattr(z, a, np.where(small, x * grow, x))
-        setattr(z, b, np.where(small, y, y * grow))

@@ -11,18 +11,25 @@ s- = c + mu t_n - t_t, and the slip parts y+ and y-, all of equations (5), (16),
     t_n y_n &= s^+ y^+ = s^- y^- = q\,p = \tau \to 0, \qquad q = N - t_n .
 
 Newton's equations of a pair are a 2 x 2 system; eliminated, they leave :math:`(K + C^T D C)\,\delta u = r`, sparse and
-of one pattern, regular although K is singular. Steps follow Mehrotra's predictor and corrector. The dilatancy used is
-:math:`\bar d = d + \theta(\mu - d)`: theta = 0 is the problem itself, theta = 1 associated flow, which is convex;
-:mod:`concio.solvers.interior.homotopy` walks from one to the other.
+of one pattern, regular although K is singular. Steps follow Mehrotra's predictor and corrector, then up to
+:data:`CORRECTORS` of Gondzio's centrality correctors, each of which costs one back-substitution and stays only if it
+lengthens the step. The dilatancy used is :math:`\bar d = d + \theta(\mu - d)`: theta = 0 is the problem itself,
+theta = 1 associated flow, which is convex; :mod:`concio.solvers.interior.homotopy` walks from one to the other.
 
-What the iteration returns is a point close to a solution, or nothing; :mod:`concio.solvers.interior.exact_finish` makes
-it exact.
+What the iteration returns is a point close to a solution, or nothing; the exact finish makes it exact.
+
+References
+----------
+S. Mehrotra, On the implementation of a primal-dual interior point method, *SIAM J. Optim.* 2 (1992) 575-601.
+J. Gondzio, Multiple centrality corrections in a primal-dual method for linear programming, *Comput. Optim. Appl.* 6
+(1996) 137-156.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -36,12 +43,22 @@ PROXIMAL = 1e-10
 START = 10.0
 """Size of slacks and multipliers at the start, in scaled units."""
 
-SLOPES = ("t_n", "y_n", "s_p", "y_p", "s_m", "y_m", "q", "p")
+BOUNDARY = 0.99
+"""Share of the step to the boundary that is taken."""
+
+CORRECTORS = 2
+"""Largest number of centrality correctors of an iteration."""
+
+FURTHER, GAIN = 0.1, 0.1
+"""A corrector aims at a step longer by ``FURTHER`` and stays if it gains this share of that."""
+
+OUTLIER = 10.0
+"""Products this many times too large or too small are what centrality correctors correct."""
 
 
-@dataclass
+@dataclass(frozen=True, eq=False)
 class Iterate:
-    """A point strictly inside: every slack and multiplier positive.
+    """A point strictly inside (every slack and multiplier positive), or a direction.
 
     Parameters
     ----------
@@ -49,6 +66,8 @@ class Iterate:
     t_n, t_t, y_n, s_p, y_p, s_m, y_m, q, p : (m,) arrays
         See the module's equations; ``q, p`` belong to capped pairs and are one elsewhere.
     """
+
+    PRODUCTS: ClassVar = (("t_n", "y_n"), ("s_p", "y_p"), ("s_m", "y_m"), ("q", "p"))
 
     u: Array
     t_n: Array
@@ -61,9 +80,58 @@ class Iterate:
     q: Array
     p: Array
 
-    def copy(self) -> Iterate:
-        """Return a copy that shares nothing."""
-        return replace(self, **{f.name: getattr(self, f.name).copy() for f in fields(self)})
+    @property
+    def t(self) -> Array:
+        """Forces of the pairs (m, 2)."""
+        return np.column_stack([self.t_n, self.t_t])
+
+    def products(self) -> Array:
+        """Return the four complementarity products of each pair, (4, m)."""
+        return np.array([getattr(self, a) * getattr(self, b) for a, b in self.PRODUCTS])
+
+    def moved(self, d: Iterate, step: float) -> Iterate:
+        """Return the point a step further along d."""
+        return Iterate(*(getattr(self, f.name) + step * getattr(d, f.name) for f in fields(self)))
+
+    def longest(self, d: Iterate, share: float = 1.0) -> float:
+        """Return ``share`` of the step along d to the boundary, at most 1."""
+        alpha = 1.0
+        for a, b in self.PRODUCTS:
+            for name in (a, b):
+                x, dx = getattr(self, name), getattr(d, name)
+                down = dx < 0
+                if down.any():
+                    alpha = min(alpha, share * float(np.min(-x[down] / dx[down])))
+        return alpha
+
+    def recentred(self, level: float) -> Iterate:
+        """Return the point with products below ``level`` raised to it by the smaller factor."""
+        changed = {}
+        for a, b in self.PRODUCTS:
+            x, y = getattr(self, a), getattr(self, b)
+            grow = np.maximum(level / np.maximum(x * y, 1e-300), 1.0)
+            changed[a], changed[b] = np.where(x < y, x * grow, x), np.where(x < y, y, y * grow)
+        return replace(self, **changed)
+
+
+@dataclass(frozen=True, eq=False)
+class Residuals:
+    """What the linear equations leave: equilibrium (N,), and of each pair (m,) gap, slip, s+, s- and cap."""
+
+    u: Array
+    n: Array
+    t: Array
+    p: Array
+    m: Array
+    q: Array
+
+    def size(self, force: float, length: float) -> float:
+        """Return the largest, forces relative to ``force`` and lengths to ``length``."""
+        forces, lengths = (self.u, self.p, self.m, self.q), (self.n, self.t)
+        return max(
+            *(float(np.abs(v).max(initial=0.0)) / force for v in forces),
+            *(float(np.abs(v).max(initial=0.0)) / length for v in lengths),
+        )
 
 
 @dataclass(frozen=True)
@@ -76,15 +144,129 @@ class Outcome:
         Residual and complementarity below the target.
     iterations : int
     residual : float
-        Largest residual, forces relative to the largest force and lengths to the largest displacement.
-    complementarity : float
-        Mean product over both.
+        Largest residual or product, forces relative to the largest force and lengths to the largest displacement.
+    why : str
+        Why it ended: "converged", or what :class:`Stopping` says.
     """
 
     converged: bool
     iterations: int
     residual: float
-    complementarity: float
+    why: str
+
+
+@dataclass
+class Stopping:
+    """When to give up a run: the rule and what it remembers.
+
+    Parameters
+    ----------
+    most : int
+        Largest number of iterations.
+    """
+
+    SHORT: ClassVar = (0.02, 8)
+    """Steps below the first number, so many in a row: the path turns back."""
+    PATIENCE: ClassVar = (25, 6)
+    """Iterations without a tenth of progress: from afar, and once the residual was below :attr:`CLOSE`."""
+    CLOSE: ClassVar = 1e-4
+    WORSE: ClassVar = 1e2
+    """A point that was close and whose residual then grows this much runs away."""
+
+    most: int
+    best: float = np.inf
+    since: int = 0
+    short: int = 0
+
+    def improved(self, merit: float) -> bool:
+        """Note the merit of an iterate; return whether it is the best by a tenth."""
+        if merit < 0.9 * self.best:
+            self.best, self.since = merit, 0
+            return True
+        self.since += 1
+        return False
+
+    def reason(self, iteration: int, merit: float, step: float) -> str:
+        """Return why to stop before the next iteration; empty where there is none."""
+        self.short = self.short + 1 if step < self.SHORT[0] else 0
+        near = self.best < self.CLOSE
+        if iteration == self.most:
+            return "limit of iterations"
+        if self.short >= self.SHORT[1]:
+            return "steps became short"
+        if near and merit > self.WORSE * self.best:
+            return "ran away"
+        return "no progress" if self.since >= self.PATIENCE[near] else ""
+
+
+class Newton:
+    """Newton's equations at a point: eliminated, factorised, and solved for one right-hand side after another.
+
+    Parameters
+    ----------
+    s : Scaled
+    z : Iterate
+    rest : Residuals
+    dilatancy : (m,) array
+
+    Raises
+    ------
+    SingularMatrixError
+        There is no direction: the path turns back, or the matrix cannot be factorised.
+    """
+
+    def __init__(self, s: Scaled, z: Iterate, rest: Residuals, dilatancy: Array) -> None:
+        self.s, self.z, self.rest, self.dilatancy = s, z, rest, dilatancy
+        rough, capped, mu = s.rough, s.cone.capped, s.cone.friction
+        self.P = np.where(rough, z.y_p / z.s_p, 0.0)
+        self.Q = np.where(rough, z.y_m / z.s_m, 0.0)
+        crush = np.where(capped, z.p / z.q, 0.0)
+        h_nn = z.y_n / z.t_n + s.compliance[:, 0] + crush + dilatancy * mu * (self.P + self.Q)
+        lean = self.P - self.Q
+        h_tt = np.where(rough, self.P + self.Q + s.compliance[:, 1], 1.0)
+        det = h_nn * h_tt - dilatancy * lean * mu * lean
+        if not det.all():
+            msg = "the equations of a pair are singular"
+            raise SingularMatrixError(msg)
+        self.D = np.empty((s.pairs, 2, 2))
+        self.D[:, 0, 0], self.D[:, 0, 1] = h_tt / det, -dilatancy * lean / det
+        self.D[:, 1, 0], self.D[:, 1, 1] = -mu * lean / det, np.where(rough, h_nn / det, 0.0)
+        s.factor.factorise(self.D, PROXIMAL)
+
+    def direction(self, change: Array) -> Iterate:
+        """Return the direction that changes the products by ``change`` (4, m), to first order."""
+        s, z, r, mu = self.s, self.z, self.rest, self.s.cone.friction
+        rough, capped = s.rough, s.cone.capped
+        c_n, c_p, c_m, c_q = change
+        # slip parts: dy+ = (c_p - y+ ds+) / s+, ds+ = mu dt_n + dt_t + r_p; crushing dp = pressed + (p/q) dt_n
+        plus = np.where(rough, c_p / z.s_p - self.P * r.p, 0.0)
+        minus = np.where(rough, c_m / z.s_m - self.Q * r.m, 0.0)
+        pressed = np.where(capped, (c_q - z.p * r.q) / z.q, 0.0)
+        b = np.column_stack([r.n - c_n / z.t_n - self.dilatancy * (plus + minus) + pressed, r.t - plus + minus])
+        du = s.factor.solve(-r.u - s.pull(self._times(b)))
+        dt = -self._times(b + s.along(du))
+        dt_n, dt_t = dt[:, 0], np.where(rough, dt[:, 1], 0.0)
+        ds_p, ds_m = mu * dt_n + dt_t + r.p, mu * dt_n - dt_t + r.m
+        dq = np.where(capped, r.q - dt_n, 0.0)
+        return Iterate(
+            u=du,
+            t_n=dt_n,
+            t_t=dt_t,
+            y_n=(c_n - z.y_n * dt_n) / z.t_n,
+            s_p=np.where(rough, ds_p, 0.0),
+            y_p=np.where(rough, (c_p - z.y_p * ds_p) / z.s_p, 0.0),
+            s_m=np.where(rough, ds_m, 0.0),
+            y_m=np.where(rough, (c_m - z.y_m * ds_m) / z.s_m, 0.0),
+            q=dq,
+            p=np.where(capped, (c_q - z.p * dq) / z.q, 0.0),
+        )
+
+    def _times(self, y: Array) -> Array:
+        """Return D y (m, 2)."""
+        D = self.D
+        return np.column_stack(
+            [D[:, 0, 0] * y[:, 0] + D[:, 0, 1] * y[:, 1], D[:, 1, 0] * y[:, 0] + D[:, 1, 1] * y[:, 1]]
+        )
 
 
 class InteriorPoint:
@@ -93,52 +275,51 @@ class InteriorPoint:
     Parameters
     ----------
     scaled : Scaled
+    correctors : int
+        Largest number of centrality correctors of an iteration.
     """
 
-    def __init__(self, scaled: Scaled) -> None:
-        self.problem = scaled
-        self.capped = np.isfinite(scaled.cap)
-        self.rough = scaled.rough
-        self.products = scaled.pairs + 2 * int(self.rough.sum()) + int(self.capped.sum())
+    def __init__(self, scaled: Scaled, correctors: int = CORRECTORS) -> None:
+        self.problem, self.correctors = scaled, correctors
+        rough, capped = scaled.rough, scaled.cone.capped
+        self.used = np.array([np.ones(scaled.pairs, dtype=bool), rough, rough, capped])
+        """Which of the four products of each pair are there, (4, m)."""
 
     def start(self, size: float = START) -> Iterate:
         """Return the point from which the plain iteration starts: every slack and multiplier ``size``.
 
         Starting far outside (forces and gaps ten times the typical ones) halves the iterations near collapse.
         """
-        s = self.problem
+        s, cone = self.problem, self.problem.cone
         one = np.full(s.pairs, size)
-        t_n = np.where(self.capped, np.minimum(size, 0.5 * s.cap), size)
-        strength = s.cohesion + s.mu * t_n
-        slack = np.where(self.rough, strength, size)
-        q = np.where(self.capped, np.where(self.capped, s.cap, 0.0) - t_n, size)
-        return Iterate(
-            np.zeros(len(s.f)), t_n, 0 * one, one.copy(), slack, one.copy(), slack.copy(), one.copy(), q, one.copy()
-        )
+        t_n = np.where(cone.capped, np.minimum(size, 0.5 * cone.cap), size)
+        slack = np.where(s.rough, cone.strength(t_n), size)
+        q = np.where(cone.capped, cone.cap - t_n, size)
+        return Iterate(np.zeros(len(s.f)), t_n, 0 * one, one, slack, one, slack, one, q, one)
 
     def gap(self, z: Iterate) -> float:
         """Return the mean complementarity product."""
-        r, c = self.rough, self.capped
-        total = (z.t_n * z.y_n).sum() + (z.s_p * z.y_p + z.s_m * z.y_m)[r].sum() + (z.q * z.p)[c].sum()
-        return float(total / max(self.products, 1))
+        return float(z.products()[self.used].sum() / max(int(self.used.sum()), 1))
 
-    def residuals(self, z: Iterate, theta: float) -> tuple[Array, Array, Array, Array, Array, Array]:
-        """Return the residuals of equilibrium, gap, slip, s+, s- and cap."""
-        s, r = self.problem, self.rough
-        dilatancy = self.dilatancy(theta)
-        r_u = s.imbalance(z.u, z.t_n, z.t_t)
-        r_n = s.normal_gap(z.u, z.t_n) - dilatancy * (z.y_p + z.y_m) - z.y_n + np.where(self.capped, z.p, 0.0)
-        r_t = np.where(r, s.slip(z.u, z.t_t) - z.y_p + z.y_m, 0.0)
-        strength = s.cohesion + s.mu * z.t_n
-        r_p = np.where(r, strength + z.t_t - z.s_p, 0.0)
-        r_m = np.where(r, strength - z.t_t - z.s_m, 0.0)
-        r_q = np.where(self.capped, np.where(self.capped, s.cap, 0.0) - z.t_n - z.q, 0.0)
-        return r_u, r_n, r_t, r_p, r_m, r_q
+    def residuals(self, z: Iterate, theta: float) -> Residuals:
+        """Return what the linear equations leave at a point."""
+        s, rough, capped = self.problem, self.problem.rough, self.problem.cone.capped
+        y = s.position(z.u, z.t)
+        dilated = self.dilatancy(theta) * (z.y_p + z.y_m)
+        strength = s.cone.cohesion + s.cone.friction * z.t_n
+        return Residuals(
+            u=s.imbalance(z.u, z.t),
+            n=y[:, 0] - dilated - z.y_n + np.where(capped, z.p, 0.0),
+            t=np.where(rough, y[:, 1] - z.y_p + z.y_m, 0.0),
+            p=np.where(rough, strength + z.t_t - z.s_p, 0.0),
+            m=np.where(rough, strength - z.t_t - z.s_m, 0.0),
+            q=np.where(capped, np.where(capped, s.cone.cap, 0.0) - z.t_n - z.q, 0.0),
+        )
 
     def dilatancy(self, theta: float) -> Array:
         """Return the dilatancy (m,) of the homotopy at ``theta``."""
         s = self.problem
-        return np.where(self.rough, s.dilatancy + theta * (s.mu - s.dilatancy), 0.0)
+        return np.where(s.rough, s.dilatancy + theta * (s.cone.friction - s.dilatancy), 0.0)
 
     def run(
         self,
@@ -149,13 +330,12 @@ class InteriorPoint:
         most: int = 80,
         level: float = 0.0,
         watch: Callable[[int, float], bool | None] | None = None,
-    ) -> Outcome:
-        """Iterate in place from ``z``.
+    ) -> tuple[Iterate, Outcome]:
+        """Iterate from ``z``; return the point reached, or the best met where it does not converge.
 
         Parameters
         ----------
         z : Iterate
-            Changed in place; where the run does not converge, the best point met is put back.
         theta : float
             Share of associated flow.
         target : float
@@ -167,120 +347,59 @@ class InteriorPoint:
         watch : callable, optional
             Called with (iteration, max of residual and product); true stops.
         """
-        s, r, c = self.problem, self.rough, self.capped
-        dilatancy, mu = self.dilatancy(theta), s.mu
-        step, short = 1.0, 0
-        best, kept, since = np.inf, z.copy(), 0
-        for iteration in range(most + 1):
-            r_u, r_n, r_t, r_p, r_m, r_q = self.residuals(z, theta)
+        stopping = Stopping(most)
+        step, iteration, kept, why = 1.0, 0, z, ""
+        while True:
+            rest, gap = self.residuals(z, theta), self.gap(z)
             force = max(1.0, float(z.t_n.max(initial=0.0)), float(np.abs(z.t_t).max(initial=0.0)))
             length = max(1.0, float(np.abs(z.u).max(initial=0.0)))
-            residual = max(
-                *(float(np.abs(v).max(initial=0.0)) / force for v in (r_u, r_p, r_m, r_q)),
-                *(float(np.abs(v).max(initial=0.0)) / length for v in (r_n, r_t)),
-            )
-            gap = self.gap(z)
+            residual = rest.size(force, length)
             typical = max(1.0, float(z.t_n.mean())) * max(1.0, float((z.y_n + z.y_p + z.y_m).mean()))
-            relative = gap / typical
-            merit = max(residual, relative)
+            merit = max(residual, gap / typical)
             if not np.isfinite(merit):
+                why = "numbers ran over"
                 break
-            if merit < 0.9 * best:
-                best, since = merit, 0
-                for f in fields(z):
-                    setattr(kept, f.name, getattr(z, f.name))
-            else:
-                since += 1
+            if stopping.improved(merit):
+                kept = z
             if merit < target or (level and gap < level and residual < 1e-6):
-                return Outcome(True, iteration, residual, relative)
+                return z, Outcome(True, iteration, residual, "converged")
             if watch is not None and watch(iteration, merit):
+                why = "asked to"
                 break
-            short = short + 1 if step < 0.02 else 0
-            if iteration == most or short >= 8 or since >= 25 or (best < 1e-4 and (merit > 1e2 * best or since >= 6)):
+            why = stopping.reason(iteration, merit, step)
+            if why:
                 break
-            big_p, big_q = np.where(r, z.y_p / z.s_p, 0.0), np.where(r, z.y_m / z.s_m, 0.0)  # P, Q
-            crush = np.where(c, z.p / z.q, 0.0)
-            h_nn = z.y_n / z.t_n + s.a_n + crush + dilatancy * mu * (big_p + big_q)
-            h_nt = dilatancy * (big_p - big_q)
-            h_tn = mu * (big_p - big_q)
-            h_tt = np.where(r, big_p + big_q + s.a_t, 1.0)
-            det = h_nn * h_tt - h_nt * h_tn
-            if not det.all():
-                break  # the path turns back: no direction
-            d_nn, d_nt, d_tn, d_tt = h_tt / det, -h_nt / det, -h_tn / det, np.where(r, h_nn / det, 0.0)
             try:
-                s.factor.factorise(np.concatenate([d_nn, d_nt, d_tn, d_tt]), PROXIMAL)
+                newton = Newton(self.problem, z, rest, self.dilatancy(theta))
             except SingularMatrixError:
+                why = "no direction"
                 break
+            floor = max(0.3 * level, 0.03 * target * typical)
+            d, step = self._direction(newton, z, gap, floor)
+            z = z.moved(d, step)
+            iteration += 1
+        return kept, Outcome(False, iteration, stopping.best, why)
 
-            def direction(
-                rc_n: Array,
-                rc_p: Array,
-                rc_m: Array,
-                rc_q: Array,
-                P: Array = big_p,
-                Q: Array = big_q,
-                D: tuple[Array, ...] = (d_nn, d_nt, d_tn, d_tt),
-                rest: tuple[Array, ...] = (r_u, r_n, r_t, r_p, r_m, r_q),
-            ) -> Iterate:
-                r_u, r_n, r_t, r_p, r_m, r_q = rest
-                # slip parts: dy+ = (rc_p - y+ ds+) / s+, ds+ = mu dt_n + dt_t + r_p
-                plus = np.where(r, rc_p / z.s_p - P * r_p, 0.0)
-                minus = np.where(r, rc_m / z.s_m - Q * r_m, 0.0)
-                pressed = np.where(c, (rc_q - z.p * r_q) / z.q, 0.0)  # dp = pressed + (p/q) dt_n
-                b_n = r_n - rc_n / z.t_n - dilatancy * (plus + minus) + pressed
-                b_t = r_t - plus + minus
-                n0, t0 = -(D[0] * b_n + D[1] * b_t), -(D[2] * b_n + D[3] * b_t)
-                du = s.factor.solve(-r_u + s.pull(n0, t0))
-                v_n, v_t = s.C_n @ du, s.C_t @ du
-                dt_n = n0 - D[0] * v_n - D[1] * v_t
-                dt_t = np.where(r, t0 - D[2] * v_n - D[3] * v_t, 0.0)
-                ds_p, ds_m = mu * dt_n + dt_t + r_p, mu * dt_n - dt_t + r_m
-                dq = np.where(c, r_q - dt_n, 0.0)
-                return Iterate(
-                    u=du,
-                    t_n=dt_n,
-                    t_t=dt_t,
-                    y_n=(rc_n - z.y_n * dt_n) / z.t_n,
-                    s_p=np.where(r, ds_p, 0.0),
-                    y_p=np.where(r, (rc_p - z.y_p * ds_p) / z.s_p, 0.0),
-                    s_m=np.where(r, ds_m, 0.0),
-                    y_m=np.where(r, (rc_m - z.y_m * ds_m) / z.s_m, 0.0),
-                    q=dq,
-                    p=np.where(c, (rc_q - z.p * dq) / z.q, 0.0),
-                )
-
-            d = direction(-z.t_n * z.y_n, -z.s_p * z.y_p, -z.s_m * z.y_m, -z.q * z.p)
-            step = _longest(z, d, 1.0)
-            predicted = self.gap(_moved(z, d, step))
-            centring = min(1.0, max((predicted / gap) ** 3, 1e-4)) if step > 0.05 else 0.5
-            tau = centring * gap
-            tau = max(tau, 0.3 * level, 0.03 * target * typical)
-            d = direction(
-                tau - z.t_n * z.y_n - step * d.t_n * d.y_n,
-                tau - z.s_p * z.y_p - step * d.s_p * d.y_p,
-                tau - z.s_m * z.y_m - step * d.s_m * d.y_m,
-                tau - z.q * z.p - step * d.q * d.p,
-            )
-            step = _longest(z, d, 0.99)
-            moved = _moved(z, d, step)
-            for f in fields(z):
-                setattr(z, f.name, getattr(moved, f.name))
-        for f in fields(z):
-            setattr(z, f.name, getattr(kept, f.name))
-        return Outcome(False, iteration, best, self.gap(z))
-
-
-def _longest(z: Iterate, d: Iterate, share: float) -> float:
-    """Return the longest step <= 1 that keeps every slack and multiplier positive, times ``share``."""
-    alpha = 1.0
-    for name in SLOPES:
-        x, dx = getattr(z, name), getattr(d, name)
-        down = dx < 0
-        if down.any():
-            alpha = min(alpha, share * float(np.min(-x[down] / dx[down])))
-    return alpha
-
-
-def _moved(z: Iterate, d: Iterate, step: float) -> Iterate:
-    return Iterate(**{f.name: getattr(z, f.name) + step * getattr(d, f.name) for f in fields(z)})
+    def _direction(self, newton: Newton, z: Iterate, gap: float, floor: float) -> tuple[Iterate, float]:
+        """Return direction and step: predictor, corrector, centrality correctors; ``floor`` is the least target."""
+        products = z.products()
+        d = newton.direction(-products)
+        step = z.longest(d)
+        predicted = self.gap(z.moved(d, step))
+        centring = min(1.0, max((predicted / gap) ** 3, 1e-4)) if step > 0.05 else 0.5
+        tau = max(centring * gap, floor)
+        change = tau - products - step * d.products()
+        d = newton.direction(change)
+        step = z.longest(d, BOUNDARY)
+        for _ in range(self.correctors):
+            if step > 1.0 - FURTHER:
+                break
+            there = z.moved(d, min(1.0, step + FURTHER)).products()
+            pull = np.clip(there, tau / OUTLIER, tau * OUTLIER) - there
+            trial = np.where(self.used, change + np.maximum(pull, -OUTLIER * tau), change)
+            other = newton.direction(trial)
+            longer = z.longest(other, BOUNDARY)
+            if longer < step + GAIN * FURTHER:
+                break
+            d, step, change = other, longer, trial
+        return d, step

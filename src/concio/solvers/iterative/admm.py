@@ -30,14 +30,16 @@ statistical learning via the alternating direction method of multipliers, *Found
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sp
 
 from concio.errors import MethodError
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
-from concio.solvers.algebra.dimensionless import PROXIMAL, Dimensionless, dimensionless
+from concio.solvers.algebra.scaled import Scaled, scale
 from concio.solvers.iterative.de_saxce import isotropic
 from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer, require_positive
+
+PROXIMAL = 1e-9
+"""Regularisation that keeps the factorisation finite where a body hangs on nothing."""
 
 BALANCE_EVERY = 50
 REFACTORISATIONS = 10
@@ -73,9 +75,9 @@ def solve(
     if not 0 < relaxation < 2:
         msg = f"relaxation {relaxation} is not between 0 and 2"
         raise MethodError(msg, hint="try 1")
-    s = dimensionless(problem)
+    s = scale(problem)
     record = Record("admm", s, progress)
-    record.info["unknowns"] = s.f.size + 2 * s.t.size
+    record.info["unknowns"] = s.f.size + 2 * s.x.size
     try:
         rho = _iterate(s, record, augmentation, relaxation, limit)
     except Stopped as stop:
@@ -84,20 +86,19 @@ def solve(
     return answer(problem, record)
 
 
-def _iterate(s: Dimensionless, record: Record, level: float, omega: float, limit: int) -> float:
+def _iterate(s: Scaled, record: Record, level: float, omega: float, limit: int) -> float:
     """Run the iteration; returns the last augmentation."""
     lag = np.maximum(s.cone.friction - s.dilatancy, 0.0)
-    u, t = s.u, s.t
+    u, t = s.glued, s.start
     z = s.opening(u)
     rho, lu = isotropic(s.compliance, level), None
     refactorised = 0
     primal = dual = 0.0
     for k in range(1, limit + 1):
         if lu is None:
-            matrix = s.K + s.C.T @ sp.diags_array(rho.ravel()) @ s.C + PROXIMAL * sp.eye_array(u.size)
-            lu = record.factorise(sp.csc_array(matrix))
+            lu = record.factorise(rho[:, :, None] * np.eye(s.dim), PROXIMAL)
         rhs = s.f + s.pull(t + rho * (z - s.x))
-        u = u + lu.solve(rhs - s.K @ u - s.pull(rho * (s.C @ u).reshape(t.shape)))  # the increment loses no digits
+        u = u + lu.solve(rhs - s.K @ u - s.pull(rho * s.along(u)))  # the increment loses no digits
         record.solves()
         y = s.opening(u)
         held = lag * np.linalg.norm(z[:, 1:] + s.compliance[:, 1:] * t[:, 1:], axis=1)

@@ -25,13 +25,12 @@ P. Alart, A. Curnier, A mixed formulation for frictional contact problems prone 
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
-from concio.solvers.algebra.dimensionless import Dimensionless, dimensionless
-from concio.solvers.iterative.augmented import block_diagonal, proximal
-from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer, require_positive
+from concio.solvers.algebra.scaled import Scaled, scale
+from concio.solvers.iterative.augmented import proximal
+from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer, require_positive, residual_of
 
 SHIFT = 1e-7
 """Least damping: relative shift of the contact rows."""
@@ -74,10 +73,10 @@ def solve(
         ``augmentation`` is not positive.
     """
     require_positive("augmentation", augmentation, "try 1")
-    s = dimensionless(problem)
+    s = scale(problem)
     record = Record("alart-curnier", s, progress)
-    record.info["unknowns"] = s.f.size + s.t.size
-    u, t = s.u, s.t
+    record.info["unknowns"] = s.f.size + s.x.size
+    u, t = s.glued, s.start
     try:
         record.note(u, t, "start")
         newton(s, record, u, t, augmentation=augmentation, limit=limit, line_search=line_search)
@@ -88,7 +87,7 @@ def solve(
 
 
 def newton(
-    s: Dimensionless,
+    s: Scaled,
     record: Record,
     u: Array,
     t: Array,
@@ -104,7 +103,7 @@ def newton(
     the joints, and have them recorded against the joints they stand for.
     """
     recent: list[float] = []
-    residual = s.residual(u, t)
+    residual = residual_of(s, u, t)
     best, damping = [residual], SHIFT
     for _ in range(limit):
         if residual <= goal:
@@ -119,20 +118,20 @@ def newton(
         u, t = u + length * du, t + length * dt
         slow = length < SHORT or (len(recent) > 1 and recent[-1] > SLOW * recent[-2])
         damping = min(max(10.0 * damping, 1e-3), 1.0) if slow and line_search else max(0.1 * damping, SHIFT)
-        residual = s.residual(u, t)
+        residual = residual_of(s, u, t)
         best.append(residual)
         record.note(u, t, f"Newton step {length:.3g}")
     return u, t, residual <= goal
 
 
-def _law_residual(s: Dimensionless, u: Array, t: Array, rho: float) -> tuple[Array, Array]:
+def _law_residual(s: Scaled, u: Array, t: Array, rho: float) -> tuple[Array, Array]:
     """Return the trial force and (t - P)/rho."""
-    w = t - rho * (s.opening(u) + s.compliance * t)
+    w = t - rho * s.position(u, t)
     return w, (t - s.cone.project(w, s.dilatancy)) / rho
 
 
 def _newton_step(
-    s: Dimensionless, record: Record, u: Array, t: Array, rho: float, residual: float, damping: float
+    s: Scaled, record: Record, u: Array, t: Array, rho: float, residual: float, damping: float
 ) -> tuple[Array, Array]:
     """Return the Newton direction (du, dt)."""
     w, law = _law_residual(s, u, t, rho)
@@ -142,19 +141,14 @@ def _newton_step(
     local = np.linalg.inv((1.0 + damping) * np.eye(d) - jacobian * diagonal)
     blocks = rho * local @ jacobian
     kick = -rho * (local @ law[:, :, None])[:, :, 0]
-    matrix = (
-        s.K
-        + s.C.T @ block_diagonal(blocks) @ s.C
-        + max(proximal(residual), HOLD * (damping - SHIFT)) * sp.eye_array(u.size)
-    )
-    lu = record.factorise(sp.csc_array(matrix))
+    lu = record.factorise(blocks, max(proximal(residual), HOLD * (damping - SHIFT)))
     du = lu.solve(-s.imbalance(u, t) + s.pull(kick))
     record.solves()
-    dt = kick - (blocks @ (s.C @ du).reshape(t.shape)[:, :, None])[:, :, 0]
+    dt = kick - (blocks @ s.along(du)[:, :, None])[:, :, 0]
     return du, dt
 
 
-def _step_length(s: Dimensionless, u: Array, t: Array, du: Array, dt: Array, rho: float, recent: list[float]) -> float:
+def _step_length(s: Scaled, u: Array, t: Array, du: Array, dt: Array, rho: float, recent: list[float]) -> float:
     """Return the step length of a non-monotone Armijo search on the residual's norm."""
 
     def norm(length: float) -> float:
@@ -163,7 +157,7 @@ def _step_length(s: Dimensionless, u: Array, t: Array, du: Array, dt: Array, rho
 
     recent.append(norm(0.0))
     bound = max(recent[-5:])
-    reach = REACH * max(1.0, float(np.abs(s.u).max(initial=0.0)))
+    reach = REACH * max(1.0, float(np.abs(s.glued).max(initial=0.0)))
     first = min(1.0, reach / max(float(np.abs(du).max(initial=0.0)), 1e-300))
     trials = [first * 0.5**k for k in range(9)]
     best, best_length = np.inf, trials[-1]

@@ -19,11 +19,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy.sparse as sp
 
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array
-from concio.solvers.algebra.dimensionless import Dimensionless
+from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.iterative.iteration import Record
 
 LARGEST = 1e3
@@ -39,7 +38,7 @@ class Augmented:
 
     Parameters
     ----------
-    scaled : Dimensionless
+    scaled : Scaled
     cone : Cone
         Strength domains; not always those of the problem (Tresca).
     rho : (m, d) array
@@ -57,7 +56,7 @@ class Augmented:
         Weight of a proximal term ``prox/2 |u - anchor|^2``, for problems in between that need have no equilibrium.
     """
 
-    scaled: Dimensionless
+    scaled: Scaled
     cone: Cone
     rho: Array
     lam: Array
@@ -91,11 +90,10 @@ class Augmented:
         """Contact forces t(u), (m, d)."""
         return self.cone.project(self.trial(u), self.kappa) + self.fixed
 
-    def tangent(self, u: Array) -> sp.csc_array:
-        """K + C' P' r C."""
-        s = self.scaled
-        blocks = self.cone.derivative(self.trial(u), self.kappa) * self.stiffness[:, None, :]
-        return sp.csc_array(s.K + s.C.T @ block_diagonal(blocks) @ s.C + self.prox * sp.eye_array(u.size))
+    def tangent(self, u: Array) -> Array:
+        """P' r, the blocks (m, d, d) of K + C' P' r C."""
+        blocks: Array = self.cone.derivative(self.trial(u), self.kappa) * self.stiffness[:, None, :]
+        return blocks
 
     def imbalance(self, u: Array) -> Array:
         """K u - f - C' t(u), with the proximal force (N,)."""
@@ -110,12 +108,6 @@ class Augmented:
         stored = ((t * (w - 0.5 * t)) / self.stiffness).sum()
         outer = s.f @ u + (s.pull(np.broadcast_to(self.fixed, t.shape)) @ u if np.ndim(self.fixed) else 0.0)
         return float(0.5 * u @ (s.K @ u) - outer + stored + 0.5 * self.prox * ((u - self.anchor) ** 2).sum())
-
-
-def block_diagonal(blocks: Array) -> sp.bsr_array:
-    """Return the block-diagonal matrix of (m, d, d) blocks."""
-    m, d, _ = blocks.shape
-    return sp.bsr_array((blocks, np.arange(m), np.arange(m + 1)), shape=(m * d, m * d))
 
 
 def proximal(size: float) -> float:
@@ -143,7 +135,7 @@ def equilibrium(law: Augmented, u: Array, record: Record, *, goal: float, limit:
     converged : bool
     """
     s = law.scaled
-    load = float(np.abs(s.f).sum()) or 1.0
+    load = s.problem.total_load / s.force or 1.0
     sizes: list[float] = []
     for _ in range(limit):
         rest = law.imbalance(u)
@@ -151,7 +143,7 @@ def equilibrium(law: Augmented, u: Array, record: Record, *, goal: float, limit:
         if size <= goal or (size < ROUNDING and len(sizes) > 2 and size > 0.5 * min(sizes[-3:])):
             return u, True
         sizes.append(size)
-        lu = record.factorise(law.tangent(u) + proximal(size) * sp.eye_array(u.size, format="csc"))
+        lu = record.factorise(law.tangent(u), law.prox + proximal(size))
         step = -lu.solve(rest)
         record.solves()
         if not np.isfinite(step).all():

@@ -27,7 +27,7 @@ import numpy as np
 
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
-from concio.solvers.algebra.dimensionless import dimensionless
+from concio.solvers.algebra.scaled import scale
 from concio.solvers.iterative.augmented import Augmented, multipliers
 from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer, require_positive
 
@@ -62,12 +62,12 @@ def solve(
         ``augmentation`` is not positive.
     """
     require_positive("augmentation", augmentation, "try 10")
-    s = dimensionless(problem)
+    s = scale(problem)
     record = Record("de-saxce", s, progress, budget=steps)
     record.info["unknowns"] = s.f.size
-    law = Augmented(s, s.cone, isotropic(s.compliance, augmentation), s.t, s.cone.friction)
+    law = Augmented(s, s.cone, isotropic(s.compliance, augmentation), s.start, s.cone.friction)
     lag = np.maximum(s.cone.friction - s.dilatancy, 0.0)
-    u, shift, relax, before, outer = s.u, np.zeros(s.pairs), 1.0, np.inf, 0
+    u, shift, relax, before, outer = s.glued, np.zeros(s.pairs), 1.0, np.inf, 0
     least = GOAL if (lag == 0.0).all() else LOOSE
     changes: list[float] = []
     try:

@@ -25,7 +25,7 @@ import scipy.sparse as sp
 from concio.errors import MethodError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
-from concio.solvers.algebra.dimensionless import Dimensionless, dimensionless
+from concio.solvers.algebra.scaled import Scaled, scale
 from concio.solvers.iterative.delassus import colours, delassus
 from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer
 
@@ -63,15 +63,14 @@ def solve(
     if inertia == 0 and problem.rigid_motions:
         msg = f"the Delassus operator C K^-1 C' does not exist: {problem.rigid_motions} rigid motions are free"
         raise MethodError(msg, hint="leave inertia at its default, or take admm or interior-point")
-    s = dimensionless(problem)
+    s = scale(problem)
     record = Record("gauss-seidel", s, progress)
-    record.info["unknowns"] = s.t.size
-    a = sp.csc_array(s.K + inertia * sp.eye_array(s.f.size))
-    lu = record.factorise(a)
-    w = delassus(a, s.C, problem.bodies)
+    record.info["unknowns"] = s.x.size
+    lu = record.factorise(np.zeros((s.pairs, s.dim, s.dim)), inertia)
+    w = delassus(sp.csc_array(s.K + inertia * sp.eye_array(s.f.size)), s.C, problem.bodies)
     w = sp.csr_array(w + sp.diags_array(s.compliance.ravel()))
     groups = [_Group(s, w, pick) for pick in colours(w, s.dim)]
-    u, t = s.u, s.t
+    u, t = s.glued, s.start
     record.info.update(inertia=inertia, colours=len(groups), delassus_entries=int(w.nnz))
     try:
         while len(record.history) < limit and not record.stalled(600, 0.9):
@@ -95,7 +94,7 @@ def solve(
 class _Group:
     """Pairs of one colour: their rows of W, their own blocks, their strength domains."""
 
-    def __init__(self, s: Dimensionless, w: sp.csr_array, pick: Array) -> None:
+    def __init__(self, s: Scaled, w: sp.csr_array, pick: Array) -> None:
         d = s.dim
         self.pick, self.d = pick, d
         rows = (pick[:, None] * d + np.arange(d)).ravel()

@@ -11,14 +11,17 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.sparse.linalg import SuperLU
 
 from concio.errors import MethodError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Progress, ProgressCallback, Solution, Status, judge
 from concio.problem.tolerances import CERTIFIED
-from concio.solvers.algebra.dimensionless import Dimensionless, factorise
+from concio.solvers.algebra.block_factor import BlockFactor
+from concio.solvers.algebra.scaled import Scaled
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
+
+TINY = 1e-9
+"""Loads and displacements below this, scaled, are none."""
 
 GOAL = 1e-11
 """Residual at which the methods stop, a hundredth of what the certificate asks."""
@@ -45,14 +48,15 @@ class Record:
     Parameters
     ----------
     method : str
-    scaled : Dimensionless
+    scaled : Scaled
+        Its factor does the work.
     progress : callable, optional
     budget : int, optional
         Iterations after which a run with nested loops ends.
     """
 
     method: str
-    scaled: Dimensionless
+    scaled: Scaled
     progress: ProgressCallback | None = None
     history: list[float] = field(default_factory=list)
     work: list[float] = field(default_factory=list)
@@ -64,25 +68,25 @@ class Record:
     _spent: float = 1.0
     _solve_share: float = 0.0
 
-    def factorise(self, matrix: sp.csc_array) -> SuperLU:
-        """Factorise and count it.
+    def factorise(self, D: Array, diagonal: float) -> BlockFactor:
+        """Factorise K + C' D C + diagonal for blocks D (m, d, d), count it, and return the factor.
 
         Raises
         ------
         Stopped
             The matrix is singular, or not finite.
         """
+        factor = self.scaled.factor
         try:
-            lu = factorise(matrix)
-        except (RuntimeError, ValueError) as error:  # SuperLU raises RuntimeError for an exactly singular matrix
+            factor.factorise(D, diagonal)
+        except SingularMatrixError as error:
             self.trace.append(f"a matrix could not be factorised ({error}).")
             raise Stopped(cancelled=False) from error
         self.factorisations += 1
         self._spent += 1.0
         if not self._solve_share:
-            columns = np.diff(lu.L.indptr).astype(float)
-            self._solve_share = float(2.0 * lu.nnz / max(2.0 * (columns**2).sum(), 2.0 * lu.nnz))
-        return lu
+            self._solve_share = factor.numeric.solve_share()
+        return factor
 
     def solves(self, count: int = 1) -> None:
         """Count ``count`` pairs of triangular solves."""
@@ -96,7 +100,7 @@ class Record:
         Stopped
             The progress callback asked to stop, or the budget of iterations is used up.
         """
-        residual = self.scaled.residual(u, t)
+        residual = residual_of(self.scaled, u, t)
         residual = residual if np.isfinite(residual) else np.inf
         self.history.append(residual)
         self.work.append(self._spent)
@@ -114,6 +118,15 @@ class Record:
         if len(self.history) <= 2 * window:
             return False
         return min(self.history[-window:]) > factor * min(self.history[:-window])
+
+
+def residual_of(s: Scaled, u: Array, t: Array) -> float:
+    """Bound on the certificate: imbalance over the load, natural map over the smaller of load and displacement."""
+    load = s.problem.total_load / s.force or max(float(np.abs(t).max(initial=0.0)), TINY)
+    size = max(float(np.abs(u).max(initial=0.0)), TINY if s.deforms else 1.0)
+    imbalance = float(np.abs(s.imbalance(u, t)).max(initial=0.0))
+    law = float(np.abs(s.natural_map(u, t)).max(initial=0.0))
+    return max(imbalance / load, law / min(load, size, 1.0))
 
 
 def require_positive(name: str, value: float, hint: str) -> None:
@@ -139,7 +152,7 @@ def require_positive(name: str, value: float, hint: str) -> None:
 def answer(problem: ContactProblem, record: Record, *, cancelled: bool = False) -> Solution:
     """Judge the best state of a record; what is not certified is reported with the accuracy it reached."""
     scaled = record.scaled
-    _, u, t = record.best if record.best is not None else (np.inf, scaled.u, scaled.t)
+    _, u, t = record.best if record.best is not None else (np.inf, scaled.glued, scaled.start)
     restored = scaled.restore(u, t)
     solution = _judge(problem, record, restored, cancelled=cancelled, accuracy=None)
     if not solution.solved and record.best is not None:

@@ -27,14 +27,12 @@ active set strategy as a semismooth Newton method, *SIAM J. Optim.* 13 (2003) 86
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sp
 
 from concio.errors import MethodError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.pair_state import Normal, PairStates
 from concio.problem.solution import ProgressCallback, Solution
-from concio.solvers.algebra.dimensionless import Dimensionless, dimensionless
-from concio.solvers.iterative.augmented import block_diagonal
+from concio.solvers.algebra.scaled import Scaled, scale
 from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer
 
 STIFFNESS = 1e3
@@ -63,10 +61,10 @@ def solve(problem: ContactProblem, *, progress: ProgressCallback | None = None, 
     if problem.dim != 2:
         msg = "the active set of signed slips is two-dimensional"
         raise MethodError(msg, hint="alart-curnier and simo-laursen do three")
-    s = dimensionless(problem)
+    s = scale(problem)
     record = Record("lagrange", s, progress)
-    record.info["unknowns"] = s.f.size + s.t.size
-    u, t = s.u, s.t
+    record.info["unknowns"] = s.f.size + s.x.size
+    u, t = s.glued, s.start
     states = _guess(s, u, t)
     seen = {states.key()}
     single = False
@@ -90,7 +88,7 @@ def solve(problem: ContactProblem, *, progress: ProgressCallback | None = None, 
     return answer(problem, record)
 
 
-def _guess(s: Dimensionless, u: Array, t: Array) -> PairStates:
+def _guess(s: Scaled, u: Array, t: Array) -> PairStates:
     """States of the glued structure."""
     y = s.opening(u)
     normal = np.where(t[:, 0] - y[:, 0] > -s.cone.tension, Normal.CLOSED, Normal.OPEN)
@@ -98,7 +96,7 @@ def _guess(s: Dimensionless, u: Array, t: Array) -> PairStates:
     return PairStates.plane(normal, np.where(slips, -np.sign(t[:, 1]), 0))
 
 
-def _solve_states(s: Dimensionless, record: Record, states: PairStates, u: Array, t: Array) -> tuple[Array, Array]:
+def _solve_states(s: Scaled, record: Record, states: PairStates, u: Array, t: Array) -> tuple[Array, Array]:
     """Return displacements and multipliers with the states imposed."""
     cone, closed, sign = s.cone, states.closed, -states.direction[:, 0]  # of the friction force
     slips = sign != 0
@@ -120,8 +118,7 @@ def _solve_states(s: Dimensionless, record: Record, states: PairStates, u: Array
         t: Array = constant + np.einsum("kij,kj->ki", jacobian, w)
         return t
 
-    blocks = block_diagonal(jacobian * stiffness[:, None, :])
-    lu = record.factorise(sp.csc_array(s.K + s.C.T @ blocks @ s.C + 1e-8 * sp.eye_array(u.size)))
+    lu = record.factorise(jacobian * stiffness[:, None, :], 1e-8)
     best = np.inf
     for _ in range(12):
         for _ in range(2):
@@ -136,7 +133,7 @@ def _solve_states(s: Dimensionless, record: Record, states: PairStates, u: Array
     return u, t
 
 
-def _corrected(s: Dimensionless, states: PairStates, u: Array, t: Array, *, single: bool) -> PairStates:
+def _corrected(s: Scaled, states: PairStates, u: Array, t: Array, *, single: bool) -> PairStates:
     """Return the states with contradictions corrected: all of them, or only the worst."""
     cone, normal, sign = s.cone, states.normal, -states.direction[:, 0]
     y = s.opening(u) + s.compliance * t
@@ -163,7 +160,7 @@ def _corrected(s: Dimensionless, states: PairStates, u: Array, t: Array, *, sing
     return PairStates.plane(np.where(fix_n, toggled, normal), -sign)
 
 
-def _idle(s: Dimensionless, states: PairStates) -> Array:
+def _idle(s: Scaled, states: PairStates) -> Array:
     """Open pairs without cohesion: they carry no friction, whatever their tangential state is called."""
     idle: Array = states.open & (s.cone.spare == 0.0)
     return idle

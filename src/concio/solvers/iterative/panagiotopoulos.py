@@ -34,7 +34,7 @@ import numpy as np
 from concio.errors import MethodError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
-from concio.solvers.algebra.dimensionless import dimensionless
+from concio.solvers.algebra.scaled import scale
 from concio.solvers.iterative.augmented import Augmented, multipliers
 from concio.solvers.iterative.de_saxce import LOOSE, change_stalls, inexact, isotropic
 from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer, require_positive
@@ -82,17 +82,17 @@ def solve(
             "are free"
         )
         raise MethodError(msg, hint="form='tresca' keeps them, so do the methods simo-laursen and interior-point")
-    s = dimensionless(problem)
+    s = scale(problem)
     record = Record("panagiotopoulos", s, progress, budget=steps)
     record.info["unknowns"] = s.f.size
     cycle = _tresca if form == "tresca" else _alternating
     prox = prox if problem.rigid_motions else 0.0
-    rho, zero = np.full_like(s.t, augmentation), np.zeros(s.pairs)
-    u, relax, before, outer = s.u, 1.0, np.inf, 0
+    rho, zero = np.full_like(s.x, augmentation), np.zeros(s.pairs)
+    u, relax, before, outer = s.glued, 1.0, np.inf, 0
     slip = np.zeros(s.pairs)
     changes: list[float] = []
     try:
-        associated = Augmented(s, s.cone, isotropic(s.compliance, augmentation), s.t, s.cone.friction)
+        associated = Augmented(s, s.cone, isotropic(s.compliance, augmentation), s.start, s.cone.friction)
         u, t, _ = multipliers(associated, u, record, goal=1e-3)
         held = t
         for outer in range(1, limit + 1):

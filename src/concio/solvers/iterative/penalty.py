@@ -30,9 +30,9 @@ import numpy as np
 
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
-from concio.solvers.algebra.dimensionless import dimensionless
+from concio.solvers.algebra.scaled import scale
 from concio.solvers.iterative.alart_curnier import newton
-from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer, require_positive
+from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer, require_positive, residual_of
 
 
 def solve(
@@ -59,10 +59,10 @@ def solve(
         ``stiffness`` is not positive.
     """
     require_positive("penalty stiffness", stiffness, "try 1e4")
-    s = dimensionless(problem)
+    s = scale(problem)
     record = Record("penalty", s, progress)
-    record.info["unknowns"] = s.f.size + s.t.size
-    u, t = s.u, s.t
+    record.info["unknowns"] = s.f.size + s.x.size
+    u, t = s.glued, s.start
     hard = s.compliance == 0.0
     steps = np.geomspace(1.0, stiffness, 1 + max(1, round(np.log10(max(stiffness, 1.0))))) if hard.any() else [1.0]
     converged, r = False, 1.0
@@ -70,7 +70,7 @@ def solve(
         for r in steps:
             springs = replace(s, compliance=np.where(hard, 1.0 / r, s.compliance))
             u, t, converged = newton(springs, record, u, t, goal=GOAL, limit=limit)
-            record.best = (s.residual(u, t), u, t)
+            record.best = (residual_of(s, u, t), u, t)
     except Stopped as stop:
         return answer(problem, record, cancelled=stop.cancelled)
     left = np.where(hard, np.abs(t) / r, 0.0)[:, 0]

@@ -26,7 +26,7 @@ import numpy as np
 from concio.errors import MethodError
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
-from concio.solvers.algebra.dimensionless import dimensionless
+from concio.solvers.algebra.scaled import scale
 from concio.solvers.iterative.alart_curnier import newton
 from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer, require_positive
 
@@ -63,10 +63,10 @@ def solve(
         msg = f"unknown updates '{updates}'"
         raise MethodError(msg, hint="one of: nested, simultaneous")
     require_positive("augmentation", augmentation, "try 10")
-    s = dimensionless(problem)
+    s = scale(problem)
     record = Record("simo-laursen", s, progress)
-    record.info["unknowns"] = s.f.size + s.t.size
-    u, t, rho, before = s.u, s.t, augmentation, np.inf
+    record.info["unknowns"] = s.f.size + s.x.size
+    u, t, rho, before = s.glued, s.start, augmentation, np.inf
     inner = 60 if updates == "nested" else 1
     try:
         while len(record.history) < limit and not record.stalled(80, 0.9):

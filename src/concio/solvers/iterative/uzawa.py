@@ -23,14 +23,14 @@ A first-order primal-dual algorithm for convex problems, *J. Math. Imaging Visio
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
-import scipy.sparse as sp
-from scipy.sparse.linalg import SuperLU
 
 from concio.errors import MethodError
-from concio.problem.contact_problem import ContactProblem
+from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
-from concio.solvers.algebra.dimensionless import Dimensionless, dimensionless
+from concio.solvers.algebra.scaled import Scaled, scale
 from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer
 
 
@@ -64,19 +64,23 @@ def solve(
     if not inertia > 0 or drag < 0:
         msg = f"inertia {inertia} must be positive and drag {drag} not negative"
         raise MethodError(msg, hint="try inertia=0.1, drag=0.3")
-    s = dimensionless(problem)
+    s = scale(problem)
     record = Record("uzawa", s, progress)
-    record.info["unknowns"] = s.f.size + s.t.size
-    identity = sp.eye_array(s.f.size)
-    metric = sp.csc_array(drag * s.K + inertia * identity)
-    lu = record.factorise(sp.csc_array(s.K + metric))
-    sigma = 0.95 / max(_largest(s, record.factorise(metric), record), 1e-300)
+    record.info["unknowns"] = s.f.size + s.x.size
+    none = np.zeros((s.pairs, s.dim, s.dim))
+    if drag:  # M = theta (K + tau / theta)
+        factor = record.factorise(none, inertia / drag)
+        largest = _largest(s, factor.solve, record) / drag
+    else:
+        largest = _largest(s, np.array, record) / inertia
+    sigma = 0.95 / max(largest, 1e-300)
+    lu = record.factorise(none, inertia / (1.0 + drag))  # K + M = (1 + theta) (K + tau / (1 + theta))
     step = 1.0 / (1.0 / sigma + s.compliance.max(axis=1, keepdims=True))
-    u, t = s.u, s.t
+    u, t = s.glued, s.start
     try:
         for _ in range(limit):
             # written as an increment: the proximal terms cancel and no digits are lost
-            ahead = u - lu.solve(s.imbalance(u, t))
+            ahead = u - lu.solve(s.imbalance(u, t)) / (1.0 + drag)
             record.solves()
             y = s.opening(2.0 * ahead - u) + s.compliance * t
             u, t = ahead, s.cone.project(t - step * y, s.dilatancy)
@@ -89,12 +93,12 @@ def solve(
     return answer(problem, record)
 
 
-def _largest(s: Dimensionless, lu: SuperLU, record: Record, iterations: int = 30) -> float:
-    """Largest eigenvalue of C M^-1 C' by power iteration, enlarged by what that may miss."""
+def _largest(s: Scaled, solve: Callable[[Array], Array], record: Record, iterations: int = 30) -> float:
+    """Largest eigenvalue of C A^-1 C', ``solve`` being A^-1, by power iteration, enlarged by what that may miss."""
     v = np.cos(np.arange(s.x.size) * 1.7).reshape(s.x.shape)
     value = 0.0
     for _ in range(iterations):
-        v = (s.C @ lu.solve(s.pull(v))).reshape(s.x.shape)
+        v = s.along(solve(s.pull(v)))
         record.solves()
         value = float(np.linalg.norm(v))
         if value == 0.0:

@@ -49,7 +49,7 @@ STILL = 1e-9
 """Relative velocities up to this share of the largest velocity count as none."""
 
 
-def departure(s: Scaled, states: PairStates, u: Array, t_n: Array, t_t: Array) -> Departure | None:
+def departure(s: Scaled, states: PairStates, u: Array, t: Array) -> Departure | None:
     """Return the certified motion that pairs in given states would follow, or None.
 
     Parameters
@@ -57,14 +57,14 @@ def departure(s: Scaled, states: PairStates, u: Array, t_n: Array, t_t: Array) -
     s : Scaled
     states : PairStates
         States of the pairs during the motion.
-    u, t_n, t_t : arrays
+    u, t : (N,), (m, 2) arrays
         Any point in these states, scaled; where the linear solves begin.
     """
     if s.problem.rigid_motions == 0:
         return None
     for e in FINEST:
         try:
-            found = _departure(s, states, u, t_n, t_t, e)
+            found = _departure(s, states, u, t, e)
         except SingularMatrixError:
             continue
         if found is not None and found.certified:
@@ -72,11 +72,11 @@ def departure(s: Scaled, states: PairStates, u: Array, t_n: Array, t_t: Array) -
     return None
 
 
-def _departure(s: Scaled, states: PairStates, u: Array, t_n: Array, t_t: Array, e: float) -> Departure | None:
+def _departure(s: Scaled, states: PairStates, u: Array, t: Array, e: float) -> Departure | None:
     """Let given states move by steps of (K + e M)(u' - u) = f - K u + C't until the step no longer changes."""
     step, last, size = np.zeros_like(u), np.inf, 0.0
     for k in range(STEPS):
-        new, t_n, t_t, _ = solve_states(s, states, u, t_n, t_t, u, springs=e * s.inertia, again=k > 0)
+        new, t, _ = solve_states(s, states, u, t, u, springs=e * s.inertia, again=k > 0)
         change = float(np.abs(new - u - step).max())
         step, u = new - u, new
         size = float(np.abs(step).max())
@@ -89,17 +89,16 @@ def _departure(s: Scaled, states: PairStates, u: Array, t_n: Array, t_t: Array, 
     a = e * (R @ (R.T @ step))
     moving = replace(s, f=s.f - s.inertia * a)
     u = u - step * (float(step @ u) / float(step @ step))
-    u, t_n, t_t, _ = solve_states(moving, states, u, t_n, t_t, u)
-    u, t_n, t_t, _ = solve_states(moving, states, u, t_n, t_t, u, again=True)
+    u, t, _ = solve_states(moving, states, u, t, u)
+    u, t, _ = solve_states(moving, states, u, t, u, again=True)
     # far enough along the motion that every opening pair is open and every slipping one has slipped its way
-    rate_n, rate_t = s.C_n @ a, s.C_t @ a
+    rate_n, rate_t = s.along(a).T
     top = float(np.abs(a).max())
-    gap, slip = s.normal_gap(u, t_n), s.slip(u, t_t)
+    gap, slip = s.position(u, t).T
     opening = states.open & (rate_n > STILL * top) & (gap < 0)
     wrong = ~states.open & (states.sign * rate_t > STILL * top) & (states.sign * slip < 0)
     far = np.concatenate([-gap[opening] / rate_n[opening], -slip[wrong] / rate_t[wrong]]).max(initial=0.0)
-    u, t_n, t_t = s.restore(u + 1.01 * far * a, t_n, t_t)
-    return verify_departure(s.problem, s.acceleration(a), u, t_n, t_t[:, None])
+    return verify_departure(s.problem, s.acceleration(a), *s.restore(u + 1.01 * far * a, t))
 
 
 def verify_departure(problem: ContactProblem, a: Array, u: Array, t_n: Array, t_t: Array) -> Departure:

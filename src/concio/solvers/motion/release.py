@@ -18,7 +18,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array
 from concio.problem.pair_state import PairStates
@@ -86,8 +85,8 @@ def release(run: Run, u: Array | None = None) -> Finished | Departure | None:
         here, shift, taken, good = moved, moved.u, taken + 1, good + 1
         new = replace(moved, u=u + shift)
         u = new.u
-        ended = _rest(run, new) or _steady(s, e * shift, new) or departure(s, new.states, u, new.t_n, new.t_t)
-        error, _ = natural_residual(s, u, new.t_n, new.t_t)
+        ended = _rest(run, new) or _steady(s, e * shift, new) or departure(s, new.states, u, new.t)
+        error, _ = natural_residual(s, u, new.t)
         if ended is None and error < close:
             close, ended = 0.01 * error, _cross(run, s, new)
         if ended is not None:
@@ -101,7 +100,7 @@ def release(run: Run, u: Array | None = None) -> Finished | Departure | None:
 
 def _rest(run: Run, now: Finished) -> Finished | None:
     """Return the certified equilibrium that the states of a step belong to, if there is one."""
-    rest = finish(run.scaled, now.u, now.t_n, now.t_t, rounds=6)
+    rest = finish(run.scaled, now.u, now.t, rounds=6)
     return rest if rest.error <= EXACT and run.certified(rest) else None
 
 
@@ -110,7 +109,7 @@ def _cross(run: Run, s: Scaled, now: Finished) -> Finished | None:
 
     Friction on the way remembers: the place of rest may be one that a structure loaded in one step knows only nearly.
     """
-    found = pivot_from(s, read_states(s, now.u, now.t_n, now.t_t), now, limit=_most(s), progress=run.progress)
+    found = pivot_from(s, read_states(s, now.u, now.t), now, limit=_most(s), progress=run.progress)
     run.iterations += found[1]
     return found[0]
 
@@ -118,7 +117,7 @@ def _cross(run: Run, s: Scaled, now: Finished) -> Finished | None:
 def associated_state(run: Run) -> Array:
     """Return the displacements (N,), scaled, at which associated flow holds the structure, or nearly so."""
     z = run.engine.start(STARTS[0])
-    outcome = run.engine.run(z, theta=1.0, target=1e-6, watch=run.watch("associated flow"))
+    z, outcome = run.engine.run(z, theta=1.0, target=1e-6, watch=run.watch("associated flow"))
     run.iterations += outcome.iterations
     return z.u
 
@@ -126,8 +125,7 @@ def associated_state(run: Run) -> Array:
 def _steady(s: Scaled, a: Array, now: Finished) -> Departure | None:
     """Return the motion of the step just made, if it is a departure already."""
     R = s.problem.R
-    u, t_n, t_t = s.restore(now.u, now.t_n, now.t_t)
-    found = verify_departure(s.problem, s.acceleration(R @ (R.T @ a)), u, t_n, t_t[:, None])
+    found = verify_departure(s.problem, s.acceleration(R @ (R.T @ a)), *s.restore(now.u, now.t))
     return found if found.certified else None
 
 
@@ -135,7 +133,7 @@ def _solve(run: Run, step: Scaled, shift: Array, here: Finished | None) -> Finis
     """Solve one step: from the states of the last one by exact finish or pivoting, then from nothing."""
     if here is not None:
         for guess, states in ((shift, here.states), (0.0 * shift, None)):
-            new = finish(step, guess, here.t_n, here.t_t, rounds=20, states=states)
+            new = finish(step, guess, here.t, rounds=20, states=states)
             if new.error <= STEP:
                 return new
         return _pivot(run, step, here) or _iterate(run, step)
@@ -159,18 +157,8 @@ def _iterate(run: Run, step: Scaled) -> Finished | None:
 
 def _pivot(run: Run, step: Scaled, here: Finished | None) -> Finished | None:
     """Solve one step by sparse pivoting, from the states of the last one or, at the beginning, from nothing."""
-    p = step.problem
-    held = replace(
-        step,
-        problem=replace(
-            p,
-            K=sp.csr_array(step.K * (step.force / step.length)),
-            f=step.f * step.force,
-            R=sp.csc_array((p.unknowns, 0)),
-        ),
-    )
     states = None if here is None else here.states
-    found, pivots = pivot_from(held, states, here, limit=_most(step), progress=run.progress)
+    found, pivots = pivot_from(step, states, here, limit=_most(step), progress=run.progress)
     run.iterations += pivots
     return found if found is not None and found.error <= STEP else None
 
@@ -191,14 +179,12 @@ def pivot_from(
     """Pivot from a point in given states, or from nothing; return the answer, scaled, or None, and the pivots made."""
     known: dict[str, Any] = {"tries": TRIES}
     if states is not None and point is not None:
-        u, t_n, t_t = s.restore(point.u, point.t_n, point.t_t)
-        known = {"tries": 0, "start_states": states, "start": (u, t_n, t_t[:, None])}
-    answer = sparse_lemke.solve(s.problem, progress=progress, limit=limit, **known)
+        known = {"tries": 0, "start_states": states, "start": s.restore(point.u, point.t)}
+    answer = sparse_lemke.pivot(s, progress=progress, limit=limit, **known)
     if answer.status is Status.CANCELLED:
         raise Cancelled
     if not answer.solved:
         return None, answer.iterations
-    u, t_n = answer.displacement / s.length, answer.normal_force / s.force + s.tension
-    t_t = answer.friction_force[:, 0] / s.force
-    error, _ = natural_residual(s, u, t_n, t_t)
-    return Finished(u, t_n, t_t, read_states(s, u, t_n, t_t), error, 0, np.zeros(0, dtype=int)), answer.iterations
+    u, t = s.bring(answer.displacement, answer.normal_force, answer.friction_force)
+    error, _ = natural_residual(s, u, t)
+    return Finished(u, t, read_states(s, u, t), error, 0, np.zeros(0, dtype=int)), answer.iterations

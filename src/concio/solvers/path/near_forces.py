@@ -112,27 +112,19 @@ def solve_near(
     if not first.solved:
         return replace(first, method=NAME)
     s = scale(problem)
-    law, unit = soft.laws, s.force / s.length
-    lent = replace(
-        s,
-        a_n=law.normal_compliance * unit,
-        a_t=law.tangential_compliance * unit,
-        gap=(soft.gap - law.normal_compliance * law.tension) / s.length,
-        origin=soft.slip_origin[:, 0] / s.length,
-    )
-    v = first.displacement / s.length
-    p_n, p_t = first.normal_force / s.force + s.tension, first.friction_force[:, 0] / s.force
-    found = finish(s, v, p_n, p_t, states=read_states(lent, v, p_n, p_t), least=False)
+    v, p = s.bring(first.displacement, first.normal_force, first.friction_force)
+    lent = s.renewed(soft)
+    found = finish(s, v, p, states=read_states(lent, v, p), least=False)
     still = float(np.abs(found.u).max(initial=0.0)) < engine.AT_REST
-    v, p_n, p_t = s.restore(found.u, found.t_n, found.t_t)
+    v, p_n, p_t = s.restore(found.u, found.t)
     rest = np.zeros_like(v)
-    if still and certify(problem, rest, p_n, p_t[:, None]).certified:
+    if still and certify(problem, rest, p_n, p_t).certified:
         v = rest  # nothing moves: rounding must not be measured against itself
     return judge(
         problem,
         v,
         p_n,
-        p_t[:, None],
+        p_t,
         method=NAME,
         iterations=first.iterations,
         factorisations=first.factorisations + s.factor.count,

@@ -28,10 +28,9 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from concio.errors import MethodError
-from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.contact_problem import Array
 from concio.problem.pair_state import Normal
-from concio.solvers.algebra.dimensionless import Dimensionless, dimensionless
+from concio.solvers.algebra.scaled import Scaled, require_plane
 from concio.solvers.algebra.updated_factor import Row
 
 COMPLIANCE = 1e-5
@@ -62,7 +61,8 @@ class PairSystem:
 
     Parameters
     ----------
-    problem : ContactProblem
+    scaled : Scaled
+        Its normal forces are shifted by the tensile strength, p = t_n + T.
     proximal : float
         Springs to the ground on every unknown, in units of the typical stiffness; 0 unless bodies hang on nothing.
     ground : bool
@@ -74,27 +74,19 @@ class PairSystem:
         The problem is not plane.
     """
 
-    def __init__(self, problem: ContactProblem, proximal: float = 0.0, *, ground: bool = False) -> None:
-        if problem.dim != 2:
-            msg = "this method solves plane problems"
-            raise MethodError(msg, hint="use a method that works in three dimensions, such as alart-curnier")
-        self.problem = problem
-        self.s: Dimensionless = dimensionless(problem)
-        s, self.m, self.n = self.s, self.s.pairs, self.s.f.size
+    def __init__(self, scaled: Scaled, proximal: float = 0.0, *, ground: bool = False) -> None:
+        require_plane(scaled.problem)
+        self.problem, self.s = scaled.problem, scaled
+        s, self.m, self.n = scaled, scaled.pairs, scaled.f.size
         m, n = self.m, self.n
-        self.tension = tension = s.cone.tension
-        self.mu, self.cohesion, self.cap = s.cone.friction, s.cone.spare, s.cone.shifted.cap  # mu, c', N + T
+        self.mu, self.cohesion, self.cap = s.cone.friction, s.cone.cohesion, s.cone.cap
         self.dilatancy = s.dilatancy
-        self.frictionless = (self.mu == 0.0) & (self.cohesion == 0.0)
-        self.a = s.compliance.copy()
-        self.x = s.x.copy()
-        self.x[:, 0] -= self.a[:, 0] * tension
-        shift = np.column_stack([tension, np.zeros(m)])
-        self.load = s.f - s.C.T @ shift.ravel()
+        self.frictionless = ~s.rough
+        self.a, self.x, self.load = s.compliance, s.x, s.f
         self.size = n + 2 * m + 1
-        self.K = sp.csr_array(s.K + proximal * sp.eye_array(n)) if proximal else sp.csr_array(s.K)
+        self.K = sp.csr_array(s.K + proximal * sp.eye_array(n)) if proximal else s.K
         self.proximal, self.anchored = proximal, np.zeros(n)
-        self.C = sp.csr_array(s.C)
+        self.C = s.C.copy()
         self.C.sort_indices()
         self.delta = COMPLIANCE
         self.ground = 0
@@ -111,7 +103,7 @@ class PairSystem:
         self.C = sp.csr_array(sp.vstack([self.C, sp.csr_array(held)[order]]))
         self.C.sort_indices()
         none = np.zeros(r)
-        for name in ("mu", "tension", "cohesion", "dilatancy"):
+        for name in ("mu", "cohesion", "dilatancy"):
             setattr(self, name, np.concatenate([getattr(self, name), none]))
         self.cap = np.concatenate([self.cap, np.full(r, np.inf)])
         self.frictionless = np.concatenate([self.frictionless, np.zeros(r, dtype=bool)])

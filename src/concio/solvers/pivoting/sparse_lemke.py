@@ -40,6 +40,7 @@ from concio.errors import InputError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.pair_state import PairStates
 from concio.problem.solution import ProgressCallback, Solution, Status, failed
+from concio.solvers.algebra.scaled import Scaled, require_plane, scale
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.pivoting.covering import cold_states, cover_point, cover_states, named_states, open_states
 from concio.solvers.pivoting.lemke_outcome import no_solution
@@ -118,10 +119,28 @@ def solve(
     InputError
         ``start_states`` has not one entry for each pair.
     """
-    system = PairSystem(problem)
+    require_plane(problem)
     if start_states is not None and len(start_states) != problem.pairs:
         msg = f"start_states holds {len(start_states)} states, expected {problem.pairs}"
         raise InputError(msg)
+    scaled = scale(problem)
+    return pivot(
+        scaled, progress=progress, start_states=start_states, start=start, limit=limit, tries=tries, refresh=refresh
+    )
+
+
+def pivot(
+    scaled: Scaled,
+    *,
+    progress: ProgressCallback | None = None,
+    start_states: PairStates | None = None,
+    start: Start | None = None,
+    limit: int | None = None,
+    tries: int = 7,
+    refresh: int = 64,
+) -> Solution:
+    """Solve a problem in units of its own by pivoting; see the module for the parameters."""
+    problem, system = scaled.problem, PairSystem(scaled)
     work, m = _Work(), problem.pairs
     most = limit or 20 * problem.pairs + 500
     attempts = [_Attempt(name, options) for name, options in COLD[: max(tries, 0)]]
@@ -132,9 +151,8 @@ def solve(
             return solution
         attempts.insert(0, _Attempt("given states", {}, named))
         if start is not None:
-            u, t_n, t_t = start
-            force = system.s.force
-            point = (u / system.s.length, t_n / force + system.tension, np.ravel(t_t) / force)
+            u, t = scaled.bring(*start)
+            point = (u, t[:, 0], t[:, 1])
             attempts.insert(0, _Attempt("given point", {"proximal": ANCHOR}, named, point))
     while attempts:
         attempt = attempts.pop(0)
@@ -184,10 +202,10 @@ def _covered(system: PairSystem, attempt: _Attempt) -> tuple[PairSystem, tuple[A
     proximal = options.pop("proximal", 0.0)
     states = attempt.states or cold_states(system)
     if options.pop("ground", False):
-        system = PairSystem(system.problem, ground=True)
+        system = PairSystem(system.s, ground=True)
         states = open_states(system)
     elif proximal:
-        system = PairSystem(system.problem, proximal)
+        system = PairSystem(system.s, proximal)
     if attempt.point is not None:
         return system, cover_point(system, *states, *attempt.point)
     return system, cover_states(system, *states, **options)

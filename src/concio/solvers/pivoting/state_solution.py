@@ -106,8 +106,7 @@ def finish(system: PairSystem, normal: Array, sign: Array, *, method: str, **ext
     p = np.maximum(np.where(normal == Normal.OPEN, 0.0, p), 0.0)
     strength = system.cohesion + system.mu * p
     r = np.clip(np.where(sign == 0, r, -sign * strength), -strength, strength)
-    t = np.column_stack([p - system.tension, r])
-    u, t_n, t_t = s.restore(v[: system.n], t)
+    u, t_n, t_t = s.restore(v[: system.n], np.column_stack([p, r]))
     t_n = np.where(normal == Normal.OPEN, -problem.laws.tension, t_n)
     solution = judge(problem, u, t_n, t_t, method=method, **extra)
     if solution.solved:
