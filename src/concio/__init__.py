@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from concio.analysis.step import solve
     from concio.analysis.thrust import thrust_line
     from concio.contact.assembly import Assembly, assemble
+    from concio.display import Units
     from concio.errors import ConcioError, GeometryError, InputError, MethodError, NoEquilibriumError, SolverError
     from concio.model.drawing.drawing import model_from_dxf
     from concio.model.file.reading import load, loads
@@ -59,6 +60,7 @@ _HOMES = {
     "concio.analysis.step": ("solve",),
     "concio.analysis.thrust": ("thrust_line",),
     "concio.contact.assembly": ("Assembly", "assemble"),
+    "concio.display": ("Units",),
     "concio.errors": (
         "ConcioError",
         "GeometryError",
@@ -112,6 +114,7 @@ __all__ = [
     "StudyResult",
     "Support",
     "Tie",
+    "Units",
     "Variable",
     "__version__",
     "arch",

@@ -86,6 +86,21 @@ def _unit(text: str) -> tuple[float, int, int, int] | None:
     return factor, force, length, mass
 
 
+def unit_of(symbol: str) -> float:
+    """Return a unit such as ``"MPa"`` or ``"N/mm2"`` in kN and m.
+
+    Raises
+    ------
+    InputError
+        The unit is not known.
+    """
+    found = _unit(symbol)
+    if found is None:
+        msg = f"unknown unit '{_short(symbol)}'"
+        raise InputError(msg, hint="for example kN, m, MPa or kN/m3")
+    return found[0]
+
+
 def quantity(value: float | str, kind: str, *, where: str | None = None) -> float:
     """Return ``value`` as a number in kN and m.
 

@@ -7,19 +7,21 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from concio.study.compare import compare
 
 import concio
 from concio.arguments import closest, strict, strict_class, strict_with
 from concio.errors import ArgumentError
 from concio.solvers.methods import METHODS, find
+from concio.studies.compare import compare
 from models import box, on_ground, weight
 
-BUILT_BY_CONCIO = {"Assembly", "PathResult", "Result", "Status"}
+PASSES_ON = {"variable"}
+"""Further keywords are the parameters of a distribution, which knows its own."""
+BUILT_BY_CONCIO = {"Assembly", "PathResult", "Result", "Status", "StudyResult"}
 CALLED = sorted(
     name
     for name in concio.__all__
-    if name not in {*BUILT_BY_CONCIO, "__version__"}
+    if name not in {*BUILT_BY_CONCIO, *PASSES_ON, "__version__"}
     and not (inspect.isclass(getattr(concio, name)) and issubclass(getattr(concio, name), Exception))
 )
 
@@ -92,6 +94,7 @@ def test_options_of_common_keywords() -> None:
         (lambda: concio.run_path(stack(2), [concio.Stage("a", {"daed": 1.0})]), "did you mean 'dead'"),
         (lambda: concio.limit(stack(2), "daed"), "did you mean 'dead'"),
         (lambda: concio.wall(length=1.0, height=1.0, bond="flemmish"), "did you mean 'flemish'"),
+        (lambda: concio.variable("mu", "normal", mean=0.6, sdd=0.1), "sd"),
         (lambda: concio.solve(stack(2)).plot.deformed(scal=3.0), "did you mean 'scale'"),
     ],
 )

@@ -16,7 +16,7 @@ import concio
 
 ROOT = Path(concio.__file__).parent
 ORDER = (
-    "__version__", "errors", "files", "arguments", "units", "kinematics",
+    "__version__", "errors", "files", "arguments", "units", "display", "kinematics",
     "model", "model/interfaces", "model/generate", "model/drawing", "model/file",
     "fem", "problem", "contact",
     "solvers/algebra", "solvers/lcp", "solvers/states", "solvers/statics", "solvers/interior", "solvers/pivoting",

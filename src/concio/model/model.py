@@ -11,6 +11,7 @@ from typing import ClassVar, Literal, get_args
 import numpy as np
 
 from concio.arguments import closest, strict_class
+from concio.display import DEFAULT, Units
 from concio.errors import GeometryError, InputError
 from concio.kinematics.mass import Moments, polygon_moments, signed_area
 from concio.model.dimensions import WORDS, resolved
@@ -301,6 +302,8 @@ class Model:
         Where contact is stated between two blocks in space that are not meshed: at the corners of each patch, or at
         n x n points over it, which distribute pressure. "auto" takes corners for hard joints, 4 x 4 points for joints
         with stiffness, 6 x 6 for joints that crush.
+    report : Units
+        Units in which texts, figures and reports tell what was found; arrays and files are in kN and m.
     """
 
     bodies: tuple[Body | Polyhedron, ...]
@@ -321,6 +324,7 @@ class Model:
     stages: tuple[Stage, ...] = ()
     periods: Periods | None = None
     contact_points: str | int = "auto"
+    report: Units = DEFAULT
 
     def __post_init__(self) -> None:
         if not self.bodies:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from concio.arguments import closest
+from concio.arguments import closest, strict, strict_class
 from concio.errors import InputError
 from concio.studies.distributions import FAMILIES, Distribution
 
@@ -19,6 +19,7 @@ OWN = ("choice", "seed")
 """Kinds of variables beside the distributions: one of several values, and a number to begin random numbers with."""
 
 
+@strict_class
 @dataclass(frozen=True)
 class Variable:
     """Something that differs from run to run.
@@ -152,6 +153,7 @@ class Variable:
         return Distribution(self.distribution, self.parameters).describe() + (f" {self.unit}" if self.unit else "")
 
 
+@strict
 def variable(
     name: str,
     distribution: str = "uniform",

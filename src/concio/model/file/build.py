@@ -14,6 +14,7 @@ from typing import Any, Literal
 import numpy as np
 
 from concio.arguments import closest
+from concio.display import Units
 from concio.errors import GeometryError, InputError
 from concio.model.drawing.drawing import model_from_dxf
 from concio.model.file.block_table import read_blocks
@@ -109,6 +110,8 @@ def _parts(
     }
     if data.periods is not None:
         given["periods"] = data.periods
+    if data.report is not None:
+        given["report"] = Units(**data.report.model_dump())
     if data.title or not start:
         given["title"] = data.title
     if data.record or not start:

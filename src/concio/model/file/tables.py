@@ -62,6 +62,15 @@ class UnitsTable(Table):
     length: Literal["mm", "cm", "m"] = "m"
 
 
+class ReportTable(Table):
+    """Units in which people are told what was found; see :class:`concio.Units`."""
+
+    force: Literal["kN", "N", "MN", "kgf", "tf"] = "kN"
+    length: Literal["m", "cm", "mm", "ft", "in"] = "m"
+    motion: Literal["mm", "m", "cm", "in"] = "mm"
+    stress: Literal["auto", "kN/m2", "MPa", "N/mm2", "kPa", "Pa", "bar"] = "auto"
+
+
 class MaterialTable(Table):
     """A material; ``kind = "rigid"`` has a unit weight only."""
 
@@ -302,6 +311,7 @@ class FileTable(Table):
 
     title: StrictStr = ""
     units: UnitsTable = Field(default_factory=UnitsTable)
+    report: ReportTable | None = Field(None, description="units of texts, figures and reports")
     materials: dict[str, MaterialTable] = Field(default_factory=dict)
     joints: dict[str, JointTable] = Field(default_factory=dict)
     rules: list[RuleTable] | None = None

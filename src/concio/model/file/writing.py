@@ -9,13 +9,14 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import fields
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from concio.arguments import strict
+from concio.display import Units
 from concio.errors import InputError
 from concio.files import whole_file
 from concio.model.file.block_table import write_blocks
@@ -39,6 +40,8 @@ def dumps(model: Model, *, blocks_file: str | None = None) -> str:
     if not model.rules:
         lines.append("rules = []")
     lines += ["", "[units]", 'force = "kN"', 'length = "m"']
+    if model.report != Units():
+        lines += _table("report", asdict(model.report))
     lines += _table("analysis", {key: getattr(model, key) for key in _ANALYSIS if getattr(model, key) is not None})
     for name, material in model.materials.items():
         lines += _table(f"materials.{_key(name)}", _material(material))
