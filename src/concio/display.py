@@ -7,7 +7,7 @@ What programs read (``--json``, CSV tables, results, arrays) stays in kN and m; 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
 
 from concio.arguments import closest, strict_class
@@ -163,6 +163,12 @@ class Units:
         told = number(factor * value, digits, size=factor * size)
         plus = "+" if sign and value > 0 and told != "0" else ""
         return f"{plus}{told} {symbol}".strip()
+
+    def force_vector(self, value: Sequence[float], *, size: float = 0.0) -> str:
+        """Return a force (x, y) or (x, y, z) as text: ``"+1.5 kN along x, -20 kN along y"``; ``size`` as above."""
+        size = max(size, math.hypot(*value))
+        told = (self.text("force", v, 4, size=size, sign=True) for v in value)
+        return ", ".join(f"{text} along {axis}" for text, axis in zip(told, "xyz", strict=False))
 
     def column(self, kind: str, values: Iterable[float], digits: int = 4) -> tuple[list[str], str]:
         """Return quantities of one kind with equal decimals, and the symbol of their unit.

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import math
+import re
+from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 import concio
+from concio.cli.lines import result_lines
+from concio.cli.main import app
 from concio.display import Units, number
+from concio.report.page import report_html
 
 
 @pytest.mark.parametrize(
@@ -98,3 +104,71 @@ def test_units_that_are_none() -> None:
     with pytest.raises(concio.InputError, match=r"'MPA' is not a unit for reports \(did you mean 'MPa'"):
         Units.parse("kN, MPA")
     assert Units.parse("force = N, motion = cm") == Units(force="N", motion="cm")
+
+
+PANEL = """
+[panel]
+courses = 2
+blocks = 3
+joint = 0.02
+base = "bearings"
+top_pressure = 10.0
+[report]
+force = "N"
+length = "mm"
+stress = "MPa"
+"""
+
+
+def test_a_file_chooses_the_units_of_its_reports_and_keeps_them() -> None:
+    model = concio.loads(PANEL)
+    assert model.report == Units(force="N", length="mm", stress="MPa")
+    assert concio.loads(concio.dumps(model)).report == model.report
+    with pytest.raises(concio.InputError, match=r"\[report\].*'lbs' is not one of 'kN', 'N'"):
+        concio.loads("[panel]\ncourses = 2\n[report]\nforce = 'lbs'\n")
+
+
+def test_texts_figures_and_reports_speak_the_same_units() -> None:
+    result = concio.solve(concio.loads(PANEL))
+    total = f"{-1e3 * result.total_load[1]:.0f} N"
+    lines = "\n".join(result_lines(result))
+    assert f"-{total} along y" in lines
+    assert "kN" not in lines
+    page = report_html(result, figures=False)
+    assert f"-{total} along y" in page
+    assert "largest stress [MPa]" in page
+    assert "length [mm]" in page
+    told = re.sub(r'title="[^"]*"', "", page.partition("<footer")[0])
+    assert not re.search(r"\d kN", told), "no second system of units"
+    axes = result.plot.principal()
+    assert axes.get_xlabel() == "x [mm]"
+    figure = axes.get_figure(root=True)
+    figure.canvas.draw()
+    assert axes.get_xticklabels()[-1].get_text() == "800"
+    other = result.in_units("MN, cm")
+    assert other.plot.principal().get_xlabel() == "x [cm]"
+    assert other.solution is result.solution
+
+
+def test_no_dust_is_told() -> None:
+    """The horizontal reaction of a symmetric panel's bearings is rounding: it is 0, without a sign."""
+    result = concio.solve(concio.running_bond_panel(courses=1, blocks=1, side_walls=False, top_pressure=10.0))
+    x, _ = result.reactions["base"]
+    assert x == 0.0 or abs(x) < 1e-9
+    line = next(line for line in result_lines(result) if "reactions" in line)
+    assert " 0 kN along x" in line
+    assert "e-" not in line
+    tables = report_html(result, figures=False).partition("Reactions</h2>")[2].partition("</section>")[0]
+    assert "e-1" not in re.sub(r'title="[^"]*"', "", tables)
+
+
+def test_units_on_the_command_line(tmp_path: Path) -> None:
+    file = tmp_path / "panel.toml"
+    file.write_text(PANEL, encoding="utf-8")
+    for command in ("run", "check", "path", "limit"):
+        done = CliRunner().invoke(app, [command, str(file), "--units", "MN, furlong"])
+        assert done.exit_code == 2
+        assert "--units: 'furlong' is not a unit for reports" in done.output
+    done = CliRunner().invoke(app, ["run", str(file), "--units", "MN"])
+    assert done.exit_code == 0
+    assert " MN along y" in done.output

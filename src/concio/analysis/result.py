@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +13,7 @@ from concio.analysis.contacts import STATE_NAMES, Contacts, JointResultants, joi
 from concio.analysis.stress import Stress
 from concio.arguments import closest
 from concio.contact.assembly import Assembly
+from concio.display import Units
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID
 from concio.kinematics.rigid import rigid_operator, swept
@@ -163,6 +164,18 @@ class Result:
         """Stresses of the bodies, tension positive."""
         return Stress(self.assembly.disc, self.displacement)
 
+    def in_units(self, units: Units | str) -> Result:
+        """Return the same result, told in other units; arrays stay in kN and m.
+
+        Parameters
+        ----------
+        units : Units or str
+            Such as ``"N, mm, MPa"``, see :class:`concio.Units`.
+        """
+        chosen = Units.parse(units) if isinstance(units, str) else units
+        model = replace(self.assembly.model, report=chosen)
+        return replace(self, assembly=replace(self.assembly, model=model))
+
     def body_index(self, body: int | str) -> int:
         """Return the number of a body given by number or name."""
         if isinstance(body, str):
@@ -294,7 +307,7 @@ class Result:
             data["joint_motion"] = asdict(self.joint_motion)
             data["reactions"] = {name: list(force) for name, force in self.reactions.items()}
             data["pairs"] = {name: contacts.count(name) for name in STATE_NAMES}
-        if len(self.assembly.pairs) <= EXISTENCE:
+        if 0 < len(self.assembly.pairs) <= EXISTENCE:  # without pairs there is nothing to guarantee
             condition = self.existence
             data["sufficient_condition"] = {"holds": condition.holds, "margin": _finite(condition.margin)}
         if self.mechanism is not None:

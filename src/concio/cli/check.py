@@ -9,7 +9,7 @@ import typer
 
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import PICTURES, check_file, replaced_file
-from concio.cli.run import File, Json
+from concio.cli.run import File, Json, UnitsOf, in_units
 
 if TYPE_CHECKING:
     from concio.model.interfaces.detect import Detection
@@ -24,6 +24,7 @@ def check(
     ] = None,
     every: Annotated[bool, typer.Option("--all", help="List every finding and every body.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+    units: UnitsOf = None,
     json: Json = False,
 ) -> int:
     """Say what a model file holds and what is wrong with it, without solving.
@@ -37,7 +38,7 @@ def check(
 
     if out is not None:
         _check_picture(out, force=force)
-    model = concio.load(file)
+    model = in_units(concio.load(file), units)
     detection = detect(model)
     fault: ConcioError | None = None
     facts: dict[str, Any] = {}

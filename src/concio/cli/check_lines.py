@@ -10,10 +10,11 @@ import numpy as np
 
 from concio.contact.assembly import Assembly
 from concio.contact.load_faces import covered, line_tolerance, loaded_faces
+from concio.display import number
 from concio.errors import InputError
 from concio.fem.discretisation import RIGID
+from concio.model.described import law_words, material_words
 from concio.model.interfaces.detect import Detection
-from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Model
 
 MOST_LINES = 20
@@ -52,10 +53,13 @@ def check_lines(
     fault : str
         The error that will be told after these lines; an overlap that it names is not listed.
     """
+    units = model.report
+    scale, symbol = units.factor("length")
     width, height = np.ptp(np.vstack([body.outline for body in model.outlines]), axis=0)
     lines = [
         model.title or "model without a title",
-        f"size         {width:.4g} x {height:.4g} m, plane {model.plane}, elements {model.element}",
+        f"size         {number(scale * width, 4)} x {number(scale * height, 4)} {symbol}, plane {model.plane}, "
+        f"elements {model.element}",
         *_bodies(model, float(max(width, height)), every=every),
     ]
     if model.periods is not None:
@@ -63,8 +67,8 @@ def check_lines(
         share = sum(body.area for body in model.outlines) / abs(a * d - b * c)
         voids = "" if share > 1 - 1e-6 else f", {100 * (1 - share):.3g} % of it empty"
         lines.append(f"cell         repeats by ({a:.6g}, {b:.6g}) and ({c:.6g}, {d:.6g}) m{voids}")
-    lines += [f"material     {name}: {_material(material)}" for name, material in model.materials.items()]
-    lines += [f"joint law    {name}: {_law(law)}" for name, law in model.laws.items()]
+    lines += [f"material     {name}: {material_words(given, units)}" for name, given in model.materials.items()]
+    lines += [f"joint law    {name}: {law_words(law, units)}" for name, law in model.laws.items()]
     lines += _interfaces(model, detection)
     if facts:
         lines.append(f"contact      {facts['pairs']:,} pairs, {facts['unknowns']:,} displacements")
@@ -74,7 +78,7 @@ def check_lines(
         moved = sum(s.group == group for s in model.supports)
         words += [f"{moved} support{'s' if moved > 1 else ''}"] if moved else []
         total = facts.get("total_load", {}).get(group)
-        force = f", {total[0]:+.4g} kN along x and {total[1]:+.4g} kN along y in all" if total else ""
+        force = f", {units.force_vector((total[0], total[1]))} in all" if total else ""
         lines.append(f"load group   {group}: {', '.join(words)}{force}")
     if model.periods is None and not model.loads and not any(any(s.displacement) or s.rotation for s in model.supports):
         lines.append("attention    there are no loads and nothing is moved: everything stays as it is")
@@ -97,9 +101,9 @@ def check_lines(
 def _bodies(model: Model, size: float, *, every: bool) -> list[str]:
     sorts = Counter((b.kind, b.role, "" if b.kind == "fixed" else b.material) for b in model.bodies)
     lines = []
-    for (kind, role, material), number in sorts.items():
+    for (kind, role, material), count in sorts.items():
         of = f" of '{material}'" if material else ""
-        lines.append(f"bodies       {number:,} {kind}, role '{role}'{of}")
+        lines.append(f"bodies       {count:,} {kind}, role '{role}'{of}")
     if every or len(model.bodies) <= MOST_LINES:
         for body in model.outlines:
             x, y = np.round(body.centroid / size, 9) * size + 0.0
@@ -110,38 +114,19 @@ def _bodies(model: Model, size: float, *, every: bool) -> list[str]:
 
 
 def _interfaces(model: Model, detection: Detection) -> list[str]:
-    number: Counter[str] = Counter()
+    found: Counter[str] = Counter()
     length: dict[str, float] = defaultdict(float)
     apart: Counter[str] = Counter()
     for interface in detection.segments:
         rule = model.rule_between(model.bodies[interface.a], model.bodies[interface.b])
-        number[rule.law] += 1
+        found[rule.law] += 1
         length[rule.law] += interface.length
         apart[rule.law] += bool(rule.gap or interface.gap.max() > 0)
     lines = []
-    for law, count in number.items():
+    for law, count in found.items():
         text = f"joints       {count:,} with law '{law}', {length[law]:.4g} m in all"
         lines.append(text + (f", {apart[law]:,} of them open at first" if apart[law] else ""))
     return lines or ["joints       none: no two bodies touch"]
-
-
-def _material(material: Elastic | Rigid) -> str:
-    weight = f"unit weight {material.unit_weight:g} kN/m3"
-    if isinstance(material, Rigid):
-        return f"rigid, {weight}"
-    return f"E = {material.E:g} kN/m2, nu = {material.nu:g}, {weight}"
-
-
-def _law(law: JointLaw) -> str:
-    words = [f"friction {law.friction:g}"]
-    for name, unit in (
-        ("cohesion", "kN/m2"), ("tensile_strength", "kN/m2"), ("dilatancy", ""), ("normal_stiffness", "kN/m3"),
-        ("tangential_stiffness", "kN/m3"), ("compressive_strength", "kN/m2"),
-    ):  # fmt: skip
-        value = getattr(law, name)
-        if value:
-            words.append(f"{name.replace('_', ' ')} {value:g} {unit}".strip())
-    return ", ".join(words)
 
 
 def _edge_loads(model: Model, *, every: bool) -> list[str]:

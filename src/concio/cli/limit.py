@@ -10,7 +10,7 @@ import typer
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
-from concio.cli.run import File, Json
+from concio.cli.run import File, Json, UnitsOf, in_units
 
 if TYPE_CHECKING:
     from concio.analysis.limit import LimitResult
@@ -42,6 +42,7 @@ def limit(
         bool, typer.Option("--solves", help="Also bisect load and friction with solved load steps (some twenty).")
     ] = False,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for figures of the mechanisms.")] = None,
+    units: UnitsOf = None,
     json: Json = False,
 ) -> int:
     """Find the load multiplier: the associated bound and the Coulomb load path, as a bracket, and the friction margin.
@@ -57,7 +58,7 @@ def limit(
     groups = list(group or ["live"])
     if out is not None:
         check_directory(out)
-    assembly = concio.assemble(concio.load(file))
+    assembly = concio.assemble(in_units(concio.load(file), units))
     with progress_bar(shown=not json) as progress:
         found = limit_of(assembly, groups, path=path, search=search, progress=progress)
     wanted = len(assembly.pairs) <= LARGEST_MARGIN if friction is None else friction

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from concio.problem.solution import Status
+from concio.report.wording import power_words
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
@@ -20,8 +20,8 @@ SLOW = 0.01
 
 
 def result_lines(result: Result) -> list[str]:
-    """Return the result as lines of text, kN and m."""
-    s, seconds = result.solution, result.seconds
+    """Return the result as lines of text, in the units of the model's report."""
+    s, seconds, units = result.solution, result.seconds, result.model.report
     assembly = result.assembly
     lines = [
         result.model.title or "model without a title",
@@ -38,14 +38,16 @@ def result_lines(result: Result) -> list[str]:
             f"  certificate  worst {certificate['worst']:.1e} ({parts})",
             *_existence(result),
             f"  pairs        {_states(result)}",
-            f"  settlement   {1e3 * result.max_settlement + 0.0:.4g} mm at most",
-            f"  loads        {force(result.total_load)} in all",
+            f"  settlement   {units.text('motion', result.max_settlement, 4)} at most",
+            f"  loads        {units.force_vector(result.total_load)} in all",
         ]
         reactions = list(result.reactions.items())
+        largest = max((float(np.linalg.norm(value)) for _, value in reactions), default=0.0)
         shown = reactions[:MOST_REACTIONS]
         width = max((len(name) for name, _ in shown), default=0)
         for k, (name, value) in enumerate(shown):
-            lines.append(f"  {'reactions' if k == 0 else '':<12} {name:<{width}}  {force(value)}")
+            told = units.force_vector(value, size=largest)
+            lines.append(f"  {'reactions' if k == 0 else '':<12} {name:<{width}}  {told}")
         if len(reactions) > len(shown):
             lines.append(f"  {'':<12} ... and {len(reactions) - len(shown)} more")
         lines += _ties(result)
@@ -56,7 +58,7 @@ def result_lines(result: Result) -> list[str]:
         moving = [f"'{name}'" for name, speed in moving_bodies(result) if speed > SLOW]
         more = f" and {len(moving) - MOST_MOVING} more" if len(moving) > MOST_MOVING else ""
         lines += [
-            f"  {word:<12} the loads do {result.mechanism.power:.4g} kN m of work on each metre of it",
+            f"  {word:<12} {power_words(result.mechanism.power, units)}",
             f"  moves        {', '.join(moving[:MOST_MOVING])}{more}",
         ]
     else:
@@ -83,12 +85,14 @@ def _existence(result: Result) -> list[str]:
     """Return the paper's sufficient condition in a line, for problems where its linear programme is quick."""
     from concio.analysis.result import EXISTENCE
 
-    if len(result.assembly.pairs) > EXISTENCE:
+    if not 0 < len(result.assembly.pairs) <= EXISTENCE:
         return []
     condition = result.existence
     if not condition.holds:
         return ["  existence    not guaranteed beforehand: normal forces alone cannot carry the loads"]
-    margin = "without limit" if np.isinf(condition.margin) else f"by {condition.margin:.3g} kN at least"
+    margin = "without limit"
+    if np.isfinite(condition.margin):
+        margin = f"by {result.model.report.text('force', condition.margin)} at least"
     return [f"  existence    guaranteed: positive normal forces alone balance the loads, {margin}"]
 
 
@@ -97,15 +101,15 @@ def _ties(result: Result) -> list[str]:
     contacts, ties = result.contacts, result.model.ties
     forces = contacts.normal_force[contacts.pairs.interface < 0].tolist()
     width = max((len(tie.name) for tie in ties), default=0)
+    units, largest = result.model.report, max(map(abs, forces), default=0.0)
+
+    def told(value: float) -> str:
+        return units.text("force", value, 4, size=largest)
+
     return [
-        f"  {'ties' if k == 0 else '':<12} {tie.name:<{width}}  {_clean(value):+.4f} kN of tension"
+        f"  {'ties' if k == 0 else '':<12} {tie.name:<{width}}  {told(value)} of tension"
         for k, (tie, value) in enumerate(zip(ties, forces, strict=True))
     ]
-
-
-def force(value: Sequence[float]) -> str:
-    """Return a force as text."""
-    return ", ".join(f"{_clean(v):+.4f} kN along {axis}" for v, axis in zip(value, "xyz", strict=False))
 
 
 def moving_bodies(result: Result) -> list[tuple[str, float]]:
@@ -126,6 +130,3 @@ def _states(result: Result) -> str:
     words = {"open": "open", "stick": "sticking", "slip": "slipping"}
     return ", ".join(f"{result.contacts.count(name):,} {word}" for name, word in words.items())
 
-
-def _clean(value: float) -> float:
-    return 0.0 if abs(value) < 5e-5 else value

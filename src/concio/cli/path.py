@@ -10,7 +10,7 @@ import typer
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
-from concio.cli.run import File, Json, factors_of
+from concio.cli.run import File, Json, UnitsOf, factors_of, in_units
 
 if TYPE_CHECKING:
     from concio.analysis.path import ControlPoint, PathResult
@@ -37,6 +37,7 @@ def path(
     ] = False,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for curve, events and last state.")] = None,
     every: Annotated[bool, typer.Option("--all", help="List every event.")] = False,
+    units: UnitsOf = None,
     json: Json = False,
 ) -> int:
     """Follow a load path from event to event: which joint opens, closes, slips or sticks at which load.
@@ -57,7 +58,7 @@ def path(
 
     if out is not None:
         check_directory(out)
-    assembly = concio.assemble(concio.load(file))
+    assembly = concio.assemble(in_units(concio.load(file), units))
     control = None if point is None else _control(point, along)
     if control is None and until is not None:
         msg = "--until is the motion of a control point, and there is none"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,10 +11,17 @@ from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory
 from concio.cli.progress import progress_bar
 
+if TYPE_CHECKING:
+    from concio.model.model import Model
+
 File = Annotated[Path, typer.Argument(help="Model file (TOML).", show_default=False)]
 Out = Annotated[Path | None, typer.Option("--out", "-o", help="Directory for figures, report and numbers.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing; the exit code tells.")]
+UnitsOf = Annotated[
+    str | None,
+    typer.Option("--units", help="Units of texts, figures and reports: 'N, mm, MPa'; by default those of the file."),
+]
 Factors = Annotated[
     list[str] | None, typer.Option("--factor", "-f", help="Factor of a load group: live=1.5 (repeatable).")
 ]
@@ -28,6 +35,7 @@ def run(
     factor: Factors = None,
     json: Json = False,
     quiet: Quiet = False,
+    units: UnitsOf = None,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw figures into --out.")] = True,
 ) -> int:
     """Solve one load step and say what was found.
@@ -39,7 +47,7 @@ def run(
 
     if out is not None:
         check_directory(out)
-    model = concio.load(file)
+    model = in_units(concio.load(file), units)
     with progress_bar(shown=not (json or quiet)) as progress:
         result = concio.solve(model, method=method, factors=factors_of(factor), on_failure="return", progress=progress)
     written: list[Path] = []
@@ -55,6 +63,27 @@ def run(
         for line in where_written(written):
             say(line)
     return result.status.exit_code
+
+
+def in_units(model: Model, units: str | None) -> Model:
+    """Return the model told in the units of ``--units``, where there are any.
+
+    Raises
+    ------
+    InputError
+        A part of the text is no unit.
+    """
+    from dataclasses import replace
+
+    from concio.display import Units
+    from concio.errors import InputError
+
+    if units is None:
+        return model
+    try:
+        return replace(model, report=Units.parse(units))
+    except InputError as error:
+        raise InputError(error.what, where="--units", hint=error.hint) from None
 
 
 def factors_of(texts: list[str] | None) -> dict[str, float]:

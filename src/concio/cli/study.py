@@ -61,7 +61,7 @@ def study_lines(found: StudyResult, directory: Path) -> list[str]:
     """Return what a study found, in words."""
     import numpy as np
 
-    from concio.plot.style import number
+    from concio.display import number
 
     of = "" if len(found) == len(found.sample) else f" of {len(found.sample)}"
     lines = [f"{len(found)}{of} runs, {found.sample.design} sample, seed {found.sample.seed}"]
@@ -79,7 +79,7 @@ def study_lines(found: StudyResult, directory: Path) -> list[str]:
         elif random and np.isin(known, (0.0, 1.0)).all():
             lines.append(f"  {o.name:22s} probability {found.probability(o.name)}")
         else:
-            low, middle, high = (number(float(x), unit) for x in np.quantile(known, (0.05, 0.5, 0.95)))
+            low, middle, high = (f"{number(float(x))} {unit}".strip() for x in np.quantile(known, (0.05, 0.5, 0.95)))
             lines.append(f"  {o.name:22s} median {middle}, 5 to 95 % of runs from {low} to {high}")
     failed = found.failures
     if failed:

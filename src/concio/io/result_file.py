@@ -25,6 +25,7 @@ from concio.arguments import strict
 from concio.contact.assembly import Assembly
 from concio.contact.pairs import Pairs
 from concio.contact.supports import Condition, Supported
+from concio.display import Units
 from concio.errors import InputError
 from concio.fem.body import Shape
 from concio.fem.discretisation import Discretisation
@@ -52,6 +53,7 @@ CLASSES: dict[str, type] = {
         Assembly, Body, Certificate, Detection, Discretisation, Elastic, Elements, Interface, JointLaw, JointRule,
         Condition, ControlPoint, Departure, Kinematics, Laws, Load, Mechanism, Model, NearMiss, Overlap, Pairs, Patch,
         Polyhedron, Result, Rigid, Shape, SolidShape, Solution, Stage, Status, Support, Supported, Tie,
+        Units,
     )
 }  # fmt: skip
 """Classes that may appear in a file, by the names they have there. A renamed class keeps its name here."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from concio.analysis.result import Result
 from concio.arguments import strict
+from concio.display import number
 from concio.errors import InputError
 from concio.plot import style
 from concio.post.joint_lines import joint_lines
@@ -85,7 +86,7 @@ def plot_cell_mechanism(domain: StrengthDomain, ray: StrengthRay | int = 0, ax: 
     words = ", ".join(f"{v:g}" for v in chosen.direction)
     title = f"Mechanism under stress along ({words})"
     note = (
-        f"bound {style.number(chosen.multiplier)}; joints that slide open by the friction coefficient times their slip"
+        f"bound {number(chosen.multiplier)}; joints that slide open by the friction coefficient times their slip"
     )
     return plot_motion(domain.cell, chosen.associated.mechanism.velocity, ax, title=title, note=note)
 

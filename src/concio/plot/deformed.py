@@ -40,6 +40,7 @@ def plot_deformed(result: Result, ax: Axes | None = None, *, scale: float | None
     -------
     Axes
     """
+    units = result.model.report
     shown = outlines(result)
     largest = float(np.hypot(*shown.displacement.T).max())
     scale = display_scale(largest, shown.size) if scale is None else scale
@@ -52,7 +53,7 @@ def plot_deformed(result: Result, ax: Axes | None = None, *, scale: float | None
     _draw_states(ax, pieces, state, scale)
     style.dress(
         ax, box, "Deformed shape and state of the joints",
-        f"displacements x {scale:g}; largest {style.number(largest, 'm')}",
+        f"displacements x {scale:g}; largest {units.text('motion', largest)}", units=units,
     )  # fmt: skip
     handles: list[Any] = [style.handle(style.STICK), style.handle(style.SLIP)]
     if (state == PairState.CRUSHED).any():
@@ -86,11 +87,13 @@ def plot_slip(result: Result, ax: Axes | None = None) -> Axes:
     for look, keep, value in ((style.OPEN, opened & (gap > 0), gap), (style.SLIP, ~opened & (slip > 0), slip)):
         width = 0.4 + 7.0 * value[keep] / (widest or 1.0)
         style.draw_lines(ax, lines[keep], style.Line(look.colour, "-", 1, look.word), width=width, zorder=3, alpha=0.95)
-    largest_gap = style.number(float(gap[opened].max(initial=0.0)), "m")
-    largest_slip = style.number(float(slip[~opened].max(initial=0.0)), "m")
+    units = result.model.report
+    largest_gap = units.text("motion", float(gap[opened].max(initial=0.0)), size=widest)
+    largest_slip = units.text("motion", float(slip[~opened].max(initial=0.0)), size=widest)
     style.dress(
         ax, box, "Opening and slip of the joints",
-        f"largest opening {largest_gap}, largest slip {largest_slip}; widest line {style.number(widest, 'm')}",
+        f"largest opening {largest_gap}, largest slip {largest_slip}; widest line {units.text('motion', widest)}",
+        units=units,
     )  # fmt: skip
     style.legend(
         ax,
@@ -162,15 +165,16 @@ def plot_mechanism(
         *(centre + scale * motion)[arrows].T, *(scale * motion)[arrows].T, color=style.INK, angles="xy",
         scale_units="xy", scale=1.0, width=0.0022, headwidth=4, headlength=5, zorder=5, clip_on=False,
     )  # fmt: skip
-    power = style.number(result.mechanism.power, "kN m/s")
+    units = result.model.report
+    power = units.text("force", result.mechanism.power)
     if title is None:
         departs = result.status is Status.COLLAPSES
         title = "How the structure moves away" if departs else "Collapse mechanism: no equilibrium is possible"
     if note is None:
         less = "" if result.status is Status.COLLAPSES else " less what the joints absorb"
-        note = f"power of the loads{less}: {power} at a largest velocity of 1 m/s"
+        note = f"work of the loads{less}: {power} for each unit of the largest motion"
     count = f"{int(moving.sum())} of {len(result.model.free_bodies)} bodies move (bodies at rest are white)"
-    style.dress(ax, box, title, f"{count}; {note}")
+    style.dress(ax, box, title, f"{count}; {note}", units=units)
     handles = [style.patch(style.FILL_OPEN, "opens"), style.handle(style.SLIP, "slides")]
     style.legend(ax, [*handles, style.patch("#FFFFFF", "at rest")])
     return ax

@@ -57,10 +57,12 @@ def plot_pressure(result: Result, ax: Axes | None = None, *, scale: float | None
     )
     opened = contacts.states.open[pieces.pair]
     style.draw_lines(ax, pieces.ends[opened], style.OPEN, zorder=4)
-    style.dress(ax, box, "Contact pressure along the joints", f"largest {style.number(largest, 'kN/m2')}")
+    units = result.model.report
+    note = f"largest {units.text('stress', largest)}"
+    style.dress(ax, box, "Contact pressure along the joints", note, units=units)
     if largest > 0:
         bar = style.round_value(0.16 * float((box[1] - box[0])[0]) / scale)
-        style.scale_bar(ax, box, bar * scale, style.number(bar, "kN/m2"), style.COMPRESSION)
+        style.scale_bar(ax, box, bar * scale, units.text("stress", bar, size=largest), style.COMPRESSION)
     handles = [style.patch("#94BFDC", "pressure", style.COMPRESSION.colour), style.handle(style.OPEN, "open joint")]
     style.legend(ax, handles)
     return ax
@@ -85,6 +87,7 @@ def plot_forces(result: Result, ax: Axes | None = None, *, chains: bool = True, 
     -------
     Axes
     """
+    units = result.model.report
     ax, _, box = style.draw_at_rest(result, ax)
     handles: list[Any] = []
     if chains:
@@ -92,7 +95,7 @@ def plot_forces(result: Result, ax: Axes | None = None, *, chains: bool = True, 
         largest = float(found.force.max(initial=0.0))
         _chain_lines(ax, found.lines, found.force, largest)
         title = "Force chains"
-        note = f"line width in proportion to the force of the joint; largest {style.number(largest, 'kN')}"
+        note = f"line width in proportion to the force of the joint; largest {units.text('force', largest)}"
         handles.append(style.handle(style.Line(style.COMPRESSION.colour, "-", 5, ""), "force between blocks"))
     else:
         force = result.contacts.force_on_b
@@ -107,12 +110,12 @@ def plot_forces(result: Result, ax: Axes | None = None, *, chains: bool = True, 
         lines = np.stack([point - half, point + half], axis=1)
         style.draw_lines(ax, lines, style.COMPRESSION, width=0.6 + 1.8 * size[keep] / (largest or 1.0), zorder=3)
         bar = style.round_value(0.16 * float((box[1] - box[0])[0]) / scale)
-        style.scale_bar(ax, box, bar * scale, style.number(bar, "kN"), style.COMPRESSION)
-        title, note = "Contact forces", f"each contact pair; largest {style.number(largest, 'kN')}"
+        style.scale_bar(ax, box, bar * scale, units.text("force", bar), style.COMPRESSION)
+        title, note = "Contact forces", f"each contact pair; largest {units.text('force', largest)}"
         handles.append(style.handle(style.COMPRESSION, "contact force, along its line of action"))
     if reactions:
         _reactions(ax, result, box)
-    style.dress(ax, box, title, note)
+    style.dress(ax, box, title, note, units=units)
     style.legend(ax, handles)
     return ax
 
@@ -142,6 +145,7 @@ def plot_thrust(result: Result, ax: Axes | None = None) -> Axes:
         raise InputError(msg, hint="draw result.plot.forces() instead")
     from matplotlib.lines import Line2D
 
+    units = result.model.report
     ax, _, box = style.draw_at_rest(result, ax)
     hinges = 0
     for line in lines:
@@ -153,8 +157,8 @@ def plot_thrust(result: Result, ax: Axes | None = None) -> Axes:
     nearest = max(float(line.ratio.max()) for line in lines)
     style.dress(
         ax, box, "Line of thrust",
-        f"largest force {style.number(largest, 'kN')}; it comes within {max(0.0, 50 * (1 - nearest)):.2g} % "
-        "of a joint's length of its edge",
+        f"largest force {units.text('force', largest)}; it comes within {max(0.0, 50 * (1 - nearest)):.2g} % "
+        "of a joint's length of its edge", units=units,
     )  # fmt: skip
     handles = [style.handle(style.THRUST)]
     if hinges:
@@ -177,6 +181,8 @@ def _chain_lines(ax: Axes, lines: Array, force: Array, largest: float) -> None:
 
 def _reactions(ax: Axes, result: Result, box: Array) -> None:
     body_of = {b.name: b for b in result.model.outlines}
+    units = result.model.report
+    largest = max((float(np.linalg.norm(f)) for f in result.reactions.values()), default=0.0)
     for name, (fx, fy) in result.reactions.items():
         body = body_of.get(name)
         if body is None:
@@ -184,7 +190,8 @@ def _reactions(ax: Axes, result: Result, box: Array) -> None:
             body = body_of[support.body]
         if not np.hypot(fx, fy) > 0 or len(result.reactions) > 12:
             continue
-        text = f"{name}\n{style.number(fx)}, {style.number(fy)} kN"
+        x, y = (units.text("force", v, size=largest) for v in (fx, fy))
+        text = f"{name}\n{x}, {y}"
         ax.annotate(
             text, tuple(body.centroid), ha="center", va="center", fontsize=7.5,
             color=style.LOAD.colour, zorder=6, rotation=90 if _upright(body.outline) else 0,

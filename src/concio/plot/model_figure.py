@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from concio.analysis.result import Result
+    from concio.display import Units
     from concio.model.model import Load, Model, Periods
 
 Array = np.ndarray
@@ -89,7 +90,8 @@ def plot_model(model: Model, ax: Axes | None = None, *, names: bool | None = Non
         handles.append(style.handle(style.LOAD, "load"))
     count = f"{len(free)} bodies" + (f", {len(fixed)} fixed" if fixed else "")
     count += " repeat without end" if model.periods is not None else ""
-    style.dress(ax, box, model.title or "model", f"{count}; plane {model.plane}, element {model.element}")
+    count += f"; plane {model.plane}, element {model.element}"
+    style.dress(ax, box, model.title or "model", count, units=model.report)
     style.legend(ax, handles, 6)
     return ax
 
@@ -140,7 +142,7 @@ def _support(ax: Axes, model: Model, support: Any, size: float) -> None:
     if move.any():
         start = points.mean(0)
         ax.annotate(
-            f"{style.number(float(np.hypot(*move)), 'm')}", start + 0.08 * size * move / np.hypot(*move), start,
+            model.report.text("motion", float(np.hypot(*move))), start + 0.08 * size * move / np.hypot(*move), start,
             arrowprops={"arrowstyle": "<-", "color": style.INK, "lw": 1.2}, fontsize=8, ha="center", zorder=6,
         )  # fmt: skip
 
@@ -149,7 +151,7 @@ def _loads(ax: Axes, model: Model, size: float) -> bool:
     """Draw edge and point loads as arrows; own weight is told in words. True where there was anything to draw."""
     drawn = False
     for load in model.loads:
-        arrows = _arrows(load)
+        arrows = _arrows(load, model.report)
         if arrows is None:
             continue
         tips, direction, word = arrows
@@ -165,13 +167,13 @@ def _loads(ax: Axes, model: Model, size: float) -> bool:
     return drawn
 
 
-def _arrows(load: Load) -> tuple[Array, Array, str] | None:
+def _arrows(load: Load, units: Units) -> tuple[Array, Array, str] | None:
     value = np.array(load.value, dtype=float)
     size = float(np.hypot(*value)) if len(value) > 1 else abs(float(value[0]))
     if not size > 0:
         return None
     if load.kind == "point" and load.at is not None:
-        return np.array([load.at]), (value / size)[None, :], style.number(size, "kN")
+        return np.array([load.at]), (value / size)[None, :], units.text("force", size)
     if load.kind in ("pressure", "traction") and load.edge is not None:
         a, b = np.array(load.edge, dtype=float)
         along = (b - a) / max(float(np.hypot(*(b - a))), 1e-300)
@@ -181,5 +183,5 @@ def _arrows(load: Load) -> tuple[Array, Array, str] | None:
             inward = turned_right(along)
             direction = np.sign(value[0]) * (inward if inward[1] < 0 or (inward[1] == 0 and inward[0] < 0) else -inward)
         tips = np.linspace(a, b, 13)
-        return tips, np.tile(direction, (13, 1)), style.number(size, "kN/m2")
+        return tips, np.tile(direction, (13, 1)), units.text("stress", size)
     return None

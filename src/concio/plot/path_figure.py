@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from concio.arguments import strict
+from concio.display import number
 from concio.plot import style
 
 if TYPE_CHECKING:
@@ -114,13 +115,13 @@ def plot_path(
         handles += drawn
     if len(load):
         top = int(np.argmax(load))
-        word = f"peak {style.number(float(load[top]), unit)}"
+        word = f"peak {number(float(load[top]))} {unit}".rstrip()
         ax.annotate(
             word, (motion[top], load[top]), (0, 7), textcoords="offset points", ha="center", fontsize=8.5,
             color=style.INK,
         )  # fmt: skip
     if bound is not None:
-        line = ax.axhline(bound, color=style.COMPRESSION.colour, ls="--", lw=1.1, label=f"bound {style.number(bound)}")
+        line = ax.axhline(bound, color=style.COMPRESSION.colour, ls="--", lw=1.1, label=f"bound {number(bound)}")
         handles.append(line)
     ax.margins(0.05, 0.1)
     if control_label.endswith("[m]") and np.abs(motion).max(initial=0.0) < SMALL:

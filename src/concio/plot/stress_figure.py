@@ -58,16 +58,18 @@ def plot_principal(
         keep &= size > 0.01
         width = (0.5 + 1.1 * size[keep]) if many else (0.9 + 2.2 * size[keep])
         style.draw_lines(ax, lines[keep], look, width=width, zorder=3, capstyle="butt")
-    strongest = style.number(float(np.min(found.s2, initial=0.0)), "kN/m2")
-    weakest = style.number(float(np.max(found.s1, initial=0.0)), "kN/m2")
+    units = result.model.report
+    strongest = units.text("stress", float(np.min(found.s2, initial=0.0)), size=largest)
+    weakest = units.text("stress", float(np.max(found.s1, initial=0.0)), size=largest)
     what = "block" if of == "bodies" else "element"
     style.dress(
         ax, box, f"Mean principal stresses of each {what}",
         f"from {strongest} (compression) to {weakest}" + (" (tension)" if np.max(found.s1, initial=0.0) > 0 else ""),
+        units=units,
     )  # fmt: skip
     bar = style.round_value(0.16 * float((box[1] - box[0])[0]) / scale) if largest > 0 else 0.0
     if bar:
-        style.scale_bar(ax, box, bar * scale, style.number(bar, "kN/m2"), style.COMPRESSION)
+        style.scale_bar(ax, box, bar * scale, units.text("stress", bar, size=largest), style.COMPRESSION)
     handles: list[Any] = [style.handle(style.COMPRESSION), style.handle(style.TENSION)]
     if shade:
         handles.append(style.patch(_blend(1.0), f"body in compression of {strongest.lstrip('-')}"))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.display import number
 from concio.errors import InputError
 from concio.plot import style
 
@@ -129,7 +130,7 @@ class StudyPlots:
         ax.fill_between(at, low, high, color=style.COMPRESSION.colour, alpha=0.18, lw=0,
                         label=f"{100 * confidence:g} % band")  # fmt: skip
         ax.plot(at, curve.probability(at), color=style.COMPRESSION.colour, lw=1.8,
-                label=f"median {style.number(curve.median)}, beta {style.number(curve.beta)}")  # fmt: skip
+                label=f"median {number(curve.median)}, beta {number(curve.beta)}")  # fmt: skip
         spread = JITTER * (np.arange(len(x)) * 0.618034 % 1.0)
         ax.plot(x, np.where(y > 0, y - spread, y + spread), ls="none", marker="|", ms=4, color=style.INK, alpha=0.5)
         ax.legend(frameon=False, fontsize=8, loc="center right")

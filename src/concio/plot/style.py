@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from concio.display import DEFAULT, Units, number
 from concio.post.outlines import Outlines, outlines
 
 if TYPE_CHECKING:
@@ -103,13 +104,17 @@ def box_of(*points: Array, margin: float = 0.04) -> Array:
     return np.array([low - pad, high + pad])
 
 
-def dress(ax: Axes, box: Array, title: str, note: str = "") -> None:
-    """Set limits, equal scales, labels with units, and the title with a note under it."""
+def dress(ax: Axes, box: Array, title: str, note: str = "", *, units: Units = DEFAULT) -> None:
+    """Set limits, equal scales, labels with units, and the title with a note under it; drawn is in m."""
     ax.set_xlim(box[0, 0], box[1, 0])
     ax.set_ylim(box[0, 1], box[1, 1])
     ax.set_aspect("equal")
-    ax.set_xlabel("x [m]", fontsize=8, color=INK)
-    ax.set_ylabel("y [m]", fontsize=8, color=INK)
+    ax.set_xlabel(f"x [{units.length}]", fontsize=8, color=INK)
+    ax.set_ylabel(f"y [{units.length}]", fontsize=8, color=INK)
+    if units.length != "m":
+        factor, _ = units.factor("length")
+        for axis in (ax.xaxis, ax.yaxis):
+            axis.set_major_formatter(lambda value, _: number(factor * value, 6))
     ax.tick_params(labelsize=7.5, colors="#555555", length=3, width=0.6)
     for spine in ax.spines.values():
         spine.set_visible(False)
@@ -228,16 +233,3 @@ def round_value(value: float) -> float:
     power = 10.0 ** np.floor(np.log10(value))
     return float(power * max(step for step in (1.0, 2.0, 5.0) if step <= value / power * (1 + 1e-12)))
 
-
-def number(value: float, unit: str = "") -> str:
-    """Return a number with three digits and its unit; lengths below a centimetre in mm."""
-    if unit == "m" and 0 < abs(value) < 0.01:
-        value, unit = 1e3 * value, "mm"
-    size = abs(value)
-    if 1e4 <= size < 1e9:
-        text = f"{float(f'{value:.4g}'):,.0f}"
-    elif size >= 1e-4 or size == 0:
-        text = f"{value:.0f}" if 1e3 <= size < 1e4 else f"{value:.3g}"
-    else:
-        text = f"{value:.2e}"
-    return f"{text} {unit}".strip()

@@ -28,6 +28,17 @@ UNITS: dict[str, str] = {
 UNITS |= {f"{name}_{i}": UNITS[name] for name in ("friction_force", "shear", "slip") for i in (1, 2)}
 """Unit of each column that has one; stresses are tension positive, pressure and normal forces compression positive."""
 
+KINDS: dict[str, str] = {
+    **dict.fromkeys(("x", "y", "length", "eccentricity", "thickness"), "length"),
+    **dict.fromkeys(("u_x", "u_y", "gap", "slip"), "motion"),
+    **dict.fromkeys(("n_x", "n_y", "open_share", "friction_used"), "number"),
+    **dict.fromkeys(("normal_force", "friction_force", "shear_force", "force_x", "force_y"), "force"),
+    **dict.fromkeys(("s_x", "s_y", "t_xy", "s_1", "s_2", "pressure", "shear"), "stress"),
+    **dict.fromkeys(("angle", "rotation"), "rotation"),
+    "area": "area",
+}
+"""Kind of quantity in each column, as :class:`concio.Units` tells it."""
+
 
 @dataclass(frozen=True, eq=False)
 class Tables:

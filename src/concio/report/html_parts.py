@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from concio.plot.style import number
-from concio.post.tables import UNITS
+from concio.display import DEFAULT, Units
+from concio.post.tables import KINDS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,30 +29,30 @@ LARGEST_SVG = 350_000
 """Drawings above this many bytes are embedded as images of dots."""
 
 
-def table_html(table: Mapping[str, Array], columns: tuple[str, ...], *, rows: Array | None = None) -> str:
+def table_html(
+    table: Mapping[str, Array], columns: tuple[str, ...], *, rows: Array | None = None, units: Units = DEFAULT
+) -> str:
     """Return a table; ``rows`` picks and orders its rows."""
-    head = "".join(f"<th>{escape(_heading(name))}</th>" for name in columns)
-    pick = range(len(table[columns[0]])) if rows is None else rows.tolist()
-    body = []
-    for i in pick:
-        cells = "".join(_cell(table[name][i]) for name in columns)
-        body.append(f"<tr>{cells}</tr>")
+    pick = np.arange(len(table[columns[0]])) if rows is None else rows
+    headings, cells = zip(*(_column(name, table[name][pick], units) for name in columns), strict=True)
+    head = "".join(f"<th>{escape(heading)}</th>" for heading in headings)
+    body = [f"<tr>{''.join(row)}</tr>" for row in zip(*cells, strict=True)]
     return f"<div class=scroll><table><thead><tr>{head}</tr></thead><tbody>{''.join(body)}</tbody></table></div>"
 
 
-def _heading(name: str) -> str:
+def _column(name: str, values: Array, units: Units) -> tuple[str, list[str]]:
+    """Return the heading and the cells of a column; what a cell rounds stands in its title, in kN and m."""
     word = HEADINGS.get(name, name.replace("_", " "))
-    unit = UNITS.get(name, "-")
-    return word if unit == "-" else f"{word} [{unit}]"
+    if not np.issubdtype(values.dtype, np.floating):
+        return word, [_cell(value) for value in values]
+    texts, symbol = units.column(KINDS.get(name, "number"), values.tolist())
+    told = [f'<td class=n title="{float(v)!r}">{text}</td>' for v, text in zip(values, texts, strict=True)]
+    return f"{word} [{symbol}]" if symbol else word, told
 
 
 def _cell(value: object) -> str:
     if isinstance(value, bool | np.bool_):
         return f"<td>{'yes' if value else 'no'}</td>"
-    if isinstance(value, float | np.floating):
-        if np.isnan(value):
-            return "<td class=n>&ndash;</td>"
-        return f'<td class=n title="{float(value)!r}">{number(float(value))}</td>'
     return f"<td>{escape(str(value))}</td>"
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING
 
-from concio.plot.style import number
+import numpy as np
+
 from concio.report.html_parts import figure_html
 from concio.report.wording import certificate_sentence, verdict
 
@@ -24,11 +25,12 @@ def notebook_html(result: Result) -> str:
     rows = [("model", result.model.title or "untitled"), ("method", result.method)]
     rows.append(("size", f"{len(result.model.free_bodies)} bodies, {len(result.assembly.pairs)} contact pairs"))
     if result.solved:
-        contacts = result.contacts
+        contacts, units = result.contacts, result.model.report
+        largest = max((float(np.linalg.norm(force)) for force in result.reactions.values()), default=0.0)
         rows.append(("pairs", contacts.counted))
-        rows.append(("largest settlement", number(result.max_settlement, "m")))
+        rows.append(("largest settlement", units.text("motion", result.max_settlement)))
         for name, (x, y) in list(result.reactions.items())[:8]:
-            rows.append((f"reaction of {name}", f"{number(x)}, {number(y)} kN"))
+            rows.append((f"reaction of {name}", units.force_vector((x, y), size=largest)))
     cells = "".join(
         f"<tr><td style='text-align:left;color:#666'>{escape(k)}</td><td style='text-align:left'>{escape(w)}</td></tr>"
         for k, w in rows

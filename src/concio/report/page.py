@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import fields
 from html import escape
 from importlib.resources import files
 from pathlib import Path
@@ -14,16 +13,16 @@ import numpy as np
 
 import concio
 from concio.arguments import strict
+from concio.display import Units, number
 from concio.errors import InputError
+from concio.model.described import law_words, material_words
 from concio.plot.figures import TITLES, suitable_figures
-from concio.plot.style import number
 from concio.report.html_parts import figure_html, table_html
 from concio.report.view_data import view_data
 from concio.report.wording import certificate_sentence, checks, verdict
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
-    from concio.model.materials import Elastic, JointLaw, Rigid
 
 ROWS = 250
 """Longest table; of longer ones the rows that matter most are shown."""
@@ -86,6 +85,7 @@ def report_html(
         "TABLES": _tables(last),
         "TRIED": _tried(last),
         "DATA": data,
+        "UNITS": escape(_units_sentence(last.model.report)),
         "VERSION": escape(concio.__version__),
     }
     page = _resource("report.html")
@@ -94,6 +94,14 @@ def report_html(
         name, rest = piece.split("}}", 1)
         head += parts[name] + rest
     return head
+
+
+def _units_sentence(units: Units) -> str:
+    stress = "kN/m2 or MPa" if units.stress == "auto" else units.stress
+    return (
+        f"Forces in {units.force}, lengths in {units.length}, motions in {units.motion}, stresses in {stress}; tension "
+        "is positive. A number that is rounded shows all its digits, in kN and m, under the pointer."
+    )
 
 
 def _resource(name: str) -> str:
@@ -126,7 +134,7 @@ def _verdict(result: Result) -> str:
 
 
 def _model(result: Result) -> str:
-    model = result.model
+    model, units = result.model, result.model.report
     fixed = len(model.bodies) - len(model.free_bodies)
     rows = [
         ("bodies", f"{len(model.free_bodies)}, and {fixed} fixed"),
@@ -136,36 +144,19 @@ def _model(result: Result) -> str:
     ]
     for name, material in model.materials.items():
         if any(b.material == name and b.kind != "fixed" for b in model.bodies):
-            rows.append((f"material {name}", _values(material)))
-    rows += [(f"joint {name}", _values(law)) for name, law in model.laws.items()]
-    x, y = result.total_load
-    rows.append(("total load", f"{number(x)} kN along x, {number(y)} kN along y"))
+            rows.append((f"material {name}", material_words(material, units)))
+    rows += [(f"joint {name}", law_words(law, units)) for name, law in model.laws.items()]
+    rows.append(("total load", units.force_vector(result.total_load)))
     if result.factors:
         rows.append(("load factors", ", ".join(f"{g} = {number(v)}" for g, v in result.factors.items())))
     if result.solved:
         contacts = result.contacts
-        rows.append(("largest settlement", number(result.max_settlement, "m")))
+        rows.append(("largest settlement", units.text("motion", result.max_settlement)))
         rows.append(("contact pairs", contacts.counted))
     seconds = result.seconds.get("total", float("nan"))
     rows.append(("solved by", f"{result.method}, {result.solution.iterations} iterations, {seconds:.2g} s"))
     cells = "".join(f"<tr><th>{escape(k)}</th><td>{escape(v)}</td></tr>" for k, v in rows)
     return f'<div class=scroll><table class="facts"><tbody>{cells}</tbody></table></div>'
-
-
-_UNIT = {
-    "E": "kN/m2", "unit_weight": "kN/m3", "cohesion": "kN/m2", "tensile_strength": "kN/m2",
-    "normal_stiffness": "kN/m3", "tangential_stiffness": "kN/m3", "compressive_strength": "kN/m2",
-}  # fmt: skip
-
-
-def _values(thing: Elastic | Rigid | JointLaw) -> str:
-    """Return the constants of a material or a law that are not zero."""
-    texts = []
-    for constant in fields(thing):
-        name, value = constant.name, getattr(thing, constant.name)
-        if value or name in ("friction", "nu"):
-            texts.append(f"{name.replace('_', ' ')} {number(value, _UNIT.get(name, ''))}")
-    return ", ".join(texts) or "rigid"
 
 
 def _figures(result: Result) -> str:
@@ -176,17 +167,17 @@ def _figures(result: Result) -> str:
 def _tables(result: Result) -> str:
     if not result.solved:
         return ""
-    tables = result.tables
+    tables, units = result.tables, result.model.report
     joints, bodies, reactions = tables.joints(), tables.bodies(), tables.reactions()
     force = np.hypot(joints["normal_force"], joints["shear_force"])
     strongest = np.argsort(-force, kind="stable")
-    text = f"<h2>Reactions</h2>{table_html(reactions, ('support', 'force_x', 'force_y'))}"
+    text = f"<h2>Reactions</h2>{table_html(reactions, ('support', 'force_x', 'force_y'), units=units)}"
     text += "<p class=note>Forces on the structure.</p>"
     columns: tuple[str, ...] = (
         "body_a", "body_b", "length", "normal_force", "shear_force", "eccentricity", "open_share", "slipping"
     )  # fmt: skip
     text += "<h2>Joints</h2>" + _note(len(force), "the largest forces")
-    text += table_html(joints, columns, rows=strongest[:ROWS])
+    text += table_html(joints, columns, rows=strongest[:ROWS], units=units)
     text += "<p class=note>Normal force: compression positive. Eccentricity: from the middle of the joint.</p>"
     moved = np.hypot(bodies["u_x"], bodies["u_y"])
     free = np.flatnonzero(bodies["kind"] != "fixed")
@@ -195,7 +186,7 @@ def _tables(result: Result) -> str:
         order = free[np.argsort(-moved[free], kind="stable")]
     columns = ("body", "role", "u_x", "u_y", "rotation", "s_1", "s_2")
     text += "<h2>Blocks</h2>" + _note(len(free), "the largest compression")
-    text += table_html(bodies, columns, rows=order[:ROWS])
+    text += table_html(bodies, columns, rows=order[:ROWS], units=units)
     return text + "<p class=note>Mean motion and mean principal stresses; tension positive.</p>"
 
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import concio
+from concio.display import number
 from concio.plot.study_figures import suitable
-from concio.plot.style import number
 from concio.report.html_parts import figure_html
 
 if TYPE_CHECKING:

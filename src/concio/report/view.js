@@ -26,6 +26,7 @@
   const view = { x: 0, y: 0, zoom: 1, scale: data.scale, step: data.steps.length - 1, colour: "none", states: true, crosses: true, picked: null };
   const moved = new Float32Array(bodies.point.length);
   const boxes = new Float32Array(4 * count);
+  let beside = {}; /* size of the forces, motions... of the step: beside it dust is nothing */
   let step, width = 0, height = 0, waiting = false, range = [0, 1], shade = null, bigStress = 1;
 
   const stepAt = (k) => (steps[k] ??= unpacked(data.steps[k]));
@@ -55,12 +56,20 @@
   const typical = sizes[Math.floor(0.75 * (sizes.length - 1))] || data.size / 10;
 
   /* numbers */
-  const digits = (v) => {
+  const digits = (v, beside = 0) => {
     if (!Number.isFinite(v)) return "–";
     const size = Math.abs(v);
-    return v === 0 ? "0" : size >= 1e5 || size < 1e-4 ? v.toExponential(3) : String(Number(v.toPrecision(4)));
+    if (v === 0 || size <= 1e-6 * beside) return "0";
+    if (size < 1e-4) return v.toExponential(2);
+    const short = Number(v.toPrecision(4));
+    return size >= 1e4 ? short.toLocaleString("en", { maximumFractionDigits: 0 }) : String(short);
   };
-  const told = (v, unit) => unit === "m" && v !== 0 && Math.abs(v) < 0.01 ? `${digits(1e3 * v)} mm` : `${digits(v)} ${unit}`;
+  /* quantities come in kN and m, and are told in the units of the report: [factor, symbol] of each kind */
+  const units = data.units;
+  const told = (v, kind, beside = 0) => {
+    const [factor, symbol] = units[kind] || [1, kind];
+    return `${digits(factor * v, factor * beside)} ${symbol}`;
+  };
 
   /* geometry */
   function place() {
@@ -104,7 +113,7 @@
     const a = parse(RAMP[i]), b = parse(RAMP[i + 1]);
     return `rgb(${a.map((v, j) => Math.round(v + f * (b[j] - v))).join()})`;
   });
-  const UNITS = { s1: "kN/m²", s2: "kN/m²", move: "m", pressure: "kN/m²" };
+  const KINDS = { s1: "stress", s2: "stress", move: "motion", pressure: "stress" };
   const WORDS = { s1: "largest principal stress", s2: "smallest principal stress", move: "displacement", pressure: "contact pressure" };
   function valuesOf(name) {
     if (name === "s1" || name === "s2") return step[name] || null;
@@ -238,8 +247,8 @@
     const parts = [];
     if (view.colour !== "none" && shade) {
       const stops = ramp.filter((_, k) => k % 6 === 0 || k === BINS - 1);
-      const order = view.colour === "s2" ? stops : [...stops].reverse(), unit = UNITS[view.colour];
-      const low = told(range[0], unit), high = told(range[1], unit);
+      const order = view.colour === "s2" ? stops : [...stops].reverse(), kind = KINDS[view.colour], wide = Math.max(Math.abs(range[0]), Math.abs(range[1]));
+      const low = told(range[0], kind, wide), high = told(range[1], kind, wide);
       parts.push(`<span>${WORDS[view.colour]} ${low}<i class="bar" style="background:linear-gradient(90deg,${order.join()})"></i>${high}</span>`);
     } else if (view.colour !== "none") parts.push(`<span>no ${WORDS[view.colour]} in this step</span>`);
     if (view.states && step.state) parts.push(item(look.stick, "sticks"), item(look.slip, "slips", "dashed"), item(look.open, "open"));
@@ -248,7 +257,7 @@
     $("legend").innerHTML = parts.join("");
   }
   const escaped = (text) => text.replace(/[&<>"]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" })[c]);
-  const row = (name, value, unit) => `<div><dt>${name}</dt><dd data-name="${name}" data-value="${value}">${told(value, unit)}</dd></div>`;
+  const row = (name, value, kind) => `<div><dt>${name}</dt><dd data-name="${name}" data-value="${value}">${told(value, kind, beside[kind])}</dd></div>`;
   function inform() {
     const box = $("info"), picked = view.picked;
     if (!picked) { box.textContent = "Click a block or a joint to read its numbers."; return; }
@@ -257,18 +266,18 @@
       if (data.mechanism) {
         rows.push(row("velocity x", step.motion[3 * b], "m/s"), row("velocity y", step.motion[3 * b + 1], "m/s"), row("spin", step.motion[3 * b + 2], "rad/s"));
       } else {
-        rows.push(row("moves x", step.motion[3 * b], "m"), row("moves y", step.motion[3 * b + 1], "m"), row("turns", step.motion[3 * b + 2], "rad"));
+        rows.push(row("moves x", step.motion[3 * b], "motion"), row("moves y", step.motion[3 * b + 1], "motion"), row("turns", step.motion[3 * b + 2], "rotation"));
       }
-      if (step.s1 && Number.isFinite(step.s1[b])) rows.push(row("largest stress", step.s1[b], "kN/m²"), row("smallest stress", step.s2[b], "kN/m²"));
+      if (step.s1 && Number.isFinite(step.s1[b])) rows.push(row("largest stress", step.s1[b], "stress"), row("smallest stress", step.s2[b], "stress"));
       box.innerHTML = `<b>${escaped(bodies.name[b])}</b>${bodies.kind[b]}<dl>${rows.join("")}</dl>`;
       return;
     }
     const k = picked.piece, j = pieces.face[k], rows = [];
     if (step.N) {
-      rows.push(row("normal force N", step.N[j], "kN"), row("shear force V", step.V[j], "kN"), row("eccentricity", step.eccentricity[j], "m"));
-      rows.push(row("open part", 100 * step.open_share[j], "%"), row("length", joints.length[j], "m"));
-      rows.push(row("pressure here", step.pressure[k], "kN/m²"), row("force here", step.t_n[k], "kN"), row("friction here", step.t_t[k], "kN"));
-      rows.push(row("gap here", step.gap[k], "m"), row("slip here", step.slip[k], "m"));
+      rows.push(row("normal force N", step.N[j], "force"), row("shear force V", step.V[j], "force"), row("eccentricity", step.eccentricity[j], "length"));
+      rows.push(row("open part", 100 * step.open_share[j], "%"), row("length", joints.length[j], "length"));
+      rows.push(row("pressure here", step.pressure[k], "stress"), row("force here", step.t_n[k], "force"), row("friction here", step.t_t[k], "force"));
+      rows.push(row("gap here", step.gap[k], "motion"), row("slip here", step.slip[k], "motion"));
     }
     const name = (b) => (b < 0 ? "a fixed point" : escaped(bodies.name[b]));
     const state = step.state ? `here it <em>${STATES[step.state[k]].replace("open", "is open")}</em>` : "";
@@ -307,6 +316,8 @@
   }
   function setStep(k) {
     view.step = k; step = stepAt(k);
+    const most = (...arrays) => arrays.reduce((top, array) => (array || []).reduce((a, v) => (Math.abs(v) > a ? Math.abs(v) : a), top), 0);
+    beside = { force: most(step.N, step.V), motion: most(step.motion), stress: most(step.s1, step.s2), length: data.size, rotation: most(step.motion) / data.size };
     $("step").value = k; $("step-text").textContent = step.label;
     place(); recolour(); inform(); draw();
   }
@@ -381,7 +392,8 @@
   if (data.steps.length < 2) $("step-label").style.display = "none";
   setStep(view.step); setScale(data.scale);
   resize();
-  new ResizeObserver(() => { if (canvas.clientWidth !== width) resize(); }).observe(canvas);
+  /* in the next frame: changing the height while the observer reports would make it report again at once */
+  new ResizeObserver(() => requestAnimationFrame(() => { if (canvas.clientWidth !== width) resize(); })).observe(canvas);
   if (data.left_out) complain(`${data.left_out} steps are left out of this view to keep the file small.`);
   window.concio = { view, data, bodies, pieces, joints, stepAt, setStep, setScale, choose, pick, paint, X, Y, middle };
 })();

@@ -68,6 +68,7 @@ def view_data(results: Sequence[Result], labels: Sequence[str]) -> dict[str, Any
         "scale": display_scale(largest, shown.size),
         "size": shown.size,
         "mechanism": first.mechanism is not None,
+        "units": _units(results[steps[-1]], largest),
         "left_out": len(results) - len(steps),
         "look": {
             "block": style.BLOCK,
@@ -102,6 +103,14 @@ def view_data(results: Sequence[Result], labels: Sequence[str]) -> dict[str, Any
         },
         "steps": packed,
     }
+
+
+def _units(result: Result, largest: float) -> dict[str, tuple[float, str]]:
+    """Return what values in kN and m are multiplied by, and the unit they then have, for each kind of quantity."""
+    units = result.model.report
+    stress = max((float(np.nanmax(np.abs(s), initial=0.0)) for s in result.stress.principal[:2]), default=0.0)
+    sizes = {"force": 0.0, "length": 0.0, "motion": largest, "stress": stress, "rotation": 0.0}
+    return {kind: units.factor(kind, size) for kind, size in sizes.items()}
 
 
 def _kind(body: Any) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from concio.display import Units
 from concio.problem.solution import Status
 from concio.problem.tolerances import CERTIFIED
 
@@ -166,15 +167,20 @@ def certificate_sentence(result: Result) -> str:
     if result.mechanism is not None and result.status is Status.COLLAPSES:
         m = result.mechanism
         return (
-            f"Proven: along this motion the loads do {m.power:.4g} kN m of work on each metre, more than friction "
-            f"takes; motion, forces and masses satisfy every equation to {m.violation:.1e} (relative)."
+            f"Proven: along this motion {power_words(m.power, result.model.report)}, more than friction takes; motion, "
+            f"forces and masses satisfy every equation to {m.violation:.1e} (relative)."
         )
     if result.mechanism is not None:
         m = result.mechanism
         return (
-            f"Proven: the mechanism gains a power of {m.power:.4g} kN m/s at a largest velocity of 1 m/s and violates "
-            f"the joints by no more than {m.violation:.1e} (relative)."
+            f"Proven: {power_words(m.power, result.model.report)}, less what the joints absorb, and it violates the "
+            f"joints by no more than {m.violation:.1e} (relative)."
         )
     if result.status is Status.NO_COULOMB_STATE:
         return "Excluded: no combination of joint states satisfies the equations; every exclusion was recomputed."
     return "Not certified: there is no answer whose equations hold."
+
+
+def power_words(power: float, units: Units) -> str:
+    """Return the work of the loads along a mechanism, scaled to a largest velocity of 1: a force [kN] in words."""
+    return f"the loads do {units.text('moment', power, 4)} of work on each metre of it"
