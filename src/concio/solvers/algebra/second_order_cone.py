@@ -1,0 +1,120 @@
+r"""Algebra of second-order cones :math:`Q = \{x : x_0 \ge |x_t|\}` for many small vectors at once, arrays (m, d).
+
+Jordan product, determinant, quadratic representation, and the scaling of Nesterov and Todd: the one symmetric map P with
+P(w) eta = beta that takes a pair of inner points to each other. In the plane Q is a product of two half-lines and all of
+this is division of numbers.
+
+Reference: Alizadeh and Goldfarb, Second-order cone programming, Math. Programming 95 (2003), 3-51.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.problem.contact_problem import Array
+
+
+def times(A: Array, x: Array) -> Array:
+    """Return the products of matrices (m, d, d) and vectors (m, d)."""
+    product: Array = np.matmul(A, x[:, :, None])[:, :, 0]
+    return product
+
+
+def product(a: Array, b: Array) -> Array:
+    """Return the Jordan product, (a'b, a_0 b_t + b_0 a_t)."""
+    result = np.empty_like(a)
+    result[:, 0] = (a * b).sum(axis=1)
+    result[:, 1:] = a[:, :1] * b[:, 1:] + b[:, :1] * a[:, 1:]
+    return result
+
+
+def tangential_norm(a: Array) -> Array:
+    """Return |a_t| (m,)."""
+    norm: Array = np.hypot(a[:, 1], a[:, 2]) if a.shape[1] == 3 else np.linalg.norm(a[:, 1:], axis=1)
+    return norm
+
+
+def determinant(a: Array) -> Array:
+    """Return (a_0 - |a_t|)(a_0 + |a_t|), positive inside, free of cancellation."""
+    r = tangential_norm(a)
+    inside: Array = (a[:, 0] - r) * (a[:, 0] + r)
+    return inside
+
+
+def divide(a: Array, r: Array) -> Array:
+    """Return x with a o x = r, a inside the cone."""
+    x = np.empty_like(r)
+    x[:, 0] = (a[:, 0] * r[:, 0] - (a[:, 1:] * r[:, 1:]).sum(axis=1)) / determinant(a)
+    x[:, 1:] = (r[:, 1:] - x[:, :1] * a[:, 1:]) / a[:, :1]
+    return x
+
+
+def quadratic(w: Array) -> Array:
+    """Return the quadratic representation 2 w w' - J (m, d, d) of w with determinant one."""
+    P = 2.0 * w[:, :, None] * w[:, None, :]
+    P[:, 0, 0] -= 1.0
+    for k in range(1, w.shape[1]):
+        P[:, k, k] += 1.0
+    return P
+
+
+def mirrored(a: Array) -> Array:
+    """Return J a = (a_0, -a_t)."""
+    mirror = -a
+    mirror[:, 0] = a[:, 0]
+    return mirror
+
+
+def reach(x: Array, dx: Array) -> float:
+    """Return the smallest step at which a row of x + step dx leaves the cone; inf where none does."""
+    a, c = determinant(dx), np.maximum(determinant(x), 0.0)
+    b = x[:, 0] * dx[:, 0] - (x[:, 1:] * dx[:, 1:]).sum(axis=1)
+    root = b * b - a * c
+    q = -(b + np.where(b >= 0, 1.0, -1.0) * np.sqrt(np.maximum(root, 0.0)))
+    least = np.inf
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for step, real in ((q / a, root >= 0), (c / q, root >= 0), (-x[:, 0] / dx[:, 0], dx[:, 0] < 0)):
+            least = min(least, float(np.min(step[real & (step > 0)], initial=np.inf)))
+    return least
+
+
+@dataclass(frozen=True, eq=False)
+class Scaling:
+    """Nesterov-Todd scaling of inner points beta, eta: W eta = W^-1 beta = point, M = W^-2.
+
+    Parameters
+    ----------
+    W, inverse : (m, d, d) arrays
+    M : (m, d, d) array
+        d eta = q - M d beta in Newton's equations.
+    point : (m, d) array
+        lambda, the common image of both.
+    """
+
+    W: Array
+    inverse: Array
+    M: Array
+    point: Array
+
+    @classmethod
+    def of(cls, beta: Array, eta: Array) -> Scaling | None:
+        """Return the scaling, or None where a point is not inside its cone."""
+        of_beta, of_eta = determinant(beta), determinant(eta)
+        if not (of_beta.min(initial=1.0) > 0 and of_eta.min(initial=1.0) > 0):
+            return None
+        of_beta, of_eta = np.sqrt(of_beta), np.sqrt(of_eta)
+        b, e = beta / of_beta[:, None], eta / of_eta[:, None]
+        w = (b + mirrored(e)) / np.sqrt(2.0 * (1.0 + (b * e).sum(axis=1)))[:, None]
+        h = w.copy()
+        h[:, 0] += 1.0
+        h /= np.sqrt(2.0 * h[:, :1])
+        size = np.sqrt(of_beta / of_eta)[:, None, None]
+        W, inverse = quadratic(h) * size, quadratic(mirrored(h)) / size
+        return cls(W, inverse, quadratic(mirrored(w)) / size**2, times(W, eta))
+
+    def corrector(self, r: Array) -> Array:
+        """Return q of d eta = q - M d beta for lambda o (W d eta + W^-1 d beta) = r."""
+        q: Array = times(self.inverse, divide(self.point, r))
+        return q
