@@ -29,7 +29,7 @@ import scipy.sparse as sp
 from concio.problem.contact_problem import Array
 from concio.solvers.algebra.block_factor import BlockFactor
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
-from concio.solvers.algebra.second_order_cone import Scaling, product, reach, times
+from concio.solvers.algebra.second_order_cone import Scaling, divide, product, reach, times
 
 START = 3.0
 """Size of slacks and multipliers at the start, the largest load on a block being one."""
@@ -203,6 +203,7 @@ class ConeInterior:
             for iteration in range(MOST + 1):
                 r_p = self.Ct @ p.t.ravel() + e + p.multiplier * g
                 r_d = self.rate(p.v) - self.pressed(p.z, p.eta, p.w)
+                r_d[~self.q.rough, 1:] = 0.0
                 r_g = 1.0 - float(g @ p.v)
                 gap = self.gap(p)
                 force, speed = max(1.0, float(p.t[:, 0].max())), max(1.0, float(np.abs(p.v).max()))
@@ -239,6 +240,7 @@ class _Step:
     beta: Array
     scaling: Scaling
     F: Array
+    squeeze: Array
     border: Array
 
     @classmethod
@@ -247,27 +249,32 @@ class _Step:
         scaling = Scaling.of(beta, p.eta)
         if scaling is None:
             return None
-        F = _roots(it, p, scaling)
+        F, squeeze = _roots(it, p, scaling)
         try:
             D = np.matmul(F, F.transpose(0, 2, 1))
             it.factor.factorise(D, PROXIMAL * float(np.median(D[:, 0, 0])))
             border = it.factor.solve(g)
         except SingularMatrixError:
             return None
-        return cls(it, p, g, (r_p, r_d, r_g), beta, scaling, F, border)
+        return cls(it, p, g, (r_p, r_d, r_g), beta, scaling, F, squeeze, border)
 
     def solve(self, b: Array) -> tuple[Array, float, Array] | None:
-        """Return (dt, d lambda, dv) of C'dt + g d lambda = -r_p, F'C dv + F^-1 dt = F'b, g'dv = r_g, refined so."""
+        """Return (dt, d lambda, dv) of C'dt + g d lambda = -r_p, F'C dv + F^-1 dt = b, g'dv = r_g, refined so."""
         it, g = self.it, self.g
         r_p, _, r_g = self.rest
         Ft = self.F.transpose(0, 2, 1)
         dx, dv, dl, least = np.zeros_like(b), np.zeros_like(g), 0.0, np.inf
         kept: tuple[Array, float, Array] | None = None
         schur = float(g @ self.border)
+        e1, e2, e3 = -r_p, b, r_g
         for _ in range(REFINEMENTS):
+            x = it.factor.solve(it.Ct @ times(self.F, e2).ravel() - e1)
+            extra = (e3 - float(g @ x)) / schur
+            x += extra * self.border
+            dv, dl, dx = dv + x, dl + extra, dx + e2 - times(Ft, it.rate(x))
             dt = times(self.F, dx)
             e1 = -r_p - it.Ct @ dt.ravel() - g * dl
-            e2 = times(Ft, b - it.rate(dv)) - dx
+            e2 = b - times(Ft, it.rate(dv)) - dx
             e3 = r_g - float(g @ dv)
             worst = max(float(np.abs(e1).max()), float(np.abs(e2).max(initial=0.0)), abs(e3))
             if not worst < 0.5 * least:
@@ -275,31 +282,39 @@ class _Step:
             least, kept = worst, (dt, dl, dv)
             if worst < 1e-15:
                 break
-            x = it.factor.solve(it.Ct @ times(self.F, e2).ravel() - e1)
-            extra = (e3 - float(g @ x)) / schur
-            x += extra * self.border
-            dv, dl, dx = dv + x, dl + extra, dx + e2 - times(Ft, it.rate(x))
         return kept
 
     def direction(self, rc_z: Array, rc_t: Array, rc_w: Array) -> _Point | None:
         """Return the Newton direction for given right-hand sides of the products."""
         it, p = self.it, self.p
-        rough = it.q.rough
-        q = self.scaling.corrector(rc_t)
-        q[~rough] = 0.0
+        q, rough = it.q, it.q.rough
+        both = rough & (q.mu > 0)
+        scaled = divide(self.scaling.point, rc_t)
+        eta = times(self.scaling.inverse, scaled)
         of_line = np.where(it.line, rc_z / p.t[:, 0], 0.0)
         room = np.where(it.capped, it.cap - p.t[:, 0], 1.0)
         of_cap = np.where(it.capped, rc_w / room, 0.0)
-        b = it.pressed(of_line, q, of_cap) - self.rest[1]
-        b[~rough, 1:] = 0.0
+        rest = -self.rest[1]
+        rest[:, 0] += of_line - of_cap
+        rest[rough & ~both, 1:] += eta[rough & ~both, 1:]
+        # where F = G^-1 W squeeze, F'G' eta is taken from its scaled value, which loses nothing
+        b = times(self.F.transpose(0, 2, 1), rest)
+        b[both] += (scaled - self.squeeze * (self.squeeze * scaled).sum(axis=1, keepdims=True))[both]
         found = self.solve(b)
         if found is None:
             return None
         dt, dl, dv = found
-        d_eta = q - times(self.scaling.M, self.of_strength(dt))
-        d_eta[~rough] = 0.0
         dz = np.where(it.line, of_line - p.z / p.t[:, 0] * dt[:, 0], 0.0)
         dw = np.where(it.capped, of_cap + p.w / room * dt[:, 0], 0.0)
+        # velocities follow from the motion, whose rounding is small; M d beta would cancel
+        moved = it.rate(dv) + self.rest[1]
+        d_eta = np.zeros_like(dt)
+        d_eta[:, 1:] = moved[:, 1:]
+        d_eta[:, 0] = np.where(both, (moved[:, 0] - dz + dw) / np.where(both, q.mu, 1.0), 0.0)
+        tresca = rough & ~both
+        d_eta[tresca, 0] = (eta - times(self.scaling.M, self.of_strength(dt)))[tresca, 0]
+        d_eta[~rough] = 0.0
+        dz = np.where(~rough, moved[:, 0] + dw, dz)
         return _Point(dt, dl, dv, dz, d_eta, dw)
 
     def of_strength(self, dt: Array) -> Array:
@@ -339,8 +354,11 @@ class _Step:
         return p.moved(d, min(1.0, SHARE * primal), min(1.0, SHARE * dual))
 
 
-def _roots(it: ConeInterior, p: _Point, scaling: Scaling) -> Array:
-    """Return F (m, d, d) with F F' = (G'M G)^-1, from the scaling itself: inverting M would lose its small values."""
+def _roots(it: ConeInterior, p: _Point, scaling: Scaling) -> tuple[Array, Array]:
+    """Return F (m, d, d) with F F' = (G'M G)^-1, and s (m, d) with F = G^-1 W (I - s s') for pairs with friction.
+
+    From the scaling itself: inverting M would lose its small values.
+    """
     q, d = it.q, it.q.dim
     both = q.rough & (q.mu > 0)
     own = np.where(it.line, p.z / p.t[:, 0], 0.0) + np.where(it.capped, p.w / (it.cap - p.t[:, 0]), 0.0)
@@ -350,13 +368,14 @@ def _roots(it: ConeInterior, p: _Point, scaling: Scaling) -> Array:
     v = F[:, 0, :]
     size = np.where(both, (v * v).sum(axis=1), 1.0)
     less = (1.0 - 1.0 / np.sqrt(1.0 + own * size)) / size
-    F -= (less[:, None] * times(F, v))[:, :, None] * v[:, None, :] * both[:, None, None]
+    squeeze = np.where(both[:, None], np.sqrt(less)[:, None] * v, 0.0)
+    F -= times(F, squeeze)[:, :, None] * squeeze[:, None, :]
     F[~both, 0, 0] = 1.0 / np.sqrt(own[~both])
     tresca = q.rough & ~both
     if tresca.any():
         M = scaling.M[tresca, 1:, 1:]
         F[tresca, 1:, 1:] = np.linalg.inv(np.linalg.cholesky(M)).transpose(0, 2, 1)
-    return F
+    return F, squeeze
 
 
 def _line(x: Array, dx: Array) -> float:

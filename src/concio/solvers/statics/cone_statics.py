@@ -1,0 +1,242 @@
+r"""Statics with round cones: are there forces in balance, which mechanism excludes them, how far can a load grow?
+
+All of it is one programme, the largest multiplier of a load beside another
+(:mod:`concio.solvers.statics.cone_interior`), and nothing of what it says is believed: forces are brought into balance
+and looked at in the original data, motions likewise.
+
+*Existence.* Forces of one unit on every contact, t = (1, 0, 0), balance the load :math:`f_r = -R^T C^T t`. Let
+lambda be the largest multiplier of :math:`f_r + \lambda (f - f_r)`. It is at least 1 if and only if forces for f exist,
+since strengths are convex and the forces of multipliers up to lambda can be had by interpolation; if it is below 1 the
+mechanism that proves it does positive work with f itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from concio.problem.contact_problem import Array, ContactProblem
+from concio.solvers.algebra.dimensionless import interleaved
+from concio.solvers.algebra.scaled import SMOOTH
+from concio.solvers.algebra.second_order_cone import determinant, quadratic, times
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
+from concio.solvers.statics.cone_interior import PROXIMAL, ConeAnswer, ConeInterior, Cones
+
+BALANCED = 1e-12
+"""Share of the total load that forces may leave unbalanced, or exceed strengths by, and count as in balance."""
+
+ADMISSIBLE = 1e-12
+"""Violation of a motion, over its largest velocity, that counts as rounding."""
+
+ROUNDS = 6
+"""Times forces are brought closer to balance."""
+
+
+@dataclass(frozen=True, eq=False)
+class Balance:
+    """Outcome of the search for forces in balance with a load.
+
+    Parameters
+    ----------
+    t : (m, d) array
+        Forces, normal first [kN].
+    residual : float
+        Largest entry of R'(f + C't) and of the excess over the strengths, over the total load.
+    velocity : (N,) array
+        Motion to blame where there are no such forces.
+    multiplier : float
+        Largest multiplier of the programme; below 1 where there are none.
+    """
+
+    t: Array
+    residual: float
+    velocity: Array
+    multiplier: float
+
+
+@dataclass(frozen=True, eq=False)
+class Bounds:
+    """Forces and motion of a largest multiplier.
+
+    Parameters
+    ----------
+    multiplier : float
+        That of the forces.
+    t : (m, d) array
+        Forces, normal first [kN].
+    residual : float
+        Largest entry of what they leave unbalanced and of their excess over the strengths, over the total load.
+    velocity : (N,) array
+        Motion that excludes larger ones.
+    """
+
+    multiplier: float
+    t: Array
+    residual: float
+    velocity: Array
+
+
+class ConeStatics:
+    """Cone programmes of one problem: strengths and rates in units of their own, pattern ordered once.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    load : (N,) array, optional
+        Loads that make up the unit of force; default those of the problem.
+    """
+
+    def __init__(self, problem: ContactProblem, load: Array | None = None) -> None:
+        self.problem = problem
+        load = problem.f if load is None else load
+        law, R = problem.laws, problem.R
+        moved = sp.csc_array(interleaved(problem) @ R)
+        reach = np.maximum.reduceat(np.r_[np.abs(moved.data), 0.0], moved.indptr[:-1])
+        reach[np.diff(moved.indptr) == 0] = 0.0
+        self.scale = np.where(reach > 0, reach, 1.0)
+        self.force = float(np.abs(R.T @ load / self.scale).max(initial=0.0)) or 1.0
+        cones = Cones(
+            C=sp.csr_array(moved @ sp.diags_array(1.0 / self.scale)),
+            mu=np.where(law.friction > SMOOTH, law.friction, 0.0),
+            cohesion=np.maximum(law.cohesion - law.friction * law.tension, 0.0) / self.force,
+            cap=(law.cap + law.tension) / self.force,
+            rough=(law.friction > SMOOTH) | (law.cohesion > 0),
+            bodies=_motions_of_bodies(problem),
+        )
+        self.programme = ConeInterior(cones)
+        shift = np.zeros((problem.pairs, problem.dim))
+        shift[:, 0] = law.tension / self.force
+        self.shift = shift
+
+    def project(self, load: Array) -> Array:
+        """Return R' load in units of the programme (r,)."""
+        projected: Array = (self.problem.R.T @ load) / (self.scale * self.force)
+        return projected
+
+    def balance(self, t: Array, load: Array) -> Array:
+        """Return shifted forces next to ``t`` in balance with ``load`` (r,), moved in proportion to their room."""
+        it = self.programme
+        residual = it.Ct @ t.ravel() + load
+        room = _room(it, t)
+        try:
+            it.factor.factorise(room, PROXIMAL * float(np.median(room[:, 0, 0])))
+        except SingularMatrixError:
+            return t
+        for _ in range(ROUNDS):
+            trial = t - times(room, it.rate(it.factor.solve(residual)))
+            left = it.Ct @ trial.ravel() + load
+            if not np.abs(left).max(initial=0.0) < np.abs(residual).max(initial=0.0):
+                break
+            t, residual = trial, left
+        return t
+
+    def real(self, t: Array) -> Array:
+        """Return forces (m, d) [kN] of shifted ones in units of the programme."""
+        forces: Array = (t - self.shift) * self.force
+        return forces
+
+    def velocity(self, v: Array) -> Array:
+        """Return the motion (N,) of one of the programme, largest entry 1."""
+        moved = self.problem.R @ (v / self.scale)
+        return moved / (float(np.abs(moved).max(initial=0.0)) or 1.0)
+
+    def excess(self, t: Array, load: Array) -> float:
+        """Return the largest entry of R'(load + C't) and of the excess over the strengths, over the total load."""
+        problem = self.problem
+        left = problem.R.T @ (load + problem.C_n.T @ t[:, 0] + problem.C_t.T @ t[:, 1:].ravel())
+        over = np.maximum.reduce(
+            [
+                np.linalg.norm(t[:, 1:], axis=1) - problem.sliding_strength(t[:, 0]),
+                -(t[:, 0] + problem.laws.tension),
+                t[:, 0] - problem.laws.cap,
+            ]
+        )
+        worst = max(float(np.abs(left).max(initial=0.0)), float(over.max(initial=0.0)))
+        return worst / (float(np.abs(load).sum()) or 1.0)
+
+    def offset(self, load: Array) -> Array:
+        """Return R'(load - C' of the shift of the forces) in units of the programme (r,)."""
+        return self.project(load) - self.programme.Ct @ self.shift.ravel()
+
+    def forces(self) -> Balance:
+        """Search forces in balance with the load of the problem."""
+        it, m = self.programme, self.problem.pairs
+        ones = np.zeros((m, self.problem.dim))
+        ones[:, 0] = np.minimum(1.0, 0.5 * it.q.cap)
+        e, f = -(it.Ct @ ones.ravel()), self.offset(self.problem.f)
+        g = f - e
+        size = float(np.abs(g).max(initial=0.0))
+        if not size > 0:
+            return self._judged(ones, f, np.zeros_like(f), 1.0)
+
+        def carries(a: ConeAnswer) -> bool:
+            return a.multiplier >= size and a.primal < 1e-11
+
+        answer = it.solve(e, g / size, start=ones, stop=carries)
+        multiplier = answer.multiplier / size
+        share = min(1.0 / multiplier, 1.0) if multiplier > 0 else 1.0
+        t = (1.0 - share) * ones + share * answer.t
+        return self._judged(t, f, answer.v, multiplier)
+
+    def _judged(self, t: Array, f: Array, v: Array, multiplier: float) -> Balance:
+        real = self.real(t)
+        residual = self.excess(real, self.problem.f)
+        if multiplier >= 1.0 - 1e-9 and residual > 0.01 * BALANCED:
+            nearer = self.real(self.balance(t, f))
+            left = self.excess(nearer, self.problem.f)
+            real, residual = (nearer, left) if left < residual else (real, residual)
+        return Balance(real, residual, self.velocity(v), multiplier)
+
+    def largest(self, live: Array) -> Bounds:
+        """Search the largest multiplier of the live load (N,) beside the load of the problem."""
+        it = self.programme
+        e, g = self.offset(self.problem.f), self.project(live)
+        size = float(np.abs(g).max(initial=0.0))
+        answer = it.solve(e, g / size)
+        multiplier = answer.multiplier / size
+        load = self.problem.f + multiplier * live
+        t = self.real(answer.t)
+        residual = self.excess(t, load)
+        if residual > 0.01 * BALANCED:
+            nearer = self.real(self.balance(answer.t, e + answer.multiplier * (g / size)))
+            left = self.excess(nearer, load)
+            t, residual = (nearer, left) if left < residual else (t, residual)
+        return Bounds(multiplier, t, residual, self.velocity(answer.v))
+
+
+def _motions_of_bodies(problem: ContactProblem) -> Array:
+    """Return the ranges of rigid motions that belong to one body each; single motions where they are not in order."""
+    R = sp.csc_array(problem.R)
+    r = R.shape[1]
+    first = R.indices[R.indptr[:-1]] if r else np.zeros(0, dtype=int)
+    body = np.searchsorted(problem.bodies, first, side="right") - 1
+    if (np.diff(body) < 0).any():
+        return np.arange(r + 1)
+    return np.concatenate([[0], np.flatnonzero(np.diff(body)) + 1, [r]]) if r else np.zeros(1, dtype=int)
+
+
+def _room(it: ConeInterior, t: Array) -> Array:
+    """Return the inverse Hessian (m, d, d) of the barrier of the strengths: a step in its unit ball stays inside."""
+    q = it.q
+    beta = it.strength(t)
+    sized = np.maximum(determinant(beta), 0.0)
+    cone = 2.0 * beta[:, :, None] * beta[:, None, :]
+    mirror = -np.ones(q.dim)
+    mirror[0] = 1.0
+    cone -= sized[:, None, None] * np.diag(mirror)
+    both = q.rough & (q.mu > 0)
+    room = np.where(both[:, None, None], cone, 0.0)
+    room[both, 0, :] /= q.mu[both, None]
+    room[both, :, 0] /= q.mu[both, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        own = np.where(it.line, 1.0 / t[:, 0] ** 2, 0.0) + np.where(it.capped, 1.0 / (it.cap - t[:, 0]) ** 2, 0.0)
+        share = np.where(own > 0, 1.0 / (1.0 / own + room[:, 0, 0]), 0.0)
+    column = room[:, :, 0].copy()
+    room -= share[:, None, None] * column[:, :, None] * column[:, None, :]
+    room[~both, 0, 0] = np.where(own > 0, 1.0 / np.where(own > 0, own, 1.0), 0.0)[~both]
+    tresca = q.rough & ~both
+    for k in range(1, q.dim):
+        room[tresca, k, k] = sized[tresca]
+    return room
