@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -18,6 +19,8 @@ from scipy.spatial import ConvexHull
 from concio.problem.contact_problem import ContactProblem, Laws
 
 Array = np.ndarray
+Side = tuple[float, float]
+Mesh = tuple[int, int, int]
 CORNERS = np.array([(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)])
 
 
@@ -78,12 +81,11 @@ def build(
     elastic: bool = False,
     direction: tuple[float, float, float] = (1.0, 0.0, 0.0),
     turned: Array | None = None,
-    edges: bool = False,
 ) -> Built:
     """Assemble grids of nodes (nx+1, ny+1, nz+1, 3); ``ground(x)`` says which nodes stand on the fixed ground.
 
     ``kn`` > 0 gives joints a normal stiffness over their area, 0.4 of it tangentially. ``turned`` is a rotation of
-    everything but the load's proportion to the weights; ``edges`` keeps faces of two points.
+    the whole structure with its loads.
     """
     Q = np.eye(3) if turned is None else turned
     bodies, nodes = [], dict[tuple[float, ...], list[tuple[int, int]]]()
@@ -147,8 +149,9 @@ def build(
     if not elastic:
         problem = ContactProblem(
             K=sp.csr_array((R.shape[1], R.shape[1])), f=R.T @ dead, C_n=sp.csr_array((C @ R)[normal_rows]),
-            C_t=sp.csr_array((C @ R)[friction_rows]), gap=np.zeros(m), laws=laws, R=sp.csc_array(sp.eye_array(R.shape[1])),
-            bodies=np.arange(0, R.shape[1] + 1, 6), area=areas, inertia=(R.multiply(R)).T @ mass,
+            C_t=sp.csr_array((C @ R)[friction_rows]), gap=np.zeros(m), laws=laws,
+            R=sp.csc_array(sp.eye_array(R.shape[1])), bodies=np.arange(0, R.shape[1] + 1, 6), area=areas,
+            inertia=(R.multiply(R)).T @ mass,
         )  # fmt: skip
         return Built(problem, R.T @ live, centres)
     R = sp.csr_array(sp.block_diag([np.linalg.qr(g)[0] for g in motions]))
@@ -188,8 +191,8 @@ def _turned(stiffness: Array, Q: Array) -> Array:
     return product
 
 
-def box(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], mesh: tuple[int, int, int] = (1, 1, 1)) -> Array:
-    """Grid of a box."""
+def box(x: Side, y: Side, z: Side, mesh: Mesh = (1, 1, 1)) -> Array:
+    """Grid of a box between the ends of three sides."""
     lines = [np.linspace(*side, n + 1) for side, n in zip((x, y, z), mesh, strict=True)]
     return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1)
 
@@ -199,10 +202,30 @@ def on_floor(p: Array) -> bool:
     return bool(abs(p[2]) < 1e-9)
 
 
+def stretchers(start: int, count: int) -> list[tuple[float, float]]:
+    """Beginnings and lengths of the blocks of a course, whole ones or with a half at both ends (odd ``start``)."""
+    if start % 2 == 0:
+        return [(float(i), 1.0) for i in range(count)]
+    return [(0.0, 0.5), *((i + 0.5, 1.0) for i in range(count - 1)), (count - 0.5, 0.5)]
+
+
+def headers(leaves: int) -> list[tuple[float, float]]:
+    """Beginnings and lengths of blocks laid across so many leaves of half a block."""
+    if leaves % 2:
+        return [(0.0, 0.5), *((0.5 + j, 1.0) for j in range((leaves - 1) // 2))]
+    return [(float(j), 1.0) for j in range(leaves // 2)]
+
+
 def wall(
-    blocks: int, courses: int, *, mu: float = 0.6, sides: bool = False, mesh: tuple[int, int, int] = (2, 1, 1),
-    leaves: int = 1, **options: object,
-) -> Built:  # fmt: skip
+    blocks: int,
+    courses: int,
+    *,
+    mu: float = 0.6,
+    sides: bool = False,
+    mesh: Mesh = (2, 1, 1),
+    leaves: int = 1,
+    **options: Any,
+) -> Built:
     """Running-bond wall of blocks 1 x 1/2 x 1/2 on the ground, or wedged between fixed ``sides`` without a base.
 
     With ``leaves`` > 1 every other course is of headers that cross them.
@@ -211,44 +234,61 @@ def wall(
     grids = []
     for c in range(courses):
         if leaves > 1 and c % 2:
-            ys = [(0, 0.5), *((0.5 + j, 1.0) for j in range((leaves - 1) // 2))] if leaves % 2 else [(1.0 * j, 1.0) for j in range(leaves // 2)]
-            items = [(i * 0.5, 0.5, y, d) for y, d in ys for i in range(2 * blocks)]
+            items = [(i * 0.5, 0.5, y, dy) for y, dy in headers(leaves) for i in range(2 * blocks)]
         else:
-            xs = [(float(i), 1.0) for i in range(blocks)] if c % 2 == 0 else [(0.0, 0.5), *((0.5 + i, 1.0) for i in range(blocks - 1)), (blocks - 0.5, 0.5)]
-            items = [(x, d, 0.5 * j, 0.5) for j in range(leaves) for x, d in xs]
+            items = [(x, dx, 0.5 * j, 0.5) for j in range(leaves) for x, dx in stretchers(c, blocks)]
         for x, dx, y, dy in items:
-            grids.append(box((x, x + dx), (y, y + dy), (0.5 * c, 0.5 * c + 0.5), (nx if dx == 1 else max(nx // 2, 1), ny if dy == 0.5 else 2 * ny, nz)))
-    held = (lambda p: bool(min(p[0], blocks - p[0]) < 1e-9)) if sides else on_floor
-    return build(grids, held, mu, **options)  # type: ignore[arg-type]
+            cells = (nx if dx == 1 else max(nx // 2, 1), ny if dy == 0.5 else 2 * ny, nz)
+            grids.append(box((x, x + dx), (y, y + dy), (0.5 * c, 0.5 * c + 0.5), cells))
+
+    def at_a_side(p: Array) -> bool:
+        return bool(min(p[0], blocks - p[0]) < 1e-9)
+
+    return build(grids, at_a_side if sides else on_floor, mu, **options)
 
 
 def barrel(
-    voussoirs: int, rings: int, *, radius: float = 5.0, thickness: float = 0.8, mu: float = 0.6,
-    mesh: tuple[int, int, int] = (1, 2, 1), **options: object,
-) -> Built:  # fmt: skip
+    voussoirs: int,
+    rings: int,
+    *,
+    radius: float = 5.0,
+    thickness: float = 0.8,
+    mu: float = 0.6,
+    mesh: Mesh = (1, 2, 1),
+    **options: Any,
+) -> Built:
     """Semicircular barrel of bonded rings of width 1 along y."""
     grids = []
     nr, ny, na = mesh
+    depth = np.linspace(radius, radius + thickness, nr + 1)
     for i in range(voussoirs):
         angle = np.linspace(i, i + 1, na + 1)[::-1] * np.pi / voussoirs
-        pieces = [(j, 1.0) for j in range(rings)] if i % 2 == 0 else [(0, 0.5), *((j + 0.5, 1.0) for j in range(rings - 1)), (rings - 0.5, 0.5)]
-        for y, d in pieces:
-            r, along, a = np.meshgrid(np.linspace(radius, radius + thickness, nr + 1), np.linspace(y, y + d, (ny if d == 1 else max(ny // 2, 1)) + 1), angle, indexing="ij")
+        for y, dy in stretchers(i, rings):
+            cells = ny if dy == 1 else max(ny // 2, 1)
+            r, along, a = np.meshgrid(depth, np.linspace(y, y + dy, cells + 1), angle, indexing="ij")
             grids.append(np.stack([-r * np.cos(a), along, r * np.sin(a)], axis=-1))
-    return build(grids, on_floor, mu, **options)  # type: ignore[arg-type]
+    return build(grids, on_floor, mu, **options)
 
 
 def dome(
-    courses: int, around: int, *, radius: float = 5.0, thickness: float = 0.5, mu: float = 0.6, oculus: float = 0.2,
-    mesh: tuple[int, int, int] = (1, 2, 1), **options: object,
-) -> Built:  # fmt: skip
+    courses: int,
+    around: int,
+    *,
+    radius: float = 5.0,
+    thickness: float = 0.5,
+    mu: float = 0.6,
+    oculus: float = 0.2,
+    mesh: Mesh = (1, 2, 1),
+    **options: Any,
+) -> Built:
     """Hemispherical dome of ring courses, each turned by half a voussoir, open at the top."""
     grids = []
     nr, na, nh = mesh
+    depth = np.linspace(radius, radius + thickness, nr + 1)
     for i in range(courses):
         latitude = np.linspace(i, i + 1, nh + 1) * (np.pi / 2 - oculus) / courses
         for j in range(around):
             longitude = (np.linspace(0, 1, na + 1) + j + 0.5 * (i % 2)) * 2 * np.pi / around
-            r, lo, la = np.meshgrid(np.linspace(radius, radius + thickness, nr + 1), longitude, latitude, indexing="ij")
+            r, lo, la = np.meshgrid(depth, longitude, latitude, indexing="ij")
             grids.append(np.stack([r * np.cos(la) * np.cos(lo), r * np.cos(la) * np.sin(lo), r * np.sin(la)], axis=-1))
-    return build(grids, on_floor, mu, **options)  # type: ignore[arg-type]
+    return build(grids, on_floor, mu, **options)

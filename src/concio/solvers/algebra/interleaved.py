@@ -13,12 +13,12 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
-from concio.problem.certificate import GRANTED, ROUNDING
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.tolerances import GRANTED, ROUNDING
 from concio.solvers.algebra.block_factor import BlockFactor
 from concio.solvers.algebra.dimensionless import interleaved
-from concio.solvers.algebra.scaled import SMOOTH, typical_stiffness
+from concio.solvers.algebra.scaled import typical_stiffness
 from concio.solvers.algebra.sparse_factor import Engine
 
 GLUE = 1e-9
@@ -42,10 +42,9 @@ class Interleaved:
         Initial gap less the share of the tension shift, a_n T; and minus the slip origin.
     compliance : (m, d) array
         a_n, and a_t in every tangential direction.
-    mu, cohesion, tension, dilatancy, cap : (m,) arrays
-        Shifted laws: ``cohesion`` is c - mu T, ``cap`` is N + T.
-    rough : (m,) boolean array
-        Pairs that can carry friction at all.
+    cone : Cone
+        Strengths of shifted forces.
+    tension, dilatancy : (m,) arrays
     share, inertia : (m,), (N,) arrays
         Tributary area of each pair and mass of each unknown, over their means.
     rigid : (N, r) CSC array
@@ -61,12 +60,9 @@ class Interleaved:
     C: sp.csr_array
     x: Array
     compliance: Array
-    mu: Array
-    cohesion: Array
+    cone: Cone
     tension: Array
     dilatancy: Array
-    cap: Array
-    rough: Array
     share: Array
     inertia: Array
     rigid: sp.csc_array
@@ -91,11 +87,6 @@ class Interleaved:
     def stiffness_size(self) -> sp.csr_array:
         """Absolute values of K."""
         return abs(self.K)
-
-    @cached_property
-    def cone(self) -> Cone:
-        """Strength domains of the shifted forces."""
-        return Cone(self.mu, self.cohesion, np.zeros(self.pairs), self.cap)
 
     def pull(self, t: Array) -> Array:
         """Return C' t (N,) of pair forces (m, d)."""
@@ -200,12 +191,9 @@ def interleave(problem: ContactProblem, engine: Engine = "superlu") -> Interleav
         C=C,
         x=np.column_stack([problem.gap - law.normal_compliance * law.tension, -problem.slip_origin]) / length,
         compliance=compliance,
-        mu=np.where(law.friction > SMOOTH, law.friction, 0.0),
-        cohesion=np.maximum(law.cohesion - law.friction * law.tension, 0.0) / force,
+        cone=problem.cone.in_units(force).shifted,
         tension=law.tension / force,
-        dilatancy=np.where((law.friction > SMOOTH) | (law.cohesion > 0), law.dilatancy, 0.0),
-        cap=(law.cap + law.tension) / force,
-        rough=(law.friction > SMOOTH) | (law.cohesion > 0),
+        dilatancy=np.where(problem.cone.rough, law.dilatancy, 0.0),
         share=problem.area_share,
         inertia=problem.inertia / problem.inertia.mean(),
         rigid=problem.R,

@@ -1,8 +1,8 @@
 r"""Algebra of second-order cones :math:`Q = \{x : x_0 \ge |x_t|\}` for many small vectors at once, arrays (m, d).
 
-Jordan product, determinant, quadratic representation, and the scaling of Nesterov and Todd: the one symmetric map P with
-P(w) eta = beta that takes a pair of inner points to each other. In the plane Q is a product of two half-lines and all of
-this is division of numbers.
+Jordan product, determinant, quadratic representation, and the scaling of Nesterov and Todd: the symmetric map P(w) with
+P(w) eta = beta that takes a pair of inner points to each other. In the plane Q is a product of two half-lines and all
+of this is division of numbers.
 
 Reference: Alizadeh and Goldfarb, Second-order cone programming, Math. Programming 95 (2003), 3-51.
 """
@@ -53,7 +53,7 @@ def divide(a: Array, r: Array) -> Array:
 
 def quadratic(w: Array) -> Array:
     """Return the quadratic representation 2 w w' - J (m, d, d) of w with determinant one."""
-    P = 2.0 * w[:, :, None] * w[:, None, :]
+    P: Array = 2.0 * w[:, :, None] * w[:, None, :]
     P[:, 0, 0] -= 1.0
     for k in range(1, w.shape[1]):
         P[:, k, k] += 1.0
@@ -62,7 +62,7 @@ def quadratic(w: Array) -> Array:
 
 def mirrored(a: Array) -> Array:
     """Return J a = (a_0, -a_t)."""
-    mirror = -a
+    mirror: Array = -a
     mirror[:, 0] = a[:, 0]
     return mirror
 

@@ -9,11 +9,12 @@ With the shifted forces of a pair, :math:`t_n \ge 0` and :math:`\beta = (c + \mu
     y_t &= C_t u - s + a_t t_t, \\
     t_n y_n &= \tau, & \beta \circ \eta &= 2\tau e, & q\,p &= \tau, \quad q = N - t_n,
 
-beta and eta inside the second-order cone, o the Jordan product of :mod:`concio.solvers.algebra.second_order_cone`. In the
-limit tau = 0, sigma = |y_t| and t_t = -(c + mu t_n) y_t / |y_t|, or y_t = 0. In the plane this is s+ y+ = s- y- = tau,
-the iteration of :mod:`concio.solvers.interior.interior_point`.
+beta and eta inside the second-order cone, o the Jordan product of :mod:`concio.solvers.algebra.second_order_cone`. In
+the limit tau = 0, sigma = |y_t| and t_t = -(c + mu t_n) y_t / |y_t|, or y_t = 0. In the plane this is
+s+ y+ = s- y- = tau, the iteration of :mod:`concio.solvers.interior.interior_point`.
 
-Newton's equations with the scaling of Nesterov and Todd are, pair by pair, d eta = q - M d beta and H dt = b - C du with
+Newton's equations with the scaling of Nesterov and Todd are, pair by pair, d eta = q - M d beta and H dt = b - C du
+with
 
 .. math::
 
@@ -33,9 +34,10 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from concio.problem.contact_problem import Array
+from concio.problem.tolerances import SMOOTH
 from concio.solvers.algebra.interleaved import Interleaved
+from concio.solvers.algebra.second_order_cone import Scaling, product, reach, times
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
-from concio.solvers.algebra.second_order_cone import Scaling, determinant, product, reach, times
 
 PROXIMAL = 1e-10
 """Weight of the proximal term that keeps bodies which nothing holds where they are."""
@@ -132,16 +134,16 @@ class ConeIteration:
 
     def __init__(self, scaled: Interleaved) -> None:
         self.s = scaled
-        self.capped = np.isfinite(scaled.cap)
-        self.cap = np.where(self.capped, scaled.cap, 0.0)
-        self.rough = scaled.rough
+        self.capped, self.rough = scaled.cone.capped, scaled.cone.rough
+        self.cap = np.where(self.capped, scaled.cone.cap, 0.0)
+        self.mu = np.where(scaled.cone.friction > SMOOTH, scaled.cone.friction, 0.0)
         self.products = scaled.pairs + 2 * int(self.rough.sum()) + int(self.capped.sum())
 
     def start(self, force: float, length: float) -> ConePoint:
         """Return a point far outside: every force ``force``, every gap and slip bound ``length``, no friction."""
         s = self.s
         t, eta = np.zeros_like(s.x), np.zeros_like(s.x)
-        t[:, 0] = np.where(self.capped, np.minimum(force, 0.5 * s.cap), force)
+        t[:, 0] = np.where(self.capped, np.minimum(force, 0.5 * s.cone.cap), force)
         eta[:, 0] = length
         one = np.full(s.pairs, length)
         return ConePoint(np.zeros(len(s.f)), t, one, eta, one.copy())
@@ -149,12 +151,12 @@ class ConeIteration:
     def dilatancy(self, theta: float) -> Array:
         """Return the dilatancy (m,) at a share ``theta`` of associated flow."""
         s = self.s
-        return np.where(self.rough, s.dilatancy + theta * (s.mu - s.dilatancy), 0.0)
+        return np.where(self.rough, s.dilatancy + theta * (self.mu - s.dilatancy), 0.0)
 
     def strength(self, z: ConePoint) -> Array:
         """Return beta (m, d), (1, 0) where a pair is smooth."""
         beta = z.t.copy()
-        beta[:, 0] = self.s.cohesion + self.s.mu * z.t[:, 0]
+        beta[:, 0] = self.s.cone.cohesion + self.mu * z.t[:, 0]
         beta[~self.rough] = 0.0
         beta[~self.rough, 0] = 1.0
         return beta
@@ -275,7 +277,7 @@ class NewtonStep:
         scaling = Scaling.of(beta, z.eta)
         if scaling is None:
             return None
-        M, mu = scaling.M, s.mu
+        M, mu = scaling.M, iteration.mu
         H = np.empty_like(M)
         H[:, 0, 0] = z.y_n / z.t[:, 0] + s.compliance[:, 0] + np.where(iteration.capped, z.p / room, 0.0)
         H[:, 0, 0] += dilatancy * mu * M[:, 0, 0]
@@ -338,7 +340,7 @@ class NewtonStep:
     def of_strength(self, dt: Array) -> Array:
         """Return d beta (m, d)."""
         d_beta = dt.copy()
-        d_beta[:, 0] *= self.iteration.s.mu
+        d_beta[:, 0] *= self.iteration.mu
         d_beta[~self.iteration.rough] = 0.0
         return d_beta
 

@@ -10,9 +10,9 @@ other. With J the derivative of P, Newton's equations of a pair are
 
 .. math:: \rho J\, C\,\delta u + (I - J(I - \rho\,a))\,\delta t = P(w) - t .
 
-A compliance ``DELTA`` added to a gives the matrix K + C'DC, D = (I - J(I - rho (a + delta)))^{-1} rho J, of the engine's
-pattern; iterative refinement against the equations takes it out again. Redundant pairs (corners) and loose bodies do no
-harm: their equations are consistent. Converges quadratically from the point where the interior point stops.
+A compliance ``DELTA`` added to a gives the matrix K + C'DC, D = (I - J(I - rho (a + delta)))^{-1} rho J, of the
+engine's pattern; iterative refinement against the equations takes it out again. Redundant pairs (corners) and loose
+bodies do no harm: their equations are consistent. Converges quadratically from where the interior point stops.
 """
 
 from __future__ import annotations
@@ -21,11 +21,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from concio.problem.cone import return_map, return_map_derivative
 from concio.problem.contact_problem import Array
 from concio.solvers.algebra.interleaved import Interleaved
-from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.algebra.second_order_cone import times
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
 
 DELTA = 1e-6
 """Compliance added to pairs of mean area in the factorised matrix, scaled units."""
@@ -86,8 +85,8 @@ def natural_residual(s: Interleaved, u: Array, t: Array) -> tuple[float, Array]:
 def _mapped(s: Interleaved, u: Array, t: Array, rho: float) -> tuple[Array, Array]:
     """Return the trial forces t - rho y and what the return map makes of them, (m, d) both."""
     w = t - rho * s.opening(u, t)
-    w[~s.rough, 1:] = 0.0
-    return w, return_map(s.cone, w, s.dilatancy)
+    w[~s.cone.rough, 1:] = 0.0
+    return w, s.cone.project(w, s.dilatancy)
 
 
 def finish(s: Interleaved, u: Array, t: Array, *, rho: float = 1.0, rounds: int = 20) -> Finished:
@@ -124,8 +123,8 @@ def finish(s: Interleaved, u: Array, t: Array, *, rho: float = 1.0, rounds: int 
 def _newton(s: Interleaved, u: Array, t: Array, rho: float) -> tuple[Array, Array] | None:
     """Return the point after one Newton step; None where the matrix cannot be factorised."""
     w, mapped = _mapped(s, u, t, rho)
-    J = return_map_derivative(s.cone, w, s.dilatancy)
-    J[~s.rough, 1:, :] = 0.0
+    J = s.cone.derivative(w, s.dilatancy)
+    J[~s.cone.rough, 1:, :] = 0.0
     eye = np.eye(s.dim)
     soft = s.compliance + (DELTA / s.share)[:, None]
     H = eye - J * (1.0 - rho * s.compliance)[:, None, :]

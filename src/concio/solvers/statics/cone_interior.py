@@ -9,11 +9,16 @@ and its dual, the motion v of least :math:`h(Cv) - e^T v` with g'v = 1. C holds 
 motions of the blocks, d rows for each pair. With slacks s = G t + h in a product of half-lines and second-order cones,
 multipliers z in the same and the scaling of Nesterov and Todd, Mehrotra's predictor and corrector leave in each step
 
-.. math:: \begin{bmatrix} C^T D C & -g \\ g^T & 0 \end{bmatrix}, \qquad D = (G^T M G)^{-1} \ (d \times d \text{ a pair}),
+.. math:: \begin{bmatrix} C^T D C & -g \\ g^T & 0 \end{bmatrix}, \qquad D = (G^T M G)^{-1},
 
-symmetric, of the pattern of the blocks' graph, ordered once. The multipliers of an iterate lie strictly inside their
-cones, so the motion is admissible to rounding as soon as Cv = G'z holds; what forces and motion prove is for the caller
-to recompute from the original data.
+D with a small dense block for each pair, symmetric, of the pattern of the blocks' graph, ordered once. The multipliers
+of an iterate lie strictly inside their cones, so the motion is admissible to rounding as soon as Cv = G'z holds; what
+forces and motion prove is for the caller to recompute from the original data.
+
+Two things decide how far this goes on degenerate structures, where M spans twenty powers of ten. The roots F of D come
+from the scaling itself, never from inverting M, and forces are unknown as F dx. And the change of the multipliers is
+read from the motion, G'dz = C dv + residual, whose rounding is small, not from M d beta, which cancels. Without the
+second the gap stops at 1e-6 to 1e-8, with it at 1e-12.
 
 Reference: Alizadeh and Goldfarb, Second-order cone programming, Math. Programming 95 (2003), 3-51.
 """
@@ -22,14 +27,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
+import scipy.sparse.linalg as sla
 
+from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array
+from concio.problem.tolerances import SMOOTH
 from concio.solvers.algebra.block_factor import BlockFactor
-from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.algebra.second_order_cone import Scaling, divide, product, reach, times
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
 
 START = 3.0
 """Size of slacks and multipliers at the start, the largest load on a block being one."""
@@ -49,42 +59,43 @@ SHARE = 0.99
 PROXIMAL = 1e-12
 """Stiffness that keeps motions which no pair resists where they are, relative to a typical one; refined away."""
 
+LOST = 1e-11
+"""Residual of a refined direction, relative to the largest force, above which the condensed matrix has lost it."""
+
+PIVOTED = 60_000
+"""Largest number of force components for which the system is then solved as a whole, with pivoting."""
+
 REFINEMENTS = 6
 """Largest number of times a direction is refined."""
 
 
 @dataclass(frozen=True, eq=False)
-class Cones:
+class Pairs:
     """Pairs of a cone programme.
 
     Parameters
     ----------
     C : (m d, r) CSR array
         Velocities of the pairs, d rows for each.
-    mu, cohesion, cap : (m,) arrays
-        Strengths of forces shifted so that t_n >= 0; ``cap`` may be inf.
-    rough : (m,) boolean array
-        Pairs that carry friction.
+    cone : Cone
+        Strengths of forces shifted so that t_n >= 0.
     bodies : (B+1,) integer array
         Motions of block k are ``bodies[k]:bodies[k+1]``.
     """
 
     C: sp.csr_array
-    mu: Array
-    cohesion: Array
-    cap: Array
-    rough: Array
+    cone: Cone
     bodies: Array
 
     @property
-    def pairs(self) -> int:
+    def count(self) -> int:
         """Number m of pairs."""
-        return len(self.mu)
+        return len(self.cone.cap)
 
     @property
     def dim(self) -> int:
         """Space dimension d."""
-        return self.C.shape[0] // max(self.pairs, 1)
+        return self.C.shape[0] // max(self.count, 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,48 +146,52 @@ class ConeInterior:
 
     Parameters
     ----------
-    cones : Cones
+    pairs : Pairs
     """
 
-    def __init__(self, cones: Cones) -> None:
-        self.q = cones
-        self.C, self.Ct = cones.C, sp.csr_array(cones.C.T)
-        r = cones.C.shape[1]
-        self.factor = BlockFactor(sp.csr_array((r, r)), cones.C, cones.pairs, cones.bodies)
-        self.capped = np.isfinite(cones.cap)
-        self.cap = np.where(self.capped, cones.cap, 0.0)
-        self.line = ~cones.rough | (cones.cohesion > 0)  # where the cone itself does not keep t_n >= 0
-        self.count = max(int(self.line.sum()) + 2 * int(cones.rough.sum()) + int(self.capped.sum()), 1)
+    def __init__(self, pairs: Pairs) -> None:
+        self.pairs = pairs
+        self.C, self.Ct = pairs.C, sp.csr_array(pairs.C.T)
+        r = pairs.C.shape[1]
+        self.factor = BlockFactor(sp.csr_array((r, r)), pairs.C, pairs.count, pairs.bodies)
+        cone = pairs.cone
+        self.capped, self.rough = cone.capped, cone.rough
+        self.cap = np.where(self.capped, cone.cap, 0.0)
+        self.coulomb = self.rough & (cone.friction > SMOOTH)  # the others with friction have a constant strength
+        self.mu = np.where(self.coulomb, cone.friction, 0.0)
+        self.line = ~self.rough | (cone.cohesion > 0)  # where the cone itself does not keep t_n >= 0
+        self.degenerate = False
+        self.count = max(int(self.line.sum()) + 2 * int(self.rough.sum()) + int(self.capped.sum()), 1)
 
     def rate(self, v: Array) -> Array:
         """Return C v (m, d)."""
-        rates: Array = (self.C @ v).reshape(self.q.pairs, self.q.dim)
+        rates: Array = (self.C @ v).reshape(self.pairs.count, self.pairs.dim)
         return rates
 
     def strength(self, t: Array) -> Array:
         """Return beta (m, d); (1, 0) where there is no cone."""
         beta = t.copy()
-        beta[:, 0] = self.q.cohesion + self.q.mu * t[:, 0]
-        beta[~self.q.rough] = 0.0
-        beta[~self.q.rough, 0] = 1.0
+        beta[:, 0] = self.pairs.cone.cohesion + self.mu * t[:, 0]
+        beta[~self.rough] = 0.0
+        beta[~self.rough, 0] = 1.0
         return beta
 
     def pressed(self, z: Array, eta: Array, w: Array) -> Array:
         """Return G'z (m, d): the velocities that multipliers stand for."""
-        rates = np.where(self.q.rough[:, None], eta, 0.0)
-        rates[:, 0] = self.q.mu * rates[:, 0] + np.where(self.line, z, 0.0) - np.where(self.capped, w, 0.0)
+        rates = np.where(self.rough[:, None], eta, 0.0)
+        rates[:, 0] = self.mu * rates[:, 0] + np.where(self.line, z, 0.0) - np.where(self.capped, w, 0.0)
         return rates
 
     def gap(self, p: _Point) -> float:
         """Return the sum of the complementarity products."""
-        total = (p.t[:, 0] * p.z)[self.line].sum() + (self.strength(p.t) * p.eta)[self.q.rough].sum()
+        total = (p.t[:, 0] * p.z)[self.line].sum() + (self.strength(p.t) * p.eta)[self.rough].sum()
         return float(total + ((self.cap - p.t[:, 0]) * p.w)[self.capped].sum())
 
     def start(self, size: float = START) -> _Point:
         """Return a point far outside."""
-        m, d = self.q.pairs, self.q.dim
+        m, d = self.pairs.count, self.pairs.dim
         t, eta = np.zeros((m, d)), np.zeros((m, d))
-        t[:, 0] = np.where(self.capped, np.minimum(size, 0.5 * self.q.cap), size)
+        t[:, 0] = np.where(self.capped, np.minimum(size, 0.5 * self.pairs.cone.cap), size)
         eta[:, 0] = size
         one = np.full(m, size)
         return _Point(t, 0.0, np.zeros(self.C.shape[1]), one, eta, one.copy())
@@ -195,6 +210,7 @@ class ConeInterior:
             Looks at each iterate; true ends the iteration.
         """
         p = self.start()
+        self.degenerate = False
         if start is not None:
             p.t = start.copy()
         best: ConeAnswer | None = None
@@ -203,7 +219,7 @@ class ConeInterior:
             for iteration in range(MOST + 1):
                 r_p = self.Ct @ p.t.ravel() + e + p.multiplier * g
                 r_d = self.rate(p.v) - self.pressed(p.z, p.eta, p.w)
-                r_d[~self.q.rough, 1:] = 0.0
+                r_d[~self.rough, 1:] = 0.0
                 r_g = 1.0 - float(g @ p.v)
                 gap = self.gap(p)
                 force, speed = max(1.0, float(p.t[:, 0].max())), max(1.0, float(np.abs(p.v).max()))
@@ -250,9 +266,9 @@ class _Step:
         if scaling is None:
             return None
         F, squeeze = _roots(it, p, scaling)
+        D = np.matmul(F, F.transpose(0, 2, 1))
         try:
-            D = np.matmul(F, F.transpose(0, 2, 1))
-            it.factor.factorise(D, PROXIMAL * float(np.median(D[:, 0, 0])))
+            it.factor.factorise(D, PROXIMAL * min(1.0, float(np.median(D[:, 0, 0]))))
             border = it.factor.solve(g)
         except SingularMatrixError:
             return None
@@ -263,32 +279,63 @@ class _Step:
         it, g = self.it, self.g
         r_p, _, r_g = self.rest
         Ft = self.F.transpose(0, 2, 1)
-        dx, dv, dl, least = np.zeros_like(b), np.zeros_like(g), 0.0, np.inf
+        dx, dv, dl = np.zeros_like(b), np.zeros_like(g), 0.0
         kept: tuple[Array, float, Array] | None = None
-        schur = float(g @ self.border)
-        e1, e2, e3 = -r_p, b, r_g
-        for _ in range(REFINEMENTS):
-            x = it.factor.solve(it.Ct @ times(self.F, e2).ravel() - e1)
-            extra = (e3 - float(g @ x)) / schur
-            x += extra * self.border
-            dv, dl, dx = dv + x, dl + extra, dx + e2 - times(Ft, it.rate(x))
-            dt = times(self.F, dx)
-            e1 = -r_p - it.Ct @ dt.ravel() - g * dl
-            e2 = b - times(Ft, it.rate(dv)) - dx
-            e3 = r_g - float(g @ dv)
-            worst = max(float(np.abs(e1).max()), float(np.abs(e2).max(initial=0.0)), abs(e3))
-            if not worst < 0.5 * least:
-                break
-            least, kept = worst, (dt, dl, dv)
-            if worst < 1e-15:
-                break
-        return kept
+        e1, e2, e3, least = -r_p, b, r_g, np.inf
+        solver = self._pivoted if it.degenerate else self._condensed
+        while True:
+            least = np.inf
+            for _ in range(REFINEMENTS):
+                x, y, extra = solver(e1, e2, e3)
+                trial = dx + y, dv + x, dl + extra
+                dt = times(self.F, trial[0])
+                left = (
+                    -r_p - it.Ct @ dt.ravel() - g * trial[2],
+                    b - times(Ft, it.rate(trial[1])) - trial[0],
+                    r_g - float(g @ trial[1]),
+                )
+                worst = max(float(np.abs(left[0]).max()), float(np.abs(left[1]).max(initial=0.0)), abs(left[2]))
+                if not worst < 0.5 * least:
+                    break
+                (dx, dv, dl), (e1, e2, e3) = trial, left
+                least, kept = worst, (dt, dl, dv)
+                if worst < 1e-15:
+                    break
+            if it.degenerate or least < LOST * max(1.0, float(np.abs(self.p.t).max())) or dx.size > PIVOTED:
+                return kept
+            it.degenerate, solver = True, self._pivoted
+            dx, dv, dl = np.zeros_like(b), np.zeros_like(g), 0.0
+            e1, e2, e3, kept = -r_p, b, r_g, None
+
+    def _condensed(self, e1: Array, e2: Array, e3: float) -> tuple[Array, Array, float]:
+        """Solve by C'DC, the multiplier bordered: digits are lost where that matrix is worse than 1e16."""
+        it, g = self.it, self.g
+        x = it.factor.solve(it.Ct @ times(self.F, e2).ravel() - e1)
+        extra = (e3 - float(g @ x)) / float(g @ self.border)
+        x += extra * self.border
+        return x, e2 - times(self.F.transpose(0, 2, 1), it.rate(x)), extra
+
+    @cached_property
+    def _mixed(self) -> Any:
+        """Factors with pivoting of the system in dx, dv and the multiplier, whose condition is the square root."""
+        it, (m, d, _) = self.it, self.F.shape
+        roots = sp.bsr_array((self.F, np.arange(m), np.arange(m + 1)), shape=(m * d, m * d))
+        FC, g = sp.csr_array(sp.csr_array(roots.T) @ it.C), sp.csr_array(self.g[:, None])
+        loose = -PROXIMAL * sp.eye_array(self.g.size)
+        matrix = sp.block_array([[sp.eye_array(m * d), FC, None], [FC.T, loose, g], [None, g.T, None]], format="csc")
+        splu: Any = sla.splu
+        return splu(sp.csc_matrix(matrix))
+
+    def _pivoted(self, e1: Array, e2: Array, e3: float) -> tuple[Array, Array, float]:
+        """Solve the whole system with pivoting."""
+        n = e2.size
+        x = self._mixed.solve(np.concatenate([e2.ravel(), e1, [e3]]))
+        return x[n:-1], x[:n].reshape(e2.shape), float(x[-1])
 
     def direction(self, rc_z: Array, rc_t: Array, rc_w: Array) -> _Point | None:
         """Return the Newton direction for given right-hand sides of the products."""
         it, p = self.it, self.p
-        q, rough = it.q, it.q.rough
-        both = rough & (q.mu > 0)
+        rough, both = it.rough, it.coulomb
         scaled = divide(self.scaling.point, rc_t)
         eta = times(self.scaling.inverse, scaled)
         of_line = np.where(it.line, rc_z / p.t[:, 0], 0.0)
@@ -310,7 +357,7 @@ class _Step:
         moved = it.rate(dv) + self.rest[1]
         d_eta = np.zeros_like(dt)
         d_eta[:, 1:] = moved[:, 1:]
-        d_eta[:, 0] = np.where(both, (moved[:, 0] - dz + dw) / np.where(both, q.mu, 1.0), 0.0)
+        d_eta[:, 0] = np.where(both, (moved[:, 0] - dz + dw) / np.where(both, it.mu, 1.0), 0.0)
         tresca = rough & ~both
         d_eta[tresca, 0] = (eta - times(self.scaling.M, self.of_strength(dt)))[tresca, 0]
         d_eta[~rough] = 0.0
@@ -320,8 +367,8 @@ class _Step:
     def of_strength(self, dt: Array) -> Array:
         """Return d beta (m, d)."""
         d_beta = dt.copy()
-        d_beta[:, 0] *= self.it.q.mu
-        d_beta[~self.it.q.rough] = 0.0
+        d_beta[:, 0] *= self.it.mu
+        d_beta[~self.it.rough] = 0.0
         return d_beta
 
     def longest(self, d: _Point) -> tuple[float, float]:
@@ -359,19 +406,18 @@ def _roots(it: ConeInterior, p: _Point, scaling: Scaling) -> tuple[Array, Array]
 
     From the scaling itself: inverting M would lose its small values.
     """
-    q, d = it.q, it.q.dim
-    both = q.rough & (q.mu > 0)
+    d, both = it.pairs.dim, it.coulomb
     own = np.where(it.line, p.z / p.t[:, 0], 0.0) + np.where(it.capped, p.w / (it.cap - p.t[:, 0]), 0.0)
-    F = np.zeros((q.pairs, d, d))
+    F = np.zeros((it.pairs.count, d, d))
     F[both] = scaling.W[both]
-    F[both, 0, :] /= q.mu[both, None]
+    F[both, 0, :] /= it.mu[both, None]
     v = F[:, 0, :]
     size = np.where(both, (v * v).sum(axis=1), 1.0)
     less = (1.0 - 1.0 / np.sqrt(1.0 + own * size)) / size
     squeeze = np.where(both[:, None], np.sqrt(less)[:, None] * v, 0.0)
     F -= times(F, squeeze)[:, :, None] * squeeze[:, None, :]
     F[~both, 0, 0] = 1.0 / np.sqrt(own[~both])
-    tresca = q.rough & ~both
+    tresca = it.rough & ~both
     if tresca.any():
         M = scaling.M[tresca, 1:, 1:]
         F[tresca, 1:, 1:] = np.linalg.inv(np.linalg.cholesky(M)).transpose(0, 2, 1)

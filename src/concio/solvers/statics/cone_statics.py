@@ -1,4 +1,4 @@
-r"""Statics with round cones: are there forces in balance, which mechanism excludes them, how far can a load grow?
+r"""Statics with round cones: forces in balance, the mechanism that excludes them, the largest multiplier of a load.
 
 All of it is one programme, the largest multiplier of a load beside another
 (:mod:`concio.solvers.statics.cone_interior`), and nothing of what it says is believed: forces are brought into balance
@@ -19,16 +19,19 @@ import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.solvers.algebra.dimensionless import interleaved
-from concio.solvers.algebra.scaled import SMOOTH
-from concio.solvers.algebra.second_order_cone import determinant, quadratic, times
+from concio.solvers.algebra.second_order_cone import determinant, times
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
-from concio.solvers.statics.cone_interior import PROXIMAL, ConeAnswer, ConeInterior, Cones
+from concio.solvers.statics.cone_interior import PROXIMAL, TARGET, ConeAnswer, ConeInterior, Pairs
+from concio.solvers.statics.cone_newton import sharpen
 
-BALANCED = 1e-12
-"""Share of the total load that forces may leave unbalanced, or exceed strengths by, and count as in balance."""
+ROUNDING = 1e-14
+"""Share of the total load that forces may leave unbalanced, or exceed strengths by, before they are balanced anew."""
 
-ADMISSIBLE = 1e-12
-"""Violation of a motion, over its largest velocity, that counts as rounding."""
+CLOSE = 1e-3
+"""Gap below which Newton's method is tried on an answer that the interior point left short of its target."""
+
+ENDLESS = 1e7
+"""Multiplier, in units of the programme, from which on a load may be one that can grow without end."""
 
 ROUNDS = 6
 """Times forces are brought closer to balance."""
@@ -63,7 +66,7 @@ class Bounds:
     Parameters
     ----------
     multiplier : float
-        That of the forces.
+        That of the forces; inf where it seems to grow without end.
     t : (m, d) array
         Forces, normal first [kN].
     residual : float
@@ -91,24 +94,17 @@ class ConeStatics:
     def __init__(self, problem: ContactProblem, load: Array | None = None) -> None:
         self.problem = problem
         load = problem.f if load is None else load
-        law, R = problem.laws, problem.R
+        R = problem.R
         moved = sp.csc_array(interleaved(problem) @ R)
         reach = np.maximum.reduceat(np.r_[np.abs(moved.data), 0.0], moved.indptr[:-1])
         reach[np.diff(moved.indptr) == 0] = 0.0
         self.scale = np.where(reach > 0, reach, 1.0)
         self.force = float(np.abs(R.T @ load / self.scale).max(initial=0.0)) or 1.0
-        cones = Cones(
-            C=sp.csr_array(moved @ sp.diags_array(1.0 / self.scale)),
-            mu=np.where(law.friction > SMOOTH, law.friction, 0.0),
-            cohesion=np.maximum(law.cohesion - law.friction * law.tension, 0.0) / self.force,
-            cap=(law.cap + law.tension) / self.force,
-            rough=(law.friction > SMOOTH) | (law.cohesion > 0),
-            bodies=_motions_of_bodies(problem),
-        )
-        self.programme = ConeInterior(cones)
-        shift = np.zeros((problem.pairs, problem.dim))
-        shift[:, 0] = law.tension / self.force
-        self.shift = shift
+        motions = sp.csr_array(moved @ sp.diags_array(1.0 / self.scale))
+        strengths = problem.cone.in_units(self.force)
+        self.programme = ConeInterior(Pairs(motions, strengths.shifted, _motions_of_bodies(problem)))
+        self.shift = np.zeros((problem.pairs, problem.dim))
+        self.shift[:, 0] = strengths.tension
 
     def project(self, load: Array) -> Array:
         """Return R' load in units of the programme (r,)."""
@@ -146,13 +142,7 @@ class ConeStatics:
         """Return the largest entry of R'(load + C't) and of the excess over the strengths, over the total load."""
         problem = self.problem
         left = problem.R.T @ (load + problem.C_n.T @ t[:, 0] + problem.C_t.T @ t[:, 1:].ravel())
-        over = np.maximum.reduce(
-            [
-                np.linalg.norm(t[:, 1:], axis=1) - problem.sliding_strength(t[:, 0]),
-                -(t[:, 0] + problem.laws.tension),
-                t[:, 0] - problem.laws.cap,
-            ]
-        )
+        over = problem.cone.excess(t[:, 0], t[:, 1:])
         worst = max(float(np.abs(left).max(initial=0.0)), float(over.max(initial=0.0)))
         return worst / (float(np.abs(load).sum()) or 1.0)
 
@@ -164,7 +154,7 @@ class ConeStatics:
         """Search forces in balance with the load of the problem."""
         it, m = self.programme, self.problem.pairs
         ones = np.zeros((m, self.problem.dim))
-        ones[:, 0] = np.minimum(1.0, 0.5 * it.q.cap)
+        ones[:, 0] = np.minimum(1.0, 0.5 * it.pairs.cone.cap)
         e, f = -(it.Ct @ ones.ravel()), self.offset(self.problem.f)
         g = f - e
         size = float(np.abs(g).max(initial=0.0))
@@ -175,15 +165,23 @@ class ConeStatics:
             return a.multiplier >= size and a.primal < 1e-11
 
         answer = it.solve(e, g / size, start=ones, stop=carries)
+        if not carries(answer):
+            answer = self._sharp(answer, e, g / size)
         multiplier = answer.multiplier / size
         share = min(1.0 / multiplier, 1.0) if multiplier > 0 else 1.0
         t = (1.0 - share) * ones + share * answer.t
         return self._judged(t, f, answer.v, multiplier)
 
+    def _sharp(self, answer: ConeAnswer, e: Array, g: Array) -> ConeAnswer:
+        """Return an answer made exact by Newton's method where it is not and that gets there."""
+        if max(answer.primal, answer.dual, answer.gap) <= TARGET or not answer.gap < CLOSE:
+            return answer
+        return sharpen(self.programme, e, g, answer) or answer
+
     def _judged(self, t: Array, f: Array, v: Array, multiplier: float) -> Balance:
         real = self.real(t)
         residual = self.excess(real, self.problem.f)
-        if multiplier >= 1.0 - 1e-9 and residual > 0.01 * BALANCED:
+        if multiplier >= 1.0 - 1e-9 and residual > ROUNDING:
             nearer = self.real(self.balance(t, f))
             left = self.excess(nearer, self.problem.f)
             real, residual = (nearer, left) if left < residual else (real, residual)
@@ -194,12 +192,15 @@ class ConeStatics:
         it = self.programme
         e, g = self.offset(self.problem.f), self.project(live)
         size = float(np.abs(g).max(initial=0.0))
-        answer = it.solve(e, g / size)
+        answer = it.solve(e, g / size, stop=lambda a: a.multiplier > ENDLESS)
+        if answer.multiplier > ENDLESS:
+            return Bounds(np.inf, self.real(answer.t), np.inf, self.velocity(answer.v))
+        answer = self._sharp(answer, e, g / size)
         multiplier = answer.multiplier / size
         load = self.problem.f + multiplier * live
         t = self.real(answer.t)
         residual = self.excess(t, load)
-        if residual > 0.01 * BALANCED:
+        if residual > ROUNDING:
             nearer = self.real(self.balance(answer.t, e + answer.multiplier * (g / size)))
             left = self.excess(nearer, load)
             t, residual = (nearer, left) if left < residual else (t, residual)
@@ -219,24 +220,23 @@ def _motions_of_bodies(problem: ContactProblem) -> Array:
 
 def _room(it: ConeInterior, t: Array) -> Array:
     """Return the inverse Hessian (m, d, d) of the barrier of the strengths: a step in its unit ball stays inside."""
-    q = it.q
     beta = it.strength(t)
     sized = np.maximum(determinant(beta), 0.0)
     cone = 2.0 * beta[:, :, None] * beta[:, None, :]
-    mirror = -np.ones(q.dim)
+    mirror = -np.ones(it.pairs.dim)
     mirror[0] = 1.0
     cone -= sized[:, None, None] * np.diag(mirror)
-    both = q.rough & (q.mu > 0)
+    both = it.coulomb
     room = np.where(both[:, None, None], cone, 0.0)
-    room[both, 0, :] /= q.mu[both, None]
-    room[both, :, 0] /= q.mu[both, None]
+    room[both, 0, :] /= it.mu[both, None]
+    room[both, :, 0] /= it.mu[both, None]
     with np.errstate(divide="ignore", invalid="ignore"):
         own = np.where(it.line, 1.0 / t[:, 0] ** 2, 0.0) + np.where(it.capped, 1.0 / (it.cap - t[:, 0]) ** 2, 0.0)
         share = np.where(own > 0, 1.0 / (1.0 / own + room[:, 0, 0]), 0.0)
     column = room[:, :, 0].copy()
     room -= share[:, None, None] * column[:, :, None] * column[:, None, :]
     room[~both, 0, 0] = np.where(own > 0, 1.0 / np.where(own > 0, own, 1.0), 0.0)[~both]
-    tresca = q.rough & ~both
-    for k in range(1, q.dim):
+    tresca = it.rough & ~both
+    for k in range(1, it.pairs.dim):
         room[tresca, k, k] = sized[tresca]
     return room

@@ -1,9 +1,10 @@
 r"""Are there forces within the cones that balance the loads? Yes with the forces, no with a mechanism, or undecided.
 
-One linear programme answers: it minimises what is left unbalanced. Where that is nothing, its variables are the forces;
-where it is not, its multipliers are the motion to blame. Neither is believed as it comes. The forces count where, once
-rounding is taken out of them, they balance the loads to :data:`concio.problem.tolerances.BALANCED`; the motion counts
-as :func:`concio.solvers.statics.mechanism.proves` says. Close to the limit a programme may end with neither: then the
+One linear programme answers, in space one over second-order cones (:mod:`concio.solvers.statics.cone_statics`): it
+minimises what is left unbalanced. Where that is nothing, its variables are the forces; where it is not, its multipliers
+are the motion to blame. Neither is believed as it comes. The forces count where, once rounding is taken out of them,
+they balance the loads to :data:`concio.problem.tolerances.BALANCED`; the motion counts as
+:func:`concio.solvers.statics.mechanism.proves` says. Close to the limit a programme may end with neither: then the
 other method is asked, and where that has neither the answer is "undecided", not "no".
 
 That the forces exist does not say that a *Coulomb* state does: friction is not associated.
@@ -19,6 +20,7 @@ import scipy.sparse as sp
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Mechanism
 from concio.problem.tolerances import BALANCED
+from concio.solvers.statics.cone_statics import ConeStatics
 from concio.solvers.statics.mechanism import mechanism_from, total_load
 from concio.solvers.statics.programme import Method, StaticProgramme, optimise
 
@@ -59,14 +61,12 @@ class StaticState:
         return self.exists or self.mechanism is not None
 
 
-def statically_admissible(problem: ContactProblem, *, around: bool = False) -> StaticState:
+def statically_admissible(problem: ContactProblem) -> StaticState:
     """Search forces within the cones of the joint laws that balance the loads on the rigid motions.
 
     Parameters
     ----------
     problem : ContactProblem
-    around : bool
-        In space, use cones a little too large (for mechanisms) instead of a little too small (for forces).
 
     Returns
     -------
@@ -76,18 +76,28 @@ def statically_admissible(problem: ContactProblem, *, around: bool = False) -> S
     m, r, s = problem.pairs, problem.rigid_motions, problem.dim - 1
     if r == 0:
         return StaticState(True, np.zeros(m), np.zeros((m, s)), 0.0, np.zeros(problem.unknowns))
-    programme = StaticProgramme(problem, around)
+    programme = StaticProgramme(problem)
     if m == 0:
         velocity = problem.R @ (programme.project(problem.f) / programme.scale)
         residual = float(np.abs(problem.R.T @ problem.f).max() / total_load(problem))
         exists = residual <= BALANCED
         proof = None if exists else mechanism_from(problem, velocity)
         return StaticState(exists, np.zeros(0), np.zeros((0, s)), residual, velocity, proof)
+    if problem.dim == 3:
+        return _by_cones(problem)
     state = _least_imbalance(problem, programme, None)
     if state.decided:
         return state
     other = _least_imbalance(problem, programme, "highs")
     return other if other.decided or other.residual < state.residual else state
+
+
+def _by_cones(problem: ContactProblem) -> StaticState:
+    """Ask the cone programme, and say what its forces and its motion prove."""
+    found = ConeStatics(problem).forces()
+    exists = found.residual <= BALANCED
+    proof = None if exists else mechanism_from(problem, found.velocity)
+    return StaticState(exists, found.t[:, 0], found.t[:, 1:], found.residual, found.velocity, proof)
 
 
 def _least_imbalance(problem: ContactProblem, programme: StaticProgramme, method: Method | None) -> StaticState:
@@ -134,4 +144,4 @@ def find_mechanism(problem: ContactProblem) -> Mechanism | None:
         A verified proof, or None where the linear programme finds statically admissible forces or the motion it
         finds does not pass :func:`concio.solvers.statics.mechanism.verify_mechanism`.
     """
-    return statically_admissible(problem, around=True).mechanism
+    return statically_admissible(problem).mechanism

@@ -15,7 +15,7 @@ Reference: Livesley, Limit analysis of structures formed from rigid blocks, Int.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -24,6 +24,7 @@ from concio.errors import SolverError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Mechanism
 from concio.problem.tolerances import CHECKED
+from concio.solvers.statics.cone_statics import ConeStatics
 from concio.solvers.statics.existence import statically_admissible
 from concio.solvers.statics.mechanism import absorbed_power, polish, total_load, verify_mechanism
 from concio.solvers.statics.programme import Method, StaticProgramme, optimise
@@ -108,6 +109,8 @@ def associated_limit(problem: ContactProblem, live: Array) -> LimitLoad:
     if problem.rigid_motions == 0 or m == 0 or pushed <= 1e-12 * size:
         state = statically_admissible(problem)
         return LimitLoad(np.inf if state.exists else np.nan, np.inf, *nothing, state.residual, None)
+    if problem.dim == 3:
+        return cone_limit(problem, live)
     found = programmed_limit(problem, live, None)
     if np.isfinite(found.multiplier) and not found.checked:
         other = programmed_limit(problem, live, "highs")
@@ -147,6 +150,34 @@ def programmed_limit(problem: ContactProblem, live: Array, method: Method | None
     upper, mechanism = kinematic_bound(problem, live, multiplier, velocity)
     residual = static_residual(problem, loaded, t_n, t_t)
     return LimitLoad(multiplier, upper, t_n, t_t, residual, mechanism)
+
+
+def cone_limit(problem: ContactProblem, live: Array) -> LimitLoad:
+    """Return what the cone programme of space says, rechecked."""
+    found = ConeStatics(problem, problem.f if problem.f.any() else live).largest(live)
+    if np.isfinite(found.multiplier):
+        upper, mechanism = kinematic_bound(problem, live, found.multiplier, found.velocity)
+        return LimitLoad(found.multiplier, upper, found.t[:, 0], found.t[:, 1:], found.residual, mechanism)
+    dead, alone = statically_admissible(problem), statically_admissible(without_bounds(problem, live))
+    locked = dead.exists and alone.exists
+    worst = max(dead.residual, alone.residual)
+    return LimitLoad(np.inf if locked else np.nan, np.inf, dead.normal_force, dead.friction_force, worst, None)
+
+
+def without_bounds(problem: ContactProblem, live: Array) -> ContactProblem:
+    """Return the problem whose forces may grow without end: a load that it carries can be added any number of times.
+
+    Pairs with a cap are left out, strength that does not grow with the pressure is taken away.
+    """
+    keep = ~problem.cone.capped
+    s = problem.dim - 1
+    zero = np.zeros(int(keep.sum()))
+    laws = replace(problem.laws[keep], cohesion=zero, tension=zero)
+    rows = np.repeat(keep, s)
+    return replace(
+        problem.with_loads(live), C_n=problem.C_n[keep], C_t=problem.C_t[rows], gap=problem.gap[keep], laws=laws,
+        slip_origin=problem.slip_origin[keep], area=problem.area[keep],
+    )  # fmt: skip
 
 
 def static_residual(problem: ContactProblem, load: Array, t_n: Array, t_t: Array) -> float:

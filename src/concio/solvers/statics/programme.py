@@ -6,9 +6,8 @@ The forces a pair may carry, with friction mu, cohesion c, tensile strength T (m
 
 In the plane every point of S_k is  t_n = p + q - T,  t_t = mu (p - q) + z  with p, q >= 0, |z| <= c - mu T and
 p + q <= N + T: two rays of the cone and a segment. Equilibrium of the rigid motions, R'(f + C't) = 0, is then a
-linear programme in standard form with r rows, which the simplex method likes. In space the cone is replaced by a
-polygonal cone of ``SIDES`` rays: inside the circle when forces are wanted, so that none outside the cone are called
-admissible, and around it when a mechanism is wanted, so that its motion satisfies w_n >= mu |w_t|.
+linear programme in standard form with r rows, which the simplex method likes. Round cones of space are no polygons:
+:mod:`concio.solvers.statics.cone_statics`.
 """
 
 from __future__ import annotations
@@ -24,9 +23,6 @@ from scipy.optimize import linprog
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.solvers.algebra.normal_equations import rebalance
 from concio.solvers.statics.linear_interior import solve_interior
-
-SIDES = 16
-"""Rays of the polygonal friction cone in space."""
 
 LARGE = 1_000
 """Number of columns from which the interior point is tried before the simplex method; below, the latter is as fast."""
@@ -46,12 +42,10 @@ class StaticProgramme:
     Parameters
     ----------
     problem : ContactProblem
-    around : bool
-        In space: polygonal cones around the circular ones instead of inside.
+        Plane; :attr:`scale` and :meth:`project` serve any dimension.
     """
 
     problem: ContactProblem
-    around: bool = False
 
     @cached_property
     def scale(self) -> Array:
@@ -69,22 +63,15 @@ class StaticProgramme:
 
     @cached_property
     def rays(self) -> tuple[Array, Array]:
-        """Return (pair, direction) of each ray: integers (k,) and vectors (k, d-1); smooth pairs have one."""
-        m, d = self.problem.pairs, self.problem.dim
-        angle = np.arange(SIDES) * (2 * np.pi / SIDES)
-        ring = np.array([[1.0], [-1.0]]) if d == 2 else np.column_stack([np.cos(angle), np.sin(angle)])
-        if self.around and d == 3:
-            ring /= np.cos(np.pi / SIDES)
+        """Return (pair, direction) of each ray: integers (k,) and vectors (k, 1); smooth pairs have one."""
+        m = self.problem.pairs
         rough = np.flatnonzero(self.problem.laws.friction > 0)
-        pair = np.concatenate([np.arange(m), *(rough for _ in ring[1:])])
-        direction = np.concatenate([np.tile(ring[0], (m, 1)), *(np.tile(a, (rough.size, 1)) for a in ring[1:])])
-        return pair, direction
+        return np.concatenate([np.arange(m), rough]), np.concatenate([np.ones((m, 1)), -np.ones((rough.size, 1))])
 
     @cached_property
     def spare(self) -> Array:
-        """Half width of the segment of each pair, (m,): c - mu T, in space of the square inside or around."""
-        width = self.problem.cone.spare
-        return width if self.around else width / np.sqrt(self.problem.dim - 1)
+        """Half width of the segment of each pair, (m,): c - mu T."""
+        return self.problem.cone.spare
 
     @cached_property
     def map(self) -> tuple[sp.csc_array, Array]:

@@ -1,0 +1,237 @@
+"""Statics with round cones: closed forms, an independent solver, proofs from both sides, every law, turned in space."""
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from concio.problem.contact_problem import Array, ContactProblem, Laws
+from concio.problem.tolerances import BALANCED
+from concio.solvers.statics.existence import statically_admissible
+from concio.solvers.statics.friction import smallest_friction
+from concio.solvers.statics.limit import associated_limit
+from concio.solvers.statics.mechanism import absorbed_power, pair_velocities
+from contact_problems import rigid
+from contact_problems import wall as plane_wall
+from space_problems import Built, barrel, box, build, dome, on_floor, wall
+
+SHARP = 1e-9
+"""Distance of the two proofs; a load through a corner leaves 6e-10, all other cases 1e-11."""
+
+
+def turn(angle: float, axis: tuple[float, float, float]) -> Array:
+    """A rotation matrix."""
+    n = np.array(axis) / np.linalg.norm(axis)
+    cross = np.array([[0, -n[2], n[1]], [n[2], 0, -n[0]], [-n[1], n[0], 0]])
+    rotation: Array = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    return rotation
+
+
+def proven(problem: ContactProblem, live: Array, multiplier: float) -> None:
+    """Recompute both proofs of a limit from the original arrays, and compare."""
+    found = associated_limit(problem, live)
+    t_n, t_t = found.normal_force, found.friction_force
+    load = problem.f + found.multiplier * live
+    size = np.abs(load).sum()
+    left = problem.R.T @ (load + problem.C_n.T @ t_n + problem.C_t.T @ t_t.ravel())
+    assert np.abs(left).max() <= BALANCED * size
+    assert problem.cone.excess(t_n, t_t).max() <= BALANCED * size
+    v = found.mechanism.velocity
+    w_n, speed = pair_velocities(problem, v)
+    assert problem.cone.lift(w_n, speed)[~problem.cone.capped].min(initial=0.0) >= -1e-14
+    upper = (absorbed_power(problem, v) - problem.f @ v) / (live @ v)
+    assert found.upper == pytest.approx(upper, rel=1e-12)
+    assert -1e-13 <= upper - found.multiplier <= SHARP * max(1.0, abs(upper))
+    assert found.multiplier == pytest.approx(multiplier, rel=1e-9)
+
+
+def single_box(a: float, b: float, h: float, mu: float) -> Built:
+    """One box a x b x h on the ground."""
+    return build([box((0, a), (0, b), (0, h))], on_floor, mu)
+
+
+@pytest.mark.parametrize("mu", [0.9, 0.3])
+@pytest.mark.parametrize("degrees", [0.0, 15.0, np.degrees(np.arctan(0.5)), 45.0, 77.0, 90.0, 200.0])
+def test_box_pushed_in_any_direction_of_the_plan(mu: float, degrees: float) -> None:
+    a, b, h = 2.0, 1.0, 3.0
+    built, angle = single_box(a, b, h, mu), np.radians(degrees)
+    with np.errstate(divide="ignore"):
+        slides, tips = mu, min(a / h / abs(np.cos(angle)), b / h / abs(np.sin(angle)))
+    proven(built.problem, built.pushed(np.array([np.cos(angle), np.sin(angle), 0.0])), min(slides, tips))
+
+
+@pytest.mark.parametrize(("degrees", "multiplier"), [(0, 1.0), (30, 1 / np.sqrt(3)), (60, 0.5), (180, 0.5)])
+def test_tripod(degrees: float, multiplier: float) -> None:
+    """Three feet on a circle of radius one, the weight one above them; legs at 0, 120 and 240 degrees."""
+    feet = np.array([[np.cos(t), np.sin(t), -1.0] for t in np.radians([0, 120, 240])])
+    C = np.zeros((9, 6))
+    for k, r in enumerate(feet):
+        motion = np.hstack([np.eye(3), [[0, r[2], -r[1]], [-r[2], 0, r[0]], [r[1], -r[0], 0]]])
+        C[3 * k : 3 * k + 3] = motion[[2, 0, 1]]
+    problem = ContactProblem(
+        sp.csr_array((6, 6)), np.array([0, 0, -1.0, 0, 0, 0]), sp.csr_array(C[::3]),
+        sp.csr_array(C[[1, 2, 4, 5, 7, 8]]), np.zeros(3), Laws.coulomb(2.0, 3), sp.csc_array(sp.eye_array(6)),
+        np.array([0, 6]),
+    )  # fmt: skip
+    t = np.radians(degrees)
+    proven(problem, np.array([np.cos(t), np.sin(t), 0, 0, 0, 0]), multiplier)
+
+
+@pytest.mark.parametrize(
+    ("built", "multiplier"),
+    [
+        (wall(4, 5), 0.6),  # slides as a whole
+        (wall(10, 6, direction=(0.0, 1.0, 0.0)), 1 / 6),  # turns about its foot: t / H
+        (wall(6, 6, direction=(1.0, 1.0, 0.0)), 1 / 6),
+        (wall(4, 4, mu=0.0), 0.0),
+    ],
+)
+def test_walls_in_closed_form(built: Built, multiplier: float) -> None:
+    if multiplier:
+        proven(built.problem, built.live, multiplier)
+    else:
+        assert associated_limit(built.problem, built.live).multiplier == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", ["wall", "headers", "barrel", "dome"])
+def test_the_same_bounds_as_clarabel(name: str) -> None:
+    clarabel = pytest.importorskip("clarabel")
+    built = {
+        "wall": lambda: wall(6, 7, direction=(1.0, 0.3, 0.0)),
+        "headers": lambda: wall(2, 4, leaves=3),
+        "barrel": lambda: barrel(11, 2, direction=(1.0, 0.5, 0.0)),
+        "dome": lambda: dome(4, 12, mu=0.5),
+    }[name]()
+    p, m = built.problem, built.problem.pairs
+    A = sp.csc_matrix(sp.hstack([sp.vstack([p.C_n, p.C_t]).T, sp.csc_array(built.live[:, None])]))
+    rows = [sp.csc_array(([p.laws.friction[k]], ([0], [k])), shape=(1, 3 * m + 1)) for k in range(m)]
+    cones = [clarabel.ZeroConeT(A.shape[0])]
+    G = []
+    for k in range(m):
+        tangential = sp.csc_array(([1.0, 1.0], ([0, 1], [m + 2 * k, m + 2 * k + 1])), shape=(2, 3 * m + 1))
+        G += [rows[k], tangential]
+        cones.append(clarabel.SecondOrderConeT(3))
+    matrix = sp.csc_matrix(sp.vstack([A, -sp.vstack(G)]))
+    right = np.r_[-p.f, np.zeros(3 * m)]
+    cost = np.r_[np.zeros(3 * m), -1.0]
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    other = clarabel.DefaultSolver(sp.csc_matrix((3 * m + 1,) * 2), cost, matrix, right, cones, settings).solve()
+    proven(p, built.live, associated_limit(p, built.live).multiplier)
+    assert associated_limit(p, built.live).multiplier == pytest.approx(other.x[-1], rel=2e-6)
+
+
+@pytest.mark.parametrize(
+    "built", [wall(5, 5), wall(3, 4, leaves=2), barrel(9, 2), dome(4, 10), dome(4, 10, elastic=True)]
+)
+def test_forces_or_mechanism_either_side_of_the_limit(built: Built) -> None:
+    limit = associated_limit(built.problem, built.live)
+    for share in (0.5, 0.99, 1 - 1e-7):
+        below = built.at(share * limit.multiplier)
+        state = statically_admissible(below)
+        assert state.exists
+        assert state.mechanism is None
+    for share in (1 + 1e-7, 1.01, 1.5):
+        above = built.at(share * limit.multiplier)
+        state = statically_admissible(above)
+        assert not state.exists
+        v = state.mechanism.velocity
+        w_n, speed = pair_velocities(above, v)
+        assert (w_n - 0.6 * speed).min() >= -1e-14
+        assert above.f @ v > 0
+
+
+def test_turning_the_structure_changes_nothing() -> None:
+    straight = wall(5, 4, direction=(1.0, 0.4, 0.0))
+    turned = wall(5, 4, direction=(1.0, 0.4, 0.0), turned=turn(1.1, (0.3, -0.5, 0.8)))
+    wanted = associated_limit(straight.problem, straight.live).multiplier
+    assert associated_limit(turned.problem, turned.live).multiplier == pytest.approx(wanted, rel=1e-10)
+
+
+def test_a_wedged_wall_carries_any_load() -> None:
+    wedged = wall(6, 4, sides=True)
+    found = associated_limit(wedged.problem, wedged.live)
+    assert np.isinf(found.multiplier)
+    assert found.residual <= 1e-11
+    capped = wedged.problem
+    capped = replace(capped, laws=replace(capped.laws, cap=np.full(capped.pairs, 7.0)))
+    found = associated_limit(capped, wedged.live)
+    assert np.isfinite(found.multiplier)
+    assert found.gap <= SHARP
+
+
+def test_nothing_to_carry_the_load_at_any_multiplier() -> None:
+    falling = wall(3, 2, sides=True, mu=0.0)
+    assert np.isnan(associated_limit(falling.problem, falling.live).multiplier)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_every_law_in_one_pair_against_its_support_function(seed: int) -> None:
+    """A free point held by one pair: the largest multiplier is where the ray of loads leaves the strength domain."""
+    rng = np.random.default_rng(seed)
+    mu = rng.uniform(0.2, 1.0) * (seed % 4 != 3)
+    tension = rng.uniform(0, 0.5) * (seed % 2)
+    cohesion = mu * tension + rng.uniform(0.1, 1.0) * (seed % 3 > 0 or mu == 0)
+    cap = [np.inf, 3.0][seed % 2]
+    laws = Laws.coulomb(mu, 1)
+    laws = replace(laws, cohesion=np.array([cohesion]), tension=np.array([tension]), cap=np.array([cap]))
+    problem = ContactProblem(
+        sp.csr_array((3, 3)), np.array([0, 0, -1.0]), sp.csr_array([[0, 0, 1.0]]), sp.csr_array(np.eye(3)[:2]),
+        np.zeros(1), laws, sp.csc_array(sp.eye_array(3)), np.array([0, 3]),
+    )  # fmt: skip
+    live = rng.standard_normal(3)
+
+    def inside(factor: float) -> bool:
+        t = -(problem.f + factor * live)
+        return bool(problem.cone.excess(t[2:], t[None, :2])[0] <= 0)
+
+    low, high = 0.0, 1e3
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if inside(middle) else (low, middle)
+    if high == 1e3:
+        assert np.isinf(associated_limit(problem, live).multiplier)
+    else:
+        proven(problem, live, low)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_plane_and_space_agree_where_the_problem_is_plane(seed: int) -> None:
+    """Plane rigid walls with an idle third direction: the linear programme and the cone programme say the same."""
+    rng = np.random.default_rng(seed)
+    mu = float(rng.uniform(0.3, 0.9))
+    plane = rigid(plane_wall(int(rng.integers(2, 5)), int(rng.integers(2, 5)), mu=mu))
+    live = np.zeros(plane.unknowns)
+    live[::3] = -plane.f[1::3]
+    wanted = associated_limit(plane, live)
+    m = plane.pairs
+    rows = np.column_stack([np.arange(m), m + np.arange(m)]).ravel()
+    C_t = sp.csr_array(sp.vstack([plane.C_t, sp.csr_array((m, plane.unknowns))])[rows])
+    space = replace(plane, C_t=C_t, slip_origin=np.zeros((m, 2)), bodies=plane.bodies)
+    proven(space, live, wanted.multiplier)
+
+
+def test_least_friction_of_a_tilted_box() -> None:
+    """On a plane tilted about two axes a flat box needs mu = sqrt(tan2 a + tan2 b)."""
+    built = single_box(2.0, 2.0, 0.2, 1.0)
+    slope = np.array([0.3, -0.2])
+    problem = built.problem.with_loads(built.problem.f + built.pushed(np.array([*slope, 0.0])))
+    found = smallest_friction(problem)
+    assert found.settled
+    assert found.factor == pytest.approx(np.hypot(*slope), rel=1e-6)
+    assert found.below < np.hypot(*slope) <= found.factor + 1e-12
+
+
+def test_all_directions_of_friction_are_alike() -> None:
+    """A point on the floor: held just inside the circle, mechanism just outside, in every direction."""
+    for angle, (size, holds) in itertools.product(np.linspace(0, 2 * np.pi, 7), ((1 - 1e-7, True), (1 + 1e-7, False))):
+        load = np.r_[0.5 * size * np.cos(angle), 0.5 * size * np.sin(angle), -1.0]
+        problem = ContactProblem(
+            sp.csr_array((3, 3)), load, sp.csr_array([[0, 0, 1.0]]), sp.csr_array(np.eye(3)[:2]), np.zeros(1),
+            Laws.coulomb(0.5, 1), sp.csc_array(sp.eye_array(3)), np.array([0, 3]),
+        )  # fmt: skip
+        state = statically_admissible(problem)
+        assert state.exists is holds
+        assert (state.mechanism is None) is holds
