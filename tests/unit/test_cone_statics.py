@@ -17,8 +17,8 @@ from contact_problems import rigid
 from contact_problems import wall as plane_wall
 from space_problems import Built, barrel, box, build, dome, on_floor, wall
 
-SHARP = 1e-9
-"""Distance of the two proofs; a load through a corner leaves 6e-10, all other cases 1e-11."""
+SHARP = 1e-10
+"""Distance of the two proofs."""
 
 
 def turn(angle: float, axis: tuple[float, float, float]) -> Array:
@@ -44,7 +44,7 @@ def proven(problem: ContactProblem, live: Array, multiplier: float) -> None:
     upper = (absorbed_power(problem, v) - problem.f @ v) / (live @ v)
     assert found.upper == pytest.approx(upper, rel=1e-12)
     assert -1e-13 <= upper - found.multiplier <= SHARP * max(1.0, abs(upper))
-    assert found.multiplier == pytest.approx(multiplier, rel=1e-9)
+    assert found.multiplier - 1e-10 * abs(multiplier) <= multiplier <= found.upper + 1e-10 * abs(multiplier)
 
 
 def single_box(a: float, b: float, h: float, mu: float) -> Built:

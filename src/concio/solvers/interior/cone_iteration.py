@@ -34,8 +34,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from concio.problem.contact_problem import Array
-from concio.problem.tolerances import SMOOTH
-from concio.solvers.algebra.interleaved import Interleaved
+from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.second_order_cone import Scaling, product, reach, times
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 
@@ -129,14 +128,13 @@ class ConeIteration:
 
     Parameters
     ----------
-    scaled : Interleaved
+    scaled : Scaled
     """
 
-    def __init__(self, scaled: Interleaved) -> None:
+    def __init__(self, scaled: Scaled) -> None:
         self.s = scaled
         self.capped, self.rough = scaled.cone.capped, scaled.cone.rough
         self.cap = np.where(self.capped, scaled.cone.cap, 0.0)
-        self.mu = np.where(scaled.cone.friction > SMOOTH, scaled.cone.friction, 0.0)
         self.products = scaled.pairs + 2 * int(self.rough.sum()) + int(self.capped.sum())
 
     def start(self, force: float, length: float) -> ConePoint:
@@ -151,12 +149,12 @@ class ConeIteration:
     def dilatancy(self, theta: float) -> Array:
         """Return the dilatancy (m,) at a share ``theta`` of associated flow."""
         s = self.s
-        return np.where(self.rough, s.dilatancy + theta * (self.mu - s.dilatancy), 0.0)
+        return np.where(self.rough, s.dilatancy + theta * (self.s.cone.friction - s.dilatancy), 0.0)
 
     def strength(self, z: ConePoint) -> Array:
         """Return beta (m, d), (1, 0) where a pair is smooth."""
         beta = z.t.copy()
-        beta[:, 0] = self.s.cone.cohesion + self.mu * z.t[:, 0]
+        beta[:, 0] = self.s.cone.cohesion + self.s.cone.friction * z.t[:, 0]
         beta[~self.rough] = 0.0
         beta[~self.rough, 0] = 1.0
         return beta
@@ -173,7 +171,7 @@ class ConeIteration:
     def residuals(self, z: ConePoint, dilatancy: Array) -> Residuals:
         """Return the residuals of equilibrium, gap and slip."""
         s = self.s
-        y = s.opening(z.u, z.t)
+        y = s.position(z.u, z.t)
         r_n = y[:, 0] - dilatancy * z.eta[:, 0] - z.y_n + np.where(self.capped, z.p, 0.0)
         r_t = np.where(self.rough[:, None], y[:, 1:] - z.eta[:, 1:], 0.0)
         force, length = max(1.0, float(z.t[:, 0].max(initial=0.0))), max(1.0, float(np.abs(z.u).max(initial=0.0)))
@@ -277,7 +275,7 @@ class NewtonStep:
         scaling = Scaling.of(beta, z.eta)
         if scaling is None:
             return None
-        M, mu = scaling.M, iteration.mu
+        M, mu = scaling.M, s.cone.friction
         H = np.empty_like(M)
         H[:, 0, 0] = z.y_n / z.t[:, 0] + s.compliance[:, 0] + np.where(iteration.capped, z.p / room, 0.0)
         H[:, 0, 0] += dilatancy * mu * M[:, 0, 0]
@@ -306,9 +304,9 @@ class NewtonStep:
         for _ in range(REFINEMENTS):
             pushed = times(self.D, e2)
             x = s.factor.solve(e1 + s.pull(pushed))
-            du, dt = du + x, dt + pushed - times(self.D, s.rate(x))
+            du, dt = du + x, dt + pushed - times(self.D, s.along(x))
             e1 = r - s.elastic(du) + s.pull(dt)
-            e2 = b - s.rate(du) - times(self.H, dt)
+            e2 = b - s.along(du) - times(self.H, dt)
             e2[~rough, 1:] = 0.0
             worst = max(float(np.abs(e1).max()), float(np.abs(e2).max(initial=0.0)) / self.residuals.length)
             if not worst < 0.5 * least:
@@ -340,7 +338,7 @@ class NewtonStep:
     def of_strength(self, dt: Array) -> Array:
         """Return d beta (m, d)."""
         d_beta = dt.copy()
-        d_beta[:, 0] *= self.iteration.mu
+        d_beta[:, 0] *= self.iteration.s.cone.friction
         d_beta[~self.iteration.rough] = 0.0
         return d_beta
 

@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from concio.problem.contact_problem import Array
-from concio.solvers.algebra.interleaved import Interleaved
+from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.second_order_cone import times
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 
@@ -70,31 +70,30 @@ def sizes(u: Array, t: Array) -> tuple[float, float]:
     return max(1.0, float(np.abs(t).max(initial=0.0))), max(1.0, float(np.abs(u).max(initial=0.0)))
 
 
-def natural_residual(s: Interleaved, u: Array, t: Array) -> tuple[float, Array]:
+def natural_residual(s: Scaled, u: Array, t: Array) -> tuple[float, Array]:
     """Return the largest relative violation of equilibrium and joint laws, and that of the laws for each pair (m,).
 
     Forces count relative to the largest force, lengths relative to the largest displacement; the natural map
     t - P(t - y) is taken in these units.
     """
     force, length = sizes(u, t)
-    mapped = _mapped(s, u, t, force / length)
-    laws: Array = np.linalg.norm(t - mapped[1], axis=1) / force
+    laws: Array = np.linalg.norm(s.natural_map(u, t, force / length), axis=1) / force
     return max(s.unbalanced(u, t, force), float(laws.max(initial=0.0))), laws
 
 
-def _mapped(s: Interleaved, u: Array, t: Array, rho: float) -> tuple[Array, Array]:
+def _mapped(s: Scaled, u: Array, t: Array, rho: float) -> tuple[Array, Array]:
     """Return the trial forces t - rho y and what the return map makes of them, (m, d) both."""
-    w = t - rho * s.opening(u, t)
-    w[~s.cone.rough, 1:] = 0.0
+    w = t - rho * s.position(u, t)
+    w[~s.rough, 1:] = 0.0
     return w, s.cone.project(w, s.dilatancy)
 
 
-def finish(s: Interleaved, u: Array, t: Array, *, rho: float = 1.0, rounds: int = 20) -> Finished:
+def finish(s: Scaled, u: Array, t: Array, *, rho: float = 1.0, rounds: int = 20) -> Finished:
     """Turn a point close to a solution into the solution, if Newton's method converges.
 
     Parameters
     ----------
-    s : Interleaved
+    s : Scaled
     u, t : (N,), (m, d) arrays
         The point, scaled, forces shifted.
     rho : float
@@ -120,11 +119,11 @@ def finish(s: Interleaved, u: Array, t: Array, *, rho: float = 1.0, rounds: int 
     return replace(best, solves=solves)
 
 
-def _newton(s: Interleaved, u: Array, t: Array, rho: float) -> tuple[Array, Array] | None:
+def _newton(s: Scaled, u: Array, t: Array, rho: float) -> tuple[Array, Array] | None:
     """Return the point after one Newton step; None where the matrix cannot be factorised."""
     w, mapped = _mapped(s, u, t, rho)
     J = s.cone.derivative(w, s.dilatancy)
-    J[~s.cone.rough, 1:, :] = 0.0
+    J[~s.rough, 1:, :] = 0.0
     eye = np.eye(s.dim)
     soft = s.compliance + (DELTA / s.share)[:, None]
     H = eye - J * (1.0 - rho * s.compliance)[:, None, :]
@@ -142,9 +141,9 @@ def _newton(s: Interleaved, u: Array, t: Array, rho: float) -> tuple[Array, Arra
     for _ in range(REFINEMENTS):
         pushed = times(inverse, e2)
         x = s.factor.solve(e1 + s.pull(pushed))
-        du, dt = du + x, dt + pushed - times(D, s.rate(x))
+        du, dt = du + x, dt + pushed - times(D, s.along(x))
         e1 = r_u - s.elastic(du) + s.pull(dt)
-        e2 = r_t - times(B, s.rate(du)) - times(H, dt)
+        e2 = r_t - times(B, s.along(du)) - times(H, dt)
         worst = max(float(np.abs(e1).max(initial=0.0)), float(np.abs(e2).max(initial=0.0)))
         if not worst < 0.5 * least:
             break

@@ -15,10 +15,11 @@ D with a small dense block for each pair, symmetric, of the pattern of the block
 of an iterate lie strictly inside their cones, so the motion is admissible to rounding as soon as Cv = G'z holds; what
 forces and motion prove is for the caller to recompute from the original data.
 
-Two things decide how far this goes on degenerate structures, where M spans twenty powers of ten. The roots F of D come
-from the scaling itself, never from inverting M, and forces are unknown as F dx. And the change of the multipliers is
-read from the motion, G'dz = C dv + residual, whose rounding is small, not from M d beta, which cancels. Without the
-second the gap stops at 1e-6 to 1e-8, with it at 1e-12.
+Degenerate structures, where M spans twenty powers of ten, decide how it must be computed. The roots F of D come from
+the scaling itself, never from inverting M, and forces are unknown as F dx. The change of the multipliers is read from
+the motion, G'dz = C dv + residual, whose rounding is small, not from M d beta, which cancels: without this the gap
+stops at 1e-6 to 1e-8, with it at 1e-12. Where friction is exhausted in all joints at once, C'DC is worse than 1e16:
+then the system in dx and dv is solved as a whole, with pivoting.
 
 Reference: Alizadeh and Goldfarb, Second-order cone programming, Math. Programming 95 (2003), 3-51.
 """
@@ -267,11 +268,13 @@ class _Step:
             return None
         F, squeeze = _roots(it, p, scaling)
         D = np.matmul(F, F.transpose(0, 2, 1))
-        try:
-            it.factor.factorise(D, PROXIMAL * min(1.0, float(np.median(D[:, 0, 0]))))
-            border = it.factor.solve(g)
-        except SingularMatrixError:
-            return None
+        border = np.zeros(0)
+        if not it.degenerate:
+            try:
+                it.factor.factorise(D, PROXIMAL * min(1.0, float(np.median(D[:, 0, 0]))))
+                border = it.factor.solve(g)
+            except SingularMatrixError:
+                it.degenerate = True
         return cls(it, p, g, (r_p, r_d, r_g), beta, scaling, F, squeeze, border)
 
     def solve(self, b: Array) -> tuple[Array, float, Array] | None:
@@ -324,12 +327,16 @@ class _Step:
         loose = -PROXIMAL * sp.eye_array(self.g.size)
         matrix = sp.block_array([[sp.eye_array(m * d), FC, None], [FC.T, loose, g], [None, g.T, None]], format="csc")
         splu: Any = sla.splu
-        return splu(sp.csc_matrix(matrix))
+        try:
+            return splu(sp.csc_matrix(matrix))
+        except RuntimeError:
+            return None
 
     def _pivoted(self, e1: Array, e2: Array, e3: float) -> tuple[Array, Array, float]:
         """Solve the whole system with pivoting."""
         n = e2.size
-        x = self._mixed.solve(np.concatenate([e2.ravel(), e1, [e3]]))
+        right = np.concatenate([e2.ravel(), e1, [e3]])
+        x = np.full(right.size, np.nan) if self._mixed is None else self._mixed.solve(right)
         return x[n:-1], x[:n].reshape(e2.shape), float(x[-1])
 
     def direction(self, rc_z: Array, rc_t: Array, rc_w: Array) -> _Point | None:
@@ -411,11 +418,12 @@ def _roots(it: ConeInterior, p: _Point, scaling: Scaling) -> tuple[Array, Array]
     F = np.zeros((it.pairs.count, d, d))
     F[both] = scaling.W[both]
     F[both, 0, :] /= it.mu[both, None]
-    v = F[:, 0, :]
+    v = F[:, 0, :].copy()
     size = np.where(both, (v * v).sum(axis=1), 1.0)
     less = (1.0 - 1.0 / np.sqrt(1.0 + own * size)) / size
     squeeze = np.where(both[:, None], np.sqrt(less)[:, None] * v, 0.0)
     F -= times(F, squeeze)[:, :, None] * squeeze[:, None, :]
+    F[both, 0, :] = (v / np.sqrt(1.0 + own * size)[:, None])[both]  # the same, without cancellation at a cap
     F[~both, 0, 0] = 1.0 / np.sqrt(own[~both])
     tresca = it.rough & ~both
     if tresca.any():

@@ -18,17 +18,13 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
-from concio.solvers.algebra.dimensionless import interleaved
+from concio.solvers.algebra.scaled import interleaved
 from concio.solvers.algebra.second_order_cone import determinant, times
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
-from concio.solvers.statics.cone_interior import PROXIMAL, TARGET, ConeAnswer, ConeInterior, Pairs
-from concio.solvers.statics.cone_newton import sharpen
+from concio.solvers.statics.cone_interior import PROXIMAL, ConeAnswer, ConeInterior, Pairs
 
 ROUNDING = 1e-14
 """Share of the total load that forces may leave unbalanced, or exceed strengths by, before they are balanced anew."""
-
-CLOSE = 1e-3
-"""Gap below which Newton's method is tried on an answer that the interior point left short of its target."""
 
 ENDLESS = 1e7
 """Multiplier, in units of the programme, from which on a load may be one that can grow without end."""
@@ -165,18 +161,10 @@ class ConeStatics:
             return a.multiplier >= size and a.primal < 1e-11
 
         answer = it.solve(e, g / size, start=ones, stop=carries)
-        if not carries(answer):
-            answer = self._sharp(answer, e, g / size)
         multiplier = answer.multiplier / size
         share = min(1.0 / multiplier, 1.0) if multiplier > 0 else 1.0
         t = (1.0 - share) * ones + share * answer.t
         return self._judged(t, f, answer.v, multiplier)
-
-    def _sharp(self, answer: ConeAnswer, e: Array, g: Array) -> ConeAnswer:
-        """Return an answer made exact by Newton's method where it is not and that gets there."""
-        if max(answer.primal, answer.dual, answer.gap) <= TARGET or not answer.gap < CLOSE:
-            return answer
-        return sharpen(self.programme, e, g, answer) or answer
 
     def _judged(self, t: Array, f: Array, v: Array, multiplier: float) -> Balance:
         real = self.real(t)
@@ -195,7 +183,6 @@ class ConeStatics:
         answer = it.solve(e, g / size, stop=lambda a: a.multiplier > ENDLESS)
         if answer.multiplier > ENDLESS:
             return Bounds(np.inf, self.real(answer.t), np.inf, self.velocity(answer.v))
-        answer = self._sharp(answer, e, g / size)
         multiplier = answer.multiplier / size
         load = self.problem.f + multiplier * live
         t = self.real(answer.t)
