@@ -66,7 +66,7 @@ def test_limit_without_a_limit_or_a_load(tmp_path: Path) -> None:
     path.write_text("[column]\nwidth=0.5\nheight=1\nblocks=2\ntop_force=10\n")
     code, out, _ = run("limit", path, "--group", "top")
     assert code == 0
-    assert "associated bound     none" in out
+    assert "associated bound     locked" in out
     code, out, _ = run("limit", path, "--group", "top", "--json")
     assert json.loads(out)["associated_multiplier"] is None
     code, _, err = run("limit", path)

@@ -31,7 +31,7 @@ def panel():
 
 
 def stages(steps: int) -> list[Stage]:
-    return [Stage("weight", {"dead": 1.0}, steps=1), Stage("push", {"horizontal": PUSH}, steps=steps)]
+    return [Stage("weight", {"dead": 1.0}, steps=1), Stage("push", {"live": PUSH}, steps=steps)]
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +81,7 @@ def self_stress(panel, problem, t_n, t_t):
 
 
 def test_a_step_without_change_changes_no_forces(panel, exact):
-    problem = panel.problem({"dead": 1.0, "horizontal": PUSH})
+    problem = panel.problem({"dead": 1.0, "live": PUSH})
     first = engine.solve(problem)
     assert first.solved
     t_n, t_t = first.normal_force, first.friction_force[:, 0]

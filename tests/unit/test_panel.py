@@ -70,7 +70,7 @@ def test_loads_of_the_panel():
     total = {g: f.reshape(-1, 2).sum(0) for g, f in assembly.loads.items()}
     weight = 20 * 0.4 * 0.2 * 0.3
     np.testing.assert_allclose(total["dead"], [0, -weight])
-    np.testing.assert_allclose(total["horizontal"], [0.1 * weight, 0], atol=1e-15)
+    np.testing.assert_allclose(total["live"], [0.1 * weight, 0], atol=1e-15)
     np.testing.assert_allclose(total["top"], [0, -10 * 0.4 * 0.3], atol=1e-15)
 
 

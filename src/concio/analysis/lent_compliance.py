@@ -1,8 +1,15 @@
-"""A small compliance for hard joints between rigid blocks, whose forces are otherwise not determined.
+r"""Rigid blocks are the limit of stiff joints: a vanishing compliance for hard joints that nothing else makes yield.
 
-A path needs to know which joint slips next, and between rigid blocks on hard joints the forces are not unique. For
-paths only, such joints get a uniform compliance, tangential 2.5 times the normal one, and whoever lends it says so.
-Without initial gaps the multipliers of a path do not depend on its size, but they do on the ratio.
+Between bodies that do not deform, joined by hard joints, forces are not determined, and Coulomb's law is void: slip is
+opposed by friction only where it is known which way a pair would slip, and without displacements no pair does. Any
+forces within the cones would pass for a solution: a block squeezed between two faces would hang there, though nothing
+ever squeezed it. So such joints are lent a compliance, and everybody who solves, follows a path or asks for a margin
+lends the same and says so. It is spread like that of a thin layer, in proportion to one over the area of a pair, and
+is tangentially :data:`SHEAR_TO_NORMAL` times the normal one.
+
+Where no support moves and no gap is closed the problem is homogeneous: forces, states and multipliers do not depend on
+the size of the compliance at all, displacements are proportional to it. Otherwise it is small beside what moves. Forces
+do depend on the ratio, as they do on the stiffness of a real wall.
 """
 
 from __future__ import annotations
@@ -11,52 +18,95 @@ from dataclasses import replace
 
 import numpy as np
 
-from concio.contact.assembly import Assembly
-from concio.problem.contact_problem import Array, ContactProblem
+from concio.contact.assembly import Assembly, as_assembly
+from concio.model.model import Model
+from concio.problem.contact_problem import Array, ContactProblem, Laws
 
 SHEAR_TO_NORMAL = 2.5
-"""Tangential over normal compliance lent to hard joints of rigid blocks: Poisson's ratio 0.25."""
+"""Tangential over normal compliance lent: that of an elastic layer with Poisson's ratio 0.25."""
 
-CLOSING = 1e-6
-"""Displacement under the heaviest nodal load that fixes the size of the compliance [m]."""
+CLOSING = 1e-9
+"""Closing of a pair of mean area under the heaviest nodal load [m]..."""
+
+OF_MOVEMENTS = 1e-4
+"""...or, where supports move, this share of the largest movement imposed on a joint: less, and double precision could
+not tell forces from rounding."""
+
+
+def lent_assembly(model: Model | Assembly) -> Assembly:
+    """Return the assembly of a model, see :func:`lend`; raises as :func:`concio.contact.assembly.as_assembly` does."""
+    return lend(as_assembly(model))
+
+
+def lend(assembly: Assembly) -> Assembly:
+    """Lend a vanishing compliance to every hard pair neither side of which deforms.
+
+    Parameters
+    ----------
+    assembly : Assembly
+        One to which compliance was lent already is returned as it is.
+
+    Returns
+    -------
+    Assembly
+        Its ``lent_compliance`` says how much [m/kN, a pair of mean area], 0 where none was needed.
+    """
+    pairs, law = assembly.pairs, assembly.laws
+    if assembly.lent_compliance or not len(pairs):
+        return assembly
+    deforms = np.array([body.kind == "elastic" for body in assembly.model.bodies] + [False])  # the last: a fixed point
+    stiff = ~(deforms[pairs.body_a] | deforms[pairs.body_b])
+    normal, tangential = stiff & (law.normal_compliance == 0), stiff & (law.tangential_compliance == 0)
+    force = max((float(np.abs(load).max(initial=0.0)) for load in assembly.loads.values()), default=0.0)
+    if not (normal | tangential).any() or not force:
+        return assembly
+    lent = max(CLOSING, OF_MOVEMENTS * _movements(assembly)[stiff].max(initial=0.0)) / force
+    return replace(assembly, laws=_softer(law, pairs.area, stiff, lent), lent_compliance=lent)
 
 
 def with_compliance(problem: ContactProblem, live: Array) -> tuple[ContactProblem, float]:
-    """Lend a small compliance to every hard pair where bodies do not deform; return the problem and a_n [m/kN].
+    """Lend a small compliance to every hard pair of a problem in which nothing deforms; return it and the compliance.
 
     Parameters
     ----------
     problem : ContactProblem
     live : (N,) array
         Loads from which the size is taken where the problem has none.
+
+    Returns
+    -------
+    ContactProblem
+        The problem itself where something deforms, or no pair is hard.
+    float
+        Normal compliance of a pair of mean area [m/kN], 0 where none was lent.
     """
-    if problem.K.nnz and np.abs(problem.K.data).any():
-        return problem, 0.0
-    return _lend(problem, live, np.ones(problem.pairs, dtype=bool))
-
-
-def assembly_with_compliance(assembly: Assembly) -> tuple[Assembly, float]:
-    """Lend a small compliance to every hard pair neither side of which deforms; return the assembly and a_n [m/kN]."""
-    bodies = assembly.model.bodies
-    elastic = np.array([body.kind == "elastic" for body in bodies] + [False])  # the last one: a point fixed in space
-    problem = assembly.problem()
-    live = np.sum([np.abs(assembly.supported.T.T @ load) for load in assembly.loads.values()], axis=0)
-    pairs = assembly.pairs
-    lent, size = _lend(problem, np.atleast_1d(live), ~(elastic[pairs.body_a] | elastic[pairs.body_b]))
-    return (replace(assembly, laws=lent.laws), size) if size else (assembly, 0.0)
-
-
-def _lend(problem: ContactProblem, live: Array, where: Array) -> tuple[ContactProblem, float]:
     law = problem.laws
-    normal = where & (law.normal_compliance == 0)
-    tangential = where & (law.tangential_compliance == 0)
+    hard = (law.normal_compliance == 0) | (law.tangential_compliance == 0)
     force = float(np.abs(problem.f).max(initial=0.0)) or float(np.abs(live).max(initial=0.0))
-    if not (normal | tangential).any() or not force:
+    if (problem.K.nnz and np.abs(problem.K.data).any()) or not hard.any() or not force:
         return problem, 0.0
-    lent = CLOSING / force
-    laws = replace(
+    everywhere = np.ones(problem.pairs, dtype=bool)
+    return replace(problem, laws=_softer(law, problem.area, everywhere, CLOSING / force)), CLOSING / force
+
+
+def _softer(law: Laws, area: Array, where: Array, lent: float) -> Laws:
+    """Return the laws with compliance lent to the hard pairs among ``where`` (m,), in proportion to 1 / area."""
+    compliance = lent * area[where].mean() / area
+    normal, tangential = where & (law.normal_compliance == 0), where & (law.tangential_compliance == 0)
+    return replace(
         law,
-        normal_compliance=np.where(normal, lent, law.normal_compliance),
-        tangential_compliance=np.where(tangential, SHEAR_TO_NORMAL * lent, law.tangential_compliance),
+        normal_compliance=np.where(normal, compliance, law.normal_compliance),
+        tangential_compliance=np.where(tangential, SHEAR_TO_NORMAL * compliance, law.tangential_compliance),
     )
-    return replace(problem, laws=laws), lent
+
+
+def _movements(assembly: Assembly) -> Array:
+    """Return the largest movement (m,) that supports, moved obstacles or overlaps impose on each pair [m]."""
+    pairs = assembly.pairs
+    m = len(pairs)
+    moved = [np.maximum(-pairs.gap, 0.0)]
+    for normal, tangential in assembly.moved.values():
+        moved += [np.abs(normal), np.abs(tangential).reshape(m, -1).max(axis=1)]
+    for u in assembly.supported.imposed.values():
+        moved += [np.abs(pairs.C_n @ u), np.abs(pairs.C_t @ u).reshape(m, -1).max(axis=1)]
+    return np.asarray(np.max(moved, axis=0))

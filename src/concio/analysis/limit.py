@@ -22,10 +22,10 @@ from typing import Any
 
 import numpy as np
 
-from concio.analysis.lent_compliance import with_compliance
+from concio.analysis.lent_compliance import lent_assembly
 from concio.arguments import closest, strict
 from concio.contact.assembly import Assembly, as_assembly
-from concio.errors import InputError, NoEquilibriumError
+from concio.errors import InputError, NoEquilibriumError, SolverError
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback
@@ -44,6 +44,9 @@ LARGEST_SEARCH = 15_000
 
 MOST_PROGRAMMES, SEARCH_WORK = 60, 350_000
 """Linear programmes of that search at most, and their number times the pairs."""
+
+LIVE = "live"
+"""Load group that is multiplied unless another is named; generators put their horizontal load there."""
 
 FAR = 50.0
 """The path is followed to this multiple of the displacement at its first limit point."""
@@ -64,6 +67,8 @@ class LimitResult:
         Certified state in which the structure can begin to move under Coulomb friction, the least found.
     search : str
         What the search for collapse states did, or why it was not tried.
+    path_note : str
+        Why there is no path, where there is none.
     first_limit : float
         Multiplier at which the path under growing load first finds no continuous way on: that of its first jump, or
         its end; ``nan`` without a path.
@@ -83,6 +88,7 @@ class LimitResult:
     collapse_shown: bool
     lent_compliance: float
     search: str = "not asked for"
+    path_note: str = ""
 
     @property
     def carried(self) -> float:
@@ -123,8 +129,9 @@ class LimitResult:
         """Return the numbers of ``--json``."""
         a = self.associated
         return {
-            "associated_multiplier": a.multiplier,
-            "associated_upper_bound": a.upper,
+            "associated": "locked" if a.locked else "bounded",
+            "associated_multiplier": _number(a.multiplier),
+            "associated_upper_bound": _number(a.upper),
             "duality_gap": a.gap,
             "static_residual": a.residual,
             "mechanism_violation": None if a.mechanism is None else a.mechanism.violation,
@@ -134,11 +141,17 @@ class LimitResult:
             "collapse_state_multiplier": None if self.collapse_state is None else self.collapse_state.multiplier,
             "collapse_state_search": self.search,
             "coulomb_first_limit": None if self.path is None else self.first_limit,
+            "path_note": self.path_note,
             "path_outcome": None if self.path is None else self.path.outcome.name.lower(),
             "path_events": None if self.path is None else len(self.path.events),
             "path_jumps": None if self.path is None else len(self.path.jumps),
             "lent_compliance": self.lent_compliance,
         }
+
+
+def _number(value: float) -> float | None:
+    """Return a number, or None for what is none: a word beside it says which."""
+    return value if np.isfinite(value) else None
 
 
 @strict
@@ -170,23 +183,38 @@ def limit(
     NoEquilibriumError
         The dead load alone cannot be carried.
     """
-    assembly = as_assembly(model)
+    assembly = lent_assembly(model)
     dead, load = dead_and_live(assembly, live)
     mechanism = find_mechanism(dead)
     if mechanism is not None:
         msg = "the dead load alone cannot be carried: a mechanism proves it"
         raise NoEquilibriumError(msg, hint="solve the model with the live load factor 0 and look at the mechanism")
     bound = associated_limit(dead, load)
+    lent = assembly.lent_compliance
     if not np.isfinite(bound.multiplier):
         none = "not tried: no load is the last"
-        return LimitResult(assembly, bound, None, None, float("nan"), False, 0.0, search=none)
-    first, found, shown, lent = float("nan"), None, False, 0.0
+        return LimitResult(assembly, bound, None, None, float("nan"), False, lent, search=none, path_note=none)
+    first, found, shown, note = float("nan"), None, False, "not asked for"
     if path:
-        problem, lent = with_compliance(dead, load)
-        found, shown = coulomb_path(problem, load, progress=progress)
-        first = min((e.parameter for e in found.jumps), default=found.peak)
+        weight = dead_load_path(dead, progress=progress)
+        note = _not_begun(weight)
+        if not note:
+            found, shown = live_load_path(dead, load, weight.end, progress=progress)
+            first = min((e.parameter for e in found.jumps), default=found.peak)
     state, said = search_collapse(dead, load) if (path if search is None else search) else (None, "not asked for")
-    return LimitResult(assembly, bound, found, state, first, shown, lent, search=said)
+    return LimitResult(assembly, bound, found, state, first, shown, lent, search=said, path_note=note)
+
+
+def _not_begun(weight: EventPath) -> str:
+    """Return why a path of the live load was not begun; nothing where that of the dead load reached its end."""
+    if weight.outcome is Outcome.REACHED:
+        return ""
+    if weight.outcome is Outcome.CANCELLED:
+        return "stopped on request before the dead load was reached"
+    return (
+        f"not begun: growing from nothing, the dead load itself is followed to {weight.end.parameter:.4g} of its value "
+        "only; that proves nothing about another history"
+    )
 
 
 def search_collapse(dead: ContactProblem, live: Array) -> tuple[CollapseState | None, str]:
@@ -203,19 +231,39 @@ def search_collapse(dead: ContactProblem, live: Array) -> tuple[CollapseState | 
 
 
 @strict
-def friction_margin(model: Model | Assembly, live: str | Sequence[str] = "live", factor: float = 1.0) -> FrictionMargin:
+def friction_margin(
+    model: Model | Assembly, live: str | Sequence[str] | None = None, factor: float = 1.0
+) -> FrictionMargin:
     """Return the smallest common factor of all friction coefficients that still admits equilibrium.
 
     Parameters
     ----------
     model : Model or Assembly
-    live : str or sequence of str
+    live : str or sequence of str, optional
+        Load groups with another factor than 1; by default "live" where there is such a group.
     factor : float
         Load factor of the live groups; all others have 1.
+
+    Raises
+    ------
+    InputError
+        A group does not exist; or a factor is given, and there is no live group to multiply.
     """
-    assembly = as_assembly(model)
+    return smallest_friction(factored_problem(as_assembly(model), live, factor))
+
+
+def factored_problem(assembly: Assembly, live: str | Sequence[str] | None, factor: float) -> ContactProblem:
+    """Return the problem with the live groups at ``factor`` and all others at 1; without live groups as it is."""
+    if live is None:
+        if LIVE in assembly.groups:
+            live = LIVE
+        elif factor == 1.0:
+            return assembly.problem()
+        else:
+            msg = f"there is no load group '{LIVE}' that the factor {factor:g} could multiply"
+            raise InputError(msg, hint="name one with live=...; groups: " + ", ".join(assembly.groups))
     dead, load = dead_and_live(assembly, live)
-    return smallest_friction(dead.with_loads(dead.f + factor * load))
+    return dead.with_loads(dead.f + factor * load)
 
 
 def dead_and_live(assembly: Assembly, live: str | Sequence[str]) -> tuple[ContactProblem, Array]:
@@ -233,13 +281,18 @@ def dead_and_live(assembly: Assembly, live: str | Sequence[str]) -> tuple[Contac
     return dead, load
 
 
+def dead_load_path(problem: ContactProblem, *, progress: ProgressCallback | None = None) -> EventPath:
+    """Follow the load of a problem from nothing to its value."""
+    zero = np.zeros(problem.pairs)
+    touching = np.where(problem.gap > 0, OPEN, CLOSED).astype(np.int8)
+    rest = PathState(0.0, np.zeros(problem.unknowns), zero, zero, touching, zero.astype(np.int8), zero, zero)
+    return follow(LinearPath(problem.with_loads(0.0 * problem.f), problem.f), rest, until=1.0, progress=progress)
+
+
 def coulomb_path(
     problem: ContactProblem, live: Array, *, progress: ProgressCallback | None = None
 ) -> tuple[EventPath, bool]:
     """Follow dead load, then live load, to collapse; return the path, and whether its peak is shown to be collapse.
-
-    Under growing load the path goes as far as certified states go, over jumps; from there the displacement that the
-    load works on is controlled, to see the structure move.
 
     Parameters
     ----------
@@ -250,18 +303,35 @@ def coulomb_path(
 
     Raises
     ------
-    NoEquilibriumError
-        The path of the dead load itself comes to an end.
+    SolverError
+        The path of the dead load itself comes to an end, which proves nothing about another history.
     """
-    zero = np.zeros(problem.pairs)
-    touching = np.where(problem.gap > 0, OPEN, CLOSED).astype(np.int8)
-    rest = PathState(0.0, np.zeros(problem.unknowns), zero, zero, touching, zero.astype(np.int8), zero, zero)
-    weight = follow(LinearPath(problem.with_loads(0.0 * problem.f), problem.f), rest, until=1.0, progress=progress)
+    weight = dead_load_path(problem, progress=progress)
     if weight.outcome is not Outcome.REACHED:
         msg = f"the dead load is not reached on its own path: {weight.outcome.value}"
-        raise NoEquilibriumError(msg, hint=f"it stops at {weight.end.parameter:.4g} of the dead load")
+        raise SolverError(msg, hint=f"it stops at {weight.end.parameter:.4g} of the dead load")
+    return live_load_path(problem, live, weight.end, progress=progress)
+
+
+def live_load_path(
+    problem: ContactProblem, live: Array, start: PathState, *, progress: ProgressCallback | None = None
+) -> tuple[EventPath, bool]:
+    """Follow the live load to collapse; return the path, and whether its peak is shown to be collapse.
+
+    Under growing load the path goes as far as certified states go, over jumps; from there the displacement that the
+    load works on is controlled, to see the structure move.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+        With its dead load.
+    live : (N,) array
+    start : PathState
+        State under the dead load, the end of :func:`dead_load_path`.
+    progress : callable, optional
+    """
     path = LinearPath(problem, live)
-    start = replace(weight.end, parameter=0.0, work=0.0, dissipation=0.0)
+    start = replace(start, parameter=0.0, work=0.0, dissipation=0.0)
     growing = follow(path, start, until=1e6, progress=progress)
     shown = growing.outcome is Outcome.LIMIT
     control = live / float(np.abs(live).sum())

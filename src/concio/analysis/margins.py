@@ -15,9 +15,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from concio.analysis.limit import dead_and_live
+from concio.analysis.lent_compliance import lent_assembly
+from concio.analysis.limit import dead_and_live, factored_problem
 from concio.arguments import strict
-from concio.contact.assembly import Assembly, as_assembly
+from concio.contact.assembly import Assembly
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Status
@@ -54,6 +55,21 @@ class Margin:
     proven: float
     solves: int
 
+    @property
+    def locked(self) -> bool:
+        """True where any multiple of the load is carried: no factor is the last."""
+        return self.holds == float("inf")
+
+    @property
+    def words(self) -> str:
+        """What was found, in words."""
+        if self.locked:
+            return "locked: any multiple of the load is carried"
+        if self.holds != self.holds:
+            return "no certified equilibrium was found"
+        found = f"a certified equilibrium at {self.holds:.6g}"
+        return found if self.fails != self.fails else f"{found}, none found at {self.fails:.6g}"
+
 
 @strict
 def load_margin(model: Model | Assembly, live: str | Sequence[str] = "live", tolerance: float = 1e-3) -> Margin:
@@ -74,7 +90,7 @@ def load_margin(model: Model | Assembly, live: str | Sequence[str] = "live", tol
     InputError
         A group does not exist, or the live groups hold no load.
     """
-    assembly = as_assembly(model)
+    assembly = lent_assembly(model)
     dead, load = dead_and_live(assembly, live)
     limit = associated_limit(dead, load).multiplier
     if not (limit < FAR):
@@ -84,14 +100,15 @@ def load_margin(model: Model | Assembly, live: str | Sequence[str] = "live", tol
 
 @strict
 def friction_by_solving(
-    model: Model | Assembly, live: str | Sequence[str] = "live", factor: float = 1.0, tolerance: float = 1e-3
+    model: Model | Assembly, live: str | Sequence[str] | None = None, factor: float = 1.0, tolerance: float = 1e-3
 ) -> Margin:
     """Return the smallest common factor of all friction coefficients with which :func:`concio.solve` was found to hold.
 
     Parameters
     ----------
     model : Model or Assembly
-    live : str or sequence of str
+    live : str or sequence of str, optional
+        Load groups with another factor than 1; by default "live" where there is such a group.
     factor : float
         Load factor of the live groups; all others have 1.
     tolerance : float
@@ -102,9 +119,7 @@ def friction_by_solving(
     InputError
         A group does not exist, or the live groups hold no load.
     """
-    assembly = as_assembly(model)
-    dead, load = dead_and_live(assembly, live)
-    loaded = dead.with_loads(dead.f + factor * load)
+    loaded = factored_problem(lent_assembly(model), live, factor)
     least = smallest_friction(loaded).factor
     return _bisect(loaded.with_friction, 1.0, least, tolerance)
 

@@ -18,10 +18,10 @@ from typing import Literal
 
 import numpy as np
 
-from concio.analysis.lent_compliance import SHEAR_TO_NORMAL, assembly_with_compliance
+from concio.analysis.lent_compliance import SHEAR_TO_NORMAL, lent_assembly
 from concio.analysis.path_result import NamedEvent, PathResult, PathStep, control_functional, named_event
 from concio.arguments import closest, strict
-from concio.contact.assembly import Assembly, as_assembly
+from concio.contact.assembly import Assembly
 from concio.errors import InputError, SolverError
 from concio.model.model import Model
 from concio.model.stages import ControlPoint, Stage
@@ -75,7 +75,7 @@ def run_path(
     SolverError
         A stage could not even be begun.
     """
-    assembly = as_assembly(model)
+    assembly = lent_assembly(model)
     stages = stages or assembly.model.stages
     if not stages:
         msg = "a load path needs at least one stage"
@@ -83,7 +83,6 @@ def run_path(
     if brittle and method != "steps":
         msg = "joints that break are followed in steps only"
         raise InputError(msg, hint="use method='steps'")
-    assembly, lent = assembly_with_compliance(assembly)
     factors = dict.fromkeys(assembly.groups, 0.0)
     state: PathState | None = None
     if restart is not None:
@@ -93,7 +92,7 @@ def run_path(
     events: list[NamedEvent] = []
     outcomes: list[Outcome] = []
     notes: list[str] = []
-    if lent:
+    if lent := assembly.lent_compliance:
         notes.append(
             f"hard joints between rigid blocks were lent a compliance of {lent:.3g} m/kN, {SHEAR_TO_NORMAL:g} times as "
             "much along the joint: without it their forces are not determined"

@@ -11,6 +11,7 @@ import numpy as np
 
 from concio.analysis.contacts import STATE_NAMES, Contacts, JointResultants, joint_resultants
 from concio.analysis.stress import Stress
+from concio.analysis.verdict import attention, self_stress, sentence
 from concio.arguments import closest
 from concio.contact.assembly import Assembly
 from concio.display import Units
@@ -20,6 +21,7 @@ from concio.kinematics.rigid import rigid_operator, swept
 from concio.model.model import Model
 from concio.problem.certificate import Certificate
 from concio.problem.solution import Mechanism, Solution, Status, pair_states
+from concio.solvers.statics.self_stress import SelfStress
 from concio.solvers.statics.sufficient import SufficientCondition, sufficient_condition
 
 if TYPE_CHECKING:
@@ -82,12 +84,17 @@ class Result:
         What the solver found, judged against the original equations.
     seconds : mapping
         ``total``, ``assemble``, ``solve`` [s].
+    lent_compliance : float
+        Normal compliance with which hard joints between rigid bodies were solved, a pair of mean area [m/kN]; 0 where
+        there are none. The answer of a solved step is its limit for stiff joints; where there is none, ``assembly``
+        holds the compliance.
     """
 
     assembly: Assembly
     factors: Mapping[str, float]
     solution: Solution
     seconds: Mapping[str, float]
+    lent_compliance: float = 0.0
 
     @property
     def model(self) -> Model:
@@ -276,6 +283,21 @@ class Result:
         return notebook_html(self)
 
     @cached_property
+    def self_stress(self) -> SelfStress | None:
+        """Forces that would hold a structure which collapses as it is loaded, least compression; None otherwise."""
+        return self_stress(self)
+
+    @property
+    def sentence(self) -> str:
+        """The outcome in words, with what is known of it here."""
+        return sentence(self)
+
+    @property
+    def attention(self) -> tuple[str, ...]:
+        """What asks for attention in a solved step, a sentence each: large motions, forces far above the loads."""
+        return attention(self)
+
+    @cached_property
     def existence(self) -> SufficientCondition:
         """The paper's sufficient condition: normal forces alone, all positive, balance the loads; with its margin."""
         return sufficient_condition(self.assembly.problem(self.factors))
@@ -285,7 +307,7 @@ class Result:
         contacts = self.contacts if self.solved else None
         data: dict[str, Any] = {
             "status": self.status.name.lower(),
-            "sentence": self.status.value,
+            "sentence": self.sentence,
             "method": self.method,
             "title": self.model.title,
             "bodies": len(self.model.free_bodies),
@@ -300,16 +322,20 @@ class Result:
             "load_factors": {g: float(self.factors.get(g, 1.0)) for g in self.assembly.groups},
             "total_load": list(self.total_load),
             "trace": list(self.solution.trace),
+            "lent_compliance": self.lent_compliance,
             "units": {"force": "kN", "length": "m", "stress": "kN/m2"},
         }
         if contacts is not None:
             data["max_settlement"] = self.max_settlement
             data["joint_motion"] = asdict(self.joint_motion)
+            data["attention"] = list(self.attention)
             data["reactions"] = {name: list(force) for name, force in self.reactions.items()}
             data["pairs"] = {name: contacts.count(name) for name in STATE_NAMES}
         if 0 < len(self.assembly.pairs) <= EXISTENCE:  # without pairs there is nothing to guarantee
             condition = self.existence
             data["sufficient_condition"] = {"holds": condition.holds, "margin": _finite(condition.margin)}
+        if self.self_stress is not None:
+            data["self_stress"] = {"compression": self.self_stress.compression, "load": self.self_stress.load}
         if self.mechanism is not None:
             data["mechanism"] = {"power": self.mechanism.power, "violation": self.mechanism.violation}
         return data

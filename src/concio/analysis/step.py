@@ -6,12 +6,14 @@ import time
 from collections.abc import Mapping
 from typing import Any, Literal
 
+from concio.analysis.lent_compliance import lend
 from concio.analysis.result import Result
 from concio.arguments import options_of, strict
 from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import NoEquilibriumError, SolverError
 from concio.model.model import Model
 from concio.problem.solution import ProgressCallback, Solver, Status
+from concio.solvers.algebra.stiff_limit import without_compliance
 from concio.solvers.methods import check_options, find
 
 
@@ -60,24 +62,29 @@ def solve(
     check_options(method, options, function="solve()", others=("method", *options_of(solve)))
     begin = time.perf_counter()
     assembly = as_assembly(model, jointless=True, periodic=bool(factors))
-    problem = assembly.problem(factors)
+    lent = lend(assembly)
+    problem = lent.problem(factors)
     if not problem.pairs:  # K u = f: there are no states to find, whatever the method
         solver, options = find("sparse-lemke"), {}
     assembled = time.perf_counter()
     solution = solver(problem, progress=progress, **options)
+    stiff = None
+    if lent.lent_compliance and solution.solved:
+        stiff = without_compliance(assembly.problem(factors), problem, solution)
     end = time.perf_counter()
     seconds = {"total": end - begin, "assemble": assembled - begin, "solve": end - assembled}
-    result = Result(assembly, dict(factors or {}), solution, seconds)
+    judged = (lent, solution) if stiff is None else (assembly, stiff)
+    result = Result(judged[0], dict(factors or {}), judged[1], seconds, lent.lent_compliance)
     if solution.solved or on_failure == "return":
         return result
     detail = "; ".join(solution.trace)
     if solution.status in (Status.NO_EQUILIBRIUM, Status.COLLAPSES):
         raise NoEquilibriumError(
-            solution.status.value, hint="solve with on_failure='return' and look at result.mechanism"
+            result.sentence, hint="solve with on_failure='return' and look at result.mechanism"
         )
     if solution.status is Status.NO_COULOMB_STATE:
         raise NoEquilibriumError(
-            solution.status.value, hint="solve with on_failure='return' and look at result.solution.info"
+            result.sentence, hint="solve with on_failure='return' and look at result.solution.info"
         )
     msg = f"{solution.status.value} Tried: {detail}"
     raise SolverError(msg, hint="see result.certificate with on_failure='return'")

@@ -127,7 +127,7 @@ def limit_lines(found: LimitResult, groups: list[str]) -> list[str]:
     bound, named = found.associated, "' and '".join(groups)
     lines = [found.assembly.model.title or "model without a title"]
     if math.isinf(bound.multiplier):
-        return [*lines, f"  associated bound     none: friction and geometry carry any multiple of '{named}'"]
+        return [*lines, f"  associated bound     locked: friction and geometry carry any multiple of '{named}'"]
     violation = bound.mechanism.violation if bound.mechanism else math.nan
     residuals = f"forces {bound.residual:.0e}, mechanism {violation:.0e}, gap {bound.gap:.0e}"
     if bound.checked or not bound.bounds_hold:
@@ -145,6 +145,8 @@ def limit_lines(found: LimitResult, groups: list[str]) -> list[str]:
         lines.append(f"  margin               '{named}' as given is {1.0 / bound.multiplier:.4g} of that bound")
     state_line = collapse_line(found)
     if found.path is None:
+        asked = bool(found.path_note) and found.path_note != "not asked for"
+        lines += [f"  Coulomb load path    {found.path_note}"] if asked else []
         return [*lines, state_line] if state_line else lines
     lines += path_lines(found)
     if state_line:
@@ -155,7 +157,7 @@ def limit_lines(found: LimitResult, groups: list[str]) -> list[str]:
         f"'{named}'"
     )
     if found.lent_compliance:
-        lines.append(f"  rigid joints         were lent a compliance of {found.lent_compliance:.1e} m/kN for the path")
+        lines.append("  rigid joints         were followed with a vanishing compliance, as the limit of stiff joints")
     return lines
 
 

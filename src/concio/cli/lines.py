@@ -28,7 +28,7 @@ def result_lines(result: Result) -> list[str]:
         f"  {counted(len(result.model.free_bodies), 'body', 'bodies')}, "
         f"{counted(len(assembly.detection.interfaces), 'joint')}, "
         f"{counted(len(assembly.pairs), 'contact pair')}, {counted(assembly.disc.unknowns, 'displacement')}",
-        result.status.value,
+        result.sentence,
         f"  {s.method}: {s.iterations} iterations, {seconds['solve']:.2f} s; assembled in {seconds['assemble']:.2f} s",
     ]
     certificate = result.certificate.as_dict()
@@ -51,8 +51,9 @@ def result_lines(result: Result) -> list[str]:
         if len(reactions) > len(shown):
             lines.append(f"  {'':<12} ... and {len(reactions) - len(shown)} more")
         lines += _ties(result)
-        if result.joint_motion.large:
-            lines.append(f"  attention    {result.joint_motion.sentence}")
+        if result.lent_compliance:
+            lines.append("  rigid joints decided with a vanishing compliance, as the limit of stiff joints")
+        lines += [f"  attention    {told}" for told in result.attention]
     elif result.mechanism is not None:
         word = "motion" if result.status is Status.COLLAPSES else "mechanism"
         moving = [f"'{name}'" for name, speed in moving_bodies(result) if speed > SLOW]

@@ -46,6 +46,9 @@ class Assembly:
         Nodal forces of each load group [kN].
     moved : dict of ((m,), (m, d-1)) arrays
         Change of gap and of tangential position by moved obstacles, for each group [m].
+    lent_compliance : float
+        Normal compliance lent to hard joints between bodies that do not deform, a pair of mean area [m/kN]; 0 where
+        none was (:mod:`concio.analysis.lent_compliance`).
     """
 
     model: Model
@@ -57,6 +60,7 @@ class Assembly:
     K: sp.csr_array
     loads: Mapping[str, Array]
     moved: Mapping[str, tuple[Array, Array]]
+    lent_compliance: float = 0.0
 
     @property
     def groups(self) -> tuple[str, ...]:

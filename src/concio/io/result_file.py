@@ -12,6 +12,7 @@ import json
 import platform
 import zipfile
 from collections.abc import Mapping
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -75,7 +76,7 @@ def save_result(result: Result, directory: Path) -> list[Path]:
         The two files.
     """
     encoder = Encoder(CLASSES, LEFT_OUT)
-    stored = Result(result.assembly, result.factors, _storable(result.solution), result.seconds)
+    stored = replace(result, solution=_storable(result.solution))
     tree = {
         "format": FORMAT,
         "format_version": VERSION,
@@ -158,8 +159,6 @@ COMPUTED = {"Assembly": _add_stiffness, "Pairs": _with_tangents}
 
 def _storable(solution: Solution) -> Solution:
     """Return the solution with what a method says of itself reduced to numbers, texts, lists and arrays."""
-    from dataclasses import replace
-
     return replace(solution, info=_plain(solution.info))
 
 

@@ -140,10 +140,17 @@ def verdict(result: Result) -> Verdict:
         steps.append(
             f"{places} bodies nearly touch and have no joint: 'concio check' names them. Is that what you meant?"
         )
-    if result.solved and result.joint_motion.large:
-        told = result.joint_motion.sentence
-        steps.append(f"{told[0].upper()}{told[1:]}. Read it as a warning, not as a place of rest.")
-    return replace(words, next_steps=(*steps, *words.next_steps))
+    told = [f"{line[0].upper()}{line[1:]}" for line in result.attention]
+    steps += [f"{line}. Read it as a warning, not as a place of rest." for line in told]
+    meaning = words.meaning
+    if result.self_stress is not None:
+        meaning = f"{meaning} {result.sentence.removeprefix(result.status.value).strip()}"
+    if result.lent_compliance:
+        meaning = (
+            f"{meaning} Joints between rigid blocks were decided with a vanishing compliance, as the limit of stiff "
+            "joints: without it their forces would not be determined."
+        )
+    return replace(words, meaning=meaning, next_steps=(*steps, *words.next_steps))
 
 
 def checks(result: Result) -> list[Check]:

@@ -57,6 +57,18 @@ class LimitLoad:
     mechanism: Mechanism | None
 
     @property
+    def locked(self) -> bool:
+        """True where friction and geometry carry any multiple of the load: it jams, and no multiplier is the last."""
+        return self.multiplier == np.inf
+
+    @property
+    def words(self) -> str:
+        """The multiplier, or the word for it where it is no number."""
+        if np.isnan(self.multiplier):
+            return "none: no multiple of the load is carried"
+        return "locked: any multiple of the load is carried" if self.locked else f"{self.multiplier:.6g}"
+
+    @property
     def gap(self) -> float:
         """Relative distance of the two bounds."""
         if not np.isfinite(self.multiplier):

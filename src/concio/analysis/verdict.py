@@ -1,0 +1,68 @@
+"""What a verdict means here, in words: self-stress that nothing put there, and what asks for attention."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from concio.problem.solution import Status
+from concio.solvers.statics.self_stress import SelfStress, least_compression
+
+if TYPE_CHECKING:
+    from concio.analysis.result import Result
+
+MUCH = 1000.0
+"""Forces of a joint this many times all loads are pointed out."""
+
+LARGEST = 20_000
+"""Largest number of pairs for which the forces that could hold a structure are worked out (a linear programme)."""
+
+
+def self_stress(result: Result) -> SelfStress | None:
+    """Return forces that would hold a structure which collapses as it is loaded; None where there are none."""
+    if result.status not in (Status.COLLAPSES, Status.NO_COULOMB_STATE) or len(result.assembly.pairs) > LARGEST:
+        return None
+    return least_compression(result.assembly.problem(result.factors))
+
+
+def sentence(result: Result) -> str:
+    """Return the outcome in words, with the self-stress that could hold what collapses."""
+    found = result.self_stress
+    if found is None:
+        return result.status.value
+    return (
+        f"{result.status.value} Forces in balance within friction exist (with {found.compression:.4g} kN of "
+        f"compression in the joints at least, {found.compression / found.load:.3g} times the loads), but only as "
+        "self-stress that no load, prestress or settlement puts there."
+    )
+
+
+def attention(result: Result) -> tuple[str, ...]:
+    """Return what asks for attention in a solved step, a sentence each."""
+    if not result.solved:
+        return ()
+    found = [result.joint_motion.sentence] if result.joint_motion.large else []
+    if result.lent_compliance and result.assembly.lent_compliance:
+        found.append(
+            "blocks that cannot yield are forced together: the forces between them grow without end as joints become "
+            f"stiffer, and those given belong to a compliance of {result.lent_compliance:.3g} m/kN"
+        )
+    return (*found, *_heavy(result))
+
+
+def _heavy(result: Result) -> tuple[str, ...]:
+    """Return a sentence on the pair with the largest force where that is a thousand times the loads, else none."""
+    load = result.assembly.problem(result.factors).total_load
+    t_n, t_t = result.solution.normal_force, result.solution.friction_force
+    size = np.hypot(t_n, np.linalg.norm(t_t, axis=1))
+    if not size.size or not load > 0 or not size.max() > MUCH * load:
+        return ()
+    k = int(np.argmax(size))
+    pairs, bodies = result.assembly.pairs, result.model.bodies
+    a, b = ("" if i < 0 else bodies[i].name for i in (int(pairs.body_a[k]), int(pairs.body_b[k])))
+    at = ", ".join(f"{v:.4g}" for v in pairs.point[k])
+    return (
+        f"joint {a}|{b} carries {size[k]:.4g} kN at ({at}), {size[k] / load:.3g} times all loads: forces this large "
+        "balance themselves, and how large they are rests on details such as corners and the mesh",
+    )

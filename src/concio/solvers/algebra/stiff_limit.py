@@ -1,0 +1,148 @@
+r"""Taking a lent compliance out of an answer: the limit of stiff joints, reached exactly.
+
+A problem whose joints are hard between bodies that do not deform is solved with a small compliance a lent to them
+(:mod:`concio.analysis.lent_compliance`), which tells what each pair does. With these states the equations are linear,
+
+.. math:: (M + a D)\, x = b,
+
+and what is wanted is the limit of x as a goes to zero, where M alone is singular: its forces are not unique. Repeated
+solves with residuals of M,  x <- x + (M + a D)^{-1} (b - M x),  converge to that limit, an error of the order a times
+smaller with each, and never bring in forces that balance themselves. Forces are eliminated as in the engine,
+K + C'(aD)^{-1}C, one factorisation for all.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+from concio.problem.certificate import scales
+from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.solution import Solution, judge, pair_states
+from concio.problem.tolerances import AT_BOUND
+from concio.solvers.algebra.block_factor import BlockFactor
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
+
+ROUNDS = 12
+"""Largest number of repeated solves."""
+
+NOTHING = 1e-6
+"""Where all displacements fall below this share of those that the compliance allowed, nothing moves."""
+
+LOOSE = 1e-12
+"""Stiffness, relative to the lent one, of the springs that keep what nothing holds where it is."""
+
+
+def without_compliance(hard: ContactProblem, lent: ContactProblem, answer: Solution) -> Solution | None:
+    """Return the limit that a solution belongs to, judged by the hard problem; None where it is not certified.
+
+    Parameters
+    ----------
+    hard : ContactProblem
+    lent : ContactProblem
+        The same with compliance lent to some pairs.
+    answer : Solution
+        A certified solution of ``lent``: its states are imposed.
+    """
+    try:
+        u, t_n, t_t = _States(hard, lent, answer).limit(answer)
+    except SingularMatrixError:
+        return None
+    if float(np.abs(u).max(initial=0.0)) <= NOTHING * float(np.abs(answer.displacement).max(initial=0.0)):
+        u = np.zeros_like(u)  # nothing moves: rounding must not be measured against itself
+    found = judge(
+        hard, u, t_n, t_t, method=answer.method, iterations=answer.iterations,
+        factorisations=answer.factorisations + 1, trace=answer.trace, info=answer.info,
+    )  # fmt: skip
+    return found if found.solved else None
+
+
+class _States:
+    """The linear equations of the states of an answer; t is (m, d), normal force first."""
+
+    def __init__(self, hard: ContactProblem, lent: ContactProblem, answer: Solution) -> None:
+        m, d = hard.pairs, hard.dim
+        self.hard, cone = hard, hard.cone
+        states = pair_states(lent, answer)
+        force, _ = scales(lent, answer.displacement, answer.normal_force, answer.friction_force)
+        self.open, self.closed, self.crushed, self.direction = (
+            states.open, states.closed, states.crushed, states.direction,
+        )  # fmt: skip
+        self.stick = cone.rough & ~states.slips & (cone.strength(answer.normal_force) > AT_BOUND * force)
+        self.C = sp.csr_array(sp.vstack([hard.C_n, hard.C_t]))[_interleaved(m, d)]
+        self.a = _compliance(hard)
+        self.added = _compliance(lent) - self.a
+        self._blocks()
+
+    def _blocks(self) -> None:
+        """Put together what t is, given position y = x + C u + a t: t = -D y + constant, D (m, d, d)."""
+        m, d, law = self.hard.pairs, self.hard.dim, self.hard.laws
+        soft = self.a + self.added
+        D = np.zeros((m, d, d))
+        lift = law.dilatancy[:, None] * self.direction  # a slipping pair: gap less dilatancy times slip is zero
+        drag = -law.friction[:, None] * self.direction
+        normal = soft[:, 0] - (lift * drag * soft[:, 1:]).sum(axis=1)
+        stiff = np.where(self.closed & (normal > 0), 1.0 / np.where(normal > 0, normal, 1.0), 0.0)
+        D[:, 0, 0] = stiff
+        D[:, 0, 1:] = -stiff[:, None] * lift
+        D[:, 1:, 0] = stiff[:, None] * drag
+        D[:, 1:, 1:] = -stiff[:, None, None] * drag[:, :, None] * lift[:, None, :]
+        for k in range(1, d):
+            sticks = self.stick & (soft[:, k] > 0)
+            D[sticks, k, k] = 1.0 / soft[sticks, k]
+        self.D = D
+
+    def limit(self, answer: Solution) -> tuple[Array, Array, Array]:
+        hard = self.hard
+        m, d = hard.pairs, hard.dim
+        u = answer.displacement.copy()
+        t = self.bound(np.column_stack([answer.normal_force, answer.friction_force.reshape(m, d - 1)]))
+        springs = LOOSE * (float(np.abs(self.D).max(initial=0.0)) or float(abs(hard.K).max()) or 1.0)
+        factor = BlockFactor(hard.K, self.C, m, hard.bodies)
+        factor.factorise(self.D, springs)
+        force, length = (float(np.abs(v).max(initial=0.0)) or 1.0 for v in (t, u))
+        best, error = (u, t), np.inf
+        for _ in range(ROUNDS):
+            r_u, r_t = self.residuals(u, t)
+            worst = max(float(np.abs(r_u).max(initial=0.0)) / force, float(np.abs(r_t).max(initial=0.0)) / length)
+            if not np.isfinite(worst):
+                break
+            if worst < error:
+                best, error = (u, t), worst
+            push = np.einsum("kij,kj->ki", self.D, r_t)
+            du = factor.solve(-r_u - self.C.T @ push.ravel())
+            moved = (self.C @ du).reshape(m, d)
+            u, t = u + du, self.bound(t - push - np.einsum("kij,kj->ki", self.D, moved))
+        return best[0], best[1][:, 0], best[1][:, 1:]
+
+    def bound(self, t: Array) -> Array:
+        """Return forces with the values that the states prescribe."""
+        cone = self.hard.cone
+        t_n = np.where(self.open, -cone.tension, np.where(self.crushed, cone.cap, t[:, 0]))
+        t_t = np.where(self.stick[:, None], t[:, 1:], -self.direction * cone.strength(t_n)[:, None])
+        return np.column_stack([t_n, t_t])
+
+    def residuals(self, u: Array, t: Array) -> tuple[Array, Array]:
+        """Return K u - f - C't (N,) and the position that states forbid (m, d), by the hard problem's equations."""
+        hard, m, d = self.hard, self.hard.pairs, self.hard.dim
+        y = (self.C @ u).reshape(m, d) + self.a * t
+        y[:, 0] += hard.gap
+        y[:, 1:] -= hard.slip_origin
+        lifted = y[:, 0] - hard.laws.dilatancy * (self.direction * y[:, 1:]).sum(axis=1)
+        y[:, 0] = np.where(self.closed, lifted, 0.0)
+        y[:, 1:] = np.where(self.stick[:, None], y[:, 1:], 0.0)
+        elastic = hard.K @ u
+        elastic = elastic - hard.R @ (hard.R.T @ elastic)
+        return elastic - hard.f - self.C.T @ t.ravel(), y
+
+
+def _interleaved(m: int, d: int) -> Array:
+    """Return the rows of [C_n; C_t] in the order pair by pair, normal first, (m d,)."""
+    k = np.arange(m)
+    return np.column_stack([k, *(m + k * (d - 1) + a for a in range(d - 1))]).ravel()
+
+
+def _compliance(problem: ContactProblem) -> Array:
+    """Return the compliances of each pair, (m, d), normal first [m/kN]."""
+    law = problem.laws
+    return np.column_stack([law.normal_compliance, *[law.tangential_compliance] * (problem.dim - 1)])
