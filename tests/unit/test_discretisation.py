@@ -101,7 +101,7 @@ def test_sizes_that_cannot_be_meshed():
 
 
 def test_the_whole_mesh_may_not_be_too_large(monkeypatch):
-    monkeypatch.setattr("concio.fem.discretisation.LARGEST", 100)
+    monkeypatch.setattr("concio.fem.discretisation.LARGEST_UNKNOWNS", 100)
     discretise(on_ground(*[box(f"b{k}", k, k + 1, 0, 1) for k in range(2)]))
     with pytest.raises(InputError, match="150 unknowns, more than 100"):
         discretise(on_ground(*[box(f"b{k}", k, k + 1, 0, 1) for k in range(3)]))

@@ -160,3 +160,50 @@ def test_a_turned_support_in_degrees() -> None:
     text = "[column]\nwidth = 1\nheight = 1\nblocks = 1\n"
     text += "[[supports]]\nname = 's'\nbody = 'ground'\nrotation = '2 deg'\n"
     assert concio.loads(text).supports[0].rotation == pytest.approx(np.deg2rad(2))
+
+
+HUGE = 1_000_000_000
+COUNTS = {
+    "voussoirs": f"[arch]\nspan = 2\nring = 0.3\nvoussoirs = {HUGE}",
+    "blocks of a column": f"[column]\nwidth = 1\nheight = 2\nblocks = {HUGE}",
+    "courses of a buttress": f"[buttress]\nbase = 2\ntop = 1\nheight = 4\ncourses = {HUGE}",
+    "blocks of a course": "[buttress]\nbase = 2\ntop = 1\nheight = 4\ncourses = 2\nblock_length = 1e-9",
+    "courses of a panel": f"[panel]\ncourses = {HUGE}",
+    "blocks of a panel": f"[panel]\nblocks = {HUGE}",
+    "elements of a block": "[panel]\nelements_per_block = [100000, 100000]",
+    "elements along a block": f"[panel]\nelements_per_block = [{HUGE}, 1]",
+    "elements of many blocks": "[panel]\ncourses = 100\nblocks = 100\nelements_per_block = [100, 100]",
+    "refinement of a panel": "[panel]\nrefinement = 900",
+    "refinement": f"[wall]\nlength = 1\nheight = 1\nrefinement = {HUGE}",
+    "refinement of the analysis": f"[wall]\nlength = 1\nheight = 1\n[analysis]\nrefinement = {HUGE}",
+    "elements": "[wall]\nlength = 1\nheight = 1\nmesh_size = 1e-7",
+    "elements along a film": "[column]\nwidth = 1e5\nheight = 1e-3\nblocks = 1\nmesh_size = 1e-3",
+    "blocks of a wall": "[wall]\nlength = 1e6\nheight = 1e6",
+    "pieces of a bond": "[wall]\nlength = 1\nheight = 1\nbond = [[1e-30]]",
+    "heights of a bond": "[wall]\nlength = 1\nheight = 1\nbond = [{ unit = [1], height = 1e-30 }]",
+    "small pieces of a bond": "[wall]\nlength = 1e4\nheight = 100\nbond = [[0.01]]",
+    "stones": "[rubble]\nlength = 1e6\nheight = 1e6\nstone = 1e-6",
+    "rounds of evening out": f"[rubble]\nlength = 1\nheight = 1\nstone = 0.3\nevenness = {HUGE}",
+    "a seed": f"[rubble]\nlength = 1\nheight = 1\nstone = 0.3\nseed = {10**30}",
+    "chords": "[arch]\nspan = 20\nring = 0.3\nvoussoirs = 2\nchord_tolerance = 1e-9",
+    "steps": f"[panel]\n[[stages]]\nname = 's'\nfactors = {{ dead = 1 }}\nsteps = {HUGE}",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", COUNTS)
+def test_numbers_beyond_all_use_are_refused_at_once(tmp_path: Path, case: str) -> None:
+    (tmp_path / "f.toml").write_text(COUNTS[case] + "\n")
+    code, _, err = run("check", tmp_path / "f.toml")
+    assert code == 2, err
+    assert re.search(r"more than|too many|must lie between|whole number", err), err
+
+
+def test_counts_in_python_are_bounded_too() -> None:
+    for call in (
+        lambda: concio.column(width=1, height=1, blocks=10**40),
+        lambda: concio.rubble(length=1e308, height=1e308, stone=1e-308),
+        lambda: concio.Stage("s", {}, steps=0),
+        lambda: concio.Stage("s", {}, steps=2.5),  # type: ignore[arg-type]
+    ):
+        with pytest.raises(InputError, match=r"more than|whole number"):
+            call()

@@ -19,6 +19,7 @@ from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID
 from concio.kinematics.rigid import rigid_operator, swept
 from concio.model.model import Model
+from concio.model.plausibility import implausible
 from concio.problem.certificate import Certificate
 from concio.problem.solution import Mechanism, Solution, Status, pair_states
 from concio.solvers.statics.self_stress import SelfStress
@@ -323,6 +324,7 @@ class Result:
             "total_load": list(self.total_load),
             "trace": list(self.solution.trace),
             "lent_compliance": self.lent_compliance,
+            "attention": list(implausible(self.model)),
             "units": {"force": "kN", "length": "m", "stress": "kN/m2"},
         }
         if contacts is not None:

@@ -16,6 +16,7 @@ from concio.fem.discretisation import RIGID
 from concio.model.described import law_words, material_words
 from concio.model.interfaces.detect import Detection
 from concio.model.model import Model
+from concio.model.plausibility import implausible
 
 MOST_LINES = 20
 """More findings than this are counted, unless all are asked for."""
@@ -31,6 +32,7 @@ def check_facts(model: Model, detection: Detection) -> dict[str, Any]:
         **({} if model.periods is None else {"periods": [list(p) for p in model.periods]}),
         "near_misses": [m.sentence for m in detection.near_misses],
         "overlaps": [o.sentence for o in detection.overlaps],
+        "attention": list(implausible(model)),
         "drawing_faults": list(_noted(model, "faults")),
         "left_out": list(_noted(model, "left_out")),
         "moved": list(_noted(model, "moved")),
@@ -85,15 +87,15 @@ def check_lines(
     lines += _edge_loads(model, every=every)
     for tie in model.ties:
         lines.append(f"tie          {tie.name}: {tie.body_a} to {tie.body_b or 'a fixed point'}")
-    findings = [f"overlap      {o.sentence}" for o in detection.overlaps if o.sentence not in fault]
-    findings += [f"attention    {fault}" for fault in _noted(model, "faults")]
-    findings += [f"near miss    {m.sentence}" for m in detection.near_misses]
+    geometry = [f"overlap      {o.sentence}" for o in detection.overlaps if o.sentence not in fault]
+    geometry += [f"near miss    {m.sentence}" for m in detection.near_misses]
+    findings = [f"attention    {sentence}" for sentence in (*implausible(model), *_noted(model, "faults"))] + geometry
     lines += _drawing(model, every=every)
     shown = findings if every else findings[:MOST_LINES]
     lines += shown
     if len(findings) > len(shown):
         lines.append(f"             ... and {len(findings) - len(shown)} more (--all lists them)")
-    if not findings and not detection.overlaps:
+    if not geometry and not detection.overlaps:
         lines.append("geometry     no overlaps and no near misses")
     return lines
 
@@ -115,17 +117,26 @@ def _bodies(model: Model, size: float, *, every: bool) -> list[str]:
 
 def _interfaces(model: Model, detection: Detection) -> list[str]:
     found: Counter[str] = Counter()
+    deciding: set[int] = set()
     length: dict[str, float] = defaultdict(float)
     apart: Counter[str] = Counter()
     for interface in detection.segments:
         rule = model.rule_between(model.bodies[interface.a], model.bodies[interface.b])
         found[rule.law] += 1
+        deciding.add(id(rule))
         length[rule.law] += interface.length
         apart[rule.law] += bool(rule.gap or interface.gap.max() > 0)
     lines = []
     for law, count in found.items():
         text = f"joints       {count:,} with law '{law}', {length[law]:.4g} m in all"
         lines.append(text + (f", {apart[law]:,} of them open at first" if apart[law] else ""))
+    for k, rule in enumerate(model.rules, 1):
+        if detection.interfaces and id(rule) not in deciding and rule.between != ("*", "*"):
+            a, b = rule.between
+            lines.append(
+                f"attention    rule {k}, law '{rule.law}' between '{a}' and '{b}', decides no joint: none lies between "
+                f"such bodies, or a later rule decides it"
+            )
     return lines or ["joints       none: no two bodies touch"]
 
 

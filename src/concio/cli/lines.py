@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.model.plausibility import implausible
 from concio.problem.solution import Status
 from concio.report.wording import power_words
 
@@ -66,6 +67,7 @@ def result_lines(result: Result) -> list[str]:
         lines += [f"  tried        {line}" for line in s.trace]
         if np.isfinite(certificate["worst"]):
             lines.append(f"  certificate  worst {certificate['worst']:.1e}: not an equilibrium")
+    lines += [f"  attention    {sentence}" for sentence in implausible(result.model)]
     faults = result.model.generator.get("faults", ())
     if isinstance(faults, tuple | list) and faults:
         lines.append(

@@ -16,6 +16,7 @@ from concio.fem.plane_shape import Plan, plane_shape
 from concio.fem.solid import SolidShape
 from concio.fem.solid_shape import solid_shape
 from concio.kinematics.rigid import motions, rigid_operator
+from concio.model.limits import LARGEST_REFINEMENT, LARGEST_UNKNOWNS
 from concio.model.model import Body, Model
 from concio.model.polyhedron import Polyhedron
 
@@ -23,9 +24,6 @@ Array = np.ndarray
 
 RIGID, FIXED = -1, -2
 """Shape numbers of bodies that have no mesh."""
-
-LARGEST = 20_000_000
-"""Largest number of unknowns concio accepts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,6 +163,9 @@ def discretise(model: Model, breaks: Mapping[int, Sequence[Any]] | None = None) 
     GeometryError, InputError
         A body cannot be meshed, or the mesh would be too large.
     """
+    if not 1 <= model.refinement <= LARGEST_REFINEMENT:
+        msg = f"refinement = {model.refinement} must lie between 1 and {LARGEST_REFINEMENT:,}"
+        raise InputError(msg, hint="2 splits every element in two along each side")
     known: dict[tuple[object, ...], int] = {}
     shapes: list[Shape | SolidShape] = []
     count = len(model.bodies)
@@ -177,9 +178,7 @@ def discretise(model: Model, breaks: Mapping[int, Sequence[Any]] | None = None) 
             shape_of[b], sizes[b] = RIGID, motions(model.dim)
             continue
         size = _target_size(model, body)
-        if body.grid is None:
-            measure = body.volume / body.thickness
-            _check_size(model.dim * measure * (model.refinement / size) ** model.dim, f"block '{body.name}'")
+        _check_size(_unknowns(model, body, size), f"block '{body.name}'")
         marks = breaks[b] if breaks and b in breaks else ()
         plan: Plan[Shape] | Plan[SolidShape] = (
             plane_shape(model, body, size, marks) if isinstance(body, Body) else solid_shape(model, body, size, marks)
@@ -199,9 +198,21 @@ def discretise(model: Model, breaks: Mapping[int, Sequence[Any]] | None = None) 
 
 
 def _check_size(unknowns: float, where: str | None = None) -> None:
-    if unknowns > LARGEST:
-        msg = f"the mesh has {unknowns:,.0f} unknowns, more than {LARGEST:,}"
+    if not unknowns <= LARGEST_UNKNOWNS:
+        msg = f"the mesh has {unknowns:,.0f} unknowns, more than {LARGEST_UNKNOWNS:,}"
         raise InputError(msg, where=where, hint="use larger elements or a smaller model")
+
+
+def _unknowns(model: Model, body: Body | Polyhedron, size: float) -> float:
+    """Return about how many unknowns the mesh of a body has, found without making it."""
+    split = float(model.refinement)
+    if body.grid is not None:
+        return float(model.dim * np.prod([float(len(lines)) * split for lines in body.grid]))
+    count = body.volume / body.thickness * (split / size) ** model.dim
+    if isinstance(body, Body):  # a film thinner than its elements has them all along it
+        around = float(np.hypot(*(body.outline - np.roll(body.outline, 1, axis=0)).T).sum())
+        count = max(count, around * split / size)
+    return model.dim * count
 
 
 def _target_size(model: Model, body: Body | Polyhedron) -> float:

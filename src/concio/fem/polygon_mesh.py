@@ -76,7 +76,7 @@ def mesh_polygon(
             parts = max(1, int(np.ceil((stop - start) / size - 1e-6)))
             s = start + (stop - start) * np.arange(parts) / parts
             boundary.append(a + np.outer(s / length, b - a))
-    return triangles(np.concatenate(boundary), size)
+    return triangles([np.concatenate(boundary)], size)
 
 
 def boundary_marks(outline: Array, breaks: Sequence[Array] | None) -> list[Array]:

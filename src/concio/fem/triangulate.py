@@ -1,11 +1,12 @@
-"""Constrained Delaunay triangles of a simple polygon whose boundary subdivision is kept exactly.
+"""Constrained Delaunay triangles of a polygon, with holes or without, whose boundary subdivision is kept exactly.
 
-1. Ears of the boundary polygon are cut, best shaped first; vertices in the middle of a straight side are allowed.
-2. Edges are flipped until each is locally Delaunay (Lawson 1977); sides of the polygon are never flipped.
-3. Interior points of a triangular grid are inserted, then circumcentres of triangles that are too large or too sharp,
-   as in Ruppert's refinement (J. Algorithms 18, 1995), but only where they lie in no side's diametral circle: the
-   sides stay whole, so that contact is found where the model put it.
-4. Interior points move to the mean of their neighbours where that does not make the worst triangle worse.
+1. All points are triangulated (Qhull, by scipy). Sides of the polygon that are missing are recovered by flipping the
+   edges that cross them (Sloan, Adv. Engng Software 9, 1987), and what lies outside is left away.
+2. Interior points begin as a triangular grid. Then circumcentres of triangles that are too large or too sharp are
+   added, as in Ruppert's refinement (J. Algorithms 18, 1995), but only where they lie in no side's diametral circle:
+   the sides stay whole, so that contact is found where the model put it. Each round adds the worst ones that stand
+   clear of each other, and triangulates anew.
+3. Interior points move to the mean of their neighbours where that makes the worst triangle around them no worse.
 
 Work is done in coordinates of order one. The result covers the polygon exactly: it is a triangulation of the given
 boundary vertices, whatever the interior does.
@@ -13,220 +14,200 @@ boundary vertices, whatever the interior does.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
+import scipy.sparse as sp
 import shapely
+from scipy.spatial import Delaunay, cKDTree
 
 from concio.errors import GeometryError
 from concio.kinematics.frames import cross
 
 Array = np.ndarray
+ROUNDS = 60
+"""Most rounds of refinement."""
+SWEEPS = 3
+"""Rounds of smoothing."""
+FRAME = np.array([(-3.0, -3.1), (4.2, -2.9), (3.9, 4.1), (-3.2, 3.8)])
+"""Four points far around: with them no point of a straight side lies on the convex hull, where Qhull may drop it."""
 _SHARP = np.deg2rad(25.0)
 _FLAT = 1e-13
-_ON_EDGE = 1e-9
 
 
-class Triangulation:
-    """Triangles of a polygon that can be split and flipped; every triangle runs counter-clockwise.
+def triangles(rings: Sequence[Array], size: float) -> tuple[Array, Array]:
+    """Return points (n, 2), those of the rings first, and triangles (k, 3) of about ``size``, counter-clockwise.
 
     Parameters
     ----------
-    boundary : (n, 2) array
-        Vertices of a simple polygon, counter-clockwise, all of them kept.
+    rings : sequence of (n, 2) arrays
+        The outline counter-clockwise, then each hole clockwise [m]; every vertex becomes a node and every side an
+        element edge.
+    size : float
+        Target length of edges inside [m].
 
     Raises
     ------
     GeometryError
-        The polygon cannot be cut into triangles: it crosses itself or has no interior somewhere.
+        The polygon cannot be cut into triangles: its sides cross or touch.
     """
+    boundary = np.concatenate(rings)
+    origin, scale = boundary.min(0), float(np.ptp(boundary, axis=0).max())
+    area = _Area([(ring - origin) / scale for ring in rings])
+    h = size / scale
+    points = area.boundary
+    inner = _grid(h, points.max(0))
+    if len(inner):
+        inner = inner[area.may_stand(inner)]
+        inner = inner[shapely.distance(shapely.points(inner), area.shape.boundary) > 0.55 * h]
+        points = np.concatenate([points, inner])
+    points = _refined(area, points, h)
+    for _ in range(SWEEPS):
+        points = _smoothed(area, points)
+    cells = area.triangulated(points)
+    return np.concatenate([boundary, origin + scale * points[len(boundary) :]]), cells
 
-    def __init__(self, boundary: Array) -> None:
-        self.origin, self.scale = boundary.min(0), float(np.ptp(boundary, axis=0).max())
-        self.sides = len(boundary)
-        self.xy: list[tuple[float, float]] = [tuple(p) for p in ((boundary - self.origin) / self.scale).tolist()]
-        self.triangles: list[tuple[int, int, int]] = []
-        self.edges: dict[tuple[int, int], int] = {}
-        for triangle in cut_ears(np.array(self.xy)):
-            self._put(len(self.triangles), triangle)
-        self._legalise(list(self.edges))
 
-    @property
-    def points(self) -> Array:
-        """Points (n, 2) in the units of the boundary."""
-        result: Array = self.origin + self.scale * np.array(self.xy)
-        return result
+class _Area:
+    """A polygon in unit coordinates: its boundary points (b, 2), its sides (b, 2) as numbers of points, its shape."""
 
-    def cells(self) -> Array:
-        """Triangles (k, 3)."""
-        return np.array(self.triangles)
+    def __init__(self, rings: Sequence[Array]) -> None:
+        self.boundary = np.concatenate(rings)
+        counts = [len(ring) for ring in rings]
+        first = np.concatenate([[0], np.cumsum(counts)[:-1]])
+        following = np.arange(len(self.boundary)) + 1
+        following[first + np.array(counts) - 1] = first
+        self.sides = np.stack([np.arange(len(self.boundary)), following], 1)
+        self.shape = shapely.Polygon(rings[0], list(rings[1:]))
+        shapely.prepare(self.shape)
+        ends = self.boundary[self.sides]
+        self.middle, self.radius = ends.mean(1), 0.5 * np.hypot(*(ends[:, 1] - ends[:, 0]).T)
+        self.near = cKDTree(self.middle)
 
-    def insert(self, point: tuple[float, float]) -> bool:
-        """Insert a point that is no vertex, given in unit coordinates; False where it lies outside."""
-        xy, tri = np.array(self.xy), np.array(self.triangles)
-        p = np.array(point)
-        a, b, c = (xy[tri[:, k]] for k in range(3))
-        signs = np.stack([cross(b - a, p - a), cross(c - b, p - b), cross(a - c, p - c)], 1)
-        length = np.stack([np.hypot(*(v).T) for v in (b - a, c - b, a - c)], 1)
-        home = int(np.argmax((signs / length).min(1)))
-        if (signs / length)[home].min() <= _ON_EDGE:
-            if (signs / length)[home].min() < -_ON_EDGE:
-                return False
-            # on an edge: a step into the triangle, which the flips that follow make good
-            middle = (a[home] + b[home] + c[home]) / 3
-            point = tuple((p + 1e3 * _ON_EDGE * (middle - p)).tolist())
-        new = len(self.xy)
-        self.xy.append(point)
-        i, j, k = self.triangles[home]
-        self._put(home, (i, j, new))
-        self._put(len(self.triangles), (j, k, new))
-        self._put(len(self.triangles), (k, i, new))
-        self._legalise([(i, j), (j, k), (k, i)])
-        return True
+    def may_stand(self, points: Array) -> Array:
+        """Tell which points lie inside, in no side's diametral circle (a little enlarged)."""
+        inside: Array = shapely.contains_xy(self.shape, *points.T)
+        reach = 1.02 * self.radius
+        for k, found in enumerate(self.near.query_ball_point(points, float(reach.max()))):
+            if inside[k] and found:
+                inside[k] = (np.hypot(*(points[k] - self.middle[found]).T) > reach[found]).all()
+        return inside
 
-    def smooth(self, sweeps: int = 3) -> None:
-        """Move interior points to the mean of their neighbours where the worst angle around them gets no smaller."""
-        for _ in range(sweeps):
-            around: dict[int, list[tuple[int, int]]] = {}
-            for i, j, k in self.triangles:
-                for p, q, r in ((i, j, k), (j, k, i), (k, i, j)):
-                    if p >= self.sides:
-                        around.setdefault(p, []).append((q, r))
-            for p, ring in around.items():
-                old = self.xy[p]
-                mean = np.mean([self.xy[q] for q, _ in ring], axis=0)
-                before = min(self._worst(p, q, r) for q, r in ring)
-                self.xy[p] = (float(mean[0]), float(mean[1]))
-                if min(self._worst(p, q, r) for q, r in ring) <= before:
-                    self.xy[p] = old
-            self._legalise(list(self.edges))
+    def triangulated(self, points: Array) -> Array:
+        """Return the triangles (k, 3) of the polygon on points (n, 2), those of the boundary first."""
+        with_frame = np.concatenate([points, FRAME])
+        cells = Delaunay(with_frame).simplices.astype(np.int64)
+        a, b, c = (with_frame[cells[:, k]] for k in range(3))
+        cells = np.where((cross(b - a, c - a) < 0)[:, None], cells[:, [0, 2, 1]], cells)
+        cells = _with_sides(with_frame, cells, self.sides)
+        cells = cells[(cells < len(points)).all(1)]
+        inside: Array = shapely.contains_xy(self.shape, *points[cells].mean(1).T)
+        kept: Array = cells[inside]
+        a, b, c = (points[kept[:, k]] for k in range(3))
+        if abs(0.5 * float(cross(b - a, c - a).sum()) - self.shape.area) > 1e-9 * self.shape.area:
+            raise _cannot(points[0])
+        return kept
 
-    def _worst(self, i: int, j: int, k: int) -> float:
-        """Return the shape of a triangle: 1 equilateral, 0 flat, negative when turned over."""
+
+def _with_sides(points: Array, cells: Array, sides: Array) -> Array:
+    """Return triangles that have all sides of the polygon for edges."""
+    n = len(points)
+    edges = np.concatenate([cells[:, [k, (k + 1) % 3]] for k in range(3)])
+    have = np.unique(edges.min(1) * n + edges.max(1))
+    missing = sides[~np.isin(sides.min(1) * n + sides.max(1), have)]
+    if not len(missing):
+        return cells
+    flips = _Flips(points, cells)
+    for i, j in missing.tolist():
+        flips.recover(i, j)
+    return np.array(flips.cells)
+
+
+class _Flips:
+    """Triangles whose edges can be flipped; every triangle runs counter-clockwise."""
+
+    def __init__(self, points: Array, cells: Array) -> None:
+        self.xy: list[tuple[float, float]] = [(x, y) for x, y in points.tolist()]
+        self.cells: list[tuple[int, int, int]] = [(i, j, k) for i, j, k in cells.tolist()]
+        self.edges = {e: t for t, (i, j, k) in enumerate(self.cells) for e in ((i, j), (j, k), (k, i))}
+        self.around: dict[int, set[int]] = {}
+        for t, cell in enumerate(self.cells):
+            for i in cell:
+                self.around.setdefault(i, set()).add(t)
+
+    def _turn(self, i: int, j: int, k: int) -> float:
+        """Return twice the area of a triangle, positive counter-clockwise."""
         (ax, ay), (bx, by), (cx, cy) = self.xy[i], self.xy[j], self.xy[k]
-        double = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
-        square = (bx - ax) ** 2 + (by - ay) ** 2 + (cx - bx) ** 2 + (cy - by) ** 2 + (ax - cx) ** 2 + (ay - cy) ** 2
-        return 2 * 3**0.5 * double / square if square else 0.0
+        return (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
 
-    def _put(self, at: int, triangle: tuple[int, int, int]) -> None:
-        if at == len(self.triangles):
-            self.triangles.append(triangle)
-        else:
-            self.triangles[at] = triangle
-        i, j, k = triangle
-        self.edges[i, j] = self.edges[j, k] = self.edges[k, i] = at
-
-    def _apex(self, t: int, i: int, j: int) -> int:
-        return sum(self.triangles[t]) - i - j
-
-    def _legalise(self, queue: list[tuple[int, int]]) -> None:
-        """Flip edges until each is locally Delaunay, with a limit against rounding that would flip for ever."""
-        left = 50 * (len(self.triangles) + 20)
-        while queue and left:
+    def recover(self, i: int, j: int) -> None:
+        """Flip the edges that cross the side from i to j until it is an edge."""
+        if (i, j) in self.edges or (j, i) in self.edges:  # another side's flips made it
+            return
+        queue = self._crossing(i, j)
+        left = 10 * (len(queue) + 10) ** 2
+        while queue:
             left -= 1
-            i, j = queue.pop()
-            t, s = self.edges.get((i, j)), self.edges.get((j, i))
+            if left < 0:
+                raise _cannot(np.array(self.xy[i]))
+            p, q = queue.pop(0)
+            t, s = self.edges.get((p, q)), self.edges.get((q, p))
             if t is None or s is None:
+                raise _cannot(np.array(self.xy[i]))
+            k, m = sum(self.cells[t]) - p - q, sum(self.cells[s]) - p - q
+            if self._turn(k, p, m) <= _FLAT or self._turn(m, q, k) <= _FLAT:  # the two are no convex quadrilateral yet
+                queue.append((p, q))
                 continue
-            k, m = self._apex(t, i, j), self._apex(s, i, j)
-            if not self._should_flip(i, j, k, m):
-                continue
-            del self.edges[i, j], self.edges[j, i]
-            self._put(t, (k, i, m))
-            self._put(s, (m, j, k))
-            queue.extend([(i, m), (m, j), (j, k), (k, i)])
+            self._flip(t, s, p, q, k, m)
+            if {k, m} != {i, j} and self._cross(i, j, k, m):
+                queue.append((k, m))
 
-    def _should_flip(self, i: int, j: int, k: int, m: int) -> bool:
-        """Tell whether m lies in the circle of (i, j, k) and both new triangles (k, i, m), (m, j, k) are proper."""
-        (ax, ay), (bx, by), (cx, cy), (dx, dy) = (self.xy[q] for q in (i, j, k, m))
-        ax, ay, bx, by, cx, cy = ax - dx, ay - dy, bx - dx, by - dy, cx - dx, cy - dy
-        circle = (
-            (ax * ax + ay * ay) * (bx * cy - cx * by)
-            - (bx * bx + by * by) * (ax * cy - cx * ay)
-            + (cx * cx + cy * cy) * (ax * by - bx * ay)
-        )
-        size = max(ax * ax + ay * ay, bx * bx + by * by, cx * cx + cy * cy)
-        if circle <= 1e-10 * size * size:
+    def _flip(self, t: int, s: int, p: int, q: int, k: int, m: int) -> None:
+        """Replace (p, q, k) and (q, p, m) by (k, p, m) and (m, q, k)."""
+        for e in ((p, q), (q, p)):
+            del self.edges[e]
+        for cell, (a, b, c) in ((t, (k, p, m)), (s, (m, q, k))):
+            self.cells[cell] = (a, b, c)
+            self.edges[a, b] = self.edges[b, c] = self.edges[c, a] = cell
+        self.around[p].discard(s)
+        self.around[q].discard(t)
+        self.around[m].add(t)
+        self.around[k].add(s)
+
+    def _cross(self, i: int, j: int, k: int, m: int) -> bool:
+        """Tell whether the side from i to j and the edge between k and m cross inside both."""
+        if len({i, j, k, m}) < 4:
             return False
-        first, second = cx * ay - ax * cy, bx * cy - cx * by
-        return bool(first > _FLAT and second > _FLAT)
+        return self._turn(i, j, k) * self._turn(i, j, m) < 0 and self._turn(k, m, i) * self._turn(k, m, j) < 0
 
-
-def cut_ears(boundary: Array) -> list[tuple[int, int, int]]:
-    """Return the triangles of a simple polygon (n, 2) of size one, the best shaped ears first."""
-    remaining = list(range(len(boundary)))
-    result = []
-    while len(remaining) > 3:
-        p = boundary[remaining]
-        before, after = np.roll(p, 1, axis=0), np.roll(p, -1, axis=0)
-        double = cross(p - before, after - before)
-        square = ((p - before) ** 2 + (after - p) ** 2 + (before - after) ** 2).sum(1)
-        shape = double / square
-        for ear in np.argsort(-shape):
-            if shape[ear] <= 0:
-                raise _cannot(boundary[remaining[ear]])
-            if not _holds_another(p, before[ear], p[ear], after[ear], int(ear)):
+    def _crossing(self, i: int, j: int) -> list[tuple[int, int]]:
+        """Return the edges that cross the side from i to j, in order."""
+        for t in self.around.get(i, ()):
+            a, b, c = self.cells[t]
+            p, q = {a: (b, c), b: (c, a), c: (a, b)}[i]
+            if self._cross(i, j, p, q):
                 break
         else:
-            raise _cannot(p[0])
-        n = len(remaining)
-        result.append((remaining[ear - 1], remaining[ear], remaining[(ear + 1) % n]))
-        del remaining[ear]
-    i, j, k = remaining
-    if cross(boundary[j] - boundary[i], boundary[k] - boundary[i]) <= 0:
-        raise _cannot(boundary[i])
-    result.append((i, j, k))
-    return result
+            raise _cannot(np.array(self.xy[i]))
+        found = [(p, q)]
+        while True:
+            p, q = found[-1]
+            s = self.edges.get((q, p))
+            if s is None or len(found) > len(self.cells):
+                raise _cannot(np.array(self.xy[i]))
+            m = sum(self.cells[s]) - p - q
+            if m == j:
+                return found
+            # the next edge is the one of (q, p, m) on whose two ends the side passes between
+            turn = self._turn(i, j, m)
+            if abs(turn) <= _FLAT:
+                raise _cannot(np.array(self.xy[m]))
+            found.append((m, q) if (turn > 0) == (self._turn(i, j, p) > 0) else (p, m))
 
 
 def _cannot(at: Array) -> GeometryError:
     msg = f"the outline cannot be cut into triangles near ({at[0]:.4g}, {at[1]:.4g}) of its size"
     return GeometryError(msg, hint="look for sides that cross, touch or lie on each other; see 'concio check'")
-
-
-def _holds_another(points: Array, a: Array, b: Array, c: Array, ear: int) -> bool:
-    """Tell whether the closed triangle holds a vertex other than its own."""
-    n = len(points)
-    others = np.delete(points, [ear - 1 if ear else n - 1, ear, (ear + 1) % n], axis=0)
-    inside = np.ones(len(others), dtype=bool)
-    for p, q in ((a, b), (b, c), (c, a)):
-        inside &= cross(q - p, others - p) >= -_FLAT
-    return bool(inside.any())
-
-
-def triangles(boundary: Array, size: float) -> tuple[Array, Array]:
-    """Return points (n, 2), the boundary's first, and triangles (k, 3) of about ``size``.
-
-    Parameters
-    ----------
-    boundary : (n, 2) array
-        Vertices of a simple polygon, counter-clockwise [m]; every one becomes a node and every side an element edge.
-    size : float
-        Target length of edges inside [m].
-    """
-    mesh = Triangulation(boundary)
-    unit, h = np.array(mesh.xy), size / mesh.scale
-    span = np.hypot(*(np.roll(unit, -1, axis=0) - unit).T)
-    middle, radius = 0.5 * (unit + np.roll(unit, -1, axis=0)), 0.5 * span
-    polygon = shapely.Polygon(unit)
-    ring = polygon.exterior
-
-    def may_stand(points: Array) -> Array:
-        """Tell which points lie inside, in no side's diametral circle (a little enlarged)."""
-        inside = shapely.contains_xy(polygon, *points.T)
-        free = (np.hypot(*(points[:, None] - middle).transpose(2, 0, 1)) > 1.02 * radius).all(1)
-        result: Array = inside & free
-        return result
-
-    grid = _grid(h, unit.max(0))
-    if len(grid):
-        grid = grid[may_stand(grid)]
-        grid = grid[shapely.distance(shapely.points(grid), ring) > 0.55 * h]
-    for point in grid.tolist():
-        mesh.insert((point[0], point[1]))
-    _refine(mesh, h, may_stand)
-    mesh.smooth()
-    points = mesh.points
-    points[: len(boundary)] = boundary
-    return points, mesh.cells()
 
 
 def _grid(h: float, upper: Array) -> Array:
@@ -239,32 +220,78 @@ def _grid(h: float, upper: Array) -> Array:
     return np.column_stack([x.ravel(), y.ravel()])
 
 
-def _refine(mesh: Triangulation, h: float, may_stand: object) -> None:
-    """Insert circumcentres of triangles that are too large or too sharp, where they may stand."""
-    assert callable(may_stand)
-    refused: set[tuple[int, int, int]] = set()
-    for _ in range(20 * mesh.sides + 200):
-        xy, tri = np.array(mesh.xy), mesh.cells()
-        a, b, c = (xy[tri[:, k]] for k in range(3))
+def _refined(area: _Area, points: Array, h: float) -> Array:
+    """Return the points with circumcentres of triangles that are too large or too sharp, where they may stand."""
+    for _ in range(ROUNDS):
+        cells = area.triangulated(points)
+        a, b, c = (points[cells[:, k]] for k in range(3))
         la, lb, lc = (np.hypot(*v.T) for v in (c - b, a - c, b - a))
         double = cross(b - a, c - a)
         shortest = np.minimum(np.minimum(la, lb), lc)
         radius = la * lb * lc / np.maximum(2 * double, 1e-300)
         sharp = shortest < 2 * np.sin(_SHARP) * radius
-        badness = np.where((radius > 0.85 * h) | (sharp & (radius > 0.2 * h)), radius, 0.0)
-        for t in np.argsort(-badness):
-            if badness[t] <= 0:
-                return
-            key = tuple(sorted(tri[t].tolist()))
-            if key in refused:
-                continue
-            refused.add(key)
-            p, q = b[t] - a[t], c[t] - a[t]
-            centre = a[t] + np.array([q[1] * (p @ p) - p[1] * (q @ q), p[0] * (q @ q) - q[0] * (p @ p)]) / (
-                2 * double[t]
-            )
-            near = np.hypot(*(xy - centre).T).min()
-            if near > 0.35 * shortest[t] and may_stand(centre[None])[0] and mesh.insert((centre[0], centre[1])):
-                break
-        else:
-            return
+        bad = np.flatnonzero((radius > 0.85 * h) | (sharp & (radius > 0.2 * h)))
+        if not len(bad):
+            break
+        bad = bad[np.argsort(-radius[bad], kind="stable")]
+        p, q = b[bad] - a[bad], c[bad] - a[bad]
+        pp, qq = (p * p).sum(1), (q * q).sum(1)
+        turned = np.stack([q[:, 1] * pp - p[:, 1] * qq, p[:, 0] * qq - q[:, 0] * pp], 1)
+        centre = a[bad] + turned / (2 * double[bad, None])
+        clear = cKDTree(points).query(centre)[0] > 0.35 * shortest[bad]
+        centre, size = centre[clear], radius[bad][clear]
+        keep = area.may_stand(centre)
+        centre, size = centre[keep], size[keep]
+        if not len(centre):
+            break
+        points = np.concatenate([points, centre[_apart(centre, size)]])
+    return points
+
+
+def _apart(centre: Array, radius: Array) -> Array:
+    """Return the first of the points and every later one that lies in no circle of one returned before."""
+    taken = np.ones(len(centre), dtype=bool)
+    tree = cKDTree(centre)
+    for k in range(len(centre)):
+        if taken[k]:
+            others = np.array(tree.query_ball_point(centre[k], float(radius[k])))
+            taken[others[others > k]] = False
+    return np.flatnonzero(taken)
+
+
+def _smoothed(area: _Area, points: Array) -> Array:
+    """Return the points with interior ones moved to the mean of their neighbours, where the worst angle allows it."""
+    cells = area.triangulated(points)
+    n, fixed = len(points), len(area.boundary)
+    if n == fixed:
+        return points
+    edges = np.concatenate([cells[:, [k, (k + 1) % 3]] for k in range(3)])
+    graph = sp.coo_array((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(n, n)).tocsr()
+    graph = ((graph + graph.T) > 0).astype(float)
+    order = np.random.default_rng(0).permutation(n)
+    points = points.copy()
+    waiting = np.arange(n) >= fixed
+    while waiting.any():
+        # an independent set: points that come before all their waiting neighbours
+        rank = np.where(waiting, order, n)
+        least = np.full(n, n)
+        np.minimum.at(least, edges[:, 0], rank[edges[:, 1]])
+        np.minimum.at(least, edges[:, 1], rank[edges[:, 0]])
+        chosen = waiting & (rank < least)
+        waiting &= ~chosen
+        moved = np.where(chosen[:, None], (graph @ points) / np.maximum(graph.sum(1), 1)[:, None], points)
+        before, after = _worst_around(points, cells), _worst_around(moved, cells)
+        better = chosen & (after > before)
+        points[better] = moved[better]
+    return points
+
+
+def _worst_around(points: Array, cells: Array) -> Array:
+    """Return the shape of the worst triangle at each point (n,): 1 equilateral, 0 flat, negative when turned over."""
+    a, b, c = (points[cells[:, k]] for k in range(3))
+    square = ((b - a) ** 2 + (c - b) ** 2 + (a - c) ** 2).sum(1)
+    shape = 2 * 3**0.5 * cross(b - a, c - a) / np.maximum(square, 1e-300)
+    worst = np.full(len(points), np.inf)
+    for k in range(3):
+        np.minimum.at(worst, cells[:, k], shape)
+    return worst

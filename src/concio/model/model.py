@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import ClassVar, Literal, get_args
@@ -134,7 +134,7 @@ class JointRule:
         Key of ``Model.laws``.
     between : pair of str
         Each matches a body by name, role, layer or (unless it is fixed) material; "*" matches any. Order does not
-        matter. The last rule that matches an interface wins.
+        matter. The last rule that matches an interface wins. A word that names no body of a model is refused.
     gap : float
         Initial opening of these interfaces, added to what the geometry shows >= 0 [m].
     """
@@ -152,11 +152,33 @@ class JointRule:
         """Return whether the rule speaks of interfaces between ``a`` and ``b``."""
 
         def fits(word: str, body: Body | Polyhedron) -> bool:
-            material = "" if body.kind == "fixed" else body.material
-            return word == "*" or (word != "" and word in (body.name, body.role, body.layer, material))
+            return word == "*" or (word != "" and word in _words(body))
 
         p, q = self.between
         return (fits(p, a) and fits(q, b)) or (fits(p, b) and fits(q, a))
+
+
+def check_rules(rules: Sequence[JointRule], bodies: Sequence[Body | Polyhedron], where: str = "") -> None:
+    """Refuse rules that name what no body is called: they would be void.
+
+    Raises
+    ------
+    InputError
+        With the word that was probably meant.
+    """
+    known = dict.fromkeys(word for place in range(4) for b in bodies for word in (_words(b)[place],) if word)
+    for rule in rules:
+        for word in rule.between:
+            if word != "*" and word not in known:
+                msg = f"the rule for the joint law '{rule.law}' names '{word}', but no body has that name, role, layer "
+                msg += "or material"
+                hint = closest(word, known, otherwise="see the names with 'concio check --all'" * (len(known) > 30))
+                raise InputError(msg, where=where or None, hint=hint)
+
+
+def _words(body: Body | Polyhedron) -> tuple[str, str, str, str]:
+    """Return the words by which rules find a body: role, layer, material, name."""
+    return body.role, body.layer, "" if body.kind == "fixed" else body.material, body.name
 
 
 @strict_class
@@ -355,6 +377,7 @@ class Model:
             if rule.law not in self.laws:
                 msg = f"joint law '{rule.law}' is not defined"
                 raise InputError(msg, hint=closest(rule.law, self.laws))
+        check_rules(self.rules, self.bodies)
         if self.periods is not None:
             check_cell(self)
 

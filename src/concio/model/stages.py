@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from concio.arguments import strict_class
+from concio.errors import InputError
+from concio.model.limits import LARGEST_STEPS
 
 
 @strict_class
@@ -52,3 +54,8 @@ class Stage:
     control: ControlPoint | None = None
     until: float = 0.0
     steps: int = 20
+
+    def __post_init__(self) -> None:
+        if isinstance(self.steps, bool) or not isinstance(self.steps, int) or not 1 <= self.steps <= LARGEST_STEPS:
+            msg = f"steps = {self.steps!r} must be a whole number from 1 to {LARGEST_STEPS:,}"
+            raise InputError(msg, where=f"stage '{self.name}'")

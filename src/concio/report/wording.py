@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from concio.display import Units
+from concio.model.plausibility import implausible
 from concio.problem.solution import Status
 from concio.problem.tolerances import CERTIFIED
 
@@ -133,7 +134,7 @@ class Check:
 def verdict(result: Result) -> Verdict:
     """Return the outcome of a result in words; what needs attention comes first of what to do next."""
     words = VERDICTS[result.status]
-    steps = []
+    steps = [f"{text[0].upper()}{text[1:]}." for text in implausible(result.model)]
     missed = len(result.assembly.detection.near_misses)
     if missed:
         places = f"At {missed:,} place{'s' if missed > 1 else ''}"

@@ -35,7 +35,7 @@ from concio.model.generate.bonds import Course
 from concio.model.generate.generators import GENERATORS
 from concio.model.interfaces.polygon_check import check_polygon
 from concio.model.materials import Elastic, JointLaw, Rigid
-from concio.model.model import Body, JointRule, Load, Model, Support, Tie
+from concio.model.model import Body, JointRule, Load, Model, Support, Tie, check_rules
 from concio.model.stages import ControlPoint, Stage
 
 Materials = dict[str, Elastic | Rigid]
@@ -96,7 +96,7 @@ def _parts(
             raise InputError(msg, where=f"[[loads]] {k}", hint="leave this load out, or give it a group of its own")
     base = start.laws if start else {}
     every = {**base, **laws}
-    rules = _rules(data, list(start.rules) if start else [], every)
+    rules = _rules(data, list(start.rules) if start else [], every, bodies)
     given: dict[str, Any] = {
         "bodies": tuple(bodies),
         "materials": {**(start.materials if start else {}), **materials},
@@ -119,7 +119,7 @@ def _parts(
     return given
 
 
-def _rules(data: FileTable, before: list[JointRule], laws: Laws) -> list[JointRule]:
+def _rules(data: FileTable, before: list[JointRule], laws: Laws, bodies: list[Body]) -> list[JointRule]:
     found = list(before)
     if data.rules is None and not before:
         if len(laws) != 1:
@@ -132,6 +132,7 @@ def _rules(data: FileTable, before: list[JointRule], laws: Laws) -> list[JointRu
                 msg = f"joint law '{table.law}' is not defined"
                 raise InputError(msg, hint=closest(table.law, list(laws)) if laws else "add [joints.NAME]")
             found.append(JointRule(table.law, table.between, table.gap))
+            check_rules(found[-1:], bodies)
     return found
 
 

@@ -247,7 +247,7 @@ class StageTable(Table):
     factors: dict[str, Any]
     control: ControlTable | None = None
     until: Length = 0.0
-    steps: Annotated[StrictInt, Field(ge=1)] = 20
+    steps: StrictInt = 20
 
     @field_validator("factors", mode="after")
     @classmethod

@@ -9,8 +9,8 @@ The intrados is described by clear span ``s`` and rise ``r`` above the springing
 * flat: straight intrados and extrados; the joints point to a centre below that leaves the springings at ``skew``.
 
 Joints of an arc divide the angle of the intrados into equal parts and lie on its radii, so voussoirs are sectors of a
-ring; at the crown of a pointed arch the two rings meet on the axis. Curved edges are chords: as many as keep the rise
-of an arc over its chord below a tolerance, or one for each voussoir ("straight").
+ring; at the crown of a pointed arch the two rings meet on the axis. Curved edges are chords within a tolerance of the
+arc, which keep the area under it (:mod:`concio.model.arcs`), or one chord for each voussoir ("straight").
 """
 
 from __future__ import annotations
@@ -23,6 +23,8 @@ import numpy as np
 from concio.arguments import strict_with
 from concio.errors import InputError
 from concio.kinematics.frames import turned_left, turned_right
+from concio.model.arcs import arc as _arc
+from concio.model.arcs import chords_of
 from concio.model.generate.arguments import Common, checked, choice, count, finite, positive
 from concio.model.generate.masonry import Piece, assemble, numbered
 from concio.model.model import Array, Load, Model
@@ -113,18 +115,9 @@ def arch(
     return assemble(options, pieces, obstacles, loads=loads, title=title, generator=record)
 
 
-def _arc(centre: Array, radius: float, start: float, stop: float, chords: int) -> Array:
-    """Return points (chords + 1, 2) of an arc."""
-    angle = np.linspace(start, stop, chords + 1)
-    return centre + radius * np.stack([np.cos(angle), np.sin(angle)], 1)
-
-
 def _chords(radius: float, angle: float, tolerance: float | None) -> int:
     """Return how many chords keep within ``tolerance`` of an arc; None asks for one."""
-    if tolerance is None:
-        return 1
-    largest = 2 * np.arccos(max(1 - tolerance / radius, 0.0))
-    return max(1, int(np.ceil(abs(angle) / largest - 1e-9)))
+    return 1 if tolerance is None else chords_of(radius, angle, tolerance)
 
 
 def _one_arc(

@@ -10,6 +10,7 @@ import numpy as np
 
 from concio.arguments import closest
 from concio.errors import InputError
+from concio.model.limits import LARGEST_BLOCKS, LARGEST_REFINEMENT
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.units import quantity
 
@@ -126,7 +127,7 @@ def checked(where: str, options: Mapping[str, Any]) -> Checked:
         plane,
         str(options.get("element", "Q4")),
         None if size is None else positive(where, "mesh_size", size),
-        count(where, "refinement", options.get("refinement", 1)),
+        count(where, "refinement", options.get("refinement", 1), most=LARGEST_REFINEMENT),
         str(options.get("title", "")),
     )
 
@@ -158,15 +159,26 @@ def finite(where: str, name: str, value: float | str, kind: str = "length") -> f
     return number
 
 
-def count(where: str, name: str, value: object, least: int = 1) -> int:
-    """Return a whole number that is at least ``least``."""
+def count(where: str, name: str, value: object, least: int = 1, most: int = LARGEST_BLOCKS) -> int:
+    """Return a whole number that is at least ``least`` and at most ``most``."""
     if isinstance(value, bool) or not isinstance(value, int | np.integer):
         msg = f"{name} = {value!r} must be a whole number"
         raise InputError(msg, where=where)
     if value < least:
         msg = f"{name} = {value} must be at least {least}"
         raise InputError(msg, where=where)
+    if value > most:
+        shown = f"{value:,}" if value < 10**30 else "a number of more than 30 digits"
+        msg = f"{name} = {shown} is more than {most:,}"
+        raise InputError(msg, where=where, hint="is that a slip of the pen?")
     return int(value)
+
+
+def check_blocks(where: str, number: float, hint: str) -> None:
+    """Refuse a structure of more than :data:`concio.model.limits.LARGEST_BLOCKS` blocks."""
+    if not number <= LARGEST_BLOCKS:
+        msg = f"some {number:.3g} blocks are more than {LARGEST_BLOCKS:,}"
+        raise InputError(msg, where=where, hint=hint)
 
 
 def check_keys(where: str, given: Iterable[str], kind: type) -> None:

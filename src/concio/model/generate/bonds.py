@@ -26,6 +26,8 @@ from concio.model.model import Array
 
 SHORTEST = 0.25
 """Shortest piece a mason would lay, in block lengths."""
+FINEST, LONGEST = 0.01, 100.0
+"""Pieces of a bond lie between these, in block lengths or heights."""
 
 
 @strict_class
@@ -52,15 +54,15 @@ class Course:
         for name in ("unit", "left", "right"):
             lengths = tuple(float(v) for v in getattr(self, name))
             object.__setattr__(self, name, lengths)
-            if any(not 0 < v < np.inf for v in lengths):
-                msg = f"course with {name} = {lengths}: lengths must be positive and finite"
+            if any(not FINEST <= v <= LONGEST for v in lengths):
+                msg = f"course with {name} = {lengths}: lengths must lie between {FINEST:g} and {LONGEST:g}"
                 raise InputError(msg, where="bond", hint="give them in block lengths: 1 a whole block, 0.5 half a one")
         if not self.unit:
             msg = "a course has no repeating unit"
             raise InputError(msg, where="bond", hint="give at least one length, for example unit = (1,)")
-        if not 0 < self.height < np.inf:
-            msg = f"a course has height = {self.height:g}, which must be positive and finite"
-            raise InputError(msg, where="bond")
+        if not FINEST <= self.height <= LONGEST:
+            msg = f"a course has height = {self.height:g}, which must lie between {FINEST:g} and {LONGEST:g}"
+            raise InputError(msg, where="bond", hint="give it in block heights")
 
 
 def bond_courses(bond: str | Sequence[Course | Sequence[float]], lap: float = 0.5) -> tuple[Course, ...]:

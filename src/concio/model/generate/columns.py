@@ -9,7 +9,7 @@ import numpy as np
 
 from concio.arguments import strict_with
 from concio.errors import InputError
-from concio.model.generate.arguments import Common, checked, count, finite, not_negative, positive
+from concio.model.generate.arguments import Common, check_blocks, checked, count, finite, not_negative, positive
 from concio.model.generate.bonds import without_short_pieces
 from concio.model.generate.masonry import Piece, assemble, numbered, rectangle
 from concio.model.model import Load, Model
@@ -104,6 +104,7 @@ def buttress(
         msg = f"top = {b1:g} m is wider than base = {b0:g} m"
         raise InputError(msg, where=where, hint="the buttress narrows upwards")
     length = None if block_length is None else positive(where, "block_length", block_length)
+    check_blocks(where, n * (1.0 if length is None else b0 / length), "lengths are in m")
     force = finite(where, "thrust", thrust, "force")
     at = h * (1 - 0.5 / n) if thrust_at is None else not_negative(where, "thrust_at", thrust_at)
     if at > h:

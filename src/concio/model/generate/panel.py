@@ -16,7 +16,9 @@ import numpy as np
 
 from concio.arguments import strict
 from concio.errors import InputError
+from concio.model.generate.arguments import check_blocks, count
 from concio.model.generate.spacing import subdivided
+from concio.model.limits import LARGEST_UNKNOWNS
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Body, JointRule, Load, Model
 from concio.units import quantity
@@ -25,8 +27,6 @@ Array = np.ndarray
 T = TypeVar("T")
 Base = Literal["full", "bearings", "none"]
 
-LARGEST_BLOCKS = 2_000_000
-"""More blocks than this are taken for a slip of the pen."""
 
 
 @strict
@@ -101,9 +101,12 @@ def running_bond_panel(
     where = "panel"
     n_c, n_b, refine = (_count(v, n) for v, n in ((courses, "courses"), (blocks, "blocks"), (refinement, "refinement")))
     nx, ny = (_count(v, "elements_per_block") for v in _two(elements_per_block, "elements_per_block"))
-    if n_c * n_b > LARGEST_BLOCKS:
-        msg = f"{n_c} courses of {n_b} blocks are more than {LARGEST_BLOCKS:,} blocks"
-        raise InputError(msg, where=where, hint="use a smaller panel")
+    check_blocks(where, n_c * n_b, "use a smaller panel")
+    unknowns = 2 * n_c * n_b * nx * ny * refine**2
+    if unknowns > LARGEST_UNKNOWNS and not isinstance(block, Rigid):
+        msg = f"{n_c * n_b:,} blocks of {nx * refine:,} x {ny * refine:,} elements are too many"
+        hint = f"at most {LARGEST_UNKNOWNS:,} unknowns: use fewer elements_per_block or a smaller refinement"
+        raise InputError(msg, where=where, hint=hint)
     length, height = (quantity(v, "length", where="block_size") for v in _two(block_size, "block_size"))
     t_m = quantity(joint, "length", where="joint")
     depth = quantity(thickness, "length", where="thickness")
@@ -149,6 +152,9 @@ def running_bond_panel(
     law = friction if isinstance(friction, JointLaw) else JointLaw(quantity(friction, "friction", where="friction"))
     laws, rules = {"joint": law}, [JointRule("joint")]
     for role, coefficient, opening in (("side wall", wall_friction, gap), ("base", base_friction, 0.0)):
+        if (coefficient is not None or opening) and not any(b.role == role for b in bodies):
+            msg = f"{'side_gap' if opening else role.split()[-1] + '_friction'} is given, but there is no {role}"
+            raise InputError(msg, where=where, hint="leave it out")
         if coefficient is not None or opening:
             given = law.friction if coefficient is None else quantity(coefficient, "friction", where=f"{role} friction")
             laws[role] = replace(law, friction=given)
@@ -188,13 +194,7 @@ def _two(value: Sequence[T], name: str) -> tuple[T, T]:
 
 
 def _count(value: object, name: str) -> int:
-    if isinstance(value, bool) or not isinstance(value, int | np.integer):
-        msg = f"{name} = {value!r} must be a whole number"
-        raise InputError(msg, where="panel")
-    if value < 1:
-        msg = f"{name} = {value} must be at least 1"
-        raise InputError(msg, where="panel")
-    return int(value)
+    return count("panel", name, value)
 
 
 def _rectangle(x0: float, x1: float, y0: float, y1: float) -> Array:

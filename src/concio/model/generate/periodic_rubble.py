@@ -16,6 +16,7 @@ from scipy.spatial import Voronoi, cKDTree
 
 from concio.errors import InputError
 from concio.model.generate.arguments import count, positive
+from concio.model.limits import LARGEST_SEED, LARGEST_SWEEPS
 from concio.model.model import Array, Periods
 
 LARGEST_STONES = 20_000
@@ -45,7 +46,7 @@ def rubble_cell(
     where = "cell"
     l, h, size = positive(where, "length", length), positive(where, "height", height), positive(where, "stone", stone)
     stretch = positive(where, "aspect", aspect, "number")
-    sweeps = count(where, "evenness", evenness, 0)
+    sweeps = count(where, "evenness", evenness, 0, LARGEST_SWEEPS)
     if not 0 <= shortest_edge <= 0.5:
         msg = f"shortest_edge = {shortest_edge:g} must lie between 0 and 0.5"
         raise InputError(msg, where=where, hint="it is a share of the stone size")
@@ -53,7 +54,7 @@ def rubble_cell(
     if not 1 <= number <= LARGEST_STONES:
         msg = f"a cell of {l:g} x {h:g} m holds {number:,} stones of {size:g} m"
         raise InputError(msg, where=where, hint=f"between 1 and {LARGEST_STONES:,}; stone, length and height are in m")
-    rng = np.random.default_rng(count(where, "seed", seed, 0))
+    rng = np.random.default_rng(count(where, "seed", seed, 0, LARGEST_SEED))
     box = np.array([l / stretch, h])  # in the plane where stones are as high as long
     points = rng.uniform(size=(number, 2)) * box
     for _ in range(sweeps):

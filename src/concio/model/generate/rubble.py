@@ -18,6 +18,7 @@ from concio.arguments import strict_with
 from concio.errors import InputError
 from concio.model.generate.arguments import Common, checked, count, finite, positive
 from concio.model.generate.masonry import Piece, assemble, numbered, rectangle
+from concio.model.limits import LARGEST_SEED, LARGEST_SWEEPS
 from concio.model.model import Array, Load, Model
 
 LARGEST_STONES = 200_000
@@ -66,19 +67,20 @@ def rubble(
     options = checked(where, common)
     l, h, size = positive(where, "length", length), positive(where, "height", height), positive(where, "stone", stone)
     stretch = positive(where, "aspect", aspect, "number")
-    sweeps = count(where, "evenness", evenness, 0)
+    sweeps = count(where, "evenness", evenness, 0, LARGEST_SWEEPS)
     if not 0 <= shortest_edge <= 0.5:
         msg = f"shortest_edge = {shortest_edge:g} must lie between 0 and 0.5"
         raise InputError(msg, where=where, hint="it is a share of the stone size")
     pressure = finite(where, "top_pressure", top_pressure, "stress")
-    number = max(1, round(l * h / size**2))
-    if number > LARGEST_STONES:
-        msg = f"{number} stones are more than {LARGEST_STONES:,}"
+    wanted = (l / size) * (h / size)
+    if not wanted <= LARGEST_STONES:
+        msg = f"some {wanted:.3g} stones are more than {LARGEST_STONES:,}"
         raise InputError(msg, where=where, hint="stone, length and height are in m")
+    number = max(1, round(wanted))
     if not (ground or side_walls):
         msg = "no ground and no side walls: nothing holds the wall"
         raise InputError(msg, where=where, hint="set ground = true")
-    rng = np.random.default_rng(count(where, "seed", seed, 0))
+    rng = np.random.default_rng(count(where, "seed", seed, 0, LARGEST_SEED))
     box = np.array([l / stretch, h])  # in the plane where stones are as high as long
     points = rng.uniform(size=(number, 2)) * box
     for _ in range(sweeps):

@@ -11,7 +11,7 @@ import shapely
 
 from concio.arguments import strict_with
 from concio.errors import GeometryError, InputError
-from concio.model.generate.arguments import Common, checked, finite, positive, two
+from concio.model.generate.arguments import Common, check_blocks, checked, finite, positive, two
 from concio.model.generate.bonds import SHORTEST, Course, bond_courses, head_joints, sort_of_piece, without_short_pieces
 from concio.model.generate.masonry import Piece, assemble, numbered, rectangle
 from concio.model.generate.openings import Opening, checked_openings
@@ -19,7 +19,6 @@ from concio.model.generate.wall_panels import Bond, Panel, checked_panels
 from concio.model.materials import Elastic, Rigid
 from concio.model.model import Array, Load, Model
 
-LARGEST_BLOCKS = 2_000_000
 """More blocks than this are taken for a slip of the pen."""
 
 
@@ -89,9 +88,8 @@ def wall(
     for number, part in enumerate(parts, 1):
         prefix = f"p{number}-" if len(parts) > 1 else ""
         courses = bond_courses(part.bond if part.bond is not None else bond, lap)
-        if part.length / size[0] * part.height / size[1] > LARGEST_BLOCKS:
-            msg = f"{part.length:g} x {part.height:g} m of blocks of {size[0]:g} x {size[1]:g} m are too many blocks"
-            raise InputError(msg, where=where, hint=f"at most {LARGEST_BLOCKS:,}; block_size is in m")
+        each = min(min(c.unit) for c in courses) * min(c.height for c in courses)
+        check_blocks(where, part.length / size[0] * (part.height / size[1]) / each, "block_size is in m")
         pieces += panel_pieces(where, part, (size[0], size[1]), courses, prefix, "lintel" if lintel else "block")
     x0, y0 = (min(p.at[k] for p in parts) for k in (0, 1))
     x1, y1 = max(p.at[0] + p.length for p in parts), max(p.at[1] + p.height for p in parts)
