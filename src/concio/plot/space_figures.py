@@ -1,0 +1,140 @@
+"""Figures of structures in space, in fixed views for print: front, side, plan and axonometry.
+
+What is nearer hides what is farther, point by point (:mod:`concio.plot.picture`), so that blocks of any shape, moved
+as far as one likes, are drawn as they are seen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from concio.arguments import strict
+from concio.errors import InputError
+from concio.plot import style
+from concio.plot.picture import Picture
+from concio.post.joint_faces import joint_faces
+from concio.post.outlines import display_scale
+from concio.post.solids import Solids, model_solids, solids
+from concio.post.space_states import mechanism_states_in_space
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from concio.analysis.result import Result
+    from concio.model.model import Model
+
+Array = np.ndarray
+View = Literal["front", "side", "plan", "axonometry"]
+
+VIEWS: dict[str, tuple[float, float]] = {
+    "front": (0.0, 0.0),
+    "side": (np.pi / 2, 0.0),
+    "plan": (0.0, np.pi / 2),
+    "axonometry": (-0.7, 0.5),
+}
+"""Turn about the vertical and height of the eye, of each view [rad]."""
+
+
+def directions(view: View) -> tuple[Array, Array, Array]:
+    """Return (right, up, towards the eye) of a view, unit vectors (3,)."""
+    if view not in VIEWS:
+        msg = f"there is no view '{view}'"
+        raise InputError(msg, hint="one of " + ", ".join(VIEWS))
+    turn, lift = VIEWS[view]
+    c, s, cl, sl = np.cos(turn), np.sin(turn), np.cos(lift), np.sin(lift)
+    return np.array([c, s, 0.0]), np.array([-s * sl, c * sl, cl]), np.array([s * cl, -c * cl, sl])
+
+
+@strict
+def plot_space_model(model: Model, ax: Axes | None = None, *, view: View = "axonometry") -> Axes:
+    """Draw the blocks of a model in space.
+
+    Parameters
+    ----------
+    model : Model
+    ax : Axes, optional
+    view : {"front", "side", "plan", "axonometry"}
+    """
+    shown = model_solids(model)
+    return _draw(shown, _block_colours(model), view, ax, 0.0, model.title or "Model")
+
+
+@strict
+def plot_space(
+    result: Result, ax: Axes | None = None, *, view: View = "axonometry", scale: float | None = None
+) -> Axes:
+    """Draw the deformed shape, or the mechanism, of a structure in space; faces of joints that open or slip are coloured.
+
+    Parameters
+    ----------
+    result : Result
+    ax : Axes, optional
+    view : {"front", "side", "plan", "axonometry"}
+    scale : float, optional
+        By which displacements are multiplied; by default so that they can be seen.
+    """
+    mechanism = not result.solved and result.mechanism is not None
+    u = result.mechanism_velocity if mechanism else None
+    if u is None and not result.solved:
+        return plot_space_model(result.model, ax, view=view)
+    shown = solids(result, u)
+    largest = float(np.linalg.norm(shown.displacement, axis=1).max(initial=0.0))
+    chosen = display_scale(largest, shown.size) if scale is None else scale
+    faces = joint_faces(result, u)
+    state = mechanism_states_in_space(result, faces) if mechanism else result.contacts.state[faces.pair]
+    looks = {0: style.OPEN.colour, 2: style.SLIP.colour, 3: style.CRUSHED.colour}
+    extra = []
+    for moved in (faces.moved_a, faces.moved_b):
+        corners = faces.corners + chosen * moved
+        extra += [(corners[k], looks[int(state[k])]) for k in np.flatnonzero(np.isin(state, tuple(looks)))]
+    title = "Collapse mechanism" if mechanism else f"Displaced shape, {style.number(chosen)} times"
+    return _draw(shown, _block_colours(result.model), view, ax, chosen, title, extra)
+
+
+def _block_colours(model: Model) -> list[str]:
+    looks = {"rigid": style.RIGID, "fixed": "#CFCBC2"}
+    return [looks.get(b.kind, style.FILM if b.role == "mortar" else style.BLOCK) for b in model.bodies]
+
+
+def _draw(
+    shown: Solids,
+    colours: Sequence[str],
+    view: View,
+    ax: Axes | None,
+    scale: float,
+    title: str,
+    extra: Sequence[tuple[Array, str]] = (),
+) -> Axes:
+    from matplotlib.colors import to_rgb
+
+    right, up, eye = directions(view)
+    points = shown.moved(scale)
+    box = style.box_of(points @ np.column_stack([right, up]))
+    ax = style.axes_for(box, ax)
+    corners = points[shown.triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(normal, axis=1)
+    facing = normal @ eye > 1e-9 * length
+    light = 0.7 * eye + 0.5 * up + 0.2 * right
+    shade = 0.72 + 0.28 * np.clip(normal[facing] @ light / (length[facing] * np.linalg.norm(light)), 0.0, 1.0)
+    fills = np.array([to_rgb(c) for c in colours])[shown.body[facing]] * shade[:, None]
+    areas = corners[facing]
+    if extra:
+        lifted = np.array([c for c, _ in extra]) + 1e-4 * shown.size * eye  # a colour lies on the face that carries it
+        areas, fills = np.concatenate([areas, lifted]), np.vstack([fills, [to_rgb(tone) for _, tone in extra]])
+    picture = Picture.of(box, np.array([right, up, eye]))
+    picture.fill(areas, fills)
+    wide = 1 if len(colours) > style.LARGE else 2
+    picture.stroke(points[shown.edges], to_rgb(style.EDGE), wide, 1.5e-3 * shown.size)
+    ax.imshow(picture.image(), extent=(box[0, 0], box[1, 0], box[0, 1], box[1, 1]), interpolation="antialiased", zorder=1)
+    style.dress(ax, box, title, "")
+    names = {"front": ("x", "z"), "side": ("y", "z"), "plan": ("x", "y")}
+    if view in names:
+        ax.set_xlabel(f"{names[view][0]} [m]", fontsize=8)
+        ax.set_ylabel(f"{names[view][1]} [m]", fontsize=8)
+    else:
+        ax.set_axis_off()
+    return ax

@@ -1,0 +1,165 @@
+"""What the view in space shows, as typed arrays in base64; the same forms as :mod:`concio.report.view_data`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from concio.plot import style
+from concio.post.joint_faces import JointFaces, joint_faces
+from concio.post.outlines import display_scale
+from concio.post.solids import Solids, body_motions_in_space, solids
+from concio.post.space_states import joint_resultants_in_space, mechanism_states_in_space
+from concio.report.view_data import pack
+
+if TYPE_CHECKING:
+    from concio.analysis.result import Result
+
+Array = np.ndarray
+
+BUDGET = 60_000_000
+"""Bytes of arrays above which steps of a load path are left out of the view, evenly."""
+
+
+def space_view_data(results: Sequence[Result], labels: Sequence[str]) -> dict[str, Any]:
+    """Return the data of the view of one result in space, or of the steps of a load path on one assembly.
+
+    Parameters
+    ----------
+    results : sequence of Result
+        All of the same assembly.
+    labels : sequence of str
+        What each step is called.
+
+    Returns
+    -------
+    dict
+        JSON-able.
+    """
+    first = results[0]
+    model, pairs = first.model, first.assembly.pairs
+    shown, faces = _shown(first)
+    low, high = shown.points.min(axis=0), shown.points.max(axis=0)
+    origin = 0.5 * (low + high)
+    each = 12 * len(shown.points) + (72 + 40) * len(faces.pair) + 100 * len(model.bodies)
+    room = int(max(2, min(len(results), BUDGET // max(each, 1))))
+    kept = sorted({round(k) for k in np.linspace(0, len(results) - 1, room)})
+    packed = [_step(results[k], labels[k]) for k in kept]
+    largest = max(step.pop("largest") for step in packed)
+    resultants = joint_resultants_in_space(first)
+    return {
+        "origin": origin.tolist(),
+        "low": (low - origin).tolist(),
+        "high": (high - origin).tolist(),
+        "size": shown.size,
+        "scale": display_scale(largest, shown.size),
+        "mechanism": first.mechanism is not None,
+        "left_out": len(results) - len(kept),
+        "units": _units(results[kept[-1]], largest),
+        "look": {
+            "block": style.BLOCK,
+            "mortar": style.FILM,
+            "rigid": style.RIGID,
+            "fixed": "#C9C4BA",
+            "edge": style.EDGE,
+            "compression": style.COMPRESSION.colour,
+            "tension": style.TENSION.colour,
+            "stick": "#7A7A7A",
+            "slip": style.SLIP.colour,
+            "crushed": style.CRUSHED.colour,
+            "open": style.OPEN.colour,
+        },
+        "bodies": {
+            "name": [b.name for b in model.bodies],
+            "kind": [_kind(b) for b in model.bodies],
+            "point": pack(shown.points - origin, "f4"),
+            "triangle": pack(shown.triangles, "i4"),
+            "owner": pack(shown.body, "i4"),
+            "edge": pack(shown.edges, "i4"),
+            "edge_owner": pack(shown.edge_body, "i4"),
+            "centre": pack(first.assembly.disc.centroids - origin, "f8"),
+            "volume": pack(np.array([b.volume for b in model.bodies]), "f8"),
+        },
+        "pieces": {
+            "corner": pack(faces.corners - origin, "f4"),
+            "pair": pack(faces.pair, "i4"),
+            "face": pack(pairs.interface[faces.pair], "i4"),
+        },
+        "joints": {
+            "a": pack(resultants.body_a, "i4"),
+            "b": pack(resultants.body_b, "i4"),
+            "area": pack(resultants.area, "f8"),
+            "normal": pack(resultants.normal, "f4"),
+        },
+        "steps": packed,
+    }
+
+
+def _units(result: Result, largest: float) -> dict[str, tuple[float, str]]:
+    units = result.model.report
+    stress = float(np.nanmax(np.abs(result.stress.principal_in_space[0]), initial=0.0)) if result.solved else 0.0
+    sizes = {"force": 0.0, "length": 0.0, "motion": largest, "stress": stress, "rotation": 0.0}
+    return {kind: units.factor(kind, size) for kind, size in sizes.items()}
+
+
+def _kind(body: Any) -> str:
+    if body.kind == "elastic":
+        return "mortar" if body.role == "mortar" else "block"
+    return str(body.kind)
+
+
+def _velocity(result: Result) -> Array | None:
+    return None if result.solved or result.mechanism is None else result.mechanism_velocity
+
+
+def _shown(result: Result) -> tuple[Solids, JointFaces]:
+    u = _velocity(result)
+    if u is None and not result.solved:
+        u = np.zeros_like(result.displacement)
+    return solids(result, u), joint_faces(result, u)
+
+
+def _step(result: Result, label: str) -> dict[str, Any]:
+    shown, faces = _shown(result)
+    velocity = _velocity(result)
+    still = not result.solved and velocity is None
+    u = np.zeros_like(result.displacement) if still else velocity
+    step: dict[str, Any] = {
+        "label": label,
+        "status": result.status.name.lower(),
+        "largest": float(np.linalg.norm(shown.displacement, axis=1).max(initial=0.0)),
+        "move": pack(shown.displacement, "f4"),
+        "moved_a": pack(faces.moved_a, "f4"),
+        "moved_b": pack(faces.moved_b, "f4"),
+        "motion": pack(body_motions_in_space(result, u), "f8"),
+    }
+    if not result.solved:
+        if velocity is not None:
+            step["state"] = pack(mechanism_states_in_space(result, faces), "u1")
+        return step
+    contacts, joints = result.contacts, joint_resultants_in_space(result)
+    values, directions = result.stress.principal_in_space
+    pair = faces.pair
+    return {
+        **step,
+        "stress": pack(values, "f8"),
+        "axes": pack(directions, "f4"),
+        "state": pack(contacts.state[pair], "u1"),
+        "t_n": pack(contacts.normal_force[pair], "f8"),
+        "t_t": pack(contacts.friction_force[pair], "f8"),
+        "gap": pack(contacts.gap[pair], "f8"),
+        "slip": pack(contacts.slip[pair], "f8"),
+        "pressure": pack(contacts.pressure[pair], "f8"),
+        "N": pack(joints.N, "f8"),
+        "V": pack(np.linalg.norm(joints.V, axis=1), "f8"),
+        "force": pack(joints.force, "f4"),
+        "at": pack(joints.point - _origin(shown), "f4"),
+        "open_share": pack(joints.open_share, "f8"),
+    }
+
+
+def _origin(shown: Solids) -> Array:
+    middle: Array = 0.5 * (shown.points.min(axis=0) + shown.points.max(axis=0))
+    return middle
