@@ -25,8 +25,8 @@ ORDER = (
 )  # fmt: skip
 """Rooms in the order in which things flow: each imports from itself and from those before it."""
 DOORS = {
-    ("analysis/result.py", "concio.plot.accessor"),
-    ("analysis/result.py", "concio.post.tables"),
+    ("analysis/result.py", "concio.plot.plots_of"),
+    ("analysis/result.py", "concio.post.tables_of"),
     ("analysis/result.py", "concio.report.notebook"),
     ("analysis/cells/moduli.py", "concio.plot.cell_accessor"),
     ("analysis/cells/strength.py", "concio.plot.cell_accessor"),

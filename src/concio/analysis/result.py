@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from concio.analysis.contacts import STATE_NAMES, Contacts, JointResultants, joint_resultants
+from concio.analysis.joints_in_space import SpaceResultants, joint_resultants_in_space
 from concio.analysis.stress import Stress
 from concio.analysis.verdict import attention, self_stress, sentence
 from concio.arguments import closest
@@ -168,6 +169,11 @@ class Result:
         return joint_resultants(self.contacts)
 
     @cached_property
+    def joints_in_space(self) -> SpaceResultants:
+        """Resultants of each interface of a model in space."""
+        return joint_resultants_in_space(self.contacts, self.assembly.detection.patches)
+
+    @cached_property
     def stress(self) -> Stress:
         """Stresses of the bodies, tension positive."""
         return Stress(self.assembly.disc, self.displacement)
@@ -267,16 +273,16 @@ class Result:
     @property
     def plot(self) -> Plots:
         """Figures by name: ``result.plot.deformed()``; matplotlib is loaded here."""
-        from concio.plot.accessor import Plots
+        from concio.plot.plots_of import plots_of
 
-        return Plots(self)
+        return plots_of(self)
 
     @property
     def tables(self) -> Tables:
         """Tables by name, as dicts of arrays: ``pandas.DataFrame(result.tables.joints())``."""
-        from concio.post.tables import Tables
+        from concio.post.tables_of import tables_of
 
-        return Tables(self)
+        return tables_of(self)
 
     def _repr_html_(self) -> str:
         from concio.report.notebook import notebook_html

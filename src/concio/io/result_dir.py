@@ -26,7 +26,6 @@ from concio.io.csv_table import write_csv
 from concio.io.owned_dir import owned_directory
 from concio.io.result_file import save_result
 from concio.model.file.writing import dumps
-from concio.post.tables import Tables
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
@@ -68,7 +67,7 @@ def _write_all(result: Result, place: Path, figures: bool, report: bool) -> list
     model = place / "model.toml"
     model.write_text(dumps(result.model), encoding="utf-8")
     written = [summary, model, *save_result(result, place)]
-    tables = Tables(result).all() if result.solved else {"bodies": Tables(result).bodies()}
+    tables = result.tables.all() if result.solved else {"bodies": result.tables.bodies()}
     written += [write_csv(table, place / f"{name}.csv") for name, table in tables.items()]
     if figures:
         from concio.plot.figures import write_figures

@@ -6,13 +6,15 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from concio.plot.accessor import Plots
+from concio.plot.plots_of import plots_of
+from concio.plot.space_accessor import SpacePlots
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from concio.analysis.result import Result
 
+VIEWS = ("axonometry", "front", "side", "plan")
 FORMATS = ("png", "svg")
 
 TITLES: dict[str, str] = {
@@ -25,6 +27,8 @@ TITLES: dict[str, str] = {
     "slip": "Opening and slip of the joints",
     "thrust": "Line of thrust",
     "mechanism": "Collapse mechanism",
+    **{f"deformed_{view}": f"Displaced shape and joints that open or slip, {view}" for view in VIEWS},
+    **{f"mechanism_{view}": f"Collapse mechanism, {view}" for view in VIEWS},
 }
 """Captions of the figures by name."""
 
@@ -34,7 +38,9 @@ def suitable_figures(result: Result) -> dict[str, Callable[[], Axes]]:
 
     A collapse shows its mechanism and no stresses; an outcome without an answer shows the model alone.
     """
-    plots = Plots(result)
+    plots = plots_of(result)
+    if isinstance(plots, SpacePlots):
+        return plots.suitable()
     found: dict[str, Callable[[], Axes]] = {"model": plots.model}
     if result.mechanism is not None:
         found["mechanism"] = plots.mechanism

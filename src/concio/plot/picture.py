@@ -1,4 +1,4 @@
-"""A picture with a depth at every point: triangles and lines in space, each point showing what is nearest to the eye."""
+"""A picture with a depth at every point: triangles and lines, each point showing what is nearest to the eye."""
 
 from __future__ import annotations
 

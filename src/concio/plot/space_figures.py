@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from concio.arguments import strict
+from concio.display import number
 from concio.errors import InputError
 from concio.plot import style
 from concio.plot.picture import Picture
@@ -66,7 +67,7 @@ def plot_space_model(model: Model, ax: Axes | None = None, *, view: View = "axon
 def plot_space(
     result: Result, ax: Axes | None = None, *, view: View = "axonometry", scale: float | None = None
 ) -> Axes:
-    """Draw the deformed shape, or the mechanism, of a structure in space; faces of joints that open or slip are coloured.
+    """Draw the deformed shape or the mechanism of a structure in space; joint faces that open or slip are coloured.
 
     Parameters
     ----------
@@ -90,7 +91,7 @@ def plot_space(
     for moved in (faces.moved_a, faces.moved_b):
         corners = faces.corners + chosen * moved
         extra += [(corners[k], looks[int(state[k])]) for k in np.flatnonzero(np.isin(state, tuple(looks)))]
-    title = "Collapse mechanism" if mechanism else f"Displaced shape, {style.number(chosen)} times"
+    title = "Collapse mechanism" if mechanism else f"Displaced shape, {number(chosen)} times"
     return _draw(shown, _block_colours(result.model), view, ax, chosen, title, extra)
 
 
@@ -129,7 +130,8 @@ def _draw(
     picture.fill(areas, fills)
     wide = 1 if len(colours) > style.LARGE else 2
     picture.stroke(points[shown.edges], to_rgb(style.EDGE), wide, 1.5e-3 * shown.size)
-    ax.imshow(picture.image(), extent=(box[0, 0], box[1, 0], box[0, 1], box[1, 1]), interpolation="antialiased", zorder=1)
+    extent = (box[0, 0], box[1, 0], box[0, 1], box[1, 1])
+    ax.imshow(picture.image(), extent=extent, interpolation="antialiased", zorder=1)
     style.dress(ax, box, title, "")
     names = {"front": ("x", "z"), "side": ("y", "z"), "plan": ("x", "y")}
     if view in names:

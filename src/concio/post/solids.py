@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.fem.discretisation import FIXED, RIGID
-from concio.fem.solid_shape import SolidShape
+from concio.fem.solid import SolidShape
 from concio.kinematics.rigid import rigid_operator, swept
 
 if TYPE_CHECKING:

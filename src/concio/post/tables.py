@@ -24,6 +24,13 @@ UNITS: dict[str, str] = {
     **dict.fromkeys(("work", "stored", "dissipated"), "kN m"),
     **dict.fromkeys(("angle", "rotation"), "rad"),
     "area": "m2",
+    **dict.fromkeys(("z", "u_z"), "m"),
+    **dict.fromkeys(("force_z", "shear_x", "shear_y", "shear_z"), "kN"),
+    **dict.fromkeys(("moment_x", "moment_y", "moment_z", "torsion"), "kN m"),
+    **dict.fromkeys(("s_z", "t_yz", "t_zx", "s_3"), "kN/m2"),
+    **dict.fromkeys(("rotation_x", "rotation_y", "rotation_z"), "rad"),
+    "n_z": "-",
+    "volume": "m3",
 }
 UNITS |= {f"{name}_{i}": UNITS[name] for name in ("friction_force", "shear", "slip") for i in (1, 2)}
 """Unit of each column that has one; stresses are tension positive, pressure and normal forces compression positive."""
@@ -36,6 +43,12 @@ KINDS: dict[str, str] = {
     **dict.fromkeys(("s_x", "s_y", "t_xy", "s_1", "s_2", "pressure", "shear"), "stress"),
     **dict.fromkeys(("angle", "rotation"), "rotation"),
     "area": "area",
+    **dict.fromkeys(("z",), "length"),
+    **dict.fromkeys(("u_z",), "motion"),
+    **dict.fromkeys(("force_z", "shear_x", "shear_y", "shear_z"), "force"),
+    **dict.fromkeys(("s_z", "t_yz", "t_zx", "s_3"), "stress"),
+    **dict.fromkeys(("rotation_x", "rotation_y", "rotation_z"), "rotation"),
+    "n_z": "number",
 }
 """Kind of quantity in each column, as :class:`concio.Units` tells it."""
 
@@ -80,7 +93,7 @@ class Tables:
         """Return one row an interface: its bodies, resultants on side b, where they act, what is open or slips."""
         j = self.result.joints
         return {
-            **self._names(j.body_a, j.body_b),
+            **self.names(j.body_a, j.body_b),
             "x": j.middle[:, 0],
             "y": j.middle[:, 1],
             "n_x": j.normal[:, 0],
@@ -99,7 +112,7 @@ class Tables:
         p = c.pairs
         laws = np.array([*p.law_names, "tie"])
         return {
-            **self._names(p.body_a, p.body_b),
+            **self.names(p.body_a, p.body_b),
             "interface": p.interface,
             "law": laws[p.law],
             "x": p.point[:, 0],
@@ -109,11 +122,11 @@ class Tables:
             "area": p.area,
             "state": np.array(STATE_NAMES)[c.state],
             "normal_force": c.normal_force,
-            **_components("friction_force", c.friction_force),
+            **components("friction_force", c.friction_force),
             "pressure": c.pressure,
-            **_components("shear", c.shear),
+            **components("shear", c.shear),
             "gap": c.gap,
-            **_components("slip", c.slip),
+            **components("slip", c.slip),
         }
 
     def reactions(self) -> Table:
@@ -131,12 +144,13 @@ class Tables:
             "reactions": self.reactions(),
         }
 
-    def _names(self, a: Array, b: Array) -> Table:
+    def names(self, a: Array, b: Array) -> Table:
+        """Return the columns with the names of the bodies ``a`` and ``b`` (n,)."""
         names = np.array([*(body.name for body in self.result.model.bodies), ""])  # -1: the free end of a tie
         return {"body_a": names[a], "body_b": names[b]}
 
 
-def _components(name: str, values: Array) -> Table:
+def components(name: str, values: Array) -> Table:
     """Return the columns of a tangential quantity (m, d-1): one in the plane, one for each tangent in space."""
     if values.shape[1] == 1:
         return {name: values[:, 0]}

@@ -18,6 +18,8 @@ from concio.errors import InputError
 from concio.model.described import law_words, material_words
 from concio.plot.figures import TITLES, suitable_figures
 from concio.report.html_parts import figure_html, table_html
+from concio.report.space_data import space_view_data
+from concio.report.space_tables import space_tables_html
 from concio.report.view_data import view_data
 from concio.report.wording import certificate_sentence, checks, verdict
 
@@ -74,11 +76,14 @@ def report_html(
         raise InputError(msg, hint="write one report for each model")
     labels = [_label(s, i) for i, s in enumerate(steps)] if labels is None else list(labels)
     last = steps[-1]
-    data = json.dumps(view_data(steps, labels), allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+    space = last.model.dim == 3
+    shown = space_view_data(steps, labels) if space else view_data(steps, labels)
+    data = json.dumps(shown, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     parts = {
         "TITLE": escape(last.model.title or "Result"),
-        "STYLE": _resource("report.css"),
-        "SCRIPT": _resource("view.js"),
+        "STYLE": _resource("report.css") + (_resource("space_view.css") if space else ""),
+        "SCRIPT": _resource("space_view.js" if space else "view.js"),
+        "VIEW": _resource("space_view.html" if space else "view.html"),
         "VERDICT": _verdict(last),
         "MODEL": _model(last),
         "FIGURES": _figures(last) if figures else "",
@@ -140,7 +145,8 @@ def _model(result: Result) -> str:
         ("bodies", f"{len(model.free_bodies)}, and {fixed} fixed"),
         ("joints", f"{len(result.assembly.detection.interfaces)} with {len(result.assembly.pairs)} contact pairs"),
         ("unknowns", f"{result.assembly.disc.unknowns:,}"),
-        ("elements", f"{model.element}, plane {model.plane}"),
+        ("elements", f"{model.element}, plane {model.plane}" if model.dim == 2 else model.element),
+        ("contact", ", ".join(f"{n:,} {name}" for name, n in result.assembly.pairs.contact_model.items())),
     ]
     for name, material in model.materials.items():
         if any(b.material == name and b.kind != "fixed" for b in model.bodies):
@@ -167,6 +173,8 @@ def _figures(result: Result) -> str:
 def _tables(result: Result) -> str:
     if not result.solved:
         return ""
+    if result.model.dim == 3:
+        return space_tables_html(result, ROWS)
     tables, units = result.tables, result.model.report
     joints, bodies, reactions = tables.joints(), tables.bodies(), tables.reactions()
     force = np.hypot(joints["normal_force"], joints["shear_force"])

@@ -11,7 +11,7 @@ from concio.plot import style
 from concio.post.joint_faces import JointFaces, joint_faces
 from concio.post.outlines import display_scale
 from concio.post.solids import Solids, body_motions_in_space, solids
-from concio.post.space_states import joint_resultants_in_space, mechanism_states_in_space
+from concio.post.space_states import mechanism_states_in_space
 from concio.report.view_data import pack
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def space_view_data(results: Sequence[Result], labels: Sequence[str]) -> dict[st
     kept = sorted({round(k) for k in np.linspace(0, len(results) - 1, room)})
     packed = [_step(results[k], labels[k]) for k in kept]
     largest = max(step.pop("largest") for step in packed)
-    resultants = joint_resultants_in_space(first)
+    resultants = first.joints_in_space
     return {
         "origin": origin.tolist(),
         "low": (low - origin).tolist(),
@@ -139,7 +139,7 @@ def _step(result: Result, label: str) -> dict[str, Any]:
         if velocity is not None:
             step["state"] = pack(mechanism_states_in_space(result, faces), "u1")
         return step
-    contacts, joints = result.contacts, joint_resultants_in_space(result)
+    contacts, joints = result.contacts, result.joints_in_space
     values, directions = result.stress.principal_in_space
     pair = faces.pair
     return {

@@ -1,0 +1,98 @@
+"""Resultants of joints in space: normal force, shear, bending and torsion of each interface."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.analysis.contacts import Contacts
+from concio.model.interfaces.patches import Patch
+from concio.problem.pair_state import PairState
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class SpaceResultants:
+    """Resultants of each interface in space, on side b; j interfaces.
+
+    Parameters
+    ----------
+    body_a, body_b : (j,) integer arrays
+    normal : (j, 3) array
+    area : (j,) array
+        [m2].
+    N : (j,) array
+        Normal force, compression positive [kN].
+    V : (j, 3) array
+        Force in the plane of the joint [kN].
+    M : (j, 3) array
+        Moment about the middle of the joint [kN m]; its part along the normal is the torsion of the joint.
+    force : (j, 3) array
+        N normal + V [kN].
+    middle : (j, 3) array
+        Centroid of the joint [m].
+    point : (j, 3) array
+        Where the resultant meets the joint, the centre of pressure; the middle where N is zero [m].
+    open_share : (j,) array
+        Share of the area whose pairs are open.
+    """
+
+    body_a: Array
+    body_b: Array
+    normal: Array
+    area: Array
+    N: Array
+    V: Array
+    M: Array
+    force: Array
+    middle: Array
+    point: Array
+    open_share: Array
+
+    @property
+    def torsion(self) -> Array:
+        """Moment about the normal (j,) [kN m]."""
+        twist: Array = (self.M * self.normal).sum(1)
+        return twist
+
+
+def joint_resultants_in_space(contacts: Contacts, patches: Sequence[Patch]) -> SpaceResultants:
+    """Return the resultants of all interfaces of a structure in space."""
+    pairs = contacts.pairs
+    j = len(patches)
+    own = np.flatnonzero(pairs.interface >= 0)
+    of = pairs.interface[own]
+    middle = np.array([p.middle for p in patches]).reshape(-1, 3)
+    normal = np.array([p.normal for p in patches]).reshape(-1, 3)
+
+    def summed(values: Array) -> Array:
+        total = np.zeros((j, *values.shape[1:]))
+        np.add.at(total, of, values)
+        return total
+
+    force = contacts.force_on_b[own]
+    total = summed(force)
+    moment = summed(np.cross(pairs.point[own] - middle[of], force))
+    N = (total * normal).sum(1)
+    safe = np.where(N == 0, 1.0, N)
+    # the normal forces alone place the resultant in the plane of the joint
+    pressed = summed(contacts.normal_force[own, None] * (pairs.point[own] - middle[of]))
+    point = middle + np.where((N != 0)[:, None], pressed / safe[:, None], 0.0)
+    area = summed(pairs.area[own])
+    opened = summed(pairs.area[own] * (contacts.state[own] == PairState.OPEN))
+    return SpaceResultants(
+        np.array([p.a for p in patches], dtype=int),
+        np.array([p.b for p in patches], dtype=int),
+        normal,
+        np.array([p.area for p in patches]),
+        N,
+        total - N[:, None] * normal,
+        moment,
+        total,
+        middle,
+        point,
+        opened / np.where(area > 0, area, 1.0),
+    )

@@ -1,0 +1,16 @@
+"""The tables of a result, whatever its dimension."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from concio.post.space_tables import SpaceTables
+from concio.post.tables import Tables
+
+if TYPE_CHECKING:
+    from concio.analysis.result import Result
+
+
+def tables_of(result: Result) -> Tables:
+    """Return the tables of a result, in the plane or in space."""
+    return Tables(result) if result.model.dim == 2 else SpaceTables(result)
