@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.kinematics.frames import cross
 from concio.kinematics.rigid import swept
 from concio.post.solids import body_motions_in_space
 
@@ -82,7 +83,7 @@ def pieces_of(result: Result) -> tuple[Array, Array]:
                 if len(cell) < 3:
                     continue
                 fan = np.array([(cell[0], cell[i], cell[i + 1]) for i in range(1, len(cell) - 1)])
-                sizes = np.abs(np.cross(fan[:, 1] - fan[:, 0], fan[:, 2] - fan[:, 0]))
+                sizes = np.abs(cross(fan[:, 1] - fan[:, 0], fan[:, 2] - fan[:, 0]))
                 fan = fan[sizes > TINY * patch.area]
                 corners.append(patch.polygon[0] + fan @ flat)
                 owner.append(np.full(len(fan), pair))
