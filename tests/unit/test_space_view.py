@@ -1,4 +1,4 @@
-"""Blocks and joints in space as they are drawn: surfaces, pieces of joints, resultants, pictures, and the report's data."""
+"""Blocks and joints in space as they are drawn: surfaces, pieces of joints, pictures, and the data of reports."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def moving(model: concio.Model, velocity: dict[str, tuple[tuple[float, ...], tup
 
 def test_surfaces_enclose_the_volume_of_their_bodies() -> None:
     bodies = (box("a", (0, 0, 0), (3, 1, 0.5)), turned(frame_block("b")), turned(l_block("c", 0.7)))
-    model = concio.Model(bodies=bodies, materials={"block": concio.Elastic(E=1e6, nu=0.2)}, laws={})
+    model = concio.Model(bodies=bodies, materials={"block": concio.Elastic(E=1e6, nu=0.2)}, laws={}, rules=())
     shown = model_solids(model)
     corners = shown.points[shown.triangles]
     pieces = np.einsum("ti,ti->t", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0
