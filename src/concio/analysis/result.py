@@ -20,7 +20,6 @@ from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID
 from concio.kinematics.rigid import rigid_operator, swept
 from concio.model.model import Model
-from concio.model.plausibility import implausible
 from concio.problem.certificate import Certificate
 from concio.problem.solution import Mechanism, Solution, Status, pair_states
 from concio.solvers.statics.self_stress import SelfStress
@@ -301,7 +300,7 @@ class Result:
 
     @property
     def attention(self) -> tuple[str, ...]:
-        """What asks for attention in a solved step, a sentence each: large motions, forces far above the loads."""
+        """What asks for attention, a sentence each: numbers hardly meant, large motions, forces far above the loads."""
         return attention(self)
 
     @cached_property
@@ -330,13 +329,12 @@ class Result:
             "total_load": list(self.total_load),
             "trace": list(self.solution.trace),
             "lent_compliance": self.lent_compliance,
-            "attention": list(implausible(self.model)),
+            "attention": list(self.attention),
             "units": {"force": "kN", "length": "m", "stress": "kN/m2"},
         }
         if contacts is not None:
             data["max_settlement"] = self.max_settlement
             data["joint_motion"] = asdict(self.joint_motion)
-            data["attention"] = list(self.attention)
             data["reactions"] = {name: list(force) for name, force in self.reactions.items()}
             data["pairs"] = {name: contacts.count(name) for name in STATE_NAMES}
         if 0 < len(self.assembly.pairs) <= EXISTENCE:  # without pairs there is nothing to guarantee
