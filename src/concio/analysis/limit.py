@@ -32,7 +32,8 @@ from concio.problem.solution import ProgressCallback
 from concio.solvers.path.event_path import follow
 from concio.solvers.path.record import EventPath, Outcome
 from concio.solvers.path.state import CLOSED, OPEN, LinearPath, PathState
-from concio.solvers.statics.collapse_state import CollapseState, find_collapse_state
+from concio.solvers.statics.collapse_search import find_collapse_state
+from concio.solvers.statics.collapse_state import CollapseState
 from concio.solvers.statics.existence import find_mechanism
 from concio.solvers.statics.friction import FrictionMargin, smallest_friction
 from concio.solvers.statics.limit import LimitLoad, associated_limit
@@ -41,9 +42,6 @@ Array = np.ndarray
 
 LARGEST_SEARCH = 15_000
 """Collapse states are searched for in problems of up to this number of pairs: about a minute there."""
-
-MOST_PROGRAMMES, SEARCH_WORK = 60, 350_000
-"""Linear programmes of that search at most, and their number times the pairs."""
 
 LIVE = "live"
 """Load group that is multiplied unless another is named; generators put their horizontal load there."""
@@ -201,7 +199,9 @@ def limit(
         if not note:
             found, shown = live_load_path(dead, load, weight.end, progress=progress)
             first = min((e.parameter for e in found.jumps), default=found.peak)
-    state, said = search_collapse(dead, load) if (path if search is None else search) else (None, "not asked for")
+    state, said = None, "not asked for"
+    if path if search is None else search:
+        state, said = search_collapse(dead, load, progress=progress)
     return LimitResult(assembly, bound, found, state, first, shown, lent, search=said, path_note=note)
 
 
@@ -217,17 +217,16 @@ def _not_begun(weight: EventPath) -> str:
     )
 
 
-def search_collapse(dead: ContactProblem, live: Array) -> tuple[CollapseState | None, str]:
-    """Search a collapse state where the problem is not too large; return it, and what was done in words."""
+def search_collapse(
+    dead: ContactProblem, live: Array, *, progress: ProgressCallback | None = None
+) -> tuple[CollapseState | None, str]:
+    """Search collapse states where the problem is not too large; return the least one, and what was done in words."""
     if dead.dim != 2:
         return None, "not tried: the search handles plane problems"
     if dead.pairs > LARGEST_SEARCH:
         return None, f"not tried: {dead.pairs:,} contact pairs are more than {LARGEST_SEARCH:,}"
-    most = min(MOST_PROGRAMMES, SEARCH_WORK // max(dead.pairs, 1))
-    state = find_collapse_state(dead, live, iterations=most)
-    if state is None:
-        return None, f"none found in {most} linear programmes; that proves nothing"
-    return state, f"least of those found, in programme {state.iterations} of at most {most}"
+    found = find_collapse_state(dead, live, progress=progress)
+    return found.state, found.words
 
 
 @strict
