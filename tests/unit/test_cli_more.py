@@ -43,7 +43,7 @@ def test_limit_of_a_slender_block(slender: Path) -> None:
     assert data["coulomb_path_multiplier"] == pytest.approx(0.2, rel=1e-6)
     code, out, _ = run("limit", slender)
     assert code == 0
-    assert "associated bound     0.2: no equilibrium beyond it" in out
+    assert "associated bound     0.2 times 'live': no equilibrium beyond it" in out
     assert "Coulomb load path" in out
 
 

@@ -82,6 +82,7 @@ def find_collapse_state(
     iterations: int | None = None,
     average: float = 0.5,
     seed: int = 0,
+    work: int = WORK_OF_ALL,
     progress: ProgressCallback | None = None,
 ) -> CollapseSearch:
     """Search Coulomb collapse states.
@@ -99,6 +100,9 @@ def find_collapse_state(
         Weight of the new forces in the strength.
     seed : int
         Of the random starts: the same problem is always searched in the same way.
+    work : int
+        Linear programmes times pairs after which no further start is made; one start alone takes no more either where
+        this is less than its own share.
     progress : callable, optional
 
     Raises
@@ -113,10 +117,11 @@ def find_collapse_state(
     search = _Search(problem, live, average, progress)
     if not np.isfinite(top.multiplier):
         return search.outcome(0)
-    most = min(MOST, WORK // max(problem.pairs, 1)) if iterations is None else iterations
+    share = WORK if work >= WORK_OF_ALL else work
+    most = max(1, min(MOST, share // max(problem.pairs, 1))) if iterations is None else iterations
     rng = np.random.default_rng(seed)
     made = 0
-    while made < starts and (made == 0 or search.programmes * problem.pairs < WORK_OF_ALL):
+    while made < starts and (made == 0 or search.programmes * problem.pairs < work):
         forces = top.normal_force if made == 0 else _drawn(problem, live, top, rng)
         made += 1
         if forces is not None and not search.run(problem.cone.strength(forces), most, made):
