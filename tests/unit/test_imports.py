@@ -21,8 +21,7 @@ ORDER = (
     "fem", "problem", "contact",
     "solvers/algebra", "solvers/lcp", "solvers/states", "solvers/statics", "solvers/interior", "solvers/pivoting",
     "solvers/forms", "solvers/iterative", "solvers/exhaustive", "solvers/motion", "solvers/auto", "solvers/path",
-    "solvers", "analysis", "analysis/cells", "analysis/seismic",
-    "post", "plot", "report", "io", "studies", "cli", "__main__",
+    "solvers", "analysis", "analysis/cells", "post", "plot", "report", "io", "studies", "cli", "__main__",
 )  # fmt: skip
 """Rooms in the order in which things flow: each imports from itself and from those before it."""
 DOORS = {

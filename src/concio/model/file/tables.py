@@ -162,11 +162,10 @@ class GridTable(Table):
 
 
 class BlockTable(Table):
-    """A block, a mortar film or an obstacle: an outline, or a rectangle by two opposite corners; holes in it."""
+    """A block, a mortar film or an obstacle: an outline, or a rectangle by two opposite corners."""
 
     name: Name
     outline: list[Point] | None = None
-    holes: list[list[Point]] = Field(default_factory=list)
     rectangle: tuple[Point, Point] | None = None
     material: StrictStr = "block"
     kind: Literal["elastic", "rigid", "fixed"] | None = None

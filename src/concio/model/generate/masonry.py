@@ -15,7 +15,7 @@ from concio.model.model import Array, Body, JointRule, Load, Model
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A block before it is a body: name, outline (n, 2), role, layer, material, thickness (None: common), holes."""
+    """A block before it is a body: name, outline (n, 2), role, layer, material, thickness (None: the common one)."""
 
     name: str
     outline: Array
@@ -23,7 +23,6 @@ class Piece:
     layer: str = ""
     material: str = "block"
     thickness: float | None = None
-    holes: tuple[Array, ...] = ()
 
 
 def rectangle(x0: float, x1: float, y0: float, y1: float) -> Array:
@@ -64,13 +63,11 @@ def assemble(
     """
     table: dict[str, Elastic | Rigid] = {"block": options.block, **(materials or {})}
     bodies = [
-        Body(o.name, o.outline, "", "fixed", o.role, o.layer, o.thickness or options.thickness, holes=o.holes)
-        for o in obstacles
+        Body(o.name, o.outline, "", "fixed", o.role, o.layer, o.thickness or options.thickness) for o in obstacles
     ]
     for p in pieces:
         kind: Literal["elastic", "rigid"] = "rigid" if isinstance(table[p.material], Rigid) else "elastic"
-        depth = p.thickness or options.thickness
-        bodies.append(Body(p.name, p.outline, p.material, kind, p.role, p.layer, depth, holes=p.holes))
+        bodies.append(Body(p.name, p.outline, p.material, kind, p.role, p.layer, p.thickness or options.thickness))
     laws: dict[str, JointLaw] = {"joint": options.law}
     rules = [JointRule("joint")]
     if options.base_law is not None:
