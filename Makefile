@@ -46,6 +46,12 @@ test: $(VENV)/.installed-dev
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile || status=1; \
 	exit $$status
 
+# Small faults put into the core on purpose: those that once passed unseen must be seen, a new sample is printed.
+.PHONY: mutants
+mutants: $(VENV)/.installed-dev
+	OMP_NUM_THREADS=1 $(BIN)/python tests/mutants.py --named
+	-OMP_NUM_THREADS=1 $(BIN)/python tests/mutants.py --count $(or $(COUNT),60)
+
 docs: $(VENV)/.installed-docs
 	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html
 

@@ -39,6 +39,15 @@ def entries(problem, u, t_n, t_t):
     return certify(problem, np.array(u), np.array([t_n]), np.array([t_t]))
 
 
+def test_complementarity_counts_from_the_tensile_strength():
+    """An open pair that still pulls with 0.5 of its strength of 2 carries p = 1.5 where it should carry none."""
+    problem = one_pair(f=(0.0, 100.5), tension=2.0, cohesion=1.0)
+    c = entries(problem, (0.0, 0.5), -0.5, 0.0)
+    assert c.equilibrium == 0.0
+    assert c.complementarity == pytest.approx(1.5 / 100.5, rel=1e-12)
+    assert entries(one_pair(f=(0.0, 102.0), tension=2.0, cohesion=1.0), (0.0, 0.5), -2.0, 0.0).complementarity == 0.0
+
+
 def test_stick():
     """t_t acts along (-1, 0): t_t = 3 holds the push of 3; |3| <= 0.5 x 10."""
     c = entries(one_pair(), (0.0, 0.0), 10.0, 3.0)

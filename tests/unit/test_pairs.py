@@ -13,7 +13,7 @@ from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID
 from concio.model.generate.walls import wall_of_courses
 from concio.model.materials import Elastic, JointLaw
-from concio.model.model import JointRule
+from concio.model.model import Body, JointRule
 from models import box, model_of, on_ground, turned
 from rigid_walls import FERRIS_TIN_LOI
 
@@ -174,3 +174,29 @@ def test_interfaces_of_the_ferris_and_tin_loi_walls(name, interfaces):
     """Ferris and Tin-Loi (2001), Int. J. Mech. Sci. 43, 209-224, table of examples."""
     model = wall_of_courses(courses=FERRIS_TIN_LOI[name], block_size=(0.4, 0.175))
     assert len(assemble(model).detection.interfaces) == interfaces
+
+
+def test_gaps_of_a_wedge_are_where_they_are():
+    """A stone beside a leaning wall: 1 mm at its foot, 9 mm at its head, whichever way its edges run."""
+    wall = Body("wall", np.array([(1.001, 0), (2, 0), (2, 1), (1.009, 1)], dtype=float), kind="fixed")
+    for stone in (STONE, {"mesh_size": 0.3}):
+        pairs = assemble(on_ground(box("stone", 0, 1, 0, 1, **stone), wall, gap_reach=0.02)).pairs
+        side = np.abs(pairs.normal[:, 0]) > 0.9
+        assert side.sum() >= 2
+        height = pairs.point[side, 1]
+        assert np.ptp(height) > 0.9
+        assert pairs.gap[side] == pytest.approx(0.001 + 0.008 * height, rel=1e-4)
+        assert not pairs.gap[~side].any()
+
+
+@pytest.mark.parametrize(("start", "end"), [(3, 3.6), (3.4, 4)])
+def test_joints_that_begin_alike_and_end_elsewhere_have_their_own_pairs(start, end):
+    """Two equal stones, one on a wide base, one on a base under a part of it: same edge, same start, other lengths."""
+    lines = np.linspace(0, 1, 5)
+    model = model_of(
+        box("wide", 0, 1, -1, 0, kind="fixed"), box("first", 0, 1, 0, 1, grid=(lines, lines)),
+        box("narrow", start, end, -1, 0, kind="fixed"), box("second", 3, 4, 0, 1, grid=(3 + lines, lines)),
+    )  # fmt: skip
+    pairs = assemble(model).pairs
+    reach = [pairs.length[pairs.interface == k].sum() for k in range(2)]
+    assert reach == pytest.approx([1.0, 0.6], rel=1e-12)

@@ -28,7 +28,7 @@ from concio.post.outlines import display_scale, outlines
 from concio.post.pressure import pressure_diagrams
 from concio.post.thrust import thrust_lines
 from concio.problem.solution import Status
-from models import bearing_panel, sliding_panel
+from models import bearing_panel, box, on_ground, sliding_panel, weight
 
 
 @pytest.fixture(scope="module")
@@ -94,6 +94,28 @@ def test_motion_of_a_rigid_turn_is_that_turn(panel: Result) -> None:
     free = disc.shape_of >= 0
     np.testing.assert_allclose(motion[free], np.tile([*shift, turn], (free.sum(), 1)), atol=1e-15)
     assert not motion[~free].any()
+
+
+def test_motion_of_a_rigid_stone_three_times_as_wide_as_high() -> None:
+    """Its unknown is the rotation times its radius of gyration."""
+    result = concio.solve(on_ground(box("stone", 0, 3, 0, 1, kind="rigid", material="stone"), loads=(weight(),)))
+    disc = result.assembly.disc
+    assert disc.reach[1] == pytest.approx(np.sqrt(10 / 12))
+    motion = body_motions(result, np.array([2e-3, -1e-3, disc.reach[1] * 1e-3]))
+    np.testing.assert_allclose(motion[1], [2e-3, -1e-3, 1e-3], rtol=1e-12)
+
+
+def test_force_chains_cross_films_on_the_spot() -> None:
+    """Stones on a bed of mortar: a line from the bed to the middle of each stone, none to the middle of the bed."""
+    result = concio.solve(
+        on_ground(
+            box("bed", 0, 2, 0, 0.02, material="mortar", mesh_size=0.5), box("left", 0, 0.9, 0.02, 0.5, mesh_size=0.5),
+            box("right", 0.9, 2, 0.02, 0.5, mesh_size=0.5),
+            loads=(weight(),), materials={"mortar": concio.Elastic(1e3)},
+        )
+    )  # fmt: skip
+    ends = np.unique(np.round(force_chains(result).lines[:, 1], 9), axis=0)
+    np.testing.assert_allclose(ends, [[0.45, 0.26], [1.45, 0.26]], atol=1e-9)
 
 
 def test_crosses_of_a_pressed_column() -> None:

@@ -256,3 +256,12 @@ def test_stress_at_points_and_nodes_of_a_uniform_state():
         assert abs(np.sin(angle)) < 1e-6  # s1 lies along x
         across = result.node_displacement("b")[:, 0]
         assert np.ptp(across) == pytest.approx(0.3 * q / 1e4, rel=1e-8)  # Poisson, free to slide
+
+
+def test_a_gap_that_was_there_is_no_motion():
+    """A stone 5 cm from a wall that nothing moves: its joints open and slide by no more than it settles."""
+    wall = box("wall", 1.05, 2, 0, 1, kind="fixed")
+    stone = box("stone", 0, 1, 0, 1, mesh_size=0.5)
+    result = concio.solve(on_ground(stone, wall, loads=(weight(),), gap_reach=0.1))
+    assert result.contacts.gap.max() == pytest.approx(0.05, rel=0.01)
+    assert result.joint_motion.motion < 0.01

@@ -67,8 +67,6 @@ def joint_lines(result: Result, shown: Outlines) -> JointLines:
     low, high = total - length - offset, total - offset
     start = np.array([f.start for f in faces])[face]
     tangent = pairs.tangent[pair]
-    stop = np.array([float(np.linalg.norm(f.end - f.start)) for f in faces])[face]
-    low, high = np.minimum(low, stop), np.minimum(high, stop)
     ends = start[:, None] + np.stack([low, high], axis=1)[:, :, None] * tangent[:, None]
     moved = []
     for side in ("a", "b"):

@@ -173,7 +173,7 @@ def detect_interfaces(
 
     pairs = facing_pairs(edges, near, tolerance, max(facing_angle, NEAR_ANGLE))
     pairs = pairs.chosen(~((pairs.g_max < -tolerance) | (pairs.g_min > near[pairs.bodies].min(1))))
-    thin = np.maximum(SLIVER_SHARE * size[pairs.bodies].min(1), tolerance) if sliver is None else sliver
+    thin = SLIVER_SHARE * size[pairs.bodies].min(1) if sliver is None else sliver
     thin = np.broadcast_to(np.asarray(thin, dtype=float), len(pairs.lo))
 
     joined = pairs.clipped(-tolerance, within)

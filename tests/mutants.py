@@ -1,0 +1,222 @@
+"""A sample of mutants of the core: small faults put in on purpose, which the tests must see.
+
+python tests/mutants.py [--count 60] [--seed 0] [--jobs 2] [--only PATH] [--named]
+
+Each mutant changes one operator, comparison, constant or function of one line of the core (a minus for a plus, a
+maximum for a minimum, a factor of two); the tests of its room are run on a copy of the package that holds it, until one
+fails. Survivors are defects of the tests, or mutants that change nothing: those stand in ``mutants_kept.toml`` with the
+reason. Any other survivor makes the exit code 1. With ``--named`` those of ``mutants_named.toml`` are tried instead of
+a sample.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import copy
+import os
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from queue import SimpleQueue
+
+HERE = Path(__file__).resolve().parent
+SOURCE = HERE.parent / "src" / "concio"
+KEPT = HERE / "mutants_kept.toml"
+SECONDS = 150.0
+"""A mutant whose tests take longer is dead: it made something endless."""
+
+ROOMS: dict[str, tuple[str, ...]] = tomllib.loads((HERE / "mutants_rooms.toml").read_text(encoding="utf-8"))["rooms"]
+"""Files and folders of the core, and the tests that look at them, quick ones first."""
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One change of one file.
+
+    Parameters
+    ----------
+    path : str
+        File in the package.
+    line : int
+    old, new : str
+        The smallest expression that changes.
+    text : str
+        The whole file with the change.
+    tests : tuple of str
+        What should see it; those of its room where there are none.
+    """
+
+    path: str
+    line: int
+    old: str
+    new: str
+    text: str
+    tests: tuple[str, ...] = ()
+
+    @property
+    def key(self) -> str:
+        """What names a mutant where lines move."""
+        return f"{self.path}: {self.old} -> {self.new}"
+
+
+SWAPPED = {
+    ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Lt: ast.GtE, ast.LtE: ast.Gt,
+    ast.Gt: ast.LtE, ast.GtE: ast.Lt, ast.And: ast.Or, ast.Or: ast.And, ast.BitAnd: ast.BitOr, ast.BitOr: ast.BitAnd,
+}  # fmt: skip
+NAMES = {
+    "maximum": "minimum",
+    "minimum": "maximum",
+    "max": "min",
+    "min": "max",
+    "abs": "float",
+    "any": "all",
+    "all": "any",
+}
+
+
+def changes(node: ast.AST) -> Iterator[ast.AST]:
+    """Yield the changed copies of one node."""
+    if isinstance(node, ast.BinOp) and type(node.op) in SWAPPED:
+        if isinstance(node.op, ast.BitOr) and isinstance(node.right, ast.Constant | ast.Name):
+            return  # a union of types
+        yield ast.BinOp(node.left, SWAPPED[type(node.op)](), node.right)
+    elif isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in SWAPPED:
+        yield ast.Compare(node.left, [SWAPPED[type(node.ops[0])]()], node.comparators)
+    elif isinstance(node, ast.BoolOp):
+        yield ast.BoolOp(SWAPPED[type(node.op)](), node.values)
+    elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+        yield node.operand
+    elif isinstance(node, ast.Attribute) and node.attr in NAMES and node.attr not in ("abs",):
+        yield ast.Attribute(node.value, NAMES[node.attr], node.ctx)
+    elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("max", "min"):
+        yield ast.Call(ast.Name(NAMES[node.func.id], ast.Load()), node.args, node.keywords)
+    elif isinstance(node, ast.Constant) and isinstance(node.value, float) and node.value not in (0.0,):
+        yield ast.Constant(node.value * 2.0)
+
+
+def mutants_of(path: Path) -> list[Mutant]:
+    """Return all mutants of a file; messages, annotations and defaults of the module's constants are left alone."""
+    text = path.read_text(encoding="utf-8")
+    tree = ast.parse(text)
+    found = []
+    inside: set[int] = set()
+    for function in ast.walk(tree):
+        if isinstance(function, ast.FunctionDef):
+            skip = {id(n) for a in ast.walk(function.args) for n in ast.walk(a)}
+            skip |= {id(n) for n in ast.walk(function.returns)} if function.returns else set()
+            skip |= {id(n) for s in ast.walk(function) if isinstance(s, ast.AnnAssign) for n in ast.walk(s.annotation)}
+            skip |= {id(n) for s in ast.walk(function) if isinstance(s, ast.Raise | ast.JoinedStr) for n in ast.walk(s)}
+            inside |= {id(n) for s in function.body for n in ast.walk(s)} - skip
+    for node in ast.walk(tree):
+        if id(node) not in inside or not hasattr(node, "lineno"):
+            continue
+        for changed in changes(node):
+            old = ast.get_source_segment(text, node)
+            if old is None or "\n" in old:
+                continue
+            new = ast.unparse(ast.fix_missing_locations(copy.deepcopy(changed)))
+            lines = text.split("\n")
+            row, start, end = node.lineno - 1, node.col_offset, node.end_col_offset
+            raw = lines[row].encode()
+            lines[row] = (raw[:start] + f"({new})".encode() + raw[end:]).decode()
+            found.append(Mutant(path.relative_to(SOURCE).as_posix(), node.lineno, old, new, "\n".join(lines)))
+    return found
+
+
+def named_mutants() -> list[Mutant]:
+    """Return the mutants of ``mutants_named.toml``; each has to be found once in its file."""
+    found = []
+    for entry in tomllib.loads((HERE / "mutants_named.toml").read_text(encoding="utf-8"))["named"]:
+        text = (SOURCE / entry["path"]).read_text(encoding="utf-8")
+        if text.count(entry["old"]) != 1:
+            sys.exit(f"{entry['path']} holds {text.count(entry['old'])} times: {entry['old']}")
+        line = text[: text.index(entry["old"])].count("\n") + 1
+        text = text.replace(entry["old"], entry["new"])
+        found.append(Mutant(entry["path"], line, entry["old"], entry["new"], text, tuple(entry["tests"])))
+    return found
+
+
+def tests_for(path: str) -> list[str]:
+    """Return the tests that look at a file: those of the longest place that holds it."""
+    places = [place for place in ROOMS if path == place or path.startswith(place.rstrip("/") + "/")]
+    return list(ROOMS[max(places, key=len)])
+
+
+def killed_by(mutant: Mutant, package: Path) -> str:
+    """Return the test that sees a mutant, or nothing; ``package`` is a copy of the package to put it in."""
+    target = package / mutant.path
+    whole = target.read_text(encoding="utf-8")
+    target.write_text(mutant.text, encoding="utf-8")
+    env = {**os.environ, "PYTHONPATH": str(package.parent), "OMP_NUM_THREADS": "1", "HYPOTHESIS_MAX_EXAMPLES": "10"}
+    options = ["-x", "-q", "--no-header", "-p", "no:cacheprovider", "-m", "not long", "--tb=no"]
+    try:
+        command = [sys.executable, "-m", "pytest", *options, *(mutant.tests or tests_for(mutant.path))]
+        done = subprocess.run(
+            command, cwd=HERE.parent, env=env, capture_output=True, text=True, timeout=SECONDS, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return "took too long"
+    finally:
+        target.write_text(whole, encoding="utf-8")
+    if done.returncode == 0:
+        return ""
+    failed = [line for line in done.stdout.split("\n") if line.startswith(("FAILED", "ERROR"))]
+    return failed[0].split(" - ")[0] if failed else f"exit code {done.returncode}"
+
+
+def main() -> int:
+    """Draw a sample, try it, print what became of each; return the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--count", type=int, default=60)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--only", default="", help="a file or folder of the package")
+    parser.add_argument("--named", action="store_true", help="those that once survived, one by one")
+    chosen = parser.parse_args()
+    missing = sorted({t for tests in ROOMS.values() for t in tests if not (HERE.parent / t).exists()})
+    if missing:
+        sys.exit("no such tests: " + ", ".join(missing))
+    paths = sorted(
+        {p for place in ROOMS for p in ([SOURCE / place] if place.endswith(".py") else (SOURCE / place).rglob("*.py"))}
+    )
+    drawn = [] if chosen.named else [m for p in paths if chosen.only in p.as_posix() for m in mutants_of(p)]
+    every = drawn or named_mutants()
+    sample = every if chosen.named else random.Random(chosen.seed).sample(every, min(chosen.count, len(every)))
+    kept = tomllib.loads(KEPT.read_text(encoding="utf-8")).get("kept", {}) if KEPT.exists() else {}
+    print(f"{len(sample)} of {len(every)} mutants of {len(paths)} files, seed {chosen.seed}", flush=True)
+    copies: SimpleQueue[Path] = SimpleQueue()
+    survivors = []
+    with tempfile.TemporaryDirectory() as folder:
+        for k in range(chosen.jobs):
+            copies.put(Path(shutil.copytree(SOURCE, Path(folder) / str(k) / "concio")))
+
+        def attempt(mutant: Mutant) -> tuple[Mutant, str]:
+            package = copies.get()
+            try:
+                return mutant, killed_by(mutant, package)
+            finally:
+                copies.put(package)
+
+        with ThreadPoolExecutor(chosen.jobs) as pool:
+            for mutant, test in pool.map(attempt, sample):
+                why = kept.get(mutant.key, "")
+                word = "killed" if test else ("kept" if why else "SURVIVED")
+                print(
+                    f"{word:9s} {mutant.path}:{mutant.line}  {mutant.old}  ->  {mutant.new}  {test or why}", flush=True
+                )
+                if word == "SURVIVED":
+                    survivors.append(mutant)
+    print(f"{len(sample) - len(survivors)} of {len(sample)} are seen or known to change nothing")
+    return 1 if survivors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
