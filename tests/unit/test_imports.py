@@ -17,11 +17,12 @@ import concio
 ROOT = Path(concio.__file__).parent
 ORDER = (
     "__version__", "errors", "files", "arguments", "units", "display", "kinematics",
-    "model", "model/interfaces", "model/generate", "model/drawing", "model/file",
-    "fem", "problem", "contact",
+    "model", "model/motion", "model/interfaces", "model/generate", "model/drawing", "model/file",
+    "fem", "problem", "contact", "contact/moving",
     "solvers/algebra", "solvers/lcp", "solvers/states", "solvers/statics", "solvers/interior", "solvers/pivoting",
-    "solvers/forms", "solvers/iterative", "solvers/exhaustive", "solvers/motion", "solvers/auto", "solvers/path",
-    "solvers", "analysis", "analysis/cells", "post", "plot", "report", "io", "studies", "cli", "__main__",
+    "solvers/forms", "solvers/iterative", "solvers/exhaustive", "solvers/motion", "solvers/stepping", "solvers/auto",
+    "solvers/path", "solvers", "analysis", "analysis/motion", "analysis/cells", "post", "plot", "report", "io",
+    "studies", "cli", "__main__",
 )  # fmt: skip
 """Rooms in the order in which things flow: each imports from itself and from those before it."""
 DOORS = {

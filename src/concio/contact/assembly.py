@@ -159,6 +159,23 @@ def detect(model: Model) -> Detection:
     return GEOMETRIES[model.dim].detect(model, default_tolerance(model))
 
 
+def detect_without_overlap(model: Model) -> Detection:
+    """Return the interfaces of a model whose bodies do not overlap.
+
+    Raises
+    ------
+    GeometryError
+        Two bodies overlap.
+    """
+    detection = detect(model)
+    if detection.overlaps:
+        first = detection.overlaps[0]
+        others = len(detection.overlaps) - 1
+        msg = first.sentence + (f", and {others} more overlap{'s' if others > 1 else ''}" if others else "")
+        raise GeometryError(msg, hint="raise gap_tolerance only where the overlap is no more than inaccurate drawing")
+    return detection
+
+
 def require_model(thing: object) -> None:
     """Refuse anything that is not a model.
 
@@ -222,12 +239,7 @@ def assemble(model: Model) -> Assembly:
     if not model.free_bodies:
         msg = "every body is fixed: there is nothing to compute"
         raise InputError(msg, hint="make the blocks elastic or rigid")
-    detection = detect(model)
-    if detection.overlaps:
-        first = detection.overlaps[0]
-        others = len(detection.overlaps) - 1
-        msg = first.sentence + (f", and {others} more overlap{'s' if others > 1 else ''}" if others else "")
-        raise GeometryError(msg, hint="raise gap_tolerance only where the overlap is no more than inaccurate drawing")
+    detection = detect_without_overlap(model)
     geometry = GEOMETRIES[model.dim]
     disc = discretise(held_at_a_point(model) if periodic else model, geometry.marks(model, detection))
     held = bool(model.ties) or bool({s.body for s in model.supports} & {b.name for b in model.free_bodies})

@@ -115,7 +115,7 @@ def couple(a: Line | None, b: Line | None, length: float, points: int = 2) -> Co
     a, b = (None if line is None else cut(line, length) for line in (a, b))
     if a is None and b is None:
         model = "ends of the joint" if points == 2 else "points along the joint"
-        return Coupling(np.linspace(0.0, length, points), _rule(points) * length, None, None, model)
+        return Coupling(np.linspace(0.0, length, points), simpson(points) * length, None, None, model)
     if a is not None and b is not None and match(a, b, length):
         weights = edge_weights(a.at, a.order, 0.0, length)
         pair = np.arange(len(a.at))
@@ -129,8 +129,8 @@ def couple(a: Line | None, b: Line | None, length: float, points: int = 2) -> Co
     return Coupling(at, weights, own, other)
 
 
-def _rule(points: int) -> Array:
-    """Weights of the pairs between two rigid sides: trapezium for two, composite Simpson for odd numbers."""
+def simpson(points: int) -> Array:
+    """Return the weights of the pairs between two rigid sides: trapezium for two, composite Simpson for odd numbers."""
     if points == 2:
         return np.array([0.5, 0.5])
     weights = np.ones(points)

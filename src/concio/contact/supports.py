@@ -172,10 +172,31 @@ def moved_obstacles(disc: Discretisation, pairs: Pairs) -> dict[str, tuple[Array
 
 def _conditions(disc: Discretisation, b: int, number: int) -> list[Condition]:
     """Return what one support holds of body b."""
+    chosen, points, motion, axes = points_held(disc, b, number)
+    found = []
+    for k, point, moved in zip(chosen.tolist(), points, motion, strict=True):
+        for axis in axes:
+            if disc.shape_of[b] == RIGID:
+                row = rigid_operator(point - disc.centroids[b], disc.reach[b])[axis]
+                found.append(Condition(number, axis, np.arange(len(row)), row, float(moved[axis])))
+            else:
+                own = np.array([disc.dim * k + axis])
+                found.append(Condition(number, axis, own, np.ones(1), float(moved[axis])))
+    return found
+
+
+def points_held(disc: Discretisation, b: int, number: int) -> tuple[Array, Array, Array, tuple[int, ...]]:
+    """Return what a support holds of body b: nodes (k,), their places (k, d), imposed motions (k, d) [m], and axes.
+
+    Raises
+    ------
+    InputError
+        Its directions are none, or it holds no node.
+    """
     support = disc.model.supports[number]
     where = f"support '{support.name}'"
     known = "xyz"[: disc.dim]
-    axes = [i for i, axis in enumerate(known) if axis in support.directions]
+    axes = tuple(i for i, axis in enumerate(known) if axis in support.directions)
     if not axes or set(support.directions) - set(known):
         msg = f"directions '{support.directions}' are not made of '{known}'"
         raise InputError(msg, where=where)
@@ -196,17 +217,9 @@ def _conditions(disc: Discretisation, b: int, number: int) -> list[Condition]:
             text = " - ".join(f"({', '.join(f'{v:g}' for v in point)})" for point in corners)
             msg = f"no node of '{support.body}' lies on {text}"
             raise InputError(msg, where=where, hint="give a segment or a polygon on the surface of the block")
-    found = []
-    for k in chosen:
-        motion = _moved(support, points[k], disc.centroids[b])
-        for axis in axes:
-            if disc.shape_of[b] == RIGID:
-                row = rigid_operator(points[k] - disc.centroids[b], disc.reach[b])[axis]
-                found.append(Condition(number, axis, np.arange(len(row)), row, float(motion[axis])))
-            else:
-                own = np.array([disc.dim * k + axis])
-                found.append(Condition(number, axis, own, np.ones(1), float(motion[axis])))
-    return found
+    points = points[chosen]
+    motion = np.array([_moved(support, point, disc.centroids[b]) for point in points])
+    return chosen, points, motion, axes
 
 
 def _moved(support: Support, point: Array, centroid: Array) -> Array:

@@ -1,0 +1,148 @@
+"""Supports and ties of bodies that move, as pairs beside those of contact.
+
+A support is a pair at each point it holds, glued along one direction or both; what it carries is its reaction. A tie is
+a compliant pair along its present direction, whose gap closes when it is stretched: C_n u = -e as in statics.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from concio.contact.moving.edges import as_complex
+from concio.contact.moving.points import NOWHERE, MaterialPoints
+from concio.contact.supports import points_held
+from concio.fem.discretisation import FIXED
+
+if TYPE_CHECKING:
+    from concio.contact.moving.reference import Reference
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """Points that supports hold.
+
+    Parameters
+    ----------
+    points : MaterialPoints
+        k of them.
+    start : (k,) complex array
+        Where they were described [m].
+    motion : (k,) complex array
+        Displacement imposed by a load factor of one [m].
+    support : (k,) integer array
+        Number in the model.
+    group : tuple of str
+        Load group of each point.
+    normal : (k,) complex array
+        Direction held: x, or y where only that is held.
+    both : (k,) boolean array
+        Whether y is held beside x.
+    """
+
+    points: MaterialPoints
+    start: Array
+    motion: Array
+    support: Array
+    group: tuple[str, ...]
+    normal: Array
+    both: Array
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+    @classmethod
+    def of(cls, reference: Reference) -> Held:
+        """Return the points that the supports of a model hold."""
+        disc, model = reference.disc, reference.model
+        number = {b.name: i for i, b in enumerate(model.bodies)}
+        bodies, places, motions, supports, groups, axes = [], [], [], [], [], []
+        for i, support in enumerate(model.supports):
+            b = number[support.body]
+            if disc.shape_of[b] == FIXED:
+                continue
+            _, at, motion, held = points_held(disc, b, i)
+            bodies += [b] * len(at)
+            places.append(at)
+            motions.append(motion)
+            supports += [i] * len(at)
+            groups += [support.group] * len(at)
+            axes += [held] * len(at)
+        place = np.concatenate([*places, np.zeros((0, 2))])
+        points = MaterialPoints.of(disc, bodies, place, reference.first_node, reference.node_column)
+        return cls(
+            points, as_complex(place), as_complex(np.concatenate([*motions, np.zeros((0, 2))])),
+            np.array(supports, dtype=int), tuple(groups),
+            np.array([1.0 if 0 in a else 1j for a in axes], dtype=complex),
+            np.array([len(a) == 2 for a in axes], dtype=bool),
+        )  # fmt: skip
+
+    def target(self, factors: Mapping[str, float]) -> Array:
+        """Return where the points are wanted under load factors, complex (k,) [m]."""
+        factor = np.array([factors.get(g, 1.0) for g in self.group])
+        return np.asarray(self.start + factor * self.motion)
+
+    def values(self, turn: Array) -> Array:
+        """Return the rows (k, 2, w) along the directions held."""
+        return np.stack([self.points.rows(self.normal, turn), self.points.rows(1j * self.normal, turn)], axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class Ties:
+    """Ties between points.
+
+    Parameters
+    ----------
+    a, b : MaterialPoints
+    length : (k,) array
+        As described [m].
+    stiffness, prestress : (k,) arrays
+        [kN/m], [kN].
+    """
+
+    a: MaterialPoints
+    b: MaterialPoints
+    length: Array
+    stiffness: Array
+    prestress: Array
+
+    def __len__(self) -> int:
+        return len(self.length)
+
+    @classmethod
+    def of(cls, reference: Reference) -> Ties:
+        """Return the ties of a model."""
+        model, disc = reference.model, reference.disc
+        number = {b.name: i for i, b in enumerate(model.bodies)}
+
+        def ends(bodies: list[str], at: list[tuple[float, ...]]) -> MaterialPoints:
+            own = [number[name] if name else NOWHERE for name in bodies]
+            place = np.array(at, dtype=float).reshape(-1, 2)
+            return MaterialPoints.of(disc, own, place, reference.first_node, reference.node_column)
+
+        ties = model.ties
+        at_a, at_b = [t.at_a for t in ties], [t.at_b for t in ties]
+        length = np.hypot(*(np.array(at_b, dtype=float) - np.array(at_a, dtype=float)).reshape(-1, 2).T)
+        return cls(
+            ends([t.body_a for t in ties], at_a), ends([t.body_b for t in ties], at_b), length,
+            np.array([t.stiffness for t in ties]), np.array([t.prestress for t in ties]),
+        )  # fmt: skip
+
+    @property
+    def columns(self) -> Array:
+        """Unknowns of the rows (k, w)."""
+        return np.concatenate([self.a.columns, self.b.columns], axis=1)
+
+    def rows(self, centre: Array, turn: Array, strain: Array) -> tuple[Array, Array, Array]:
+        """Return the rows (k, 2, w) of -elongation, the gaps (k,) [m] and the directions from a to b, complex (k,)."""
+        span = self.b.positions(centre, turn, strain) - self.a.positions(centre, turn, strain)
+        length = np.abs(span)
+        direction = span / np.where(length > 0, length, 1.0)
+        row = np.concatenate([self.a.rows(direction, turn), -self.b.rows(direction, turn)], axis=1)
+        gap = -self.prestress / self.stiffness - (length - self.length)
+        return np.stack([row, np.zeros_like(row)], axis=1), gap, direction

@@ -1,0 +1,85 @@
+"""Candidates for contact: edges that face each other and corners near edges, looked for with a skin.
+
+The search costs about as much as there are bodies (an R-tree of the edges' boxes, grown by a skin) and holds until a
+corner has moved by half the skin; between two searches only the distances of the candidates are worked out anew.
+
+Where two edges face each other within :data:`FACING`, both ends of their common length are contact points, each of
+them a corner of one body on the edge of the other. Corners whose own edges face nothing (a block standing on its
+corner) are candidates by themselves.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from concio.contact.moving.edges import MovingEdges, PlacedEdges, as_vectors, dot
+from concio.model.interfaces.facing import facing_pairs
+
+Array = np.ndarray
+
+FACING = np.deg2rad(45.0)
+"""Edges turned against each other by less than this share a length whose two ends touch [rad]."""
+
+THROUGH = 0.1
+"""Edges that have entered another body by more than this share of the narrower body's width stand behind it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Candidates:
+    """What may touch until a corner has moved by half the skin.
+
+    Parameters
+    ----------
+    edge_a, edge_b : (f,) integer arrays
+        Edges that face each other, the body of a before that of b.
+    corner, edge : (q,) integer arrays
+        Corners, by the edge that starts there, and the edges they may touch.
+    """
+
+    edge_a: Array
+    edge_b: Array
+    corner: Array
+    edge: Array
+
+
+def find_candidates(edges: MovingEdges, placed: PlacedEdges, skin: float) -> Candidates:
+    """Return the candidates of placed edges.
+
+    Parameters
+    ----------
+    edges : MovingEdges
+    placed : PlacedEdges
+    skin : float
+        Distance within which edges are candidates [m].
+    """
+    near = np.full(len(edges.width), skin)
+    facing = facing_pairs(edges.as_edges(placed), near, -skin, FACING)
+    narrow = edges.width[facing.bodies].min(1)
+    keep = (facing.g_min <= 2 * skin) & (facing.g_max >= -THROUGH * narrow)
+    a, b = facing.edges[keep].T
+    corner, edge = _corners(edges, placed, skin, a, b)
+    return Candidates(a, b, corner, edge)
+
+
+def _corners(edges: MovingEdges, placed: PlacedEdges, skin: float, a: Array, b: Array) -> tuple[Array, Array]:
+    """Return corners near edges that neither of their own edges faces."""
+    corners = np.flatnonzero(edges.convex)
+    low = np.minimum(as_vectors(placed.start), as_vectors(placed.end)) - skin
+    high = np.maximum(as_vectors(placed.start), as_vectors(placed.end)) + skin
+    points = shapely.points(as_vectors(placed.start[corners]))
+    found, near = shapely.STRtree(shapely.box(*low.T, *high.T)).query(points)
+    corner, edge = corners[found], near
+    keep = (edges.body[corner] != edges.body[edge]) & ~(edges.fixed[corner] & edges.fixed[edge])
+    corner, edge = corner[keep], edge[keep]
+    outward = -1j * placed.tangent[edge]
+    distance = dot(placed.start[corner] - placed.start[edge], outward)
+    back, ahead = -placed.tangent[edges.before[corner]], placed.tangent[corner]
+    faces = (dot(back, outward) > -0.1) & (dot(ahead, outward) > -0.1) & (np.abs(distance) <= 2 * skin)
+    corner, edge = corner[faces], edge[faces]
+    count = len(edges.body)
+    covered = np.concatenate([a * count + b, b * count + a])
+    own = np.isin(corner * count + edge, covered) | np.isin(edges.before[corner] * count + edge, covered)
+    return corner[~own], edge[~own]

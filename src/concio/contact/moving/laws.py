@@ -1,0 +1,108 @@
+"""Joint laws of contacts that are found as bodies move: looked up by the two bodies, times areas in every step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.model.model import Model
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class LawTable:
+    """Constants of all joint laws of a model, one entry each.
+
+    Parameters
+    ----------
+    friction, cohesion, tension, dilatancy : (L,) arrays
+        Strengths per area [kN/m2].
+    normal, tangential : (L,) arrays
+        Compliance times area, zero for hard joints [m3/kN].
+    cap : (L,) array
+        Compressive strength, inf where there is none [kN/m2].
+    points : (L,) integer array
+        Contact points of a joint between two rigid sides.
+    names : tuple of str
+    """
+
+    friction: Array
+    cohesion: Array
+    tension: Array
+    dilatancy: Array
+    normal: Array
+    tangential: Array
+    cap: Array
+    points: Array
+    names: tuple[str, ...]
+
+    @classmethod
+    def of(cls, model: Model) -> LawTable:
+        """Return the table of a model's laws."""
+        laws = list(model.laws.values())
+
+        def soft(stiffness: float | None) -> float:
+            return 0.0 if stiffness is None else 1.0 / stiffness
+
+        return cls(
+            friction=np.array([law.friction for law in laws]),
+            cohesion=np.array([law.cohesion for law in laws]),
+            tension=np.array([law.tensile_strength for law in laws]),
+            dilatancy=np.array([law.dilatancy for law in laws]),
+            normal=np.array([soft(law.normal_stiffness) for law in laws]),
+            tangential=np.array([soft(law.tangential_stiffness) for law in laws]),
+            cap=np.array([np.inf if law.compressive_strength is None else law.compressive_strength for law in laws]),
+            points=np.array([points_of(law.compressive_strength, law.normal_stiffness) for law in laws]),
+            names=tuple(model.laws),
+        )
+
+
+def points_of(compressive_strength: float | None, normal_stiffness: float | None) -> int:
+    """Return how many contact points a joint of two rigid sides gets: enough to resolve its pressure."""
+    return 9 if compressive_strength is not None else 5 if normal_stiffness is not None else 2
+
+
+class RuleBook:
+    """Finds the law and the initial opening of the joint between any two bodies of a model.
+
+    Parameters
+    ----------
+    model : Model
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        names = {b.name for b in model.bodies}
+        if any(word in names for rule in model.rules for word in rule.between):
+            self.sort = np.arange(len(model.bodies))
+        else:
+            known: dict[tuple[str, ...], int] = {}
+            keys = [(b.kind, b.role, b.layer, b.material) for b in model.bodies]
+            self.sort = np.array([known.setdefault(key, len(known)) for key in keys])
+        self._number = {name: k for k, name in enumerate(model.laws)}
+        self._found: dict[tuple[int, int], tuple[int, float]] = {}
+
+    def find(self, body_a: Array, body_b: Array) -> tuple[Array, Array]:
+        """Return the number of the law (i,) and the opening (i,) [m] between bodies a and b (i,).
+
+        Raises
+        ------
+        InputError
+            No rule matches two of them.
+        """
+        if not len(body_a):
+            return np.zeros(0, dtype=int), np.zeros(0)
+        sorts = np.column_stack([self.sort[body_a], self.sort[body_b]])
+        kinds, example, group = np.unique(sorts, axis=0, return_index=True, return_inverse=True)
+        found = []
+        for (p, q), i in zip(kinds.tolist(), example.tolist(), strict=True):
+            if (p, q) not in self._found:
+                bodies = self.model.bodies
+                rule = self.model.rule_between(bodies[int(body_a[i])], bodies[int(body_b[i])])
+                self._found[p, q] = self._number[rule.law], rule.gap
+            found.append(self._found[p, q])
+        law = np.array([f[0] for f in found])[group.ravel()]
+        opening = np.array([f[1] for f in found])[group.ravel()]
+        return law, opening

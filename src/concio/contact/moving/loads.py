@@ -1,0 +1,150 @@
+"""Loads on bodies that move: weights and point loads keep their direction, pressures turn with their edge.
+
+Of a dead load on a rigid body the force stays and the moment turns: points at arms a with forces v have the moment
+cos(phi) sum(a x v) - sin(phi) sum(a . v) after a rotation phi, and the second sum is the moment of the same forces
+turned right. Follower loads are constant in the frame of their body.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from concio.contact.loads import load_vectors
+from concio.fem.discretisation import RIGID, Discretisation
+from concio.kinematics.frames import turned_right
+from concio.model.model import Load
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class GroupLoad:
+    """Loads of one group, (N,) each on the unknowns of all bodies [kN].
+
+    Parameters
+    ----------
+    dead : (N,) array
+        Forces that keep their direction, where the bodies were described.
+    across : (N,) array
+        The same with every force turned right; only moments of rigid bodies are used.
+    follower : (N,) array
+        Forces that turn with their bodies.
+    """
+
+    dead: Array
+    across: Array
+    follower: Array
+
+
+class MovingLoads:
+    """Loads of all groups for any placement.
+
+    Parameters
+    ----------
+    disc : Discretisation
+    """
+
+    def __init__(self, disc: Discretisation) -> None:
+        loads = disc.model.loads
+        dead = _vectors(disc, tuple(load for load in loads if load.kind != "pressure"))
+        across = _vectors(
+            disc, tuple(_turned(load) for load in loads if load.kind not in ("pressure", "weight", "body"))
+        )
+        follower = _vectors(disc, tuple(load for load in loads if load.kind == "pressure"))
+        zero = np.zeros(disc.unknowns)
+        names = tuple(dict.fromkeys(load.group for load in loads))
+        self.groups = {g: GroupLoad(dead.get(g, zero), across.get(g, zero), follower.get(g, zero)) for g in names}
+        rigid = np.flatnonzero(disc.shape_of == RIGID)
+        self.rigid, self.reach = rigid, disc.reach[rigid]
+        self.first = disc.offsets[rigid]
+        meshed = np.flatnonzero(disc.shape_of >= 0)
+        counts = np.diff(disc.offsets)[meshed] // 2
+        self.body_of_node = np.repeat(meshed, counts)
+        starts = [np.arange(disc.offsets[b], disc.offsets[b + 1], 2) for b in meshed]
+        self.x_of_node = np.concatenate([*starts, np.zeros(0, dtype=int)]).astype(int)
+
+    def forces(self, factors: Mapping[str, float], turn: Array) -> Array:
+        """Return the forces (N,) on the unknowns under load factors, for complex rotations (B,).
+
+        Parameters
+        ----------
+        factors : mapping of str to float
+            Groups not named have factor 1.
+        turn : (B,) complex array
+        """
+        size = [factors.get(g, 1.0) for g in self.groups]
+        parts = list(self.groups.values())
+        dead = _sum(size, [p.dead for p in parts])
+        f = dead.copy()
+        t = turn[self.rigid]
+        moment = self.first + 2
+        if any(p.across.any() for p in parts):
+            across = _sum(size, [p.across for p in parts])
+            f[moment] = t.real * dead[moment] + t.imag * across[moment]
+        else:
+            f[moment] = t.real * dead[moment]
+        if any(p.follower.any() for p in parts):
+            follower = _sum(size, [p.follower for p in parts])
+            turned = t * (follower[self.first] + 1j * follower[self.first + 1])
+            f[self.first] += turned.real
+            f[self.first + 1] += turned.imag
+            f[moment] += follower[moment]
+        else:
+            follower = None
+        if len(self.x_of_node):
+            x = self.x_of_node
+            local = np.conj(turn[self.body_of_node]) * (dead[x] + 1j * dead[x + 1])
+            f[x], f[x + 1] = local.real, local.imag
+            if follower is not None:
+                f[x] += follower[x]
+                f[x + 1] += follower[x + 1]
+        return f
+
+    def potential(self, factors: Mapping[str, float], moved: Array, rotation: Array, nodes: Array) -> float:
+        """Return the potential of the dead loads, zero where the bodies were described [kN m].
+
+        Parameters
+        ----------
+        factors : mapping of str to float
+        moved : (B,) complex array
+            Displacements of the centroids [m].
+        rotation : (B,) array
+            [rad].
+        nodes : (nodes,) complex array
+            Displacements of the nodes of meshed bodies [m].
+        """
+        if not self.groups:
+            return 0.0
+        size = [factors.get(g, 1.0) for g in self.groups]
+        dead = _sum(size, [p.dead for p in self.groups.values()])
+        across = _sum(size, [p.across for p in self.groups.values()])
+        u, angle, x = moved[self.rigid], rotation[self.rigid], self.first
+        work = float(dead[x] @ u.real + dead[x + 1] @ u.imag)
+        work += float(dead[x + 2] @ (self.reach * np.sin(angle)) + across[x + 2] @ (self.reach * (1 - np.cos(angle))))
+        if len(self.x_of_node):
+            work += float(dead[self.x_of_node] @ nodes.real + dead[self.x_of_node + 1] @ nodes.imag)
+        return -work
+
+    @property
+    def followers(self) -> bool:
+        """Whether any load turns with its body, and so has no potential."""
+        return any(p.follower.any() for p in self.groups.values())
+
+
+def _sum(factors: list[float], vectors: list[Array]) -> Array:
+    total: Array = factors[0] * vectors[0]
+    for factor, vector in zip(factors[1:], vectors[1:], strict=True):
+        total = total + factor * vector
+    return total
+
+
+def _vectors(disc: Discretisation, loads: tuple[Load, ...]) -> dict[str, Array]:
+    return load_vectors(replace(disc, model=replace(disc.model, loads=loads))) if loads else {}
+
+
+def _turned(load: Load) -> Load:
+    x, y = turned_right(np.array(load.value, dtype=float))
+    return replace(load, value=(float(x), float(y)))

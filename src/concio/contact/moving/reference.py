@@ -1,0 +1,254 @@
+"""Reference and configuration: what bodies are made of, once, and where they stand, apart from it.
+
+A :class:`Reference` holds meshes, stiffnesses, masses, loads and joint laws of a model as it was described. A
+:class:`Configuration` adds to it where each body is (:class:`concio.kinematics.placement.Placement`) and how it is
+strained in its own frame. Interfaces are looked for on the placed bodies, by the same detection as everywhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from concio.contact.assembly import default_tolerance, detect_without_overlap, require_model
+from concio.contact.geometry import GEOMETRIES
+from concio.contact.moving.edges import MovingEdges
+from concio.contact.moving.laws import LawTable, RuleBook
+from concio.contact.moving.loads import MovingLoads
+from concio.contact.moving.matrices import BodyMatrices
+from concio.contact.supports import apply_supports
+from concio.errors import InputError
+from concio.fem.discretisation import FIXED, RIGID, Discretisation, discretise
+from concio.kinematics.placement import Placement
+from concio.model.interfaces.detect import Detection, Interface, detect_interfaces
+from concio.model.model import Body, Model
+from concio.units import GRAVITY
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """What does not change while bodies move.
+
+    Parameters
+    ----------
+    model : Model
+    detection : Detection
+        Interfaces as described.
+    disc : Discretisation
+    gravity : float
+        Turns weights into masses [m/s2].
+    """
+
+    model: Model
+    detection: Detection
+    disc: Discretisation
+    gravity: float = GRAVITY
+
+    @classmethod
+    def of(cls, model: Model, gravity: float = GRAVITY) -> Reference:
+        """Return the reference of a model.
+
+        Raises
+        ------
+        InputError
+            Gravity is not positive; what is given is no model; every body is fixed; a support is not usable.
+        GeometryError
+            Bodies overlap.
+        """
+        require_model(model)
+        if not 0 < gravity < np.inf:
+            msg = f"gravity = {gravity:g} must be positive and finite"
+            raise InputError(msg, hint="9.81 m/s2 turns weights into masses")
+        if not model.free_bodies:
+            msg = "every body is fixed: there is nothing that could move"
+            raise InputError(msg, hint="make the blocks elastic or rigid")
+        if model.dim != 2:
+            msg = "the model is in space; motion is computed in the plane"
+            raise InputError(msg, hint="take a plane section of the structure")
+        if model.periods is not None:
+            msg = "a periodic cell has no place of its own: it cannot move"
+            raise InputError(msg, hint="take a wall of several blocks")
+        detection = detect_without_overlap(model)
+        disc = discretise(model, GEOMETRIES[model.dim].marks(model, detection))
+        apply_supports(disc)  # what cannot be used is said before anything moves
+        return cls(model, detection, disc, gravity)
+
+    @cached_property
+    def free(self) -> Array:
+        """Numbers of the bodies that have unknowns."""
+        return np.flatnonzero(self.disc.shape_of != FIXED)
+
+    @cached_property
+    def rigid(self) -> Array:
+        """Numbers of the rigid bodies that are not fixed."""
+        return np.flatnonzero(self.disc.shape_of == RIGID)
+
+    @cached_property
+    def meshed(self) -> Array:
+        """Numbers of the elastic bodies."""
+        return np.flatnonzero(self.disc.shape_of >= 0)
+
+    @cached_property
+    def first_node(self) -> Array:
+        """Number of the first node of each meshed body, counted through all of them (B,)."""
+        counts = np.where(self.disc.shape_of >= 0, np.diff(self.disc.offsets) // 2, 0)
+        first: Array = np.concatenate([[0], np.cumsum(counts)])[:-1]
+        return first
+
+    @cached_property
+    def body_of_node(self) -> Array:
+        """Body of each node of the meshed bodies (nodes,)."""
+        return np.repeat(self.meshed, np.diff(self.disc.offsets)[self.meshed] // 2)
+
+    @cached_property
+    def node_arm(self) -> Array:
+        """Positions (nodes, 2) of the nodes of meshed bodies from their centroids, as described [m]."""
+        arms = [self.disc.nodes(b) - self.disc.centroids[b] for b in self.meshed.tolist()]
+        return np.concatenate([*arms, np.zeros((0, 2))])
+
+    def node_place(self, centre: Array, turn: Array, strain: Array) -> Array:
+        """Return where the nodes of meshed bodies are, complex (nodes,), for complex placements and strains [m]."""
+        b = self.body_of_node
+        arm = self.node_arm[:, 0] + 1j * self.node_arm[:, 1]
+        return np.asarray(centre[b] + turn[b] * (arm + strain))
+
+    @cached_property
+    def node_column(self) -> Array:
+        """Unknowns (nodes + 1, 2) of the nodes of meshed bodies; the last row stands for no node."""
+        n = self.disc.unknowns
+        columns = [np.arange(*self.disc.offsets[b : b + 2]).reshape(-1, 2) for b in self.meshed.tolist()]
+        return np.concatenate([*columns, np.full((1, 2), n)]).astype(int)
+
+    @cached_property
+    def mass(self) -> Array:
+        """Mass that goes with each unknown (N,) [t = kN s2/m]; zero where a body has no weight."""
+        model, disc = self.model, self.disc
+        mass = np.zeros(disc.unknowns)
+        for b in self.free.tolist():
+            body = model.bodies[b]
+            density = model.materials[body.material].unit_weight / self.gravity
+            own = slice(*disc.offsets[b : b + 2])
+            if disc.shape_of[b] == RIGID:
+                mass[own] = density * body.area * body.thickness
+                continue
+            nodal = disc.shapes[disc.shape_of[b]].volume_weights
+            if nodal.min() <= 0:  # corners of eight-node elements: share the volume equally
+                nodal = np.full(nodal.size, nodal.sum() / nodal.size)
+            mass[own] = density * np.repeat(nodal, 2)
+        return mass
+
+    @cached_property
+    def body_mass(self) -> Array:
+        """Mass of each body (B,), zero for fixed ones [t]."""
+        mass = np.zeros(len(self.model.bodies))
+        for b in self.free.tolist():
+            own = self.mass[slice(*self.disc.offsets[b : b + 2])]
+            mass[b] = own[0] if self.disc.shape_of[b] == RIGID else own[::2].sum()
+        return mass
+
+    @cached_property
+    def matrices(self) -> BodyMatrices:
+        """Masses and stiffnesses."""
+        return BodyMatrices.of(self.disc, self.mass, np.zeros(self.disc.unknowns, dtype=bool))
+
+    @cached_property
+    def edges(self) -> MovingEdges:
+        """The outlines."""
+        return MovingEdges.of(self.model.outlines)
+
+    @cached_property
+    def laws(self) -> LawTable:
+        """The joint laws."""
+        return LawTable.of(self.model)
+
+    @cached_property
+    def rules(self) -> RuleBook:
+        """Which law holds between which bodies."""
+        return RuleBook(self.model)
+
+    @cached_property
+    def loads(self) -> MovingLoads:
+        """The loads."""
+        return MovingLoads(self.disc)
+
+    @cached_property
+    def tolerance(self) -> float:
+        """Distance within which edges as described touch [m]."""
+        return default_tolerance(self.model)
+
+    @cached_property
+    def drawn(self) -> Mapping[tuple[int, int], tuple[float, float]]:
+        """Joints as described, by their two edges, with the distances at both ends that count as none [m]."""
+        edges = self.edges
+        number = {(int(b), int(k)): e for e, (b, k) in enumerate(zip(edges.body, edges.number, strict=True))}
+        found = {}
+        for face in self.detection.interfaces:
+            assert isinstance(face, Interface)
+            ends = tuple(float(g) if abs(g) <= self.tolerance else 0.0 for g in face.signed_gap)
+            found[number[face.a, face.edge_a], number[face.b, face.edge_b]] = (ends[0], ends[1])
+        return found
+
+    def at_rest(self) -> Configuration:
+        """Return the configuration in which the model was described."""
+        return Configuration(self, Placement.at_rest(self.disc.centroids), np.zeros((len(self.body_of_node), 2)))
+
+
+@dataclass(frozen=True, eq=False)
+class Configuration:
+    """Where the bodies of a reference stand.
+
+    Parameters
+    ----------
+    reference : Reference
+    placement : Placement
+        Centroid and rotation of every body, fixed ones included.
+    strain : (nodes, d) array
+        Displacement of each node of the meshed bodies in the frame of its body, on top of the placement [m].
+    """
+
+    reference: Reference
+    placement: Placement
+    strain: Array
+
+    def outline(self, b: int) -> Array:
+        """Return the outline (n, 2) of a body, without its strains [m]."""
+        arm = self.reference.model.outlines[b].outline - self.reference.disc.centroids[b]
+        return self.placement.points(np.full(len(arm), b), arm)
+
+    def bodies(self) -> tuple[Body, ...]:
+        """Return the bodies where they stand, without their strains."""
+        bodies = self.reference.model.outlines
+        return tuple(replace(body, outline=self.outline(b), grid=None) for b, body in enumerate(bodies))
+
+    def detect(self) -> Detection:
+        """Return the interfaces of the bodies where they stand."""
+        model = self.reference.model
+        return detect_interfaces(self.bodies(), tolerance=self.reference.tolerance, reach=model.gap_reach)
+
+    def nodes(self, b: int) -> Array:
+        """Return the nodes (n, 2) of a body, strains included; outline vertices of a rigid or fixed one [m]."""
+        reference = self.reference
+        if reference.disc.shape_of[b] < 0:
+            return self.outline(b)
+        first = reference.first_node[b]
+        own = slice(first, first + len(reference.disc.nodes(b)))
+        arm = reference.node_arm[own] + self.strain[own]
+        return self.placement.points(np.full(len(arm), b), arm)
+
+    def displacement(self) -> Array:
+        """Return the displacements (N,) of all unknowns; rotations of rigid bodies as angles times reach."""
+        reference, disc = self.reference, self.reference.disc
+        u = np.zeros(disc.unknowns)
+        moved = self.placement.centre - disc.centroids
+        for b in reference.free.tolist():
+            own = slice(*disc.offsets[b : b + 2])
+            if disc.shape_of[b] == RIGID:
+                u[own] = [*moved[b], self.placement.rotation[b] * disc.reach[b]]
+            else:
+                u[own] = (self.nodes(b) - disc.nodes(b)).ravel()
+        return u

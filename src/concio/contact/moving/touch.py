@@ -1,0 +1,145 @@
+r"""Where candidates touch: point, normal, gap of every end of a common length and of every corner, for any placement.
+
+A contact is a corner P of one body (the *slave*) on an edge of another (the *master*); its gap is the distance of P
+from the line of the edge, :math:`g = n \cdot (P - x)`. With both bodies moving rigidly
+
+.. math:: \dot g = n \cdot (v_s(P) - v_m(P)), \qquad
+          \ddot g = n \cdot (-\omega_s^2 r_s - 2 \omega_m J \dot u - \omega_m^2 u) \quad \text{at constant velocities},
+
+with r_s and u the arms of P from the two centroids and :math:`\dot u = v_s(P) - v_m`. The second is what the turning of
+the bodies adds to the rate of a gap within a step, along the tangent likewise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.contact.moving.candidates import Candidates
+from concio.contact.moving.edges import MovingEdges, PlacedEdges, dot
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Touch:
+    """Contact points, complex vectors: the lower ends of common lengths, their upper ends, and single corners.
+
+    Parameters
+    ----------
+    point : (2 f + q,) array
+        The corner.
+    normal : (2 f + q,) array
+        Unit normal from body a to body b.
+    gap : (2 f + q,) array
+        [m].
+    on_a : (2 f + q,) boolean array
+        Whether the edge belongs to body a (the corner to b).
+    length : (f,) array
+        Common length of the edges that face each other; not positive where there is none [m].
+    valid : (2 f + q,) boolean array
+        Whether the corner stands over the edge.
+    """
+
+    point: Array
+    normal: Array
+    gap: Array
+    on_a: Array
+    length: Array
+    valid: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Toucher:
+    """What is needed of the candidates in every step, gathered once.
+
+    Parameters
+    ----------
+    a, b : (f,) integer arrays
+        Edges that face each other.
+    corner, edge : (q,) integer arrays
+    body_a, body_b : (2 f + q,) integer arrays
+        Bodies of the contact points.
+    length_a : (f,) array
+    length_edge : (q,) array
+    shortest : (f,) array
+        Common lengths shorter than this are none [m].
+    slack : float
+        How far beyond the end of an edge a single corner still stands over it [m].
+    """
+
+    a: Array
+    b: Array
+    corner: Array
+    edge: Array
+    body_a: Array
+    body_b: Array
+    length_a: Array
+    length_edge: Array
+    shortest: Array
+    slack: float
+
+    @classmethod
+    def of(cls, edges: MovingEdges, found: Candidates, sliver: float, slack: float) -> Toucher:
+        """Gather the data of candidates; ``sliver`` is the shortest common length over the narrower body's width."""
+        a, b, corner, edge = found.edge_a, found.edge_b, found.corner, found.edge
+        body_a, body_b = edges.body[a], edges.body[b]
+        shortest = sliver * np.minimum(edges.width[body_a], edges.width[body_b])
+        return cls(
+            a, b, corner, edge,
+            np.concatenate([body_a, body_a, edges.body[edge]]), np.concatenate([body_b, body_b, edges.body[corner]]),
+            edges.length[a], edges.length[edge], shortest, slack,
+        )  # fmt: skip
+
+    def touch(self, placed: PlacedEdges) -> Touch:
+        """Return the contact points of placed edges."""
+        f, q = len(self.a), len(self.corner)
+        point, normal = np.empty(2 * f + q, dtype=complex), np.empty(2 * f + q, dtype=complex)
+        gap, length = np.empty(2 * f + q), np.empty(f)
+        on_a, valid = np.ones(2 * f + q, dtype=bool), np.empty(2 * f + q, dtype=bool)
+        if f:
+            t_a, t_b = placed.tangent[self.a], placed.tangent[self.b]
+            p, q_far, q_near = placed.start[self.a], placed.start[self.b], placed.end[self.b]
+            t = t_a - t_b
+            t /= np.abs(t)
+            n_a, n_b = -1j * t_a, 1j * t_b  # both from a to b
+            a_end = self.length_a * dot(t, t_a)
+            b_start, b_end = dot(t, q_near - p), dot(t, q_far - p)
+            low, high = b_start > 0.0, b_end < a_end  # ends that are corners of b
+            on_a[:f], on_a[f : 2 * f] = low, high
+            point[:f] = np.where(low, q_near, p)
+            point[f : 2 * f] = np.where(high, q_far, placed.end[self.a])
+            normal[:f], normal[f : 2 * f] = np.where(low, n_a, n_b), np.where(high, n_a, n_b)
+            gap[:f] = np.where(low, dot(n_a, q_near - p), dot(n_b, q_far - p))
+            gap[f : 2 * f] = np.where(high, dot(n_a, q_far - p), dot(n_b, q_far - placed.end[self.a]))
+            length[:] = np.where(high, b_end, a_end) - np.where(low, b_start, 0.0)
+            valid[:f] = valid[f : 2 * f] = length > self.shortest
+        if q:
+            x, t = placed.start[self.edge], placed.tangent[self.edge]
+            point[2 * f :] = placed.start[self.corner]
+            normal[2 * f :] = -1j * t
+            away = point[2 * f :] - x
+            gap[2 * f :] = dot(normal[2 * f :], away)
+            along = dot(t, away)
+            valid[2 * f :] = (along >= -self.slack) & (along <= self.length_edge + self.slack)
+        return Touch(point, normal, gap, on_a, length, valid)
+
+    def turning(self, touch: Touch, centre: Array, velocity: Array, spin: Array) -> tuple[Array, Array]:
+        """Return what turning adds to the rates of gap and slip, per time (2 f + q,) each [m/s2].
+
+        Parameters
+        ----------
+        touch : Touch
+        centre, velocity : (B,) complex arrays
+            Of the centroids.
+        spin : (B,) array
+            [rad/s].
+        """
+        master = np.where(touch.on_a, self.body_a, self.body_b)
+        slave = np.where(touch.on_a, self.body_b, self.body_a)
+        u, r = touch.point - centre[master], touch.point - centre[slave]
+        w_m, w_s = spin[master], spin[slave]
+        moved = velocity[slave] + 1j * w_s * r - velocity[master]
+        w = np.where(touch.on_a, 1.0, -1.0) * (-(w_s**2) * r - 2j * w_m * moved - w_m**2 * u)
+        return dot(touch.normal, w), dot(1j * touch.normal, w)

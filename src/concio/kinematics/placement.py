@@ -1,0 +1,63 @@
+"""Where each body is: the position of its centroid and its rotation, apart from what it is made of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from concio.kinematics.rigid import rotation_matrix
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """Placements of B bodies.
+
+    Parameters
+    ----------
+    centre : (B, d) array
+        Positions of the centroids [m].
+    rotation : (B,) array in the plane, (B, 3, 3) in space
+        Angles from the reference, anticlockwise and not wrapped [rad]; rotation matrices in space.
+    """
+
+    centre: Array
+    rotation: Array
+
+    @classmethod
+    def at_rest(cls, centre: Array) -> Placement:
+        """Return the placement of bodies where they were described."""
+        count, dim = centre.shape
+        return cls(centre.copy(), np.zeros(count) if dim == 2 else np.tile(np.eye(3), (count, 1, 1)))
+
+    @property
+    def dim(self) -> int:
+        """Space dimension, 2 or 3."""
+        return int(self.centre.shape[1])
+
+    @cached_property
+    def matrix(self) -> Array:
+        """Rotation matrices (B, d, d)."""
+        return rotation_matrix(self.rotation) if self.dim == 2 else self.rotation
+
+    def moved(self, translation: Array, turn: Array) -> Placement:
+        """Return the placement after a displacement of the centroids and a finite rotation about them.
+
+        Parameters
+        ----------
+        translation : (B, d) array
+            [m].
+        turn : (B,) array in the plane, (B, 3) in space
+            [rad].
+        """
+        if self.dim == 2:
+            return Placement(self.centre + translation, self.rotation + turn)
+        return Placement(self.centre + translation, rotation_matrix(turn) @ self.rotation)
+
+    def points(self, body: Array, arm: Array) -> Array:
+        """Return the positions (k, d) of points at reference arms (k, d) of bodies (k,) [m]."""
+        placed: Array = self.centre[body] + np.einsum("kij,kj->ki", self.matrix[body], arm)
+        return placed

@@ -1,0 +1,1 @@
+"""How the ground moves: records of earthquakes and pulses by name."""

@@ -1,0 +1,172 @@
+"""Records of ground motion from files: PEER's AT2 (VT2, DT2), and text of one or two columns.
+
+An AT2 file has four lines of head, the fourth with the number of samples and their step, and values in units of g, any
+number of them on a line. In text files lines that do not begin with a number, and empty ones, are skipped; two columns
+are time and value, one column needs the step.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from concio.arguments import strict
+from concio.errors import InputError
+from concio.model.motion.signals import Quantity, Record
+
+Array = np.ndarray
+
+STANDARD_GRAVITY = 9.80665
+"""What one g of a record is [m/s2]."""
+
+UNITS: dict[str, tuple[Quantity, float]] = {
+    "m/s2": ("acceleration", 1.0), "cm/s2": ("acceleration", 0.01), "mm/s2": ("acceleration", 0.001),
+    "g": ("acceleration", STANDARD_GRAVITY), "gal": ("acceleration", 0.01),
+    "m/s": ("velocity", 1.0), "cm/s": ("velocity", 0.01), "mm/s": ("velocity", 0.001),
+    "m": ("displacement", 1.0), "cm": ("displacement", 0.01), "mm": ("displacement", 0.001),
+}  # fmt: skip
+"""Units of records, with the quantity they belong to and their size in m and s."""
+
+PEER: dict[str, str] = {".at2": "g", ".vt2": "cm/s", ".dt2": "cm"}
+"""Units of PEER's files by the ends of their names."""
+
+LARGEST = 5.0
+"""Peak acceleration in g from which on a record is probably in another unit."""
+
+UNEVEN = 1e-3
+"""Share by which steps of time may differ."""
+
+_HEAD = re.compile(r"NPTS\s*=?\s*(\d+)\s*,?\s*DT\s*=?\s*([0-9.EeDd+-]+)", re.IGNORECASE)
+_NUMBER = re.compile(r"^\s*[-+]?(\d|\.\d)")
+_SEPARATOR = re.compile(r"[,;\s]+")
+
+
+@strict
+def read_record(path: Path | str, *, unit: str | None = None, step: float | None = None) -> Record:
+    """Return the record of a file.
+
+    Parameters
+    ----------
+    path : Path or str
+        ``.at2``, ``.vt2`` and ``.dt2`` are PEER's formats, anything else is text.
+    unit : str, optional
+        One of :data:`UNITS`; PEER's files bring their own, text is in m/s2 if nothing is said.
+    step : float, optional
+        Time between the samples of a text of one column [s].
+
+    Raises
+    ------
+    InputError
+        There is no such file; the unit is not known; the record has a gap or does not run forwards in time.
+    """
+    path = Path(path)
+    where = str(path)
+    if not path.is_file():
+        msg = "there is no such file"
+        raise InputError(msg, where=where, hint="give the path of a record, such as record.at2")
+    if unit is not None and unit not in UNITS:
+        msg = f"unknown unit '{unit}' of a record"
+        raise InputError(msg, where=where, hint="one of: " + ", ".join(UNITS))
+    try:
+        text = path.read_text(encoding="utf-8", errors="strict")
+    except UnicodeDecodeError:
+        text = path.read_text(encoding="latin-1")
+    suffix = path.suffix.lower()
+    head = _HEAD.search("\n".join(text.splitlines()[:6]))
+    if suffix in PEER or (head is not None and unit is None and step is None):
+        values, step = _peer(text, head, where)
+        unit = unit or PEER.get(suffix, "g")
+    else:
+        values, step = _columns(text, step, where)
+        unit = unit or "m/s2"
+    quantity, size = UNITS[unit]
+    return Record(size * values, step, quantity, path.name)
+
+
+def attention(record: Record) -> str | None:
+    """Return what is strange about a record: a peak that suggests another unit; None where nothing is."""
+    if record.quantity != "acceleration":
+        return None
+    peak = float(np.abs(record.values).max()) / STANDARD_GRAVITY
+    if peak <= LARGEST:
+        return None
+    return (
+        f"record '{record.name}' has a peak of {peak:.3g} g, more than any earthquake: is it in m/s2 or cm/s2 "
+        "where g was meant, or the other way round?"
+    )
+
+
+def _peer(text: str, head: re.Match[str] | None, where: str) -> tuple[Array, float]:
+    """Return values and step of a PEER file."""
+    if head is None:
+        msg = "the head has no 'NPTS= ..., DT= ...'"
+        raise InputError(msg, where=where, hint="is it an AT2 file? A text of one or two columns must not end in .at2")
+    count, step = int(head.group(1)), _float(head.group(2), where)
+    body = text[head.end() :].split("\n", 1)
+    words = body[1].split() if len(body) > 1 else []
+    values = np.array([_float(word, where) for word in words])
+    if len(values) != count:
+        msg = f"the head promises {count:,} samples, the file holds {len(values):,}"
+        raise InputError(msg, where=where, hint="the file was cut, or the head belongs to another record")
+    return values, step
+
+
+def _columns(text: str, step: float | None, where: str) -> tuple[Array, float]:
+    """Return values and step of a text of one or two columns."""
+    rows: list[list[float]] = []
+    for number, line in enumerate(text.splitlines(), 1):
+        if not _NUMBER.match(line):
+            if rows and line.strip() and not line.lstrip().startswith(("#", "%", "!", "//")):
+                msg = f"line {number} is no number: the record has a gap"
+                raise InputError(msg, where=where, hint="fill the gap, or cut the record before it")
+            continue
+        words = [w for w in _SEPARATOR.split(line.strip()) if w]
+        rows.append([_float(w, f"{where}, line {number}") for w in words])
+    widths = {len(r) for r in rows}
+    if not rows:
+        msg = "the file holds no numbers"
+        raise InputError(msg, where=where)
+    if widths == {2} and step is None:
+        return _timed(np.array(rows), where)
+    if widths == {2}:
+        msg = "a step of time was given, but the file has a column of times"
+        raise InputError(msg, where=where, hint="leave the step out")
+    if widths != {1} and step is None:
+        msg = f"the lines hold {', '.join(map(str, sorted(widths)))} numbers; one or two columns are read"
+        raise InputError(msg, where=where, hint="time and value, or values alone with the time between them (step)")
+    if step is None:
+        msg = "the file has one column: the time between samples is not known"
+        raise InputError(msg, where=where, hint="give it (step, or --record-step '0.01 s'), or a column of times")
+    return np.concatenate([np.array(r) for r in rows]), step
+
+
+def _timed(rows: Array, where: str) -> tuple[Array, float]:
+    time, values = rows.T
+    step = np.diff(time)
+    if len(step) == 0:
+        msg = "the record has one sample"
+        raise InputError(msg, where=where)
+    bad = np.flatnonzero(~(step > 0))
+    if bad.size:
+        k = int(bad[0])
+        swapped = bool((np.diff(values) > 0).all())
+        msg = f"time does not rise: after {time[k]:g} s comes {time[k + 1]:g} s (sample {k + 2})"
+        raise InputError(msg, where=where, hint="the two columns are swapped" if swapped else "sort the record by time")
+    usual = float(np.median(step))
+    uneven = np.flatnonzero(np.abs(step - usual) > UNEVEN * usual)
+    if uneven.size:
+        k = int(uneven[0])
+        gap = f"{step[k]:.6g} s between {time[k]:g} s and {time[k + 1]:g} s"
+        msg = f"the record has a gap: {gap}, elsewhere {usual:.6g} s"
+        raise InputError(msg, where=where, hint="fill it; samples must stand at equal steps of time")
+    return values, float((time[-1] - time[0]) / len(step))
+
+
+def _float(word: str, where: str) -> float:
+    try:
+        return float(word.replace("D", "E").replace("d", "e"))
+    except ValueError:
+        msg = f"'{word}' is not a number"
+        raise InputError(msg, where=where, hint="numbers have a decimal point: 0.01") from None
