@@ -1,0 +1,66 @@
+"""Factors of A + C'DC for rows that change their values from step to step and their unknowns only with a new search."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+from concio.problem.contact_problem import Array
+from concio.solvers.algebra.sparse_factor import Engine, OrderedFactor, Pattern
+
+
+class StepFactor:
+    """Pattern and ordering of one layout of pairs, and the factors of its matrices.
+
+    Parameters
+    ----------
+    matrix : (N, N) CSR array
+        A; its pattern must stay.
+    columns : (m, w) integer array
+        Unknowns of the rows of each pair; N where there is none.
+    engine : {"superlu", "pardiso"}
+    """
+
+    def __init__(self, matrix: sp.csr_array, columns: Array, engine: Engine = "superlu") -> None:
+        n = matrix.shape[0]
+        m, w = columns.shape
+        coo = matrix.tocoo()
+        row = np.broadcast_to(columns[:, :, None], (m, w, w)).ravel()
+        column = np.broadcast_to(columns[:, None, :], (m, w, w)).ravel()
+        inside = (row < n) & (column < n)
+        identity = np.arange(n)
+        pattern = Pattern.of(
+            np.concatenate([coo.row, identity, row[inside]]),
+            np.concatenate([coo.col, identity, column[inside]]),
+            n,
+            engine,
+        )
+        self.pattern = pattern
+        self._matrix_slot = pattern.slot[: coo.nnz]
+        slot = np.full(m * w * w, pattern.nnz, dtype=np.int64)
+        slot[inside] = pattern.slot[coo.nnz + n :]
+        self._slot = slot
+        self.numeric = OrderedFactor(pattern)
+
+    @property
+    def count(self) -> int:
+        """Number of factorisations made."""
+        return self.numeric.count
+
+    def factorise(self, matrix: sp.csr_array, values: Array, D: Array) -> None:
+        """Factorise A + C'DC for rows ``values`` (m, d, w) and blocks D (m, d, d).
+
+        Raises
+        ------
+        SingularMatrixError
+            A pivot is zero or not finite.
+        """
+        nnz = self.pattern.nnz
+        local = np.matmul(values.transpose(0, 2, 1), np.matmul(D, values))
+        data = np.bincount(self._slot, weights=local.ravel(), minlength=nnz + 1)[:nnz].astype(float)
+        data += np.bincount(self._matrix_slot, weights=matrix.tocoo().data, minlength=nnz)
+        self.numeric.factorise(data)
+
+    def solve(self, b: Array) -> Array:
+        """Return the solution for the last matrix factorised; ``b`` is (N,) or (N, k)."""
+        return self.numeric.solve(b)

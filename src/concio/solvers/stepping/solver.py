@@ -1,0 +1,135 @@
+"""The solver of steps: the states of the last step, then a small problem for those that changed, others last."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from concio.errors import SolverError
+from concio.problem.contact_problem import Array
+from concio.problem.pair_state import PairState, PairStates
+from concio.solvers.algebra.sparse_factor import Engine, SingularMatrixError
+from concio.solvers.interior import engine as interior
+from concio.solvers.pivoting import sparse_lemke
+from concio.solvers.stepping.factor import StepFactor
+from concio.solvers.stepping.problem import StepProblem, StepSolution, StepStates
+from concio.solvers.stepping.settle import SETTLED, settle
+from concio.solvers.stepping.states import Linear, read_states, solve_states
+
+FEW = 25
+"""Changed pairs up to which one small problem is cheaper than another factorisation."""
+
+FLIPS = 6
+"""Times all pairs that violate their law change state together before a small problem settles them."""
+
+ROUNDS = 14
+"""Factorisations at most before other methods are tried."""
+
+GOOD = 1e-11
+"""Residual below which an answer is taken without looking further."""
+
+
+class StepSolver:
+    """Solves steps of one layout; keeps pattern, ordering and counts.
+
+    Parameters
+    ----------
+    engine : {"superlu", "pardiso"}
+    """
+
+    def __init__(self, engine: Engine = "superlu") -> None:
+        self.engine = engine
+        self.factor: StepFactor | None = None
+        self.counts: dict[str, int] = {}
+
+    def new_layout(self) -> None:
+        """Forget the pattern: the rows meet other unknowns from now on."""
+        self.factor = None
+
+    def solve(self, p: StepProblem, states: StepStates, x: Array, t: Array) -> StepSolution:
+        """Solve a step from the states of the one before and a point near the answer."""
+        if self.factor is None:
+            self.factor = StepFactor(p.matrix, p.columns, self.engine)
+        factor, begun = self.factor, self.factor.count
+        best: StepSolution | None = None
+
+        def keep(x: Array, t: Array, states: StepStates, residual: float, how: str) -> StepSolution:
+            nonlocal best
+            found = StepSolution(x, t, states, residual, how, factor.count - begun)
+            if best is None or residual < best.residual:
+                best = found
+            return best
+
+        seen: list[StepStates] = []
+        for round_ in range(ROUNDS):
+            linear = Linear.of(p, states)
+            D = linear.blocks(p)
+            try:
+                factor.factorise(p.matrix, p.values, D)
+                x1, t1, _ = solve_states(p, factor, linear, x, t, D)
+            except SingularMatrixError:
+                break
+            residual, laws = p.residual(x1, t1)
+            found = keep(x1, t1, states, residual, "same states" if not round_ else "active set")
+            if residual < GOOD:
+                return self._count(found)
+            new = read_states(p, x1, t1)
+            changed = int(((laws > SETTLED) & ((new.contact != states.contact) | (new.slip != states.slip))).sum())
+            seen.append(states)
+            if changed <= FEW or round_ >= FLIPS or any(new.same(s) for s in seen):
+                x2, t2, settled, residual, _ = settle(p, factor, states, x1, t1, D)
+                found = keep(x2, t2, settled, residual, "small problem")
+                if residual < SETTLED:
+                    return self._count(found)
+                if any(new.same(s) for s in seen):
+                    break
+            states = new
+        return self._count(self._fallback(p, best))
+
+    def response(self, p: StepProblem, states: StepStates, f: Array) -> Array:
+        """Return the change of x (N,) under a change f (N,) of the right-hand side, in given states."""
+        if self.factor is None:
+            self.factor = StepFactor(p.matrix, p.columns, self.engine)
+        self.factor.factorise(p.matrix, p.values, Linear.of(p, states).blocks(p))
+        return self.factor.solve(f)
+
+    def _count(self, found: StepSolution) -> StepSolution:
+        self.counts[found.how] = self.counts.get(found.how, 0) + 1
+        return found
+
+    def _fallback(self, p: StepProblem, best: StepSolution | None) -> StepSolution:
+        problem = p.contact_problem()
+        pick = np.flatnonzero(p.active)
+        if best is not None:
+            s = best.states
+            slides = np.where(s.slip == 0, PairState.STICK, PairState.SLIP)
+            code = np.where(s.contact == 0, PairState.OPEN, np.where(s.contact == 2, PairState.CRUSHED, slides))
+            named = PairStates(code[pick].astype(np.int8), s.slip[pick, None].astype(float))
+            answer = sparse_lemke.solve(problem, start_states=named, tries=0, limit=2000)
+            found = self._read(p, pick, answer.displacement, answer.normal_force, answer.friction_force, "pivoting")
+            if found.residual < SETTLED:
+                return found
+        answer = interior.solve(problem)
+        found = self._read(p, pick, answer.displacement, answer.normal_force, answer.friction_force, "interior point")
+        if best is None or found.residual < best.residual:
+            best = found
+        return best
+
+    def _read(self, p: StepProblem, pick: Array, x: Array, t_n: Array, t_t: Array, how: str) -> StepSolution:
+        t = np.zeros((p.pairs, p.dim))
+        t[pick, 0], t[pick, 1:] = t_n, t_t
+        residual, _ = p.residual(x, t)
+        return StepSolution(x, t, read_states(p, x, t), residual, how, 0)
+
+
+def require(found: StepSolution, tolerance: float) -> StepSolution:
+    """Return a solution that holds to a tolerance.
+
+    Raises
+    ------
+    SolverError
+        It does not.
+    """
+    if not found.residual <= tolerance:
+        msg = f"a step was solved to {found.residual:.1e} only"
+        raise SolverError(msg, hint="take a smaller step")
+    return found

@@ -1,0 +1,158 @@
+r"""The linear equations of given states, and the states that forces and velocities suggest.
+
+With a state for every pair the problem is linear. A compliance ``DELTA`` (over the flexibility of the pair) gives the
+matrix A + C'DC, one 2 x 2 block D for each pair; iterative refinement against the equations without it takes it out
+again. Where forces are not unique (rigid blocks on many corners) refinement from zero ends at those of least norm.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from concio.problem.contact_problem import Array
+from concio.solvers.stepping.problem import StepProblem, StepStates
+
+DELTA = 1e-6
+"""Compliance of closed pairs in the factorised matrix, over the typical flexibility of a pair."""
+
+EXACT = 1e-13
+"""Relative residual at which refinement stops."""
+
+ROUNDS = 25
+"""Largest number of refinements."""
+
+
+class Factor(Protocol):
+    """Solves with the matrix of some states."""
+
+    def solve(self, b: Array) -> Array:
+        """Return the solution for the right-hand side b (N,)."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """The linear law of each pair in given states: which rows hold, what friction goes with the normal force.
+
+    Parameters
+    ----------
+    closed, stick : (m,) boolean arrays
+        Pairs whose normal, whose tangential row holds.
+    drag : (m,) array
+        t_t = drag t_n + pull where a pair slips.
+    pull : (m,) array
+    held_n : (m,) array
+        Normal force of pairs that are open or crushed.
+    open_wide : (m,) array
+        Opening for each unit of slip.
+    delta_n, delta_t : (m,) arrays
+        Compliances added.
+    """
+
+    closed: Array
+    stick: Array
+    drag: Array
+    pull: Array
+    held_n: Array
+    open_wide: Array
+    delta_n: Array
+    delta_t: Array
+
+    @classmethod
+    def of(cls, p: StepProblem, states: StepStates) -> Linear:
+        """Return the linear laws of states."""
+        cone, sigma = p.cone, states.slip.astype(float)
+        closed = ((states.contact == 1) & p.active) | p.glued
+        tension = np.where(p.glued | ~p.active, 0.0, cone.tension)
+        cohesion = np.where(p.pinned, 0.0, cone.cohesion)
+        holds = p.active & cone.rough & ((states.contact != 0) | (cohesion - cone.friction * tension > 0))
+        stick = (holds & (states.slip == 0)) | p.pinned
+        slips = holds & ~stick
+        drag = np.where(slips, -sigma * cone.friction, 0.0)
+        pull = np.where(slips, -sigma * cohesion, 0.0)
+        crushed = (states.contact == 2) & p.active
+        held = np.where(crushed, np.where(np.isfinite(cone.cap), cone.cap, 0.0), -tension)
+        delta = DELTA * p.flexibility
+        least = np.maximum(delta, 1e-3 * np.median(delta, axis=0)) if len(delta) else delta
+        return cls(
+            closed,
+            stick,
+            drag,
+            pull,
+            np.where(closed, 0.0, held),
+            p.dilatancy * sigma * slips,
+            least[:, 0],
+            least[:, 1],
+        )
+
+    def blocks(self, p: StepProblem) -> Array:
+        """Return D (m, 2, 2)."""
+        soft_n = p.a_n - self.open_wide * p.a_t * self.drag + self.delta_n
+        d_nn = np.where(self.closed, 1.0 / soft_n, 0.0)
+        d_tt = np.where(self.stick, 1.0 / (p.a_t + self.delta_t), 0.0)
+        D = np.zeros((p.pairs, 2, 2))
+        D[:, 0, 0], D[:, 0, 1] = d_nn, -d_nn * self.open_wide
+        D[:, 1, 0], D[:, 1, 1] = self.drag * d_nn, d_tt - self.drag * d_nn * self.open_wide
+        return D
+
+
+def solve_states(
+    p: StepProblem, factor: Factor, linear: Linear, x: Array, t: Array, D: Array
+) -> tuple[Array, Array, float]:
+    """Solve the equations of given states by refinement from (x, t); the factor holds (nearly) their matrix.
+
+    Returns
+    -------
+    x : (N,) array
+    t : (m, 2) array
+    residual : float
+        Of the linear equations.
+    """
+    closed, stick, drag = linear.closed, linear.stick, linear.drag
+    t_n = np.where(closed, t[:, 0], linear.held_n)
+    t_t = np.where(stick, t[:, 1], drag * t_n + linear.pull)
+    t = np.column_stack([t_n, t_t])
+    best, late = (x, t, np.inf), 0
+    for _ in range(ROUNDS):
+        r_u = p.b + p.pull(t) - p.matrix @ x
+        y_n, y_t = p.relative(x, t)
+        r_n = np.where(closed, -(y_n - linear.open_wide * y_t[:, 0]), 0.0)
+        r_t = np.where(stick, -y_t[:, 0], 0.0)
+        residual = max(
+            float(np.abs(r_u).max(initial=0.0)) / p.force,
+            float(np.abs(r_n).max(initial=0.0)) / p.length,
+            float(np.abs(r_t).max(initial=0.0)) / p.length,
+        )
+        late = late + 1 if residual > 0.3 * best[2] else 0
+        if residual < best[2]:
+            best = (x, t, residual)
+        if not residual > EXACT or late >= 2 or residual > 1e3 * best[2]:
+            break
+        n0 = r_n * D[:, 0, 0]
+        t0 = np.where(stick, r_t / (p.a_t + linear.delta_t), drag * n0)
+        dx = factor.solve(r_u + p.pull(np.column_stack([n0, t0])))
+        v = p.opening(dx)
+        dt_n = n0 - D[:, 0, 0] * (v[:, 0] - linear.open_wide * v[:, 1])
+        dt_t = np.where(stick, t0 - v[:, 1] / (p.a_t + linear.delta_t), drag * dt_n)
+        x, t = x + dx, t + np.column_stack([dt_n, dt_t])
+    return best
+
+
+def read_states(p: StepProblem, x: Array, t: Array) -> StepStates:
+    """Return the states that the natural map assigns to a point, each pair measured by its own flexibility."""
+    y_n, y_t = p.relative(x, t)
+    stiff = 1.0 / np.where(p.flexibility > 0, p.flexibility, 1.0)
+    cone = p.cone
+    slip = y_t[:, 0]
+    trial = t[:, 0] - stiff[:, 0] * (y_n - p.dilatancy * np.abs(slip))
+    closed = (trial > -cone.tension) & p.active
+    crushed = closed & (trial > cone.cap)
+    with np.errstate(invalid="ignore"):
+        strength = np.maximum(cone.cohesion + cone.friction * np.clip(trial, -cone.tension, cone.cap), 0.0)
+    tangential = t[:, 1] - stiff[:, 1] * slip
+    sliding = np.where(tangential < -strength, 1, np.where(tangential > strength, -1, 0))
+    sliding = np.where(p.pinned | ~p.active | ~cone.rough, 0, sliding)
+    return StepStates(np.where(crushed, 2, closed).astype(np.int8), sliding.astype(np.int8))
