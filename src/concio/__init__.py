@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from concio.analysis.cells.strength import strength
     from concio.analysis.limit import friction_margin, limit
     from concio.analysis.margins import friction_by_solving, load_margin
+    from concio.analysis.motion.dynamics import dynamics
+    from concio.analysis.motion.dynamics_result import DynamicsResult
+    from concio.analysis.motion.push import push
+    from concio.analysis.motion.push_result import PushResult
     from concio.analysis.path import ControlPoint, PathResult, Stage, run_path
     from concio.analysis.result import Result
     from concio.analysis.rocking import rock
@@ -39,6 +43,8 @@ if TYPE_CHECKING:
     from concio.model.generate.walls import wall, wall_of_courses
     from concio.model.materials import Elastic, JointLaw, Rigid
     from concio.model.model import Body, JointRule, Load, Model, Support, Tie
+    from concio.model.motion.records import read_record
+    from concio.model.motion.signals import Pulse, Record
     from concio.model.polyhedron import Polyhedron
     from concio.problem.solution import Status
     from concio.studies.study import Stop, study
@@ -55,7 +61,13 @@ _HOMES = {
     "concio.analysis.margins": ("friction_by_solving", "load_margin"),
     "concio.analysis.path": ("ControlPoint", "PathResult", "Stage", "run_path"),
     "concio.analysis.result": ("Result",),
+    "concio.analysis.motion.dynamics": ("dynamics",),
+    "concio.analysis.motion.dynamics_result": ("DynamicsResult",),
+    "concio.analysis.motion.push": ("push",),
+    "concio.analysis.motion.push_result": ("PushResult",),
     "concio.analysis.rocking": ("rock",),
+    "concio.model.motion.records": ("read_record",),
+    "concio.model.motion.signals": ("Pulse", "Record"),
     "concio.analysis.settlement": ("settle",),
     "concio.analysis.step": ("solve",),
     "concio.analysis.thrust": ("thrust_line",),
@@ -94,6 +106,7 @@ __all__ = [
     "Body",
     "ConcioError",
     "ControlPoint",
+    "DynamicsResult",
     "Elastic",
     "GeometryError",
     "InputError",
@@ -105,6 +118,9 @@ __all__ = [
     "NoEquilibriumError",
     "PathResult",
     "Polyhedron",
+    "Pulse",
+    "PushResult",
+    "Record",
     "Result",
     "Rigid",
     "SolverError",
@@ -123,6 +139,7 @@ __all__ = [
     "cell",
     "column",
     "dumps",
+    "dynamics",
     "extrude",
     "friction_by_solving",
     "friction_margin",
@@ -133,6 +150,8 @@ __all__ = [
     "load_study",
     "loads",
     "model_from_dxf",
+    "push",
+    "read_record",
     "rock",
     "rubble",
     "run_path",

@@ -166,20 +166,13 @@ class Scaled:
 
     # -- other data, other units ----------------------------------------------------------------------------------
 
-    def step_from(self, u: Array, e: float, forgotten: Array | None = None) -> Scaled:
+    def step_from(self, u: Array, e: float) -> Scaled:
         """Return the problem of one step of slow motion from ``u`` (N,), its unknowns counted from there.
 
         K + e M stands for K; loads, gaps and slip origins are those left at ``u``.
-
-        Parameters
-        ----------
-        u : (N,) array
-        e : float
-        forgotten : (m, d) array, optional
-            Gap and slip that pairs forget at ``u``: their friction opposes the slip made from there on.
         """
         added = e * self.inertia
-        moved = self.along(u) if forgotten is None else self.along(u) - forgotten
+        moved = self.along(u)
         problem, m = self.problem, self.pairs
         return replace(
             self,
@@ -292,7 +285,7 @@ def scale(problem: ContactProblem, engine: Engine = "superlu", *, loads: Array |
         K=K,
         C=C,
         **_in_units(problem, C, force, length),
-        inertia=problem.inertia / (problem.inertia.mean() if problem.inertia.size else 1.0),
+        inertia=problem.inertia / problem.inertia.mean(),
         rigid=problem.R,
         factor=factor,
         glued=u / length,

@@ -1,0 +1,1 @@
+"""Large displacements: pushing a structure over, and shaking it."""

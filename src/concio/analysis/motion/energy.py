@@ -1,0 +1,50 @@
+"""The energy balance of a motion: what was put in, what is stored, what was dissipated, and what is left over."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+Array = np.ndarray
+
+NAMES = ("kinetic", "strain", "potential", "friction", "impact", "damping", "crushing", "input", "drift")
+"""Columns: energies now (kinetic, strain of bodies, joints and ties, potential of the loads), and sums since the start:
+dissipated by friction, in impacts and openings, by damping, by crushing; put in by the ground and moved supports; and
+work done in pushing back what had sunk into each other."""
+
+
+@dataclass(frozen=True, eq=False)
+class EnergyBalance:
+    """Energies at stored times [kN m].
+
+    Parameters
+    ----------
+    values : mapping of str to (n,) array
+    """
+
+    values: dict[str, Array]
+
+    def __getitem__(self, name: str) -> Array:
+        return self.values[name]
+
+    @property
+    def total(self) -> Array:
+        """Stored and dissipated less put in (n,): constant where the balance closes [kN m]."""
+        v = self.values
+        stored = v["kinetic"] + v["strain"] + v["potential"]
+        lost = v["friction"] + v["impact"] + v["damping"] + v["crushing"]
+        balance: Array = stored + lost - v["input"] - v["drift"]
+        return balance
+
+    @property
+    def turned_over(self) -> float:
+        """Energy by which the error of the balance is measured: the largest range of any column [kN m]."""
+        return max(float(np.ptp(v)) if len(v) else 0.0 for v in self.values.values())
+
+    @property
+    def error(self) -> float:
+        """Largest deviation of the balance from its beginning over the energy turned over."""
+        total = self.total
+        worst = float(np.abs(total - total[0]).max()) if len(total) else 0.0
+        return worst / self.turned_over if self.turned_over > 0 else 0.0

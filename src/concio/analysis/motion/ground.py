@@ -1,0 +1,106 @@
+"""The ground in a motion: its components, as inertia forces or as a moving base."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
+
+from concio.errors import InputError
+from concio.model.motion.records import attention, read_record
+from concio.model.motion.signals import Pulse, Record, Signal
+
+Array = np.ndarray
+Motion: TypeAlias = "Signal | Path | str | Mapping[str, Signal | Path | str] | None"
+"""A signal or the name of a record along x, or signals by component "x", "y"."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """Motion of the ground.
+
+    Parameters
+    ----------
+    components : tuple of Signal or None
+        Along x and y.
+    scale : float
+        Factor of all of them.
+    """
+
+    components: tuple[Signal | None, ...]
+    scale: float = 1.0
+
+    @classmethod
+    def of(cls, motion: Motion, scale: float = 1.0) -> Ground:
+        """Return the motion that a user asked for.
+
+        Raises
+        ------
+        InputError
+            A component is not known, a record cannot be read, or the scale is not finite.
+        """
+        if not np.isfinite(scale):
+            msg = f"scale = {scale:g} is not finite"
+            raise InputError(msg, hint="1 takes the record as it is")
+        given = dict(motion) if isinstance(motion, Mapping) else {} if motion is None else {"x": motion}
+        for name in given:
+            if name not in ("x", "y"):
+                msg = f"there is no component '{name}' of a ground motion in the plane"
+                raise InputError(msg, hint="x is horizontal, y vertical")
+        return cls(tuple(_signal(given.get(name)) for name in ("x", "y")), float(scale))
+
+    @property
+    def duration(self) -> float:
+        """When the last component ends [s]."""
+        return max((s.duration for s in self.components if s is not None), default=0.0)
+
+    @property
+    def sample(self) -> float:
+        """Least time between samples of a record; infinite where there is none [s]."""
+        return min((s.step for s in self.components if isinstance(s, Record)), default=np.inf)
+
+    @property
+    def attention(self) -> tuple[str, ...]:
+        """What is strange about the records."""
+        found = [attention(s.scaled(self.scale)) for s in self.components if isinstance(s, Record)]
+        return tuple(text for text in found if text is not None)
+
+    def mean_acceleration(self, start: float, end: float) -> Array:
+        """Return the mean acceleration between two times (2,) [m/s2]."""
+        return self._difference("velocity", start, end)
+
+    def mean_velocity(self, start: float, end: float) -> Array:
+        """Return the mean velocity between two times (2,) [m/s]."""
+        return self._difference("displacement", start, end)
+
+    def acceleration(self, time: Array) -> Array:
+        """Return the acceleration at times (n,), shape (n, 2) [m/s2]."""
+        zero = np.zeros(np.shape(time))
+        return np.stack([zero if s is None else self.scale * s.acceleration(time) for s in self.components], axis=-1)
+
+    def displacement(self, time: Array) -> Array:
+        """Return the displacement at times (n,), shape (n, 2) [m]."""
+        zero = np.zeros(np.shape(time))
+        return np.stack([zero if s is None else self.scale * s.displacement(time) for s in self.components], axis=-1)
+
+    def _difference(self, quantity: str, start: float, end: float) -> Array:
+        mean = np.zeros(2)
+        for k, signal in enumerate(self.components):
+            if signal is not None:
+                first, last = getattr(signal, quantity)(np.array([start, end]))
+                mean[k] = self.scale * (last - first) / (end - start)
+        return mean
+
+
+def _signal(thing: Signal | Path | str | None) -> Signal | None:
+    if thing is None or isinstance(thing, Record | Pulse):
+        return thing
+    if isinstance(thing, Path | str):
+        return read_record(thing)
+    if all(hasattr(thing, name) for name in ("duration", "acceleration", "velocity", "displacement")):
+        return thing
+    msg = f"a ground motion is a record, a pulse or the name of a file, not {type(thing).__name__}"
+    raise InputError(msg, hint="concio.read_record reads a file, concio.Pulse('half sine', 3.0, 0.5) is a pulse")

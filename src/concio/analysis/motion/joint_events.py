@@ -1,0 +1,67 @@
+"""Events between two equilibria: joints that open, close, slip, stick or crush, and contacts that are new."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.analysis.motion.pairs import PairMaker
+from concio.analysis.motion.state import Memory
+from concio.contact.moving.rows import Rows
+from concio.model.model import Model
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True)
+class JointEvent:
+    """A contact that changes its state.
+
+    Parameters
+    ----------
+    step : int
+        Index of the point of the curve from which on the new state holds.
+    kind : str
+        "opens", "closes", "slips", "sticks", "crushes", "recovers"; "touches" where nothing touched before.
+    bodies : (str, str)
+    at : (x, y)
+        Where it happens, in the displaced structure [m].
+    """
+
+    step: int
+    kind: str
+    bodies: tuple[str, str]
+    at: tuple[float, float]
+
+    def __str__(self) -> str:
+        a, b = self.bodies
+        return f"{self.step}: {a} | {b} {self.kind} at ({self.at[0]:.4g}, {self.at[1]:.4g})"
+
+
+def joint_events(
+    model: Model, maker: PairMaker, rows: Rows, before: Memory, after: Memory, step: int
+) -> list[JointEvent]:
+    """Return what changed between two equilibria; ``after`` and ``rows`` belong to the present layout."""
+    old = before.carried_to(after.key)
+    known = np.isin(after.key, before.key)
+    slots = maker.slots
+    carries = after.force[:, 0] > 0
+    closed = (after.contact > 0) & rows.valid
+    was = old.contact > 0
+    kinds = (
+        ("opens", known & was & ~closed & (old.force[:, 0] > 0)),
+        ("closes", known & ~was & closed & carries),
+        ("touches", ~known & closed & carries & ~slots.bonded),
+        ("slips", closed & carries & (after.slip != 0) & ~(known & (old.slip == after.slip))),
+        ("sticks", closed & carries & known & (after.slip == 0) & (old.slip != 0)),
+        ("crushes", (after.contact == 2) & ~(known & (old.contact == 2))),
+        ("recovers", known & (old.contact == 2) & (after.contact != 2)),
+    )
+    found = []
+    for kind, hit in kinds:
+        for i in np.flatnonzero(hit).tolist():
+            names = (model.bodies[int(slots.body_a[i])].name, model.bodies[int(slots.body_b[i])].name)
+            x, y = (float(v) for v in rows.point[i])
+            found.append(JointEvent(step, kind, names, (x, y)))
+    return found

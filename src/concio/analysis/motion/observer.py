@@ -1,0 +1,158 @@
+"""What is looked at while bodies move: points, reactions, openings of joints, energies."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from concio.analysis.motion.frames import Frames
+from concio.analysis.motion.pairs import PairMaker
+from concio.analysis.motion.state import MotionState
+from concio.contact.moving.edges import as_complex, as_vectors
+from concio.contact.moving.points import MaterialPoints
+from concio.contact.moving.reference import Reference
+from concio.contact.moving.rows import Rows
+from concio.contact.moving.slots import KINDS
+from concio.errors import InputError
+from concio.fem.discretisation import FIXED
+from concio.model.stages import ControlPoint
+
+Array = np.ndarray
+
+
+class Observer:
+    """Looks at states of a reference.
+
+    Parameters
+    ----------
+    reference : Reference
+    maker : PairMaker
+        Of the motion.
+    frames : Frames
+    factors : mapping of str to float
+    points : sequence of ControlPoint
+
+    Raises
+    ------
+    InputError
+        A point is on no body.
+    """
+
+    def __init__(
+        self,
+        reference: Reference,
+        maker: PairMaker,
+        frames: Frames,
+        factors: Mapping[str, float],
+        points: Sequence[ControlPoint] = (),
+    ) -> None:
+        self.reference, self.maker, self.frames, self.factors = reference, maker, frames, factors
+        model = reference.model
+        number = {b.name: i for i, b in enumerate(model.bodies)}
+        for point in points:
+            if point.body not in number:
+                msg = f"there is no body called '{point.body}'"
+                raise InputError(msg, where="point", hint="see the names with 'concio check'")
+        place = np.array([p.at for p in points], dtype=float).reshape(-1, 2)
+        bodies = [number[p.body] for p in points]
+        self.points = MaterialPoints.of(reference.disc, bodies, place, reference.first_node, reference.node_column)
+        self.fixed = np.flatnonzero(reference.disc.shape_of == FIXED)
+        held = sorted({int(i) for i in maker.held.support})
+        self.names = (*(model.bodies[b].name for b in self.fixed), *(model.supports[i].name for i in held))
+        self._row = np.full(len(model.bodies) + 1, -1)
+        self._row[self.fixed] = np.arange(len(self.fixed))
+        self._held_row = {i: len(self.fixed) + k for k, i in enumerate(held)}
+        self.joints = tuple((model.bodies[f.a].name, model.bodies[f.b].name) for f in reference.detection.interfaces)
+        self._joint = {key: k for k, key in enumerate(reference.drawn)}
+        self._known: tuple[Array, Array, Array] | None = None
+        self.rest = as_complex(reference.disc.centroids)
+        self.node_rest = frames.arm + self.rest[frames.body] if frames.elastic else frames.arm
+
+    def positions(self, state: MotionState) -> Array:
+        """Return where the points are (p, d) [m]."""
+        turn = np.exp(1j * state.rotation)
+        strain = np.append(as_complex(state.strain), 0.0)
+        return as_vectors(self.points.positions(as_complex(state.centre), turn, strain))
+
+    def reactions(self, force: Array, pairs: int, normal: Array) -> Array:
+        """Return the force of each fixed body and support on the structure (r, d) [kN].
+
+        Parameters
+        ----------
+        force : (k, d) array
+            Forces of all pairs: contact, supports, ties [kN].
+        pairs : int
+            Number of contact pairs.
+        normal : (pairs, d) array
+        """
+        total = np.zeros((len(self.names), 2))
+        slots, t = self.maker.slots, force[:pairs]
+        if len(self.fixed) and pairs:
+            row_a, row_b = self._row[slots.body_a], self._row[slots.body_b]
+            near = np.flatnonzero((row_a >= 0) | (row_b >= 0))
+            n = normal[near]
+            on_b = t[near, :1] * n + t[near, 1:] * np.stack([-n[:, 1], n[:, 0]], axis=1)
+            for row, sign in ((row_a[near], 1.0), (row_b[near], -1.0)):
+                hit = row >= 0
+                np.add.at(total, row[hit], sign * on_b[hit])
+        held = self.maker.held
+        for k in range(len(held)):
+            vector = (force[pairs + k, 0] + 1j * force[pairs + k, 1]) * held.normal[k]
+            total[self._held_row[int(held.support[k])]] += vector.real, vector.imag
+        return total
+
+    def rows(self, state: MotionState) -> Rows:
+        """Return the contact rows where the bodies stand, in the present layout."""
+        zero = np.zeros(len(state.rotation))
+        return self.maker.search.rows(
+            as_complex(state.centre), np.exp(1j * state.rotation), zero.astype(complex), zero,
+            np.append(as_complex(state.strain), 0.0), turning=False,
+        )  # fmt: skip
+
+    def joint_motion(self, state: MotionState) -> tuple[Array, Array]:
+        """Return the largest opening and the plastic slip of each joint that was there in the beginning (f,) [m]."""
+        opening, slip = np.zeros(len(self.joints)), np.zeros(len(self.joints))
+        if not len(self.joints) or self.maker.search.layout is None:
+            return opening, slip
+        own, number = self._joints_of_slots()
+        np.maximum.at(opening, number, np.maximum(self.rows(state).gap[own], 0.0))
+        memory = state.memory
+        if memory.key is self.maker.slots.key:
+            slid = memory.slid[own]
+            order = np.argsort(np.abs(slid), kind="stable")
+            slip[number[order]] = slid[order]
+        return opening, slip
+
+    def _joints_of_slots(self) -> tuple[Array, Array]:
+        """Return the slots of joints that were there in the beginning, and the numbers of these joints."""
+        slots = self.maker.slots
+        if self._known is None or self._known[0] is not slots.key:
+            count = len(self.reference.edges.body)
+            own = np.flatnonzero(slots.bonded)
+            edges = [divmod(int(k) // KINDS, count) for k in slots.key[own]]
+            number = np.array([self._joint.get((a, b), -1) for a, b in edges], dtype=int)
+            self._known = slots.key, own[number >= 0], number[number >= 0]
+        return self._known[1], self._known[2]
+
+    def energies(self, state: MotionState, sums: Mapping[str, float]) -> dict[str, float]:
+        """Return the energies of a state, with the sums collected so far [kN m]."""
+        f, reference = self.frames, self.reference
+        turn = np.exp(1j * state.rotation)
+        centre, strain = as_complex(state.centre), as_complex(state.strain)
+        x = f.unknowns(as_complex(state.velocity), state.spin, as_complex(state.nodal), turn)
+        nodes = reference.node_place(centre, turn, strain) - self.node_rest if f.elastic else strain
+        potential = reference.loads.potential(self.factors, centre - self.rest, state.rotation, nodes)
+        stored = f.strain_energy(strain) + self._springs(state)
+        return {"kinetic": f.kinetic_energy(x), "strain": stored, "potential": potential, **sums}
+
+    def _springs(self, state: MotionState) -> float:
+        """Return the energy of joints of finite stiffness and of ties [kN m]."""
+        maker, stored = self.maker, 0.0
+        if len(maker.ties):
+            strain = np.append(as_complex(state.strain), 0.0)
+            _, gap, _ = maker.ties.rows(as_complex(state.centre), np.exp(1j * state.rotation), strain)
+            stored += 0.5 * float((maker.ties.stiffness * np.minimum(gap, 0.0) ** 2).sum())
+        if maker.joints.any_stiffness and maker.search.layout is not None and state.memory.key is maker.slots.key:
+            stored += maker.joints.stored(self.rows(state), maker.slots, state.memory)
+        return stored

@@ -1,0 +1,130 @@
+"""All pairs of a step: contact, points that supports hold, ties; and the step problem they make."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import scipy.sparse as sp
+
+from concio.analysis.motion.joints import SAG, Joints, PairData
+from concio.analysis.motion.scheme import Scheme
+from concio.analysis.motion.state import Memory
+from concio.contact.moving.attachments import Held, Ties
+from concio.contact.moving.edges import dot
+from concio.contact.moving.reference import Reference
+from concio.contact.moving.rows import Rows
+from concio.contact.moving.search import ContactSearch
+from concio.contact.moving.slots import Slots
+from concio.problem.cone import Cone
+from concio.solvers.stepping.problem import StepProblem
+
+Array = np.ndarray
+
+
+class PairMaker:
+    """Finds the pairs of moving bodies.
+
+    Parameters
+    ----------
+    reference : Reference
+    scheme : Scheme
+    """
+
+    def __init__(self, reference: Reference, scheme: Scheme) -> None:
+        self.reference, self.scheme, self.n = reference, scheme, reference.disc.unknowns
+        self.search = ContactSearch(reference)
+        self.width = float(np.median(reference.edges.width[reference.free]))
+        weight = float(reference.body_mass[reference.free].mean()) * reference.gravity
+        lent = SAG * self.width / weight if weight > 0 else 0.0
+        self.joints = Joints(reference.laws, scheme, reference.disc.size, self.width, self.search.skin, lent)
+        self.held, self.ties = Held.of(reference), Ties.of(reference)
+
+    @property
+    def slots(self) -> Slots:
+        """The present layout of contact pairs."""
+        assert self.search.layout is not None
+        return self.search.layout.slots
+
+    def contacts(
+        self, memory: Memory, centre: Array, turn: Array, velocity: Array, spin: Array, strain: Array
+    ) -> tuple[Memory, Rows, bool]:
+        """Return what pairs remember, their rows, and whether their layout is new, for complex placements."""
+        search = self.search
+        new = search.update(search.edges.placed_by(centre, turn))
+        key = self.slots.key
+        if memory.key is not key:
+            memory = memory.carried_to(key)
+        rows = search.rows(centre, turn, velocity, spin, np.append(strain, 0.0))
+        return memory, rows, new
+
+    def supports(self, turn: Array, shift: Array) -> PairData:
+        """Return the pairs of supports; ``shift`` complex (k,): how far or fast they are from their places."""
+        held, k = self.held, len(self.held)
+        if not k:
+            return no_pairs(self.n)
+        zero, inf = np.zeros(k), np.full(k, np.inf)
+        off = np.stack([dot(shift, held.normal), dot(shift, 1j * held.normal)], axis=1)
+        return PairData(
+            held.points.columns, held.values(turn), off, zero, np.where(held.both, np.inf, 0.0), inf, inf, zero, zero,
+            zero, np.ones(k, dtype=bool),
+        )  # fmt: skip
+
+    def off_support(self, centre: Array, turn: Array, strain: Array, factors: Mapping[str, float]) -> Array:
+        """Return how far held points are from where supports want them, complex (k,) [m]."""
+        here = self.held.points.positions(centre, turn, np.append(strain, 0.0))
+        return np.asarray(here - self.held.target(factors))
+
+    def tie_pairs(self, centre: Array, turn: Array, strain: Array) -> tuple[PairData, Array]:
+        """Return the pairs of ties in terms of displacements, and their gaps (k,) [m]."""
+        ties, k = self.ties, len(self.ties)
+        if not k:
+            return no_pairs(self.n), np.zeros(0)
+        values, gap, _ = ties.rows(centre, turn, np.append(strain, 0.0))
+        zero = np.zeros(k)
+        data = PairData(
+            ties.columns, values, np.stack([gap, zero], axis=1), zero, zero, zero, np.full(k, np.inf),
+            1.0 / ties.stiffness, zero, zero, np.ones(k, dtype=bool),
+        )  # fmt: skip
+        return data, gap
+
+
+def relative(columns: Array, values: Array, x: Array) -> Array:
+    """Return the relative velocities (m, d) of unknowns x (N,)."""
+    moved: Array = np.matmul(values, np.append(x, 0.0)[columns][:, :, None])[:, :, 0]
+    return moved
+
+
+def no_pairs(n: int) -> PairData:
+    """Return no pairs, on n unknowns."""
+    none = np.zeros(0)
+    return PairData(
+        np.zeros((0, 3), dtype=int), np.zeros((0, 2, 3)), np.zeros((0, 2)), none, none, none, none, none, none, none,
+        np.zeros(0, dtype=bool),
+    )  # fmt: skip
+
+
+def assembled(matrix: sp.csr_array, b: Array, parts: Sequence[PairData], force: float, length: float) -> StepProblem:
+    """Return the step problem of several kinds of pairs, one after the other."""
+    parts = [part for part in parts if len(part.columns)] or list(parts[:1])
+    if len(parts) == 1:
+        p = parts[0]
+        columns, values = p.columns, p.values
+    else:
+        w, m, n = max(p.columns.shape[1] for p in parts), sum(len(p.columns) for p in parts), len(b)
+        columns, values, at = np.full((m, w), n), np.zeros((m, 2, w)), 0
+        for part in parts:
+            k, own = part.columns.shape
+            columns[at : at + k, :own], values[at : at + k, :, :own] = part.columns, part.values
+            at += k
+
+    def joined(name: str) -> Array:
+        arrays = [getattr(part, name) for part in parts]
+        return arrays[0] if len(arrays) == 1 else np.concatenate(arrays)
+
+    shift = joined("shift")
+    cone = Cone(joined("friction"), joined("cohesion"), joined("tension"), joined("cap"))
+    return StepProblem(
+        matrix, b, columns, values, shift[:, 0], -shift[:, 1:], cone, joined("a_n"), joined("a_t"), joined("dilatancy"),
+        joined("active"), force, length,
+    )  # fmt: skip

@@ -1,0 +1,325 @@
+"""Pushing a structure over: equilibria at large displacements, past the peak, until nothing is carried any more."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from concio.analysis.motion.joint_events import JointEvent, joint_events
+from concio.analysis.motion.observer import Observer
+from concio.analysis.motion.push_result import PushEnding, PushResult
+from concio.analysis.motion.scheme import Scheme
+from concio.analysis.motion.state import MotionState
+from concio.analysis.motion.statics import Balanced, Statics
+from concio.analysis.motion.stepper import at_rest
+from concio.arguments import closest, strict
+from concio.contact.moving.points import Followed
+from concio.contact.moving.reference import Reference
+from concio.errors import InputError, NoEquilibriumError
+from concio.model.model import Model
+from concio.model.stages import ControlPoint
+from concio.problem.solution import Progress, ProgressCallback
+from concio.solvers.algebra.sparse_factor import Engine
+from concio.units import GRAVITY
+
+Array = np.ndarray
+
+LIVE = "live"
+"""Load group that is multiplied unless another is named."""
+
+STEP = 1 / 20
+"""Step over the median width of the bodies where none is given."""
+
+FIRST = 1e-3
+"""First step over the others: rigid structures reach their peak at once."""
+
+GROWTH = 3.0
+"""Factor by which steps grow after an equilibrium was found at the first attempt."""
+
+SMALLEST = 1e-6
+"""Step over that asked for below which no equilibrium can be followed."""
+
+LOAD_STEP = 0.05
+"""Step of the multiplier under load control where none is given."""
+
+LOCKED = 1e4
+"""Multiplier above which a structure locks."""
+
+MOST_POINTS = 5000
+"""Points of a curve at most."""
+
+ENDS = 1e-9
+"""Error of the last multiplier over the peak."""
+
+
+@strict
+def push(
+    model: Model,
+    *,
+    control: ControlPoint | Literal["load"] | None = None,
+    live: str | Sequence[str] | None = None,
+    direction: float | Sequence[float] = 1.0,
+    step: float | None = None,
+    until: float | None = None,
+    smallest: float = 0.0,
+    factors: Mapping[str, float] | None = None,
+    points: Sequence[ControlPoint] = (),
+    gravity: float = GRAVITY,
+    brittle: bool = True,
+    engine: Engine = "superlu",
+    progress: ProgressCallback | None = None,
+) -> PushResult:
+    """Push a structure over: statics at large displacements, past the peak, until its strength is lost.
+
+    Contacts are looked for where the bodies stand, loads act where they are, and every point of the curve is checked
+    against the equations of the displaced structure.
+
+    Parameters
+    ----------
+    model : Model
+        Plane; elastic, rigid and fixed bodies, with every joint law, support, tie and load.
+    control : ControlPoint or "load", optional
+        What grows: the displacement of a point, the load, or by default the mean displacement on which the load works
+        (for a share of the weights, the mean displacement of the masses).
+    live : str or sequence of str, optional
+        Load groups that the multiplier scales. By default the group "live", and where a model has none a share of all
+        weights along ``direction``.
+    direction : float or (x, y)
+        Direction of that share; 1 or -1 is along x.
+    step : float, optional
+        Largest step of the controlled displacement [m], default a twentieth of the bodies' width; under load control
+        of the multiplier, default 0.05.
+    until : float, optional
+        Controlled displacement [m], or multiplier, at which to stop.
+    smallest : float
+        Multiplier at which the strength counts as lost.
+    factors : mapping of str to float, optional
+        Factors of load groups; groups not named have 1.
+    points : sequence of ControlPoint
+        Points to follow besides.
+    gravity : float
+        Turns weights into masses, of which only ratios matter here [m/s2].
+    brittle : bool
+        Whether joints lose cohesion and tensile strength for good once either was used up.
+    engine : {"superlu", "pardiso"}
+    progress : callable, optional
+        Called at every point; true stops, and what was computed is kept. So does Ctrl-C.
+
+    Returns
+    -------
+    PushResult
+
+    Raises
+    ------
+    InputError
+        The model or an argument cannot be used.
+    NoEquilibriumError
+        The structure does not stand at multiplier zero.
+    """
+    reference = Reference.of(model, gravity)
+    chosen = _factors(reference, factors)
+    groups = _live(reference, live)
+    along = _direction(direction)
+    if not groups and not reference.body_mass.sum() > 0:
+        msg = "no block has a weight, and no load group is named: there is nothing to push with"
+        raise InputError(msg, hint="give materials a unit_weight, or name the groups to multiply (live)")
+    point, by_load = _control(control)
+    scheme = Scheme(brittle=brittle)
+    statics = Statics(reference, scheme, chosen, groups, None if groups else along, point, engine)
+    if by_load:
+        step = LOAD_STEP if step is None else _positive(step, "step")
+    else:
+        step = STEP * statics.width if step is None else _positive(step, "step")
+    until = np.inf if until is None else _positive(until, "until")
+    Followed.of(reference, *points)  # what cannot be followed is said before anything moves
+    begun = clock.perf_counter()
+    start = statics.balance(at_rest(reference), 0.0)
+    if not start.found:
+        msg = "the structure does not stand before it is pushed"
+        hint = "see 'concio run' for its collapse; the factors of dead loads may be meant otherwise"
+        raise NoEquilibriumError(msg, hint=hint)
+    run = _Push(reference, statics, chosen, step, until, float(smallest), progress)
+    run.keep(start, 0.0)
+    try:
+        ending = run.by_load() if by_load else run.by_displacement()
+    except KeyboardInterrupt:
+        ending = PushEnding.STOPPED
+    unit = statics.unit(np.ones(len(model.bodies), dtype=complex))
+    at = np.concatenate([statics.frames.x, statics.frames.node_x])
+    return PushResult(
+        model=model, gravity=gravity, ending=ending, displacement=np.array(run.displacement),
+        multiplier=np.array(run.multiplier), residual=np.array(run.residual),
+        centre=np.array([s.centre for s in run.states]), rotation=np.array([s.rotation for s in run.states]),
+        strain=np.array([s.strain for s in run.states]), reaction=np.array(run.reactions),
+        reactions_of=run.observer.names, events=tuple(run.events), live=groups, direction=along,
+        force=np.array([unit[at].sum(), unit[at + 1].sum()]), factors=chosen, control=point, points=tuple(points),
+        notes=tuple(run.notes), seconds=clock.perf_counter() - begun,
+        lent_compliance=statics.maker.joints.lent if len(reference.rigid) else 0.0, end=run.states[-1],
+    )  # fmt: skip
+
+
+def _control(control: object) -> tuple[ControlPoint | None, bool]:
+    """Return the point that controls, if one does, and whether the load does."""
+    if isinstance(control, ControlPoint):
+        return control, False
+    if control is not None and control != "load":
+        msg = f"control = {control!r} is neither a ControlPoint nor 'load'"
+        raise InputError(msg, hint="leave it out for the mean displacement on which the load works")
+    return None, control == "load"
+
+
+def _positive(value: float, name: str) -> float:
+    if not 0 < value < np.inf:
+        msg = f"{name} = {value:g} must be positive and finite"
+        raise InputError(msg)
+    return float(value)
+
+
+def _factors(reference: Reference, factors: Mapping[str, float] | None) -> dict[str, float]:
+    chosen, known = dict(factors or {}), list(reference.model.load_groups)
+    for group in chosen:
+        if group not in known:
+            msg = f"there is no load group '{group}'"
+            raise InputError(msg, where="factors", hint=closest(group, known, names="groups"))
+    return chosen
+
+
+def _live(reference: Reference, live: str | Sequence[str] | None) -> tuple[str, ...]:
+    known = list(reference.model.load_groups)
+    if live is None:
+        return (LIVE,) if LIVE in known else ()
+    wanted = (live,) if isinstance(live, str) else tuple(live)
+    for group in wanted:
+        if group not in known:
+            msg = f"there is no load group '{group}'"
+            raise InputError(msg, where="live", hint=closest(group, known, names="groups"))
+    return wanted
+
+
+def _direction(direction: float | Sequence[float]) -> Array:
+    given = np.array([direction, 0.0] if np.ndim(direction) == 0 else direction, dtype=float)
+    size = float(np.linalg.norm(given)) if given.shape == (2,) else np.nan
+    if not 0 < size < np.inf:
+        msg = f"direction = {direction} is no direction"
+        raise InputError(msg, hint="1 or -1 along x, or (x, y)")
+    along: Array = given / size
+    return along
+
+
+@dataclass
+class _Push:
+    """A curve as it is computed."""
+
+    reference: Reference
+    statics: Statics
+    factors: dict[str, float]
+    step: float
+    until: float
+    smallest: float
+    progress: ProgressCallback | None
+    displacement: list[float] = field(default_factory=list)
+    multiplier: list[float] = field(default_factory=list)
+    residual: list[float] = field(default_factory=list)
+    states: list[MotionState] = field(default_factory=list)
+    reactions: list[Array] = field(default_factory=list)
+    events: list[JointEvent] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.observer = Observer(self.reference, self.statics.maker, self.statics.frames, self.factors)
+
+    def keep(self, found: Balanced, displacement: float) -> None:
+        """Keep a point."""
+        rows = self.observer.rows(found.state)
+        if self.states:
+            self.events += joint_events(
+                self.reference.model, self.statics.maker, rows, self.states[-1].memory, found.state.memory,
+                len(self.states),
+            )  # fmt: skip
+        self.displacement.append(displacement)
+        self.multiplier.append(found.multiplier)
+        self.residual.append(found.residual)
+        self.states.append(found.state)
+        self.reactions.append(self.observer.reactions(found.force, found.pairs, rows.normal))
+
+    def told(self, share: float) -> bool:
+        """Tell how far it is; return whether to stop."""
+        if self.progress is None:
+            return False
+        message = f"multiplier {self.multiplier[-1]:.4g} at {self.displacement[-1]:.4g} m"
+        return bool(self.progress(Progress("push", len(self.states), 1.0 - share, message)))
+
+    def by_displacement(self) -> PushEnding:
+        """Let the controlled displacement grow."""
+        step = FIRST * self.step
+        while len(self.states) < MOST_POINTS:
+            here, d, load = self.states[-1], self.displacement[-1], self.multiplier[-1]
+            if d >= self.until * (1 - 1e-12):
+                return PushEnding.REACHED
+            wanted = min(step, self.until - d)
+            found = self.statics.balance(here, load, target=wanted)
+            if not found.found:
+                step *= 0.5
+                if step < SMALLEST * self.step:
+                    return PushEnding.NO_EQUILIBRIUM
+                continue
+            if found.multiplier > LOCKED:
+                return PushEnding.LOCKED
+            if found.multiplier <= self.smallest < load:
+                return self._last(here, d, load, found, wanted)
+            self.keep(found, d + wanted)
+            if self.told(min(d / self.until, 1 - max(found.multiplier, 0.0) / max(self.multiplier[1:]))):
+                return PushEnding.STOPPED
+            step = min(GROWTH * step, self.step)
+        self.notes.append(f"{MOST_POINTS:,} points were computed")
+        return PushEnding.STOPPED
+
+    def _last(self, here: MotionState, d: float, load: float, found: Balanced, wanted: float) -> PushEnding:
+        """Find the displacement at which the multiplier has fallen to the smallest one."""
+        low, above = 0.0, load
+        high, below = wanted, found.multiplier
+        peak = max(self.multiplier)
+        best, at = found, wanted
+        for k in range(40):
+            if abs(best.multiplier - self.smallest) <= ENDS * peak or high - low <= 1e-13 * max(d, self.step):
+                break
+            share = (above - self.smallest) / (above - below)
+            middle = low + (high - low) * (0.5 if k % 4 == 3 else min(max(share, 0.01), 0.99))
+            trial = self.statics.balance(here, load, target=middle)
+            if not trial.found:
+                break
+            if trial.multiplier > self.smallest:
+                low, above = middle, trial.multiplier
+            else:
+                high, below = middle, trial.multiplier
+            best, at = trial, middle
+        self.keep(best, d + at)
+        return PushEnding.LOST
+
+    def by_load(self) -> PushEnding:
+        """Let the load grow."""
+        step, moved = self.step, 0.0
+        followed = self.statics.control
+        while len(self.states) < MOST_POINTS:
+            here, load = self.states[-1], self.multiplier[-1]
+            if load >= self.until * (1 - 1e-12):
+                return PushEnding.REACHED
+            found = self.statics.balance(here, min(load + step, self.until))
+            if not found.found:
+                step *= 0.5
+                if step < SMALLEST * self.step:
+                    return PushEnding.NO_LARGER_LOAD
+                continue
+            assert followed is None
+            moved += self.statics.work_displacement(here, found)
+            self.keep(found, moved)
+            if found.multiplier > LOCKED:
+                return PushEnding.LOCKED
+            if self.told(min(load / self.until, 1.0)):
+                return PushEnding.STOPPED
+        self.notes.append(f"{MOST_POINTS:,} points were computed")
+        return PushEnding.STOPPED

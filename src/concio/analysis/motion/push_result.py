@@ -1,0 +1,210 @@
+"""What pushing a structure over gives: its capacity curve, with placements, events and a certificate at every point."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from concio.analysis.motion.joint_events import JointEvent
+from concio.analysis.motion.state import MotionState
+from concio.arguments import closest
+from concio.contact.moving.points import Followed
+from concio.contact.moving.reference import Configuration, Reference
+from concio.errors import InputError
+from concio.kinematics.placement import Placement
+from concio.model.model import Model
+from concio.model.stages import ControlPoint
+from concio.problem.tolerances import CERTIFIED
+
+Array = np.ndarray
+
+
+class PushEnding(Enum):
+    """How pushing ended; the value is the sentence a user reads."""
+
+    LOST = "The structure has lost its strength: the multiplier fell to the one asked for."
+    REACHED = "The displacement asked for was reached."
+    NO_EQUILIBRIUM = "There is no equilibrium at a larger displacement that could be followed."
+    NO_LARGER_LOAD = "There is no equilibrium nearby at a larger multiplier: load control ends at the peak."
+    LOCKED = "The structure locks: the multiplier grows without end."
+    STOPPED = "Stopped on request; what was computed is kept."
+
+
+@dataclass(frozen=True, eq=False)
+class PushResult:
+    """A capacity curve of n points.
+
+    Parameters
+    ----------
+    model : Model
+    gravity : float
+        [m/s2].
+    ending : PushEnding
+    displacement : (n,) array
+        Controlled displacement, from the equilibrium at multiplier zero [m].
+    multiplier : (n,) array
+    residual : (n,) array
+        Worst relative violation of any equation in the displaced structure: the certificate of each point.
+    centre : (n, B, d) array
+        Centroids of all bodies [m].
+    rotation : (n, B) array
+        Anticlockwise [rad].
+    strain : (n, nodes, d) array
+        Displacements of nodes of elastic bodies in the frames of their bodies [m].
+    reaction : (n, r, d) array
+        Force of each fixed body and support on the structure [kN].
+    reactions_of : tuple of str
+    events : tuple of JointEvent
+    live : tuple of str
+        Load groups that the multiplier scales; empty where it scales a share of the weights.
+    direction : (2,) array
+        Of that share.
+    force : (2,) array
+        Resultant of the loads at a multiplier of one, in the structure as described [kN].
+    factors : mapping of str to float
+    control : ControlPoint or None
+    points : tuple of ControlPoint
+        Points followed beside the control.
+    notes : tuple of str
+    seconds : float
+    lent_compliance : float
+        Compliance lent to hard joints of rigid bodies [m/kN].
+    end : MotionState
+        State at the end.
+    """
+
+    model: Model
+    gravity: float
+    ending: PushEnding
+    displacement: Array
+    multiplier: Array
+    residual: Array
+    centre: Array
+    rotation: Array
+    strain: Array
+    reaction: Array
+    reactions_of: tuple[str, ...]
+    events: tuple[JointEvent, ...]
+    live: tuple[str, ...]
+    direction: Array
+    force: Array
+    factors: Mapping[str, float]
+    control: ControlPoint | None
+    points: tuple[ControlPoint, ...]
+    notes: tuple[str, ...]
+    seconds: float
+    lent_compliance: float
+    end: MotionState
+
+    def __len__(self) -> int:
+        return len(self.multiplier)
+
+    def __repr__(self) -> str:
+        return (
+            f"PushResult({len(self)} points, peak {self.peak:.6g} at {self.displacement[self.peak_step]:.4g} m, "
+            f"ends at {self.displacement[-1]:.4g} m with {self.multiplier[-1]:.4g}; certificate {self.certificate:.1e})"
+        )
+
+    @property
+    def peak_step(self) -> int:
+        """Point with the largest multiplier."""
+        return int(np.argmax(self.multiplier))
+
+    @property
+    def peak(self) -> float:
+        """Largest multiplier."""
+        return float(self.multiplier.max())
+
+    @property
+    def capacity(self) -> float:
+        """Controlled displacement at which the strength is lost; nan where the curve does not get there [m]."""
+        return float(self.displacement[-1]) if self.ending is PushEnding.LOST else float("nan")
+
+    @property
+    def certificate(self) -> float:
+        """Worst relative residual of all points."""
+        return float(self.residual.max(initial=0.0))
+
+    @property
+    def certified(self) -> bool:
+        """Whether every point satisfies every equation of the displaced structure to 1e-9."""
+        return self.certificate <= CERTIFIED
+
+    @cached_property
+    def reference(self) -> Reference:
+        """What the bodies are made of."""
+        return Reference.of(self.model, self.gravity)
+
+    def configuration(self, step: int = -1) -> Configuration:
+        """Return where the bodies stand at a point of the curve."""
+        return Configuration(self.reference, Placement(self.centre[step], self.rotation[step]), self.strain[step])
+
+    def point(self, which: int | ControlPoint = 0) -> Array:
+        """Return the displacements of a followed point, or of any point of a body, along its direction (n,) [m].
+
+        They count from where the structure was described.
+        """
+        if isinstance(which, ControlPoint):
+            wanted = which
+        elif -len(self.points) <= which < len(self.points):
+            wanted = self.points[which]
+        else:
+            msg = f"there is no point number {which}"
+            raise InputError(
+                msg, hint="give a ControlPoint, or ask for points when pushing: points=(ControlPoint(...),)"
+            )
+        followed = Followed.of(self.reference, wanted)
+        rows = zip(self.centre, self.rotation, self.strain, strict=True)
+        return np.array([followed.displacement(c, r, s)[0] for c, r, s in rows])
+
+    def mechanism(self, step: int) -> tuple[Array, Array]:
+        """Return how the structure moves just before a point of the curve, for a unit of the control displacement.
+
+        Returns
+        -------
+        velocity : (B, d) array
+            Of the centroids; zero for bodies that stand.
+        rotation : (B,) array
+            Anticlockwise [rad/m].
+        """
+        k = range(len(self))[step]
+        if k == 0:
+            k = 1
+        grown = self.displacement[k] - self.displacement[k - 1]
+        grown = grown if grown else 1.0
+        return (self.centre[k] - self.centre[k - 1]) / grown, (self.rotation[k] - self.rotation[k - 1]) / grown
+
+    def rotation_of(self, body: str) -> Array:
+        """Return the rotation of a body at every point, anticlockwise (n,) [rad]."""
+        names = [b.name for b in self.model.bodies]
+        if body not in names:
+            msg = f"there is no body called '{body}'"
+            raise InputError(msg, hint=closest(body, names, otherwise="see the names with 'concio check'"))
+        turned: Array = self.rotation[:, names.index(body)]
+        return turned
+
+    def summary(self) -> dict[str, Any]:
+        """Return the numbers of ``--json``."""
+        capacity = self.capacity
+        return {
+            "status": self.ending.name.lower(),
+            "sentence": self.ending.value,
+            "title": self.model.title,
+            "points": len(self),
+            "peak": {"multiplier": self.peak, "displacement": float(self.displacement[self.peak_step])},
+            "end": {"multiplier": float(self.multiplier[-1]), "displacement": float(self.displacement[-1])},
+            "capacity": None if np.isnan(capacity) else capacity,
+            "curve": {"displacement": self.displacement.tolist(), "multiplier": self.multiplier.tolist()},
+            "scaled": list(self.live) or "weights",
+            "events": [str(e) for e in self.events],
+            "certificate": {"worst": self.certificate},
+            "lent_compliance": self.lent_compliance,
+            "notes": list(self.notes),
+            "seconds": round(self.seconds, 3),
+            "units": {"force": "kN", "length": "m", "angle": "rad"},
+        }

@@ -1,0 +1,67 @@
+"""How time is stepped, and what drives a step."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.errors import InputError
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """Parameters of the time stepping.
+
+    Parameters
+    ----------
+    theta : float
+        1/2 conserves energy; up to 1 damps high frequencies.
+    restitution : float
+        e, share of the normal velocity that comes back from an impact of hard joints.
+    mass_damping, stiffness_damping : float
+        Rayleigh's alpha [1/s] and beta [s] of elastic bodies; beta also of compliant joints and ties.
+    brittle : bool
+        Whether joints lose cohesion and tensile strength for good in the step after either was used up.
+    """
+
+    theta: float = 0.5
+    restitution: float = 0.0
+    mass_damping: float = 0.0
+    stiffness_damping: float = 0.0
+    brittle: bool = True
+
+    def __post_init__(self) -> None:
+        if not 0.5 <= self.theta <= 1.0:
+            msg = f"theta = {self.theta:g} must lie between 0.5 and 1"
+            raise InputError(msg, hint="0.5 conserves energy, 1 damps high frequencies most")
+        if not 0.0 <= self.restitution <= 1.0:
+            msg = f"restitution = {self.restitution:g} must lie between 0 and 1"
+            raise InputError(msg, hint="0 is an impact without rebound")
+        for name in ("mass_damping", "stiffness_damping"):
+            value = getattr(self, name)
+            if not 0.0 <= value < np.inf:
+                msg = f"{name} = {value:g} must be zero or positive and finite"
+                raise InputError(msg, hint="alpha in 1/s and beta in s of Rayleigh's damping")
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """What is imposed during a step.
+
+    Parameters
+    ----------
+    ground : (d,) array
+        Mean acceleration of the ground; bodies feel its opposite as a load [m/s2].
+    velocity : (d,) array
+        Mean velocity of the fixed bodies, where these are moved [m/s].
+    factors : mapping of str to float
+        Load factors.
+    """
+
+    ground: Array
+    velocity: Array
+    factors: Mapping[str, float]

@@ -1,0 +1,262 @@
+r"""One step of Moreau and Jean's scheme: velocities jump, positions follow, every contact law holds exactly.
+
+With q the configuration, predicted half a step ahead at :math:`q_m = q + h v / 2`,
+
+.. math::
+
+    M (v^+ - v) = h \bigl[ f(q_m) - K d_\theta \bigr] + h C(q_m)^T t, \qquad q^+ = q + h v_\theta, \qquad
+    v_\theta = \theta v^+ + (1 - \theta) v,
+
+with the joint laws of :mod:`concio.analysis.motion.joints` between y = C v+ + ... and t. That is
+one :class:`concio.solvers.stepping.problem.StepProblem` for v+ with the matrix M/h + theta^2 h K, which in the frames
+of the bodies stays the same as they turn. Supports are pairs glued in both directions, ties compliant pairs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from concio.analysis.motion.frames import Frames
+from concio.analysis.motion.joints import PairData
+from concio.analysis.motion.pairs import PairMaker, assembled, relative
+from concio.analysis.motion.scheme import Drive, Scheme
+from concio.analysis.motion.state import Memory, MotionState
+from concio.contact.moving.edges import as_complex, as_vectors, dot
+from concio.contact.moving.reference import Reference
+from concio.contact.moving.rows import Rows
+from concio.solvers.algebra.sparse_factor import Engine
+from concio.solvers.stepping.problem import StepSolution, StepStates
+from concio.solvers.stepping.solver import StepSolver
+
+Array = np.ndarray
+
+RETURN = 0.2
+"""Share of the distance by which a held point has drifted off that is taken back in a step."""
+
+
+@dataclass(frozen=True, eq=False)
+class StepReport:
+    """What a step did.
+
+    Parameters
+    ----------
+    solution : StepSolution
+    pairs : int
+        Contact pairs; the solution's further ones are those of supports and ties.
+    works : mapping of str to float
+        Energy of the step: dissipated by friction, impact, damping, crushing; input; drift [kN m].
+    depth : float
+        Deepest penetration of hard pairs at its end, before they are moved apart [m].
+    struck : float
+        Deepest penetration at its end of what was apart at its beginning [m].
+    normal : (pairs, d) array
+        From body a to body b.
+    """
+
+    solution: StepSolution
+    pairs: int
+    works: dict[str, float]
+    depth: float
+    struck: float
+    normal: Array
+
+
+class Stepper:
+    """Makes steps of a reference.
+
+    Parameters
+    ----------
+    reference : Reference
+    scheme : Scheme
+    engine : {"superlu", "pardiso"}
+    """
+
+    def __init__(self, reference: Reference, scheme: Scheme, engine: Engine = "superlu") -> None:
+        self.reference, self.scheme = reference, scheme
+        disc = reference.disc
+        self.frames = Frames(reference, scheme)
+        self.maker = PairMaker(reference, scheme)
+        self.solver = StepSolver(engine)
+        self.fixed = np.flatnonzero(disc.shape_of == -2)
+        self.total_mass = float(reference.body_mass.sum())
+        self._movable = np.full(disc.unknowns, np.inf)
+        for b in np.setdiff1d(reference.rigid, self.maker.held.points.body).tolist():
+            own = slice(*disc.offsets[b : b + 2])
+            self._movable[own] = reference.mass[own]
+        self._inverse_mass = np.append(1.0 / np.where(reference.mass > 0, reference.mass, np.inf), 0.0)
+        self._matrices: dict[float, sp.csr_array] = {}
+
+    def matrix(self, h: float) -> sp.csr_array:
+        """Return M/h + theta^2 h K with damping (N, N)."""
+        if h not in self._matrices:
+            s, f, n = self.scheme, self.frames, self.frames.n
+            matrices = self.reference.matrices
+            rows, columns, values = matrices.entries(1.0 / h, h * s.theta**2 + s.stiffness_damping * s.theta)
+            if s.mass_damping:
+                for at in (f.node_x, f.node_y):
+                    values[at] += s.mass_damping * s.theta * f.node_mass
+            A = sp.csr_array((values, (rows, columns)), shape=(n, n))
+            A.sum_duplicates()
+            if len(self._matrices) > 20:
+                self._matrices.clear()
+            self._matrices[h] = A
+        return self._matrices[h]
+
+    def step(self, state: MotionState, h: float, drive: Drive) -> tuple[MotionState, StepReport]:
+        """Return the state after a step of length h, and what the step did."""
+        f = self.frames
+        centre, velocity, spin = as_complex(state.centre), as_complex(state.velocity), state.spin
+        if len(self.fixed):
+            velocity = velocity.copy()
+            velocity[self.fixed] = complex(*drive.velocity)
+        middle, turn = centre + 0.5 * h * velocity, np.exp(1j * (state.rotation + 0.5 * h * spin))
+        strain, rate, nodal = np.zeros(0, dtype=complex), np.zeros(0, dtype=complex), as_complex(state.nodal)
+        if f.elastic:
+            d = as_complex(state.strain)
+            rate, _, _ = f.rate(nodal, turn[f.body] * (f.arm + d), turn)
+            strain = d + 0.5 * h * rate
+        x0 = f.unknowns(velocity, spin, nodal, turn)
+        loads, ground = f.loads(drive, turn), f.ground(drive, turn)
+        b = f.mass * x0 / h + loads + ground
+        if f.elastic:
+            b += f.internal(state, h, rate, strain, spin, x0)
+        force, speed = self._measures(loads + ground, x0, h)
+        maker = self.maker
+        memory, rows, layout_is_new = maker.contacts(state.memory, middle, turn, velocity, spin, strain)
+        if layout_is_new:
+            self.solver.new_layout()
+        slots = maker.slots
+        y0 = relative(rows.columns, rows.values, x0) + rows.imposed
+        data, joint = maker.joints.pairs(rows, slots, memory, y0, h, speed, self._give(rows, h))
+        held = self._held(state, turn, h, drive)
+        ties = self._ties(middle, turn, strain, x0, h)
+        problem = assembled(self.matrix(h), b, [data, held[0], ties[0]], force, speed)
+        m, count = len(memory.key), problem.pairs
+        states = StepStates(np.ones(count, dtype=np.int8), np.zeros(count, dtype=np.int8))
+        states.contact[:m], states.slip[:m] = memory.contact, memory.slip
+        t0 = np.zeros((count, 2))
+        t0[:m] = memory.force
+        found = self.solver.solve(problem, states, x0, t0)
+        theta = self.scheme.theta
+        x = theta * found.x + (1 - theta) * x0
+        y = relative(rows.columns, rows.values, x) + rows.imposed
+        memory_before = memory
+        memory, works = maker.joints.remember(
+            memory, joint, data, y, found.t[:m], found.states.contact[:m], found.states.slip[:m], h
+        )
+        k = m + len(maker.held)
+        works["input"] = h * float(ground @ x) - h * float((found.t[:m] * rows.imposed).sum())
+        works["input"] -= h * float((found.t[m:k] * held[1]).sum())
+        works["damping"] += self._damping(x, turn, strain, h) if f.elastic else 0.0
+        works["impact"] += self._tie_losses(ties, found.t[k:], x, h)
+        end = joint.gap + h * y[:, 0] - 0.5 * h * joint.y0[:, 0]
+        apart = maker.joints.apart(data, joint, end, self._movable, slots.body_a, slots.body_b)
+        works["drift"] = -float(loads @ apart)
+        new = self._moved(state, found.x, x, apart, turn, strain, h, velocity, memory)
+        hard = rows.valid & ~joint.springy
+        depth = float(np.maximum(-end[hard & data.active], 0.0).max(initial=0.0))
+        hit = hard & ~(memory_before.force[:, 0] > 0) & (joint.gap > 0.5 * h * joint.y0[:, 0] - maker.joints.sag)
+        struck = float(np.maximum(-end[hit], 0.0).max(initial=0.0))
+        return new, StepReport(found, m, works, depth, struck, rows.normal)
+
+    def _give(self, rows: Rows, h: float) -> Array:
+        """Return the velocity that a unit normal force gives each pair of free bodies in a step (m,) [m/s/kN]."""
+        flexible: Array = h * (rows.values[:, 0] ** 2 * self._inverse_mass[rows.columns]).sum(axis=1)
+        return flexible
+
+    def _measures(self, acting: Array, x0: Array, h: float) -> tuple[float, float]:
+        """Return the force and the velocity by which residuals are measured: loads, and what they do in a step."""
+        force = float(np.abs(acting).sum())
+        if not force:
+            force = float(np.abs(self.frames.mass * x0).sum()) / h or 1.0
+        return force, h * force / self.total_mass
+
+    def _held(self, state: MotionState, turn: Array, h: float, drive: Drive) -> tuple[PairData, Array]:
+        """Return the pairs of supports, and the velocities (k, 2) imposed on them [m/s]."""
+        maker = self.maker
+        if not len(maker.held):
+            return maker.supports(turn, np.zeros(0)), np.zeros((0, 2))
+        centre, here = as_complex(state.centre), np.exp(1j * state.rotation)
+        drift = maker.off_support(centre, here, as_complex(state.strain), drive.factors)
+        wanted = np.full(len(drift), complex(*drive.velocity))
+        data = maker.supports(turn, RETURN / h * drift - wanted)
+        normal = maker.held.normal
+        return data, -np.stack([dot(wanted, normal), dot(wanted, 1j * normal)], axis=1)
+
+    def _ties(self, centre: Array, turn: Array, strain: Array, x0: Array, h: float) -> tuple[PairData, Array, Array]:
+        """Return the pairs of ties, their gaps in the middle of the step and relative velocities at its beginning."""
+        data, gap = self.maker.tie_pairs(centre, turn, strain)
+        if not len(gap):
+            return data, gap, gap
+        s = self.scheme
+        theta, beta = s.theta, s.stiffness_damping
+        y0 = relative(data.columns, data.values, x0)[:, 0]
+        implicit = h * theta**2 + beta * theta
+        shift = (gap + (h * (theta * (1 - theta) - 0.5) + beta * (1 - theta)) * y0) / implicit
+        shifts = np.stack([shift, np.zeros_like(shift)], axis=1)
+        return replace(data, shift=shifts, a_n=data.a_n / implicit), gap, y0
+
+    def _tie_losses(self, ties: tuple[PairData, Array, Array], t: Array, x: Array, h: float) -> float:
+        data, gap, y0 = ties
+        if not len(gap):
+            return 0.0
+        y = relative(data.columns, data.values, x)[:, 0]
+        before = gap - 0.5 * h * y0
+        after = np.minimum(before + h * y, 0.0)
+        change = 0.5 * self.maker.ties.stiffness * (after**2 - np.minimum(before, 0.0) ** 2)
+        return float((-h * t[:, 0] * y - change).sum())
+
+    def _damping(self, x: Array, turn: Array, strain: Array, h: float) -> float:
+        f, s = self.frames, self.scheme
+        lost = 0.0
+        if s.stiffness_damping:
+            rate, _, _ = f.rate(f.nodal(x, turn), turn[f.body] * (f.arm + strain), turn)
+            lost += 2.0 * h * s.stiffness_damping * f.strain_energy(rate)
+        if s.mass_damping:
+            speed = x[f.node_x] ** 2 + x[f.node_y] ** 2
+            lost += h * s.mass_damping * float(f.node_mass @ speed)
+        return lost
+
+    def _moved(
+        self, state: MotionState, x1: Array, x: Array, apart: Array, turn: Array, strain: Array, h: float,
+        velocity: Array, memory: Memory,
+    ) -> MotionState:  # fmt: skip
+        """Return the state that velocities x in the step and x1 at its end, and displacements ``apart``, lead to."""
+        f = self.frames
+        v_mean, w_mean = f.rigid_part(x + apart / h, velocity, state.spin)
+        v_end, w_end = f.rigid_part(x1, velocity, state.spin)
+        new_strain, nodal = as_complex(state.strain), as_complex(state.nodal)
+        if f.elastic:
+            place = turn[f.body] * (f.arm + strain)
+            rate, v, w = f.rate(f.nodal(x, turn), place, turn)
+            v_mean[f.meshed], w_mean[f.meshed] = v[f.meshed], w[f.meshed]
+            new_strain = new_strain + h * rate
+            nodal = f.nodal(x1, turn)
+            v, w = f.fit(nodal, place)
+            v_end[f.meshed], w_end[f.meshed] = v[f.meshed], w[f.meshed]
+        centre = as_complex(state.centre) + h * v_mean
+        w_mean[self.fixed] = 0.0
+        return MotionState(
+            state.time + h, as_vectors(centre), state.rotation + h * w_mean, as_vectors(v_end), w_end,
+            as_vectors(new_strain), as_vectors(nodal), memory,
+        )  # fmt: skip
+
+
+def at_rest(reference: Reference) -> MotionState:
+    """Return the state of bodies at rest where they were described, unstrained."""
+    configuration = reference.at_rest()
+    count = len(reference.model.bodies)
+    nodes = len(reference.body_of_node)
+    memory = Memory.blank(np.zeros(0, dtype=np.int64))
+    return MotionState(
+        0.0, configuration.placement.centre, configuration.placement.rotation, np.zeros((count, 2)), np.zeros(count),
+        np.zeros((nodes, 2)), np.zeros((nodes, 2)), memory,
+    )  # fmt: skip
+
+
+def started(state: MotionState, velocity: Array, spin: Array) -> MotionState:
+    """Return a state of rigid bodies with other velocities (B, 2) and spins (B,)."""
+    return replace(state, velocity=np.array(velocity, dtype=float), spin=np.array(spin, dtype=float))

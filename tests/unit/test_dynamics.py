@@ -1,0 +1,113 @@
+"""Dynamics of rigid blocks in the plane against closed forms; convergence and long motions are in tests/validation."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import concio
+from concio.analysis.motion.dynamics_result import Ending
+from motion_models import G, standing
+
+ALPHA = np.arctan(1 / 3)
+
+
+def test_free_fall_keeps_momentum():
+    """A block in flight: parabola, constant spin, constant horizontal momentum."""
+    model = standing(at=(0.0, 8.0))
+    found = concio.dynamics(model, duration=0.8, step=1e-2, gravity=G, velocities={"block": (1.5, 2.0, 3.0)})
+    t = found.end.time
+    start = np.array([0.0, 8.6])
+    flown = np.array([1.5 * t, 2.0 * t - 0.5 * G * t**2])
+    assert found.end.centre[1] == pytest.approx(start + flown, abs=1e-12)
+    assert found.end.velocity[1] == pytest.approx([1.5, 2.0 - G * t], abs=1e-12)
+    assert found.end.rotation[1] == pytest.approx(3.0 * t, abs=1e-12)
+    assert found.energy.error < 1e-12
+
+
+def test_sliding_block_stops_where_it_should():
+    """v0 = 2 m/s, mu = 0.3: v0^2 / (2 mu g)."""
+    model = standing(height=0.4, friction=0.3)
+    found = concio.dynamics(model, duration=1.0, step=1e-3, gravity=G, velocities={"block": (2.0, 0.0)})
+    assert found.end.centre[1, 0] == pytest.approx(0.679579, abs=1e-5)
+    assert np.abs(found.end.velocity[1]).max() < 1e-7  # g h is 1e-2: what is left sinks into the lent compliance
+    assert found.certified
+    assert found.energy.error < 1e-9
+
+
+def test_newmark_block_under_a_rectangular_pulse():
+    """A = 0.5 g for 0.3 s, mu = 0.2: (A g T)^2 / (2 mu g) (1 - mu / A)."""
+    pulse = concio.Pulse("rectangular", 0.5 * G, 0.3)
+    found = concio.dynamics(standing(height=0.4, friction=0.2), pulse, 1.2, 1e-3, gravity=G)
+    assert -found.end.centre[1, 0] == pytest.approx(0.3310875, abs=1e-5)
+    moving = concio.dynamics(standing(height=0.4, friction=0.2), pulse, 1.2, 1e-3, gravity=G, base="moving")
+    ground = pulse.displacement(np.array(1.2))
+    assert moving.end.centre[1, 0] - ground == pytest.approx(found.end.centre[1, 0], abs=1e-9)
+
+
+def test_rocking_block_meets_housner():
+    """From half the critical angle: first zero at 0.38730 s, next peak 0.32387 of the critical angle."""
+    model = standing(tilt=0.5 * ALPHA)
+    found = concio.dynamics(model, duration=0.9, step=5e-4, start="as described", gravity=G, every=5e-4)
+    theta, time = 0.5 * ALPHA + found.rotation("block"), found.shots.time
+    k = int(np.flatnonzero(theta < 0)[0])
+    zero = time[k - 1] + (time[k] - time[k - 1]) * theta[k - 1] / (theta[k - 1] - theta[k])
+    assert zero == pytest.approx(0.38730, abs=2e-4)
+    assert np.abs(theta[k:]).max() / ALPHA == pytest.approx(0.32387, abs=1e-3)
+    assert found.certified
+    assert found.energy.error < 1e-9
+
+
+def test_a_pulse_too_weak_to_uplift_moves_nothing():
+    """Uplift needs a > g tan(alpha)."""
+    weak = concio.Pulse("sine", 0.95 * G / 3, 0.5)
+    found = concio.dynamics(standing(), weak, 1.0, 2e-3, gravity=G)
+    assert found.largest_rotation[1] < 1e-4
+
+
+def test_a_strong_pulse_overturns_and_the_motion_ends():
+    pulse = concio.Pulse("half sine", 1.5 * G, 0.6)
+    found = concio.dynamics(standing(), pulse, 4.0, 2e-3, gravity=G)
+    assert found.ending is Ending.OVERTURNED
+    assert found.end.time < 4.0
+
+
+def test_a_motion_goes_on_from_where_it_ended():
+    model = standing(tilt=0.3 * ALPHA)
+    options = {"step": 1e-3, "gravity": G, "adaptive": False}
+    whole = concio.dynamics(model, duration=0.6, start="as described", **options)
+    first = concio.dynamics(model, duration=0.25, start="as described", **options)
+    second = concio.dynamics(model, duration=0.35, start=first.end, **options)
+    assert second.end.time == pytest.approx(0.6)
+    assert second.end.rotation == pytest.approx(whole.end.rotation, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({}, "duration = 0 must be positive"),
+        ({"duration": 1.0, "step": -1.0}, "step = -1 must be positive"),
+        ({"duration": 1.0, "theta": 0.3}, "theta = 0.3 must lie between"),
+        ({"duration": 1.0, "restitution": 1.3}, "restitution = 1.3 must lie between"),
+        ({"duration": 1.0, "velocities": {"blokc": (1.0, 0.0)}}, "no body called 'blokc'"),
+        ({"duration": 1.0, "motion": "nowhere.at2"}, "there is no such file"),
+        ({"duration": 1.0, "motion": {"z": None}}, "no component 'z'"),
+        ({"duration": 1.0, "start": "rest"}, "start = 'rest'"),
+    ],
+)
+def test_bad_arguments(arguments, words):
+    with pytest.raises(concio.InputError, match=words):
+        concio.dynamics(standing(), **arguments)
+
+
+def test_step_larger_than_that_of_the_record_is_refused():
+    record = concio.Record(np.zeros(100), 0.01)
+    with pytest.raises(concio.InputError, match="larger than that of the record"):
+        concio.dynamics(standing(), record, step=0.02)
+
+
+def test_bodies_without_mass_are_refused():
+    model = standing()
+    light = {**model.materials, "stone": concio.Rigid(0.0)}
+    with pytest.raises(concio.InputError, match="'block' has no mass"):
+        concio.dynamics(concio.Model(model.bodies, light, model.laws, loads=model.loads), duration=1.0)

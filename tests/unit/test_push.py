@@ -1,0 +1,172 @@
+"""Statics at large displacements: closed forms of blocks that are pushed over, and what is said of bad input."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import concio
+from concio.analysis.motion.push_result import PushEnding
+from models import box, model_of, weight
+from motion_models import standing
+
+SLENDER = np.arctan(0.2)
+
+
+@pytest.fixture(scope="module")
+def pushed() -> concio.PushResult:
+    return concio.push(standing(0.2, 1.0))
+
+
+def test_pillar_loses_its_strength_where_its_centroid_is_above_its_toe(pushed):
+    """The block turns about its toe: lambda = tan(atan(b / h) - theta) at every point of the curve."""
+    theta = -pushed.rotation_of("block")
+    assert pushed.certified
+    assert pushed.ending is PushEnding.LOST
+    assert (np.diff(theta) > 0).all()
+    assert pushed.multiplier[1:] == pytest.approx(np.tan(SLENDER - theta[1:]), abs=1e-8)
+    assert pushed.peak == pytest.approx(0.2, rel=2e-4)
+    assert theta[-1] == pytest.approx(SLENDER, abs=1e-6)
+    assert pushed.capacity == pytest.approx(0.1, rel=1e-3)  # the centroid moves by half the width, less what sinks in
+
+
+def test_mechanism_of_the_pillar_is_its_rotation_about_the_toe(pushed):
+    """Half way: a centroid at height z above the toe moves by z for a unit rotation, and the rate is per unit of it."""
+    k = len(pushed) // 2
+    velocity, rotation = pushed.mechanism(k)
+    middle = 0.5 * (pushed.centre[k, 1, 1] + pushed.centre[k - 1, 1, 1])
+    assert velocity[1, 0] == pytest.approx(1.0, rel=1e-9)
+    assert rotation[1] == pytest.approx(-1.0 / middle, rel=1e-4)
+    assert not velocity[0].any()
+
+
+def test_the_block_lifts_at_its_heel_and_says_so(pushed):
+    kinds = [(e.kind, e.bodies, round(e.at[0], 3)) for e in pushed.events]
+    assert kinds == [("opens", ("floor", "block"), -0.1)]
+
+
+def test_left_is_the_mirror_of_right(pushed):
+    left = concio.push(standing(0.2, 1.0), direction=-1)
+    assert left.multiplier == pytest.approx(pushed.multiplier, abs=1e-9)
+    assert left.rotation == pytest.approx(-pushed.rotation, abs=1e-9)
+
+
+def test_any_control_follows_the_same_curve(pushed):
+    """Points of the curve do not depend on what controls it."""
+    top = concio.ControlPoint("block", (0.0, 1.0))
+    by_top = concio.push(standing(0.2, 1.0), control=top, step=0.03)
+    theta = -by_top.rotation_of("block")
+    assert by_top.multiplier[2:] == pytest.approx(np.tan(SLENDER - theta[2:]), abs=1e-8)
+    assert by_top.point(top) - by_top.point(top)[0] == pytest.approx(by_top.displacement, abs=1e-11)
+    by_load = concio.push(standing(0.2, 1.0), control="load", step=0.02)
+    assert by_load.ending is PushEnding.NO_LARGER_LOAD
+    assert by_load.peak == pytest.approx(0.2, rel=2e-4)
+
+
+def test_a_low_block_slides_at_its_friction():
+    slid = concio.push(standing(1.0, 0.5, friction=0.3), until=0.2)
+    assert slid.certified
+    assert slid.ending is PushEnding.REACHED
+    assert slid.displacement[-1] == pytest.approx(0.2)
+    assert slid.multiplier[3:] == pytest.approx(0.3, abs=1e-9)
+    assert {e.kind for e in slid.events} == {"slips"}
+
+
+def test_a_point_load_high_on_the_block_turns_it_over_earlier():
+    """H at height z on a block of weight W = 20 * 0.2 * 1 tips it at H z = W b / 2, and the arms change as it turns."""
+    model = standing(0.2, 1.0)
+    load = concio.Load("point", (1.0, 0.0), bodies=("block",), at=(-0.1, 0.75), group="live")
+    model = replace(model, loads=(*model.loads, load))
+    found = concio.push(model)
+    theta = -found.rotation_of("block")
+    c, s = np.cos(theta), np.sin(theta)
+    arm_weight, arm_load = 0.1 * c - 0.5 * s, 0.75 * c + 0.2 * s  # of centroid and load point from the toe (0.1, 0)
+    assert found.live == ("live",)
+    assert found.multiplier[1:] == pytest.approx(4.0 * (arm_weight / arm_load)[1:], rel=1e-6)
+
+
+def test_tie_adds_its_force_at_its_present_place():
+    """A tie from the top to a wall on the left: moments about the toe with the elongation in the displaced state."""
+    k, width, height = 30.0, 0.2, 1.0
+    tie = concio.Tie("tie", "block", (-0.1, height), "", (-2.1, height), stiffness=k)
+    model = replace(standing(width, height), ties=(tie,))
+    found = concio.push(model, until=0.05)
+    theta = -found.rotation_of("block")[-1]
+    toe = np.array([0.1, 0.0])
+    c, s = np.cos(theta), np.sin(theta)
+    turn = np.array([[c, s], [-s, c]])
+    end, centroid = toe + turn @ np.array([-0.2, 1.0]), toe + turn @ np.array([-0.1, 0.5])
+    span = np.array([-2.1, height]) - end
+    force = k * (np.linalg.norm(span) - 2.0) * span / np.linalg.norm(span)
+    arm, W = end - toe, 4.0
+    moment = arm[0] * force[1] - arm[1] * force[0]  # anticlockwise
+    expected = (moment + W * (toe[0] - centroid[0])) / (W * centroid[1])
+    assert found.multiplier[-1] == pytest.approx(expected, rel=1e-4)
+    assert found.multiplier[-1] > 0.5  # far more than the block alone
+
+
+def test_cohesion_holds_until_it_breaks_for_good():
+    law = concio.JointLaw(0.3, cohesion=100.0, tensile_strength=0.0)
+    model = replace(standing(1.0, 0.5), laws={"joint": law})
+    found = concio.push(model, until=0.05)
+    W = 10.0
+    assert found.peak == pytest.approx(1.0 / 0.5, rel=1e-2)  # stuck: it turns over instead of sliding
+    weak = replace(model, laws={"joint": concio.JointLaw(0.3, cohesion=4.0)})
+    found = concio.push(weak, until=0.05)
+    assert found.peak == pytest.approx(0.3 + 4.0 / W, rel=1e-2)
+    assert found.multiplier[-1] == pytest.approx(0.3, abs=1e-9)
+    lasting = concio.push(weak, until=0.05, brittle=False)
+    assert lasting.multiplier[-1] == pytest.approx(0.3 + 4.0 / W, abs=1e-9)
+
+
+def test_elastic_pillar_tends_to_the_rigid_one():
+    """Moments about the toe leave no choice: what differs is that a soft pillar is a little lower under its weight."""
+    found = {}
+    for E in (1e5, 1e7):
+        model = standing(0.2, 1.0, kind="elastic", mesh_size=0.1)
+        model = replace(model, materials={**model.materials, "block": concio.Elastic(E=E, nu=0.2, unit_weight=20.0)})
+        result = concio.push(model, until=0.05, step=0.01)
+        assert result.certified
+        found[E] = result.multiplier[-1]
+    rigid = concio.push(standing(0.2, 1.0), until=0.05, step=0.01).multiplier[-1]
+    assert found[1e7] == pytest.approx(rigid, rel=1e-5)
+    assert found[1e5] == pytest.approx(rigid, rel=1e-3)
+    assert found[1e5] > rigid * (1 + 1e-4)
+
+
+def test_what_does_not_stand_is_refused():
+    leaning = model_of(
+        box("floor", -5, 5, -1, 0, kind="fixed"),
+        concio.Body("block", np.array([(0, 0), (1, 0), (4, 2), (3, 2)], dtype=float), kind="rigid", material="stone"),
+        loads=(weight(),),
+    )
+    with pytest.raises(concio.NoEquilibriumError, match="does not stand"):
+        concio.push(leaning)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"control": "displacement"}, "neither a ControlPoint nor 'load'"),
+        ({"control": concio.ControlPoint("blokc", (0.0, 1.0))}, "did you mean 'block'"),
+        ({"live": "liev"}, "there is no load group 'liev'"),
+        ({"factors": {"daed": 2.0}}, "did you mean 'dead'"),
+        ({"step": -1.0}, "step = -1 must be positive"),
+        ({"until": 0.0}, "until = 0 must be positive"),
+        ({"direction": (0.0, 0.0)}, "is no direction"),
+        ({"gravity": 0.0}, "gravity = 0 must be positive"),
+    ],
+)
+def test_bad_arguments(arguments, words):
+    with pytest.raises(concio.InputError, match=words):
+        concio.push(standing(0.2, 1.0), **arguments)
+
+
+def test_stopping_keeps_what_was_computed():
+    calls = []
+    found = concio.push(standing(0.2, 1.0), progress=lambda p: calls.append(p) or len(calls) >= 4)
+    assert found.ending is PushEnding.STOPPED
+    assert len(found) == 5
+    assert found.multiplier[-1] > 0.19
