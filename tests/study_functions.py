@@ -83,3 +83,9 @@ def dying_once(row: dict[str, Any]) -> dict[str, float]:
         mark.touch()
         os.kill(os.getpid(), signal.SIGKILL)
     return formula(row)
+
+
+def milankovitch(row: dict[str, Any]) -> concio.Model:
+    """Return a semicircular arch of radius 1 and thickness t under its own weight, on fixed springings."""
+    t = row["t"]
+    return concio.arch(span=2 - t, ring=t, voussoirs=40, friction=2.0, block=concio.Rigid(unit_weight=1.0))

@@ -16,7 +16,7 @@ from concio.studies.distributions import FAMILIES, Distribution
 from concio.studies.sampling import draw
 from concio.studies.statistics import fragility, probability
 from concio.studies.variables import variable
-from study_functions import VARIABLES, block, formula, seeded
+from study_functions import VARIABLES, block, formula, milankovitch, seeded
 
 ARCH = """
 [arch]
@@ -59,6 +59,17 @@ def test_models_of_a_function_say_the_same_as_the_formula() -> None:
     assert found.values("associated_multiplier") == pytest.approx(
         np.minimum(found.values("mu"), found.values("s")), rel=1e-9
     )
+
+
+def test_chance_that_a_semicircular_arch_stands() -> None:
+    """It stands from t/R = 0.1075 (Milankovitch): t in (.10, .12) gives 0.626; a Latin hypercube misses by 1/n."""
+    n = 32
+    thickness = concio.variable("t", low=0.10, high=0.12)
+    found = concio.study(milankovitch, (thickness,), "stands", "latin-hypercube", size=n, seed=1)
+    share = found.probability("stands", above=0.5)
+    assert share.estimate == pytest.approx(0.626, abs=1 / n)
+    stands = found.values("stands") == 1
+    assert found.values("t")[stands].min() > found.values("t")[~stands].max()
 
 
 def test_rank_correlation_is_that_asked_for() -> None:
