@@ -59,7 +59,10 @@ def mapped(model, point, vector, turn=1.0):
 
     return replace(
         model,
-        bodies=tuple(replace(b, outline=point(b.outline), grid=None) for b in model.bodies),
+        bodies=tuple(
+            replace(b, outline=point(b.outline), grid=None, holes=tuple(point(h) for h in b.holes))
+            for b in model.bodies
+        ),
         loads=tuple(directed(load) for load in model.loads),
         supports=tuple(
             replace(
@@ -121,7 +124,8 @@ def in_units(model, force, length):
         model,
         bodies=tuple(
             replace(
-                b, outline=b.outline * length, thickness=b.thickness * length, grid=lines(b.grid),
+                b, outline=b.outline * length, holes=tuple(h * length for h in b.holes),
+                thickness=b.thickness * length, grid=lines(b.grid),
                 mesh_size=None if b.mesh_size is None else b.mesh_size * length,
             )
             for b in model.bodies

@@ -21,6 +21,11 @@ Courses = list[list[float]]
 HALF_ENDS, FULL = [0.5, 1, 1, 1, 1, 0.5], [1.0] * 5
 LOW, LOW_SHIFTED = [1.0] * 4, [0.5, 1, 1, 1, 0.5]
 DOOR, DOOR_SHIFTED = [0.5, 1, -1, 1, 0.5], [1, 0.5, -1, 0.5, 1]
+DOORS, DOORS_SHIFTED = [1, -1, 1, -1, 1], [0.5, 0.5, -1, 0.5, 0.5, -1, 0.5, 0.5]
+NARROW, NARROW_SHIFTED = [0.5, 1, 1, 0.5], [1.0] * 3
+WINDOW, WINDOW_SHIFTED = [1, -1, 1], [0.5, 0.5, -1, 0.5, 0.5]
+STOREY = [NARROW, NARROW_SHIFTED, NARROW]
+OPENING = [WINDOW, WINDOW_SHIFTED, WINDOW, WINDOW_SHIFTED, WINDOW]
 
 FERRIS_TIN_LOI: dict[str, Courses] = {
     "wall 1": [HALF_ENDS, FULL] * 3,
@@ -30,6 +35,14 @@ FERRIS_TIN_LOI: dict[str, Courses] = {
     ],
 }  # fmt: skip
 """Courses from the base, in block lengths, negative: opening (Ferris and Tin-Loi 2001, Int. J. Mech. Sci. 43)."""
+
+TALLER: dict[str, Courses] = {
+    "wall 4": [
+        HALF_ENDS, FULL, HALF_ENDS, DOORS, DOORS_SHIFTED, DOORS, DOORS_SHIFTED, DOORS, HALF_ENDS, FULL, HALF_ENDS,
+    ],
+    "wall 5": [*STOREY, *OPENING, *STOREY, *OPENING, *STOREY],
+}  # fmt: skip
+"""Their walls 4 and 5, with two openings side by side and one above the other."""
 
 BLOCK, MU = (0.4, 0.175), 0.65
 

@@ -43,7 +43,7 @@ def test_limit_of_a_slender_block(slender: Path) -> None:
     assert data["coulomb_path_multiplier"] == pytest.approx(0.2, rel=1e-6)
     code, out, _ = run("limit", slender)
     assert code == 0
-    assert "associated bound     0.2: no equilibrium beyond it" in out
+    assert "associated bound     0.2 times 'live': no equilibrium beyond it" in out
     assert "Coulomb load path" in out
 
 
@@ -151,3 +151,9 @@ def test_the_exported_drawing_can_be_read_again(slender: Path) -> None:
     assert run("export", "r", "--to", "dxf", "--scale", "0")[0] == 0
     read = concio.model_from_dxf("r/deformed.dxf")
     assert sorted(b.area for b in read.bodies) == pytest.approx([0.02, 0.2])
+
+
+@pytest.mark.parametrize(("command", "shown"), [("path", "[[stages]]"), ("cell", "[kN/m2]"), ("study", "[[study]]")])
+def test_help_keeps_what_stands_in_brackets(command: str, shown: str) -> None:
+    code, out, _ = run(command, "--help")
+    assert (code, shown in "".join(out.split())) == (0, True)

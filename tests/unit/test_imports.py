@@ -21,8 +21,8 @@ ORDER = (
     "fem", "problem", "contact", "contact/moving",
     "solvers/algebra", "solvers/lcp", "solvers/states", "solvers/statics", "solvers/interior", "solvers/pivoting",
     "solvers/forms", "solvers/iterative", "solvers/exhaustive", "solvers/motion", "solvers/stepping", "solvers/auto",
-    "solvers/path", "solvers", "analysis", "analysis/motion", "analysis/cells", "post", "plot", "report", "io",
-    "studies", "cli", "__main__",
+    "solvers/path", "solvers", "analysis", "analysis/motion", "analysis/cells", "analysis/seismic",
+    "post", "plot", "report", "io", "studies", "cli", "__main__",
 )  # fmt: skip
 """Rooms in the order in which things flow: each imports from itself and from those before it."""
 DOORS = {

@@ -10,7 +10,7 @@ import pytest
 import concio
 from concio.analysis import limit as limits
 from concio.analysis.margins import friction_by_solving, load_margin
-from concio.cli.limit import limit_lines
+from concio.cli.limit_lines import limit_lines
 from concio.problem.solution import Mechanism
 from concio.solvers.statics.limit import LimitLoad
 
@@ -58,7 +58,7 @@ def test_the_result_says_why_no_collapse_state_was_sought(slender, monkeypatch):
     found = concio.limit(slender, path=False, search=True)
     assert found.collapse_state is None
     assert "more than 1" in found.search
-    assert any("not tried" in line for line in limit_lines(found, ["live"]))
+    assert any("not tried" in line for line in limit_lines(found))
     assert found.summary()["collapse_state_search"] == found.search
 
 
@@ -68,7 +68,7 @@ def test_two_bounds_that_do_not_meet_are_both_told(slender):
     apart = LimitLoad(0.4, 0.5, np.zeros(2), np.zeros((2, 1)), 1e-14, still)
     assert apart.bounds_hold
     assert not apart.checked
-    text = "\n".join(limit_lines(replace(found, associated=apart), ["live"]))
+    text = "\n".join(limit_lines(replace(found, associated=apart)))
     assert "between 0.4, carried, and 0.5, not exceeded" in text
     loose = LimitLoad(0.4, 0.4, np.zeros(2), np.zeros((2, 1)), 1e-3, still)
     assert not loose.bounds_hold

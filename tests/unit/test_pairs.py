@@ -7,14 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import concio
 from concio.contact.assembly import assemble
 from concio.contact.loads import _line_load
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID
 from concio.model.generate.walls import wall_of_courses
 from concio.model.materials import Elastic, JointLaw
-from concio.model.model import Body, JointRule
-from models import box, model_of, on_ground, turned
+from concio.model.model import Body, JointRule, Load
+from models import box, model_of, on_ground, turned, weight
 from rigid_walls import FERRIS_TIN_LOI
 
 STONE = {"kind": "rigid", "material": "stone"}
@@ -200,3 +201,25 @@ def test_joints_that_begin_alike_and_end_elsewhere_have_their_own_pairs(start, e
     pairs = assemble(model).pairs
     reach = [pairs.length[pairs.interface == k].sum() for k in range(2)]
     assert reach == pytest.approx([1.0, 0.6], rel=1e-12)
+
+
+def test_weighted_gaps_and_gaps_of_outlines():
+    """Where meshes do not match the certificate's gap is a weighted mean; the result says how far outlines differ."""
+    base, below = box("base", 0, 1, -1, 0, kind="fixed"), box("below", 0, 1, 0, 0.3, mesh_size=0.26)
+    load = Load("point", (-5.0, -40.0), bodies=("above",), at=(0.5, 0.5))
+    differences = []
+    for size in (0.26, 0.13, 0.11, 0.055):
+        above = box("above", 0, 1, 0.3, 0.5, mesh_size=size)
+        result = concio.solve(model_of(base, below, above, law=0.6, loads=(weight(), load)))
+        pairs, gap = result.assembly.pairs, np.zeros(len(result.assembly.pairs))
+        for k in range(len(pairs)):  # by interpolation inside the linear elements, body by body
+            for b, sign in ((int(pairs.body_a[k]), -1.0), (int(pairs.body_b[k]), 1.0)):
+                dofs, rows = result.assembly.disc.point_operator(b, pairs.point[k])
+                gap[k] += sign * pairs.normal[k] @ (rows @ result.displacement[dofs])
+        away = np.abs(gap - (result.contacts.gap - pairs.gap)).max()
+        largest = np.abs(result.displacement).max()
+        assert result.outline_gap_difference == pytest.approx(away, abs=1e-12 * largest)
+        assert result.summary()["outline_gap_difference"] == result.outline_gap_difference
+        differences.append(away / largest)
+    assert differences[0] <= 1e-12
+    assert 1e-4 < max(differences[1:]) < 0.05

@@ -9,7 +9,7 @@ import pytest
 
 import concio
 from concio.analysis.limit import limit
-from concio.cli.limit import limit_lines
+from concio.cli.limit_lines import limit_lines
 from concio.solvers.path.record import Outcome
 from concio.solvers.path.restart import look_beyond, moves_freely
 from path_helpers import energy_error, least_dissipation, weight_then, worst_certificate
@@ -58,12 +58,12 @@ def test_a_lost_path_is_no_collapse_multiplier():
     found = limit(model)
     assert found.collapse_shown
     assert found.coulomb == pytest.approx(0.4, rel=1e-9)
-    assert "collapses at 0.4" in "\n".join(limit_lines(found, ["live"]))
-    assert "asked for" not in "\n".join(limit_lines(found, ["live"]))
+    assert "collapses at 0.4" in "\n".join(limit_lines(found))
+    assert "asked for" not in "\n".join(limit_lines(found))
     lost = replace(found, collapse_shown=False, path=replace(found.path, outcome=Outcome.LOST))
     assert np.isnan(lost.coulomb)
     assert lost.carried == found.coulomb
     assert lost.summary()["coulomb_path_multiplier"] is None
-    text = "\n".join(limit_lines(lost, ["live"]))
+    text = "\n".join(limit_lines(lost))
     assert "at least 0.4" in text
     assert "collapses at" not in text

@@ -14,8 +14,8 @@ import concio
 from concio.analysis.result import Result
 from concio.display import Units
 from concio.errors import InputError
+from concio.kinematics.mass import signed_area
 from concio.model.generate.arches import arch
-from concio.model.model import signed_area
 from concio.plot import style
 from concio.plot.figures import TITLES, suitable_figures, write_figures
 from concio.plot.path_figure import plot_path
@@ -48,7 +48,7 @@ def collapse() -> Result:
 
 def test_outlines_are_the_blocks(panel: Result) -> None:
     shown = outlines(panel)
-    for polygon, body in zip(shown.moved(0.0), panel.model.bodies, strict=True):
+    for (polygon,), body in zip(shown.moved(0.0), panel.model.bodies, strict=True):
         np.testing.assert_array_equal(polygon[0], polygon[-1])
         assert signed_area(polygon[:-1]) == pytest.approx(body.area, rel=1e-12)
 

@@ -7,8 +7,8 @@ import pytest
 
 from concio.errors import GeometryError, InputError
 from concio.fem.polygon_mesh import mesh_polygon, mesh_quality
+from concio.kinematics.mass import signed_area
 from concio.model.interfaces.polygon_check import check_polygon, polygon_faults
-from concio.model.model import signed_area
 from meshes import assert_good_mesh
 
 

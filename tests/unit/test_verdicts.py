@@ -163,6 +163,27 @@ def test_forces_far_above_the_loads_ask_for_attention():
     assert quiet.attention == ()
 
 
+def test_a_bound_without_a_path_beside_a_structure_that_falls():
+    """Three stones between two walls, nothing beneath: they fall, forces in balance exist, and `limit` ends with 0."""
+    top, cut, left, foot = (1.3, 0.8), (0.975, 0.625), (0.0, 0.1), (1.05, 0.0)
+    outlines = {
+        "b0": [top, (0.0, 0.8), left],
+        "b1": [(0.0, 0.0), foot, cut, left],
+        "b2": [foot, (1.75, 0.0), (1.75, 0.8), top, cut],
+    }
+    stones = [Body(name, np.array(outline), **STONE) for name, outline in outlines.items()]
+    walls = box("left", -0.2, 0, 0, 0.8, kind="fixed"), box("right", 1.75, 1.95, 0, 0.8, kind="fixed")
+    model = model_of(*walls, *stones, law=0.5, loads=(weight(), weight(0.11, 0.0, group="live")))
+    result = concio.solve(model, on_failure="return")
+    assert result.status is Status.COLLAPSES
+    assert "only as self-stress" in result.sentence
+    found = concio.limit(model)
+    assert found.associated.multiplier > 1
+    assert found.associated.checked
+    assert found.path is None
+    assert "proves nothing about another history" in found.path_note
+
+
 def test_limit_tells_the_bound_where_the_path_is_not_begun():
     """The path of the dead load ends at once; the associated bound is told all the same, and no proof is claimed.
 

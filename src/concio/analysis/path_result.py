@@ -16,7 +16,7 @@ from concio.model.stages import ControlPoint, Stage
 from concio.problem.certificate import Certificate
 from concio.problem.solution import Status, judge
 from concio.solvers.path.record import Event, Outcome
-from concio.solvers.path.state import PathState, weakened
+from concio.solvers.path.state import LinearPath, PathState, path_kinematics, weakened
 
 Array = np.ndarray
 
@@ -150,6 +150,7 @@ class PathResult:
     def result(self, step: int = -1) -> Result:
         """Return one step as a :class:`Result`, with its slips counted from the beginning of the path.
 
+        Gaps are less what dilatancy opened with every slip on the way, so that a closed joint has none.
         The certificate, and with it the status, is that of the step, whose slip directions count from the step before.
         """
         chosen = self.steps[step]
@@ -157,7 +158,8 @@ class PathResult:
         problem = weakened(problem, state.broken)
         judged = judge(problem, state.displacement, state.normal_force, state.friction, method="path")
         status = Status.SOLVED if chosen.certificate.certified else Status.GAVE_UP
-        solution = replace(judged, certificate=chosen.certificate, status=status)
+        moved = path_kinematics(LinearPath(problem, np.zeros(problem.unknowns)), state)
+        solution = replace(judged, kinematics=moved, certificate=chosen.certificate, status=status)
         return Result(self.assembly, dict(chosen.factors), solution, {"total": 0.0})
 
 

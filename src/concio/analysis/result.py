@@ -15,12 +15,12 @@ from concio.analysis.stress import Stress
 from concio.analysis.verdict import attention, self_stress, sentence
 from concio.arguments import closest
 from concio.contact.assembly import Assembly
+from concio.contact.outline_gaps import outline_gaps
 from concio.display import Units
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID
 from concio.kinematics.rigid import rigid_operator, swept
 from concio.model.model import Model
-from concio.model.plausibility import implausible
 from concio.problem.certificate import Certificate
 from concio.problem.solution import Mechanism, Solution, Status, pair_states
 from concio.solvers.statics.self_stress import SelfStress
@@ -147,6 +147,17 @@ class Result:
         s = self.solution
         state = pair_states(self.assembly.problem(self.factors), s)
         return Contacts(self.assembly.pairs, s.normal_force, s.friction_force, s.gap, s.slip, state)
+
+    @cached_property
+    def outline_gap_difference(self) -> float:
+        """Largest difference between a gap and that of the displaced outlines at the same place [m].
+
+        Zero where meshes match; else gaps are means weighted along the joint, see :mod:`concio.contact.outline_gaps`.
+        """
+        pairs = self.assembly.pairs
+        chosen, apart = outline_gaps(self.assembly.disc, self.assembly.detection.segments, pairs)
+        difference = apart @ self.displacement - pairs.C_n[chosen] @ self.displacement
+        return float(np.abs(difference).max(initial=0.0))
 
     @cached_property
     def joint_motion(self) -> JointMotion:
@@ -301,7 +312,7 @@ class Result:
 
     @property
     def attention(self) -> tuple[str, ...]:
-        """What asks for attention in a solved step, a sentence each: large motions, forces far above the loads."""
+        """What asks for attention, a sentence each: numbers hardly meant, large motions, forces far above the loads."""
         return attention(self)
 
     @cached_property
@@ -330,13 +341,13 @@ class Result:
             "total_load": list(self.total_load),
             "trace": list(self.solution.trace),
             "lent_compliance": self.lent_compliance,
-            "attention": list(implausible(self.model)),
+            "attention": list(self.attention),
             "units": {"force": "kN", "length": "m", "stress": "kN/m2"},
         }
         if contacts is not None:
             data["max_settlement"] = self.max_settlement
             data["joint_motion"] = asdict(self.joint_motion)
-            data["attention"] = list(self.attention)
+            data["outline_gap_difference"] = self.outline_gap_difference
             data["reactions"] = {name: list(force) for name, force in self.reactions.items()}
             data["pairs"] = {name: contacts.count(name) for name in STATE_NAMES}
         if 0 < len(self.assembly.pairs) <= EXISTENCE:  # without pairs there is nothing to guarantee

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.model.plausibility import implausible
 from concio.problem.solution import Status
 from concio.solvers.statics.self_stress import SelfStress, least_compression
 
@@ -39,16 +40,17 @@ def sentence(result: Result) -> str:
 
 
 def attention(result: Result) -> tuple[str, ...]:
-    """Return what asks for attention in a solved step, a sentence each."""
+    """Return what asks for attention, a sentence each: numbers that are hardly meant, and more in a solved step."""
+    odd = implausible(result.model)
     if not result.solved:
-        return ()
+        return odd
     found = [result.joint_motion.sentence] if result.joint_motion.large else []
     if result.lent_compliance and result.assembly.lent_compliance:
         found.append(
             "blocks that cannot yield are forced together: the forces between them grow without end as joints become "
             f"stiffer, and those given belong to a compliance of {result.lent_compliance:.3g} m/kN"
         )
-    return (*found, *_heavy(result))
+    return (*odd, *found, *_heavy(result))
 
 
 def _heavy(result: Result) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from concio.errors import InputError
 from concio.fem.discretisation import RIGID
 from concio.model.described import law_words, material_words
 from concio.model.interfaces.detect import Detection
-from concio.model.model import Model
+from concio.model.model import Body, Model
 from concio.model.plausibility import implausible
 
 MOST_LINES = 20
@@ -110,9 +110,14 @@ def _bodies(model: Model, size: float, *, every: bool) -> list[str]:
         for body in model.outlines:
             x, y = np.round(body.centroid / size, 9) * size + 0.0
             lines.append(
-                f"  '{body.name}': {len(body.outline)} vertices, area {body.area:.4g} m2, centroid ({x:.4g}, {y:.4g}) m"
+                f"  '{body.name}': {_corners(body)}, area {body.area:.4g} m2, centroid ({x:.4g}, {y:.4g}) m"
             )
     return lines
+
+
+def _corners(body: Body) -> str:
+    holes = f" with {len(body.holes)} hole{'s' if len(body.holes) > 1 else ''}" if body.holes else ""
+    return f"{len(body.outline)} vertices{holes}"
 
 
 def _interfaces(model: Model, detection: Detection) -> list[str]:

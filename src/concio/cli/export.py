@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -13,6 +13,7 @@ from concio.cli.output import check_directory, check_file, replaced_directory, r
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
+    from concio.model.model import Array
 
 
 @guarded
@@ -75,9 +76,15 @@ def _write_file(result: Result, to: str, fresh: Path, scale: float, unit: str | 
     from concio.io.dxf_out import layer_of, unit_of, write_dxf
     from concio.post.outlines import outlines
 
-    drawn = outlines(result)
-    points = drawn.points + scale * drawn.displacement
-    closed = [points[a : b - 1] for a, b in pairwise(drawn.starts.tolist())]
     bodies = result.model.outlines
-    layers = [layer_of(result.model, body) for body in bodies]
-    write_dxf(fresh, [b.name for b in bodies], closed, layers=layers, unit=unit or unit_of(result.model))
+    drawn: list[Sequence[Array]] = [body.rings for body in bodies]
+    if scale:
+        drawn = [[ring[:-1] for ring in rings] for rings in outlines(result).moved(scale)]
+    write_dxf(
+        fresh,
+        [body.name for body in bodies],
+        [rings[0] for rings in drawn],
+        layers=[layer_of(result.model, body) for body in bodies],
+        unit=unit or unit_of(result.model),
+        holes=[rings[1:] for rings in drawn],
+    )

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from concio.model.plausibility import implausible
 from concio.problem.solution import Status
 from concio.report.wording import power_words
 
@@ -54,7 +53,6 @@ def result_lines(result: Result) -> list[str]:
         lines += _ties(result)
         if result.lent_compliance:
             lines.append("  rigid joints decided with a vanishing compliance, as the limit of stiff joints")
-        lines += [f"  attention    {told}" for told in result.attention]
     elif result.mechanism is not None:
         word = "motion" if result.status is Status.COLLAPSES else "mechanism"
         moving = [f"'{name}'" for name, speed in moving_bodies(result) if speed > SLOW]
@@ -67,7 +65,7 @@ def result_lines(result: Result) -> list[str]:
         lines += [f"  tried        {line}" for line in s.trace]
         if np.isfinite(certificate["worst"]):
             lines.append(f"  certificate  worst {certificate['worst']:.1e}: not an equilibrium")
-    lines += [f"  attention    {sentence}" for sentence in implausible(result.model)]
+    lines += [f"  attention    {told}" for told in result.attention]
     faults = result.model.generator.get("faults", ())
     if isinstance(faults, tuple | list) and faults:
         lines.append(

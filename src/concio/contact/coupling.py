@@ -161,9 +161,9 @@ def _mortar(slave: Line, master: Line | None, length: float) -> tuple[Array, Arr
         psi = lumped[:, None] * np.linalg.solve((shape * ws) @ shape.T, shape)
         weight[nodes] += lumped
         moment[nodes] += psi @ (ws * xs)
-        own[nodes] += (psi * ws) @ _interpolation(slave, xs).T
+        own[nodes] += (psi * ws) @ interpolation(slave, xs).T
         if master is not None:
-            other[nodes] += (psi * ws) @ _interpolation(master, xs).T
+            other[nodes] += (psi * ws) @ interpolation(master, xs).T
     used = weight > 1e-12 * length
     position = moment[used] / weight[used]
     first = _entries(own[used] / weight[used, None], slave.nodes)
@@ -171,7 +171,7 @@ def _mortar(slave: Line, master: Line | None, length: float) -> tuple[Array, Arr
     return position, weight[used], first, second
 
 
-def _interpolation(line: Line, x: Array) -> Array:
+def interpolation(line: Line, x: Array) -> Array:
     """Return the shape functions (k, n) of a line at ``x``; beyond its ends the end elements are continued."""
     values = np.zeros((len(line.at), len(x)))
     elements = pieces(line.at, line.order)

@@ -146,10 +146,10 @@ def _on_line(model: Model, chosen: list[int], p: Array, along: Array, length: fl
     across = np.array([-along[1], along[0]])
     found = []
     for b in chosen:
-        outline = model.outlines[b].outline
-        off = np.abs((outline - p) @ across) <= tolerance
-        for e in np.flatnonzero(off & np.roll(off, -1)).tolist():
-            a, c = outline[e], outline[(e + 1) % len(outline)]
+        vertices, following = model.outlines[b].vertices, model.outlines[b].following
+        off = np.abs((vertices - p) @ across) <= tolerance
+        for e in np.flatnonzero(off & off[following]).tolist():
+            a, c = vertices[e], vertices[following[e]]
             direction = (c - a) / float(np.linalg.norm(c - a))
             first, last = float((a - p) @ along), float((c - p) @ along)
             low, high = max(min(first, last), 0.0), min(max(first, last), length)

@@ -82,8 +82,8 @@ def _line_load(disc: Discretisation, b: int, edge: int, part: tuple[float, float
     """Add a uniform line load ``vector`` [kN/m] on part of an edge."""
     at = disc.offsets[b]
     if disc.shape_of[b] == RIGID:
-        outline = disc.model.outlines[b].outline
-        p, q = outline[edge], outline[(edge + 1) % len(outline)]
+        body = disc.model.outlines[b]
+        p, q = body.vertices[edge], body.vertices[body.following[edge]]
         middle = p + (q - p) / np.linalg.norm(q - p) * (part[0] + part[1]) / 2
         rows = rigid_operator(middle - disc.centroids[b], disc.reach[b])
         f[at : at + 3] += rows.T @ vector * (part[1] - part[0])

@@ -115,15 +115,15 @@ def make_pairs(disc: Discretisation, interfaces: Sequence[Interface]) -> Pairs:
     length = np.hypot(*along.T)
     along = along / length[:, None]
     unit = 1e-9 * float(np.median(disc.reach))
-    first_a, forwards_a, key_a = _place(disc, sides.a, sides.edge_a, sides.p_a, sides.q_a, sides.start, along, unit)
-    first_b, forwards_b, key_b = _place(disc, sides.b, sides.edge_b, sides.p_b, sides.q_b, sides.start, along, unit)
+    first_a, forwards_a, key_a = place(disc, sides.a, sides.edge_a, sides.p_a, sides.q_a, sides.start, along, unit)
+    first_b, forwards_b, key_b = place(disc, sides.b, sides.edge_b, sides.p_b, sides.q_b, sides.start, along, unit)
     points = np.array([_points(model.laws[name]) for name in model.laws])[law]
     keys = np.column_stack([key_a, key_b, np.round(length / unit).astype(np.int64), points])
     _, example, group = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     couplings = [
         couple(
-            _line(disc, int(sides.a[i]), int(sides.edge_a[i]), float(first_a[i]), bool(forwards_a[i])),
-            _line(disc, int(sides.b[i]), int(sides.edge_b[i]), float(first_b[i]), bool(forwards_b[i])),
+            line_of(disc, int(sides.a[i]), int(sides.edge_a[i]), float(first_a[i]), bool(forwards_a[i])),
+            line_of(disc, int(sides.b[i]), int(sides.edge_b[i]), float(first_b[i]), bool(forwards_b[i])),
             float(length[i]),
             int(points[i]),
         )
@@ -226,7 +226,7 @@ def laws_of(model: Model, a: Array, b: Array) -> tuple[Array, Array]:
     return np.array([number[rule.law] for rule in rules])[group], np.array([rule.gap for rule in rules])[group]
 
 
-def _place(
+def place(
     disc: Discretisation, body: Array, edge: Array, p: Array, q: Array, start: Array, along: Array, unit: float
 ) -> tuple[Array, Array, Array]:
     """Return where edges begin along their segments (i,) [m], whether they run forwards, and keys equal to ``unit``."""
@@ -238,7 +238,7 @@ def _place(
     return first, forwards, np.column_stack([shape, key])
 
 
-def _line(disc: Discretisation, b: int, edge: int, first: float, forwards: bool) -> Line | None:
+def line_of(disc: Discretisation, b: int, edge: int, first: float, forwards: bool) -> Line | None:
     """Return the nodes of one side in positions along the segment; None where it is not meshed."""
     if disc.shape_of[b] < 0:
         return None

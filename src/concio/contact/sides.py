@@ -41,13 +41,14 @@ class FacingSides:
         numbers = np.array([(f.a, f.b, f.edge_a, f.edge_b) for f in interfaces], dtype=np.int64).reshape(-1, 4)
         vectors = np.array([(f.start, f.end, f.normal, f.gap) for f in interfaces], dtype=float).reshape(-1, 4, 2)
         a, b, edge_a, edge_b = numbers.T
-        count = np.array([len(body.outline) for body in bodies])
+        count = np.array([len(body.vertices) for body in bodies])
         first = np.concatenate([[0], np.cumsum(count)[:-1]])
-        vertices = np.concatenate([body.outline for body in bodies])
+        vertices = np.concatenate([body.vertices for body in bodies])
+        following = np.concatenate([body.following + at for body, at in zip(bodies, first, strict=True)])
         shift = np.array([f.shift for f in interfaces], dtype=float).reshape(-1, 2)
         p_a, p_b = vertices[first[a] + edge_a], vertices[first[b] + edge_b] + shift
-        q_a = vertices[first[a] + (edge_a + 1) % count[a]]
-        q_b = vertices[first[b] + (edge_b + 1) % count[b]] + shift
+        q_a = vertices[following[first[a] + edge_a]]
+        q_b = vertices[following[first[b] + edge_b]] + shift
         start, end, normal, gap = (vectors[:, k] for k in range(4))
         return cls(a, b, edge_a, edge_b, p_a, q_a, p_b, q_b, start, end, normal, gap, shift)
 
@@ -66,7 +67,7 @@ def interface_breaks(model: Model, interfaces: Sequence[Interface]) -> Mapping[i
             at = ((end - p) * (q - p)).sum(1) / length
             inside = meshed[body] & (at > 1e-6 * length) & (at < (1 - 1e-6) * length)
             for b, e, mark in zip(body[inside].tolist(), edge[inside].tolist(), at[inside].tolist(), strict=True):
-                found.setdefault(b, [[] for _ in model.outlines[b].outline])[e].append(mark)
+                found.setdefault(b, [[] for _ in model.outlines[b].vertices])[e].append(mark)
     return {b: [_distinct(v, model.outlines[b]) for v in edges] for b, edges in found.items()}
 
 

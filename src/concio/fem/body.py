@@ -105,20 +105,28 @@ class Shape(Meshed):
         Constitutive matrix [kN/m2].
     thickness : float
         [m].
+    holes : tuple of (k, 2) arrays
+        Holes, clockwise, relative to the first vertex of the outline [m].
     """
 
     outline: Array
     elements: Elements
     D: Array
     thickness: float
+    holes: tuple[Array, ...] = ()
+
+    @property
+    def rings(self) -> tuple[Array, ...]:
+        """The outline and the holes."""
+        return self.outline, *self.holes
 
     @cached_property
     def edges(self) -> tuple[EdgeNodes, ...]:
-        """Boundary nodes of each edge of the outline, in order."""
+        """Boundary nodes of each edge of the outline, then of the holes, in order."""
         nodes = self.elements.nodes
         tolerance = 1e-7 * float(np.ptp(self.outline, axis=0).max())
         found = []
-        for a, b in zip(self.outline, np.roll(self.outline, -1, axis=0), strict=True):
+        for a, b in ((a, b) for ring in self.rings for a, b in zip(ring, np.roll(ring, -1, axis=0), strict=True)):
             length = float(np.linalg.norm(b - a))
             tangent = (b - a) / length
             at = (nodes - a) @ tangent

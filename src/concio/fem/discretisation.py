@@ -210,7 +210,7 @@ def _unknowns(model: Model, body: Body | Polyhedron, size: float) -> float:
         return float(model.dim * np.prod([float(len(lines)) * split for lines in body.grid]))
     count = body.volume / body.thickness * (split / size) ** model.dim
     if isinstance(body, Body):  # a film thinner than its elements has them all along it
-        around = float(np.hypot(*(body.outline - np.roll(body.outline, 1, axis=0)).T).sum())
+        around = float(np.hypot(*(body.vertices[body.following] - body.vertices).T).sum())
         count = max(count, around * split / size)
     return model.dim * count
 

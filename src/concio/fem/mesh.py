@@ -56,13 +56,14 @@ def mesh_body(body: Body, size: float, refinement: int, breaks: list[Array]) -> 
     refinement : int
         Each element is split this many times more in each direction.
     breaks : list of (k,) arrays
-        For each edge of the outline, distances from its first vertex at which an interface begins or ends [m].
+        For each edge of the outline, then of the holes, distances from its first vertex at which an interface begins
+        or ends [m].
     """
     outline = body.outline
     if body.grid is not None:
         xs, ys = (np.asarray(g, dtype=float) for g in body.grid)
         return tensor(subdivided(xs, np.inf, refinement), subdivided(ys, np.inf, refinement))
-    if is_rectangle(outline):
+    if is_rectangle(outline) and not body.holes:
         lower, upper = outline.min(0), outline.max(0)
         marks: list[list[float]] = [[lower[0], upper[0]], [lower[1], upper[1]]]
         for e, at in enumerate(breaks):
@@ -76,4 +77,4 @@ def mesh_body(body: Body, size: float, refinement: int, breaks: list[Array]) -> 
         return tensor(xs, ys)
     from concio.fem.polygon_mesh import mesh_polygon
 
-    return mesh_polygon(outline, size / refinement, breaks=breaks)
+    return mesh_polygon(outline, size / refinement, breaks=breaks, holes=body.holes)

@@ -54,17 +54,18 @@ def plane_shape(model: Model, body: Body, size: float, marks: Sequence[Array]) -
     size : float
         Target element size [m].
     marks : sequence of arrays
-        For each edge of the outline, where interfaces begin or end [m from its first vertex]; empty for none at all.
+        For each edge of the outline, then of the holes, where interfaces begin or end [m from its first vertex]; empty
+        for none at all.
     """
-    cuts = list(marks) or [np.zeros(0)] * len(body.outline)
+    cuts = list(marks) or [np.zeros(0)] * len(body.vertices)
     unit = 1e-9 * float(np.ptp(body.outline, axis=0).max())
     origin = body.outline[0]
     grid = None
     if body.grid is not None:
         grid = tuple(rounded(np.asarray(g) - o, unit) for g, o in zip(body.grid, origin, strict=True))
     pieces = tuple(rounded(c, unit) for c in cuts) if body.grid is None else ()
-    outline = rounded(body.outline - origin, unit)
-    key = (outline, body.material, body.thickness, grid, round(size / unit), pieces)
+    rings = tuple(rounded(ring - origin, unit) for ring in body.rings)
+    key = (rings, body.material, body.thickness, grid, round(size / unit), pieces)
     return Plan(key, partial(_built, model, body, size, cuts))
 
 
@@ -72,4 +73,5 @@ def _built(model: Model, body: Body, size: float, cuts: list[Array]) -> Shape:
     D = constitutive_matrix(elastic_material(model, body), model.plane)
     points, cells = mesh_body(body, size, model.refinement, cuts)
     elements = build(points - body.outline[0], cells, model.element, D)
-    return Shape(body.outline - body.outline[0], elements, D, body.thickness)
+    outline, *holes = (ring - body.outline[0] for ring in body.rings)
+    return Shape(outline, elements, D, body.thickness, tuple(holes))

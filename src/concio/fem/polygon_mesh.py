@@ -40,9 +40,14 @@ class MeshQuality:
 
 
 def mesh_polygon(
-    outline: Array, size: float, breaks: Sequence[Array] | None = None, *, quads: bool = True
+    outline: Array,
+    size: float,
+    breaks: Sequence[Array] | None = None,
+    *,
+    quads: bool = True,
+    holes: Sequence[Array] = (),
 ) -> tuple[Array, Array]:
-    """Return points (n, 2) and cells (k, 4) or (k, 3), counter-clockwise, of a simple polygon.
+    """Return points (n, 2) and cells (k, 4) or (k, 3), counter-clockwise, of a polygon.
 
     Parameters
     ----------
@@ -51,45 +56,54 @@ def mesh_polygon(
     size : float
         Target element size [m].
     breaks : sequence of (k,) arrays, optional
-        For each edge of the outline, distances from its first vertex that must be nodes [m].
+        For each edge of the outline, then of the holes, distances from its first vertex that must be nodes [m].
     quads : bool
-        False asks for triangles in any case.
+        False asks for triangles in any case; there are triangles where there are holes.
+    holes : sequence of (k, 2) arrays
+        Interior rings, clockwise [m].
 
     Raises
     ------
     GeometryError
-        The outline is not a simple polygon.
+        The outline or a hole crosses or touches itself or another.
     """
     outline = np.asarray(outline, dtype=float)
     if not (0 < size < np.inf):
         msg = f"mesh size = {size:g} must be positive and finite"
         raise InputError(msg, hint="give it in m, for example a quarter of a block's length")
-    marks = boundary_marks(outline, breaks)
-    if quads and (corners := corners_of(outline)) is not None:
+    rings = [outline, *(np.asarray(hole, dtype=float) for hole in holes)]
+    start, stop = np.concatenate(rings), np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
+    marks = boundary_marks(start, stop, breaks)
+    if quads and not holes and (corners := corners_of(outline)) is not None:
         found = mapped_quads(outline, corners, marks, size)
         if found is not None:
             return found
-    boundary = []
-    for a, b, at in zip(outline, np.roll(outline, -1, axis=0), marks, strict=True):
-        length = at[-1]
-        for start, stop in pairwise(at):
-            parts = max(1, int(np.ceil((stop - start) / size - 1e-6)))
-            s = start + (stop - start) * np.arange(parts) / parts
-            boundary.append(a + np.outer(s / length, b - a))
-    return triangles([np.concatenate(boundary)], size)
+    sides = [_divided(a, b, at, size) for a, b, at in zip(start, stop, marks, strict=True)]
+    ends = np.cumsum([0] + [len(ring) for ring in rings])
+    return triangles([np.concatenate(sides[i:j]) for i, j in pairwise(ends)], size)
 
 
-def boundary_marks(outline: Array, breaks: Sequence[Array] | None) -> list[Array]:
-    """Return for each edge its increasing marks: 0, the breaks that are not at its ends, its length [m]."""
-    length = np.hypot(*(np.roll(outline, -1, axis=0) - outline).T)
+def _divided(a: Array, b: Array, marks: Array, size: float) -> Array:
+    """Return the points (k, 2) of a side from a to b without b: its marks, and equal parts between them."""
+    at = []
+    for start, stop in pairwise(marks):
+        parts = max(1, int(np.ceil((stop - start) / size - 1e-6)))
+        at.append(start + (stop - start) * np.arange(parts) / parts)
+    result: Array = a + np.outer(np.concatenate(at) / marks[-1], b - a)
+    return result
+
+
+def boundary_marks(start: Array, stop: Array, breaks: Sequence[Array] | None) -> list[Array]:
+    """Return for each side its increasing marks: 0, the breaks that are not at its ends, its length [m]."""
+    length = np.hypot(*(stop - start).T)
     if (length <= 0).any():
-        at = outline[int(np.argmin(length))]
+        at = start[int(np.argmin(length))]
         msg = f"two neighbouring vertices coincide at ({at[0]:.6g}, {at[1]:.6g}) m"
         raise GeometryError(msg, hint="delete one of them")
-    if breaks is not None and len(breaks) != len(outline):
-        msg = f"{len(breaks)} lists of break points for {len(outline)} edges"
+    if breaks is not None and len(breaks) != len(start):
+        msg = f"{len(breaks)} lists of break points for {len(start)} edges"
         raise InputError(msg, hint="give one list for each edge, empty where there are none")
-    tolerance = 1e-6 * float(np.ptp(outline, axis=0).max())
+    tolerance = 1e-6 * float(np.ptp(start, axis=0).max())
     result = []
     for e, full in enumerate(length):
         marks = [0.0]

@@ -68,6 +68,14 @@ def triangles(rings: Sequence[Array], size: float) -> tuple[Array, Array]:
     return np.concatenate([boundary, origin + scale * points[len(boundary) :]]), cells
 
 
+def bare_triangles(rings: Sequence[Array]) -> Array:
+    """Return triangles (k, 3) of the points of the rings alone; see :func:`triangles`."""
+    boundary = np.concatenate(rings)
+    origin, scale = boundary.min(0), float(np.ptp(boundary, axis=0).max())
+    area = _Area([(ring - origin) / scale for ring in rings])
+    return area.triangulated(area.boundary)
+
+
 class _Area:
     """A polygon in unit coordinates: its boundary points (b, 2), its sides (b, 2) as numbers of points, its shape."""
 

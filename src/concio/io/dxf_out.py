@@ -55,6 +55,7 @@ def write_dxf(
     colours: Mapping[str, int] | None = None,
     unit: str = "m",
     texts: bool = True,
+    holes: Sequence[Sequence[Array]] = (),
 ) -> None:
     """Write outlines to a DXF drawing.
 
@@ -73,6 +74,8 @@ def write_dxf(
         Unit of the drawing, a key of :data:`UNITS`.
     texts : bool
         Write the names.
+    holes : sequence of sequences of (n, 2) arrays, optional
+        Holes of each outline [m]; they go on the layer ``CONCIO_HOLES``.
 
     Raises
     ------
@@ -95,24 +98,30 @@ def write_dxf(
     code, metres = UNITS[unit]
     document = ezdxf.new("R2010")
     document.header["$INSUNITS"] = code
-    for layer in dict.fromkeys([*layers, *(["CONCIO_NAMES"] if texts else [])]):
+    rings = [ring for own in holes for ring in own]
+    extra = ["CONCIO_NAMES"] * texts + ["CONCIO_HOLES"] * bool(rings)
+    for layer in dict.fromkeys([*layers, *extra]):
         if layer and layer not in document.layers:
             document.layers.add(layer, color=(colours or {}).get(layer, 7))
     space = document.modelspace()
-    for name, outline, layer in zip(names, outlines, layers, strict=True):
+    for ring in rings:
+        corners = np.asarray(ring, dtype=float) / metres
+        space.add_lwpolyline(corners.tolist(), close=True, dxfattribs={"layer": "CONCIO_HOLES"})
+    for k, (name, outline, layer) in enumerate(zip(names, outlines, layers, strict=True)):
         points = np.asarray(outline, dtype=float) / metres
         space.add_lwpolyline(points.tolist(), close=True, dxfattribs={"layer": layer or "0"})
         if texts:
             height = 0.15 * float(np.ptp(points, axis=0).min())
             text = space.add_text(name, height=max(height, 1e-6), dxfattribs={"layer": "CONCIO_NAMES"})
-            text.set_placement(_inside(points), align=TextEntityAlignment.LEFT)
+            inner = [np.asarray(hole, dtype=float) / metres for hole in (holes[k] if holes else ())]
+            text.set_placement(_inside(points, inner), align=TextEntityAlignment.LEFT)
     with whole_file(Path(path)) as fresh:
         document.saveas(fresh)
 
 
-def _inside(points: Array) -> tuple[float, float]:
-    """Return a point inside an outline."""
+def _inside(points: Array, holes: Sequence[Array]) -> tuple[float, float]:
+    """Return a point inside an outline, in none of its holes."""
     import shapely
 
-    found = shapely.Polygon(points).buffer(0).point_on_surface()
+    found = shapely.Polygon(points, holes).buffer(0).point_on_surface()
     return float(found.x), float(found.y)

@@ -15,6 +15,7 @@ import numpy as np
 from concio.arguments import strict
 from concio.errors import InputError
 from concio.fem.constitutive import principal
+from concio.fem.triangulate import bare_triangles
 from concio.io.vtu import POLYGON, QUAD, TRIANGLE, VERTEX, Grid, write_pvd, write_vtu
 
 if TYPE_CHECKING:
@@ -54,11 +55,12 @@ def bodies_grid(result: Result) -> Grid:
             stress.append(nodal)
             means.append(mean)
         else:
-            cells.append(np.arange(total, total + len(nodes)))
-            sizes.append(np.array([len(nodes)]))
-            types.append(np.array([POLYGON]))
+            own = outline_cells(model.outlines[b].rings)
+            cells.append((own + total).ravel())
+            sizes.append(np.full(len(own), own.shape[1]))
+            types.append(np.full(len(own), TRIANGLE if model.outlines[b].holes else POLYGON))
             stress.append(np.full((len(nodes), 3), np.nan))
-            means.append(np.full((1, 3), np.nan))
+            means.append(np.full((len(own), 3), np.nan))
         owner.append(np.full(len(types[-1]), b))
         total += len(nodes)
     body = np.concatenate(owner)
@@ -79,6 +81,11 @@ def bodies_grid(result: Result) -> Grid:
         np.vstack(points), np.concatenate(cells), np.cumsum(np.concatenate(sizes)), np.concatenate(types), point_data,
         cell_data,
     )  # fmt: skip
+
+
+def outline_cells(rings: Sequence[Array]) -> Array:
+    """Return the cells (k, n) that draw a body without elements: one polygon, or triangles where it has holes."""
+    return np.arange(len(rings[0]))[None] if len(rings) == 1 else bare_triangles(rings)
 
 
 def contacts_grid(result: Result) -> Grid:

@@ -12,11 +12,12 @@ import numpy as np
 
 from concio.arguments import closest, strict_class
 from concio.display import DEFAULT, Units
-from concio.errors import GeometryError, InputError
-from concio.kinematics.mass import Moments, polygon_moments, signed_area
+from concio.errors import InputError
+from concio.kinematics.mass import Moments, polygon_moments
 from concio.model.dimensions import WORDS, resolved
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.polyhedron import Polyhedron
+from concio.model.rings import check_holes, checked_ring, following
 from concio.model.stages import Stage
 
 Array = np.ndarray
@@ -32,7 +33,7 @@ Point = tuple[float, ...]
 @strict_class
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A block, a mortar film or an obstacle: a simple polygon.
+    """A block, a mortar film or an obstacle: a polygon, with holes or without.
 
     Parameters
     ----------
@@ -54,6 +55,9 @@ class Body:
         Mesh lines of a rectangle with sides along x and y; None lets concio mesh.
     mesh_size : float or None
         Target element size [m]; None takes the model's.
+    holes : sequence of (k, 2) arrays
+        Interior rings, inside the outline and clear of it and of each other [m]; stored clockwise. Other bodies may
+        stand in them, as a shelf in a frame.
     """
 
     name: str
@@ -65,31 +69,20 @@ class Body:
     thickness: float = 1.0
     grid: tuple[Array, Array] | None = None
     mesh_size: float | None = None
+    holes: Sequence[Array] = ()
 
     dim: ClassVar[int] = 2
 
     def __post_init__(self) -> None:
-        points = np.array(self.outline, dtype=float)
         where = f"block '{self.name}'"
-        if points.ndim != 2 or points.shape[1] != 2:
-            msg = f"outline has shape {points.shape}, expected (n, 2)"
-            raise GeometryError(msg, where=where)
-        if not np.isfinite(points).all():
-            msg = "outline holds a coordinate that is not finite"
-            raise GeometryError(msg, where=where)
-        if len(points) > 1 and np.array_equal(points[0], points[-1]):
-            points = points[:-1]
-        if len(points) < 3:
-            msg = f"outline has {len(points)} different vertices, a polygon needs at least 3"
-            raise GeometryError(msg, where=where)
-        area = signed_area(points)
-        if abs(area) <= 1e-12 * np.ptp(points, axis=0).max() ** 2:
-            msg = "outline has no area"
-            raise GeometryError(msg, where=where)
-        if area < 0:
-            points = points[::-1].copy()
-        points.setflags(write=False)
-        object.__setattr__(self, "outline", points)
+        object.__setattr__(self, "outline", checked_ring(self.outline, "outline", where))
+        holes = tuple(checked_ring(h, f"hole {k}", where, clockwise=True) for k, h in enumerate(self.holes, 1))
+        object.__setattr__(self, "holes", holes)
+        if holes:
+            check_holes(self.outline, holes, where)
+            if self.grid is not None:
+                msg = "a body with holes has no grid of mesh lines"
+                raise InputError(msg, where=where, hint="leave grid out; mesh_size says how fine its mesh is")
         if not (0 < self.thickness < math.inf):
             msg = f"thickness = {self.thickness:g} must be positive and finite"
             raise InputError(msg, where=where)
@@ -100,7 +93,7 @@ class Body:
     @cached_property
     def moments(self) -> Moments:
         """Area, centroid and second moments."""
-        return polygon_moments(self.outline)
+        return polygon_moments(self.outline, self.holes)
 
     @property
     def area(self) -> float:
@@ -113,9 +106,19 @@ class Body:
         return self.moments.centroid
 
     @property
+    def rings(self) -> tuple[Array, ...]:
+        """The outline, counter-clockwise, and the holes, clockwise: the body lies to the left of every side [m]."""
+        return self.outline, *self.holes
+
+    @cached_property
     def vertices(self) -> Array:
-        """Vertices (n, 2) of the outline [m]."""
-        return self.outline
+        """Vertices (n, 2) of the outline, then of the holes [m]; edge k runs from vertex k to ``following[k]``."""
+        return np.concatenate(self.rings) if self.holes else self.outline
+
+    @cached_property
+    def following(self) -> Array:
+        """Number (n,) of the vertex that comes after each on its ring."""
+        return following([len(ring) for ring in self.rings])
 
     @property
     def volume(self) -> float:

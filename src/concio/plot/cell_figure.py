@@ -159,9 +159,9 @@ def _draw(
         away = shift + scale * (E @ shift)
         own = i == j == 0
         face = [style.body_colour(b) if own else style.NEIGHBOUR for b in bodies]
-        moved = [outline + away for outline in shown.moved(scale)]
+        moved = [[ring + away for ring in rings] for rings in shown.moved(scale)]
         edge, pale = (style.EDGE, 1.0) if own else (style.GHOST, 0.45)
-        ax.add_collection(PolyCollection(moved, facecolors=face, edgecolors=edge, linewidths=0.6, zorder=1 + own))
+        ax.add_collection(style.polygons_of(moved, facecolors=face, edgecolors=edge, linewidths=0.6, zorder=1 + own))
         opened = list(pieces.openings(scale)[code == 0] + away)
         ax.add_collection(PolyCollection(opened, facecolors=style.FILL_OPEN, edgecolors="none", alpha=pale, zorder=3))
         style.draw_lines(ax, pieces.side("middle", scale)[code == 1] + away, style.STICK, zorder=3.2, alpha=pale)

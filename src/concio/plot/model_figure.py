@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from concio.analysis.result import Result
     from concio.display import Units
-    from concio.model.model import Load, Model, Periods
+    from concio.model.model import Body, Load, Model, Periods
 
 Array = np.ndarray
 
@@ -40,8 +40,6 @@ def plot_model(model: Model, ax: Axes | None = None, *, names: bool | None = Non
     -------
     Axes
     """
-    from matplotlib.collections import PolyCollection
-
     box = style.box_of(*[b.outline for b in model.outlines])
     if model.periods is not None:
         box = box + np.array([[-1.0], [1.0]]) * 0.35 * (box[1] - box[0])
@@ -53,11 +51,11 @@ def plot_model(model: Model, ax: Axes | None = None, *, names: bool | None = Non
     free = [b for b in model.outlines if b.kind != "fixed"]
     many = len(free) > style.LARGE
     ax.add_collection(
-        PolyCollection([b.outline for b in free], facecolors=[style.body_colour(b) for b in free],
+        style.polygons_of([b.rings for b in free], facecolors=[style.body_colour(b) for b in free],
                        edgecolors=style.EDGE, linewidths=0.2 if many else 0.7, rasterized=many, zorder=1)
     )  # fmt: skip
     ax.add_collection(
-        PolyCollection([b.outline for b in fixed], facecolors=style.OBSTACLE, edgecolors=style.HATCH, hatch="/////",
+        style.polygons_of([b.rings for b in fixed], facecolors=style.OBSTACLE, edgecolors=style.HATCH, hatch="/////",
                        linewidths=0.8, zorder=0.9)
     )  # fmt: skip
     if model.periods is not None:
@@ -103,13 +101,11 @@ def plot_result_model(result: Result, ax: Axes | None = None, *, names: bool | N
 
 def _neighbours(ax: Axes, model: Model, periods: Periods) -> None:
     """Draw the images of the bodies around a periodic cell in grey, and the cell that the two periods span."""
-    from matplotlib.collections import PolyCollection
-
     p, corners = np.asarray(periods, dtype=float), np.vstack([b.outline for b in model.outlines])
     size = float(np.ptp(corners, axis=0).max())
-    around = [image.body.outline for image in images(model.outlines, periods, 0.6 * size)]
+    around = [image.body.rings for image in images(model.outlines, periods, 0.6 * size)]
     ax.add_collection(
-        PolyCollection(around, facecolors=style.NEIGHBOUR, edgecolors=style.GHOST, linewidths=0.5, zorder=0.7)
+        style.polygons_of(around, facecolors=style.NEIGHBOUR, edgecolors=style.GHOST, linewidths=0.5, zorder=0.7)
     )
     low, own = corners.min(0), model.outlines[0].outline.min(0)
     start = low if np.abs(own - low).max() <= 1e-6 * size else (low + corners.max(0) - p.sum(0)) / 2
@@ -126,10 +122,20 @@ def _names(ax: Axes, model: Model, box: Array) -> None:
         font = min(7.5, 0.85 * width * points_per_metre, 1.6 * room * points_per_metre / max(len(body.name), 1))
         if font >= 2.0:
             ax.annotate(
-                body.name, tuple(body.centroid), ha="center", va="center", fontsize=font, color="#5A5348", zorder=4,
+                body.name, _middle(body), ha="center", va="center", fontsize=font, color="#5A5348", zorder=4,
                 rotation=90 if upright else 0,
                 bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none"} if body.kind == "fixed" else None,
             )  # fmt: skip
+
+
+def _middle(body: Body) -> tuple[float, float]:
+    """Return where a body's name stands: at its centroid, or inside where that lies in a hole."""
+    if not body.holes:
+        return float(body.centroid[0]), float(body.centroid[1])
+    import shapely
+
+    inside = shapely.Polygon(body.outline, body.holes).point_on_surface()
+    return float(inside.x), float(inside.y)
 
 
 def _support(ax: Axes, model: Model, support: Any, size: float) -> None:

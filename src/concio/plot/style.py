@@ -175,8 +175,6 @@ def draw_bodies(
     ax: Axes, model: Model, shown: Outlines, scale: float = 0.0, *, face: Sequence[Any] | None = None, edge: str = EDGE
 ) -> None:
     """Fill the bodies, obstacles hatched; ``face`` gives colours body by body in place of those of the materials."""
-    from matplotlib.collections import PolyCollection
-
     polygons = shown.moved(scale)
     fixed = np.array([b.kind == "fixed" for b in model.bodies])
     free = np.flatnonzero(~fixed).tolist()
@@ -184,13 +182,29 @@ def draw_bodies(
     many = len(free) > LARGE
     width = 0.2 if many else 0.6
     ax.add_collection(
-        PolyCollection([polygons[b] for b in free], facecolors=colours, edgecolors=edge, linewidths=width, zorder=1,
+        polygons_of([polygons[b] for b in free], facecolors=colours, edgecolors=edge, linewidths=width, zorder=1,
                        rasterized=many)
     )  # fmt: skip
     ax.add_collection(
-        PolyCollection([polygons[b] for b in np.flatnonzero(fixed)], facecolors=OBSTACLE, edgecolors=HATCH,
+        polygons_of([polygons[b] for b in np.flatnonzero(fixed)], facecolors=OBSTACLE, edgecolors=HATCH,
                        hatch="/////", linewidths=0.8, zorder=0.9)
     )  # fmt: skip
+
+
+def polygons_of(bodies: Sequence[Sequence[Array]], **options: Any) -> Any:
+    """Return a collection of polygons, each given by its outline and its holes."""
+    from matplotlib.collections import PathCollection, PolyCollection
+    from matplotlib.path import Path
+
+    if all(len(rings) == 1 for rings in bodies):
+        return PolyCollection([rings[0] for rings in bodies], **options)
+    paths = [Path.make_compound_path(*(Path(closed(ring), closed=True) for ring in rings)) for rings in bodies]
+    return PathCollection(paths, **options)
+
+
+def closed(ring: Array) -> Array:
+    """Return a ring (n, 2) whose last point is its first."""
+    return ring if np.array_equal(ring[0], ring[-1]) else np.vstack([ring, ring[:1]])
 
 
 def body_colour(body: Any) -> str:
@@ -207,7 +221,8 @@ def ghost(ax: Axes, shown: Outlines) -> None:
     from matplotlib.collections import LineCollection
 
     if len(shown.starts) <= LARGE:
-        ax.add_collection(LineCollection(shown.moved(0.0), colors=GHOST, linewidths=0.5, linestyles=":", zorder=0.8))
+        rings = [ring for body in shown.moved(0.0) for ring in body]
+        ax.add_collection(LineCollection(rings, colors=GHOST, linewidths=0.5, linestyles=":", zorder=0.8))
 
 
 def scale_bar(ax: Axes, box: Array, length: float, word: str, line: Line) -> None:

@@ -70,12 +70,11 @@ def joint_lines(result: Result, shown: Outlines) -> JointLines:
     ends = start[:, None] + np.stack([low, high], axis=1)[:, :, None] * tangent[:, None]
     moved = []
     for side in ("a", "b"):
-        base = np.array([shown.vertices[getattr(f, side)][getattr(f, f"edge_{side}")] for f in faces])
-        corner = np.array([result.model.outlines[getattr(f, side)].outline[getattr(f, f"edge_{side}")] for f in faces])
+        edge = np.array([shown.edges[getattr(f, side)][getattr(f, f"edge_{side}")] for f in faces])
+        corner = np.array([result.model.outlines[getattr(f, side)].vertices[getattr(f, f"edge_{side}")] for f in faces])
         shift = np.array([f.shift if side == "b" else (0.0, 0.0) for f in faces])  # of images across a cell's edge
         corner = corner + shift
-        edge_end = np.array([shown.vertices[getattr(f, side)][getattr(f, f"edge_{side}") + 1] for f in faces])
         away = np.abs(((ends - corner[face][:, None]) * tangent[:, None]).sum(-1))
-        arc = np.minimum(base[face][:, None] + away, edge_end[face][:, None])
+        arc = np.minimum(edge[face, :1] + away, edge[face, 1:])
         moved.append(shown.at(arc.ravel()).reshape(-1, 2, 2) + (shift @ shown.strain.T)[face][:, None])
     return JointLines(pair, ends, moved[0], moved[1])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,19 +23,21 @@ Array = np.ndarray
 
 @dataclass(frozen=True, eq=False)
 class Outlines:
-    """Closed outlines of B bodies, P points in all; the first point of each is repeated at its end.
+    """Closed outlines and holes of B bodies: R rings, P points in all; the first point of each is repeated at its end.
 
     Parameters
     ----------
     points, displacement : (P, 2) arrays
         [m].
     starts : (B+1,) integer array
-        Points of body b are ``starts[b]:starts[b+1]``.
+        Points of body b are ``starts[b]:starts[b+1]``: its outline, then its holes.
+    rings : (R+1,) integer array
+        Points of ring r are ``rings[r]:rings[r+1]``.
     arc : (P,) array
-        Distance along the outline, growing over all bodies: the outline of a body begins where that of the body
-        before ended, plus one [m]. Places on outlines are found by one interpolation in it.
-    vertices : tuple of (v+1,) arrays
-        For each body, ``arc`` of the vertices of ``Body.outline``.
+        Distance along the rings, growing over all bodies: a ring begins where the one before ended, plus one [m].
+        Places on outlines are found by one interpolation in it.
+    edges : tuple of (v, 2) arrays
+        For each body (v, 2), ``arc`` of the two ends of each edge of its outline and holes.
     strain : (2, 2) array
         Macroscopic strain of a periodic cell: images of its bodies at the shift s move by ``strain @ s`` more.
     """
@@ -42,14 +45,17 @@ class Outlines:
     points: Array
     displacement: Array
     starts: Array
+    rings: Array
     arc: Array
-    vertices: tuple[Array, ...]
+    edges: tuple[Array, ...]
     strain: Array = field(default_factory=lambda: np.zeros((2, 2)))
 
-    def moved(self, scale: float = 1.0) -> list[Array]:
-        """Return the outlines (n, 2) of the bodies with displacements times ``scale`` [m]."""
+    def moved(self, scale: float = 1.0) -> list[list[Array]]:
+        """Return the rings (n, 2) of each body, its outline first, with displacements times ``scale`` [m]."""
         moved = self.points + scale * self.displacement
-        return [moved[a:b] for a, b in zip(self.starts[:-1], self.starts[1:], strict=True)]
+        rings = [moved[a:b] for a, b in pairwise(self.rings.tolist())]
+        first = np.searchsorted(self.rings, self.starts)
+        return [rings[a:b] for a, b in pairwise(first.tolist())]
 
     def at(self, arc: Array) -> Array:
         """Return the displacements (k, 2) of places on the outlines given by their ``arc`` (k,) [m]."""
@@ -74,38 +80,50 @@ def outlines(result: Result, u: Array | None = None) -> Outlines:
     xx, yy, xy = (result.factors.get(name, 0.0) if u is None else 0.0 for name in STRAINS)
     own = result.displacement if u is None else u
     motion = body_motions(result, u)
-    shapes = [s for s in disc.shapes if isinstance(s, Shape)]
-    loops = [np.concatenate([e.nodes[:-1] for e in s.edges] + [s.edges[0].nodes[:1]]) for s in shapes]
-    cuts = [np.cumsum([0] + [len(e.nodes) - 1 for e in s.edges]) for s in shapes]
-    points, moved, vertices, arcs = [], [], [], []
-    starts, begin = [0], 0.0
+    plane = [_loops(shape) for shape in disc.shapes if isinstance(shape, Shape)]
+    points, moved, edges, arcs = [], [], [], []
+    starts, rings, begin = [0], [0], 0.0
     for b, s in enumerate(disc.shape_of):
-        if s >= 0:
-            loop, corner = loops[s], cuts[s]
-            place = disc.shapes[s].elements.nodes[loop] + disc.origins[b]
-            displaced = own[disc.offsets[b] : disc.offsets[b + 1]].reshape(-1, 2)[loop]
-        else:
-            outline = disc.model.outlines[b].outline
-            place, corner = np.vstack([outline, outline[:1]]), np.arange(len(outline) + 1)
-            arm = place - disc.centroids[b]
-            displaced = motion[b, :2] + swept(motion[b, 2], arm)
-            if s == FIXED and u is not None:
-                displaced = np.zeros_like(place)
-        along = begin + np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(place, axis=0).T))])
-        points.append(place)
-        moved.append(displaced)
-        arcs.append(along)
-        vertices.append(along[corner])
-        starts.append(starts[-1] + len(place))
-        begin = along[-1] + 1.0
+        own_edges = []
+        loops = plane[s] if s >= 0 else [(ring, np.arange(len(ring) + 1)) for ring in disc.model.outlines[b].rings]
+        for loop, corner in loops:
+            if s >= 0:
+                place = disc.shapes[s].elements.nodes[loop] + disc.origins[b]
+                displaced = own[disc.offsets[b] : disc.offsets[b + 1]].reshape(-1, 2)[loop]
+            else:
+                place = np.vstack([loop, loop[:1]])
+                displaced = motion[b, :2] + swept(motion[b, 2], place - disc.centroids[b])
+                if s == FIXED and u is not None:
+                    displaced = np.zeros_like(place)
+            along = begin + np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(place, axis=0).T))])
+            points.append(place)
+            moved.append(displaced)
+            arcs.append(along)
+            own_edges.append(np.stack([along[corner[:-1]], along[corner[1:]]], 1))
+            rings.append(rings[-1] + len(place))
+            begin = along[-1] + 1.0
+        edges.append(np.concatenate(own_edges))
+        starts.append(rings[-1])
     return Outlines(
         np.vstack(points),
         np.vstack(moved),
         np.array(starts),
+        np.array(rings),
         np.concatenate(arcs),
-        tuple(vertices),
+        tuple(edges),
         np.array([[xx, xy / 2], [xy / 2, yy]]),
     )
+
+
+def _loops(shape: Shape) -> list[tuple[Array, Array]]:
+    """Return for each ring of a shape its nodes, the first repeated, and where among them its vertices are."""
+    found, at = [], 0
+    for ring in shape.rings:
+        sides = shape.edges[at : at + len(ring)]
+        nodes = np.concatenate([e.nodes[:-1] for e in sides] + [sides[0].nodes[:1]])
+        found.append((nodes, np.cumsum([0] + [len(e.nodes) - 1 for e in sides])))
+        at += len(ring)
+    return found
 
 
 def display_scale(largest: float, size: float, share: float = 0.05) -> float:

@@ -42,12 +42,16 @@
   };
   const draw = () => { if (!waiting) { waiting = true; requestAnimationFrame(() => { waiting = false; paint(draft); }); } };
 
+  /* the last points of all rings: outlines, then holes, each closed by its first point */
+  const ends = new Set(Array.from(bodies.ring, (first) => first - 1));
+
   /* length of the longest stress cross: the median size of the larger half of the free bodies */
   const sizes = [];
   for (let b = 0; b < count; b++) {
     if (bodies.kind[b] === "fixed") continue;
     let area = 0;
     for (let i = bodies.start[b]; i < bodies.start[b + 1] - 1; i++) {
+      if (ends.has(i)) continue;
       area += (bodies.point[2 * i] * bodies.point[2 * i + 3] - bodies.point[2 * i + 2] * bodies.point[2 * i + 1]) / 2;
     }
     sizes.push(Math.sqrt(Math.abs(area)));
@@ -139,10 +143,12 @@
 
   /* drawing */
   function trace(b) {
-    const first = bodies.start[b], last = bodies.start[b + 1] - 1;
-    pen.moveTo(X(moved[2 * first]), Y(moved[2 * first + 1]));
-    for (let i = first + 1; i < last; i++) pen.lineTo(X(moved[2 * i]), Y(moved[2 * i + 1]));
-    pen.closePath();
+    let first = true;
+    for (let i = bodies.start[b]; i < bodies.start[b + 1]; i++) {
+      if (ends.has(i)) { pen.closePath(); first = true; continue; }
+      if (first) pen.moveTo(X(moved[2 * i]), Y(moved[2 * i + 1])); else pen.lineTo(X(moved[2 * i]), Y(moved[2 * i + 1]));
+      first = false;
+    }
   }
   function fillBodies(shown) {
     const groups = new Map();
@@ -299,6 +305,7 @@
       if (x < boxes[4 * b] || x > boxes[4 * b + 2] || y < boxes[4 * b + 1] || y > boxes[4 * b + 3]) continue;
       let odd = false;
       for (let i = bodies.start[b]; i < bodies.start[b + 1] - 1; i++) {
+        if (ends.has(i)) continue;
         const x0 = moved[2 * i], y0 = moved[2 * i + 1], x1 = moved[2 * i + 2], y1 = moved[2 * i + 3];
         if (y0 > y !== y1 > y && x < x0 + ((y - y0) / (y1 - y0)) * (x1 - x0)) odd = !odd;
       }

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -88,6 +89,7 @@ def view_data(results: Sequence[Result], labels: Sequence[str]) -> dict[str, Any
             "name": [b.name for b in model.bodies],
             "kind": [_kind(b) for b in model.bodies],
             "start": pack(shown.starts, "i4"),
+            "ring": pack(shown.rings, "i4"),
             "point": pack(shown.points - origin, "f4"),
             "centre": pack(disc.centroids - origin, "f8"),
         },
@@ -139,7 +141,7 @@ def _step(result: Result, label: str) -> dict[str, Any]:
     velocity = None if solved or result.mechanism is None else result.mechanism_velocity
     motion = body_motions(result, velocity)
     if not solved and velocity is None:  # no answer: nothing moves
-        shown = Outlines(shown.points, np.zeros_like(shown.displacement), shown.starts, shown.arc, shown.vertices)
+        shown = replace(shown, displacement=np.zeros_like(shown.displacement))
         pieces = joint_lines(result, shown)
         motion = np.zeros_like(motion)
     step: dict[str, Any] = {

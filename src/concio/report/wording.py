@@ -134,14 +134,15 @@ class Check:
 def verdict(result: Result) -> Verdict:
     """Return the outcome of a result in words; what needs attention comes first of what to do next."""
     words = VERDICTS[result.status]
-    steps = [f"{text[0].upper()}{text[1:]}." for text in implausible(result.model)]
+    odd = implausible(result.model)
+    steps = [f"{line[0].upper()}{line[1:]}." for line in odd]
     missed = len(result.assembly.detection.near_misses)
     if missed:
         places = f"At {missed:,} place{'s' if missed > 1 else ''}"
         steps.append(
             f"{places} bodies nearly touch and have no joint: 'concio check' names them. Is that what you meant?"
         )
-    told = [f"{line[0].upper()}{line[1:]}" for line in result.attention]
+    told = [f"{line[0].upper()}{line[1:]}" for line in result.attention if line not in odd]
     steps += [f"{line}. Read it as a warning, not as a place of rest." for line in told]
     meaning = words.meaning
     if result.self_stress is not None:

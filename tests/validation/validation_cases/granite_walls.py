@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 
 import concio
-from concio.solvers.statics.collapse_state import find_collapse_state
+from concio.solvers.statics.collapse_search import find_collapse_state
 from concio.solvers.statics.limit import associated_limit
 from validation_cases.row import Row
 
@@ -86,7 +86,7 @@ def collapse(n: float) -> float:
     """Multiplier of a certified Coulomb collapse state of the rigid blocks [kN]."""
     assembly = concio.assemble(model(n))
     dead = assembly.problem({"push": 0.0})
-    state = find_collapse_state(dead, assembly.problem().f - dead.f)
+    state = find_collapse_state(dead, assembly.problem().f - dead.f).state
     return np.nan if state is None else float(state.multiplier)
 
 

@@ -18,7 +18,7 @@ from concio.model.stages import Stage
 from concio.problem.certificate import Certificate
 from concio.problem.solution import Status, judge
 from concio.solvers.path.record import Outcome
-from concio.solvers.path.state import CLOSED, OPEN, STICK, PathState
+from concio.solvers.path.state import CLOSED, OPEN, STICK, LinearPath, PathState, path_kinematics
 
 if TYPE_CHECKING:
     from concio.plot.cell_accessor import CellPathPlots
@@ -141,7 +141,9 @@ class CellPath:
         problem = self.cell.assembly.problem(factors)
         judged = judge(problem, state.displacement, state.normal_force, state.friction, method="path")
         status = Status.SOLVED if chosen.certificate.certified else Status.GAVE_UP
-        return Result(self.cell.assembly, factors, replace(judged, certificate=chosen.certificate, status=status), {})
+        moved = path_kinematics(LinearPath(problem, np.zeros(problem.unknowns)), state)
+        solution = replace(judged, kinematics=moved, certificate=chosen.certificate, status=status)
+        return Result(self.cell.assembly, factors, solution, {})
 
     @property
     def plot(self) -> CellPathPlots:

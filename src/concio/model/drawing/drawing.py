@@ -13,6 +13,7 @@ import shapely
 from concio.arguments import strict_with
 from concio.errors import GeometryError, InputError
 from concio.model.drawing.dxf import CHORD_TOLERANCE, Drawing, DxfFault, Outline, read_drawing
+from concio.model.drawing.holes import with_holes
 from concio.model.drawing.layers import Layers
 from concio.model.drawing.mend import mended
 from concio.model.drawing.places import supports_and_loads
@@ -169,7 +170,8 @@ def usable_outlines(
             note("outline", o, fault.at, f"{fault.sentence} ({fault.hint})")
         if not wrong:
             result.append(o)
-    return (result if mend else _without_duplicates(result, mend, note)), faults, tuple(moved)
+    whole = result if mend else _without_duplicates(result, mend, note)
+    return with_holes(whole, note), faults, tuple(moved)
 
 
 def _wider(outlines: list[Outline], mend: float, note: Any, where: str) -> list[Outline]:
@@ -223,23 +225,32 @@ def _pieces(
     for o in outlines:
         use = o.use
         if use.use == "fixed":
-            obstacles.append(Piece(o.name, o.points, use.role or "obstacle", o.layer, "", use.thickness))
+            role = use.role or "obstacle"
+            obstacles.append(Piece(o.name, o.points, role, o.layer, "", use.thickness, _rings(o)))
             continue
         key = use.material or by_layer.get(o.layer.upper(), "block")
         if key in materials:
             table[key] = materials[key]
         elif use.use == "rigid":
             key, table["rigid"] = "rigid", Rigid(options.block.unit_weight)
-        pieces.append(Piece(o.name, o.points, use.role or "block", o.layer, key, use.thickness))
+        pieces.append(Piece(o.name, o.points, use.role or "block", o.layer, key, use.thickness, _rings(o)))
     return pieces, obstacles, table
+
+
+def _rings(outline: Outline) -> tuple[Array, ...]:
+    return tuple(hole.points for hole in outline.holes)
 
 
 def _overlaps(outlines: list[Outline], obstacles: list[Piece], tolerance: float) -> list[DxfFault]:
     fixed = {o.name for o in obstacles}
-    bodies = [Body(o.name, o.points, kind="fixed" if o.name in fixed else "elastic") for o in outlines]
+    bodies = [
+        Body(o.name, o.points, kind="fixed" if o.name in fixed else "elastic", holes=_rings(o)) for o in outlines
+    ]
     found = []
     for overlap in find_overlaps(bodies, tolerance):
         p, q = (outlines[k] for k in overlap.bodies)
         text = f"entities {p.handle} and {q.handle} on layers '{p.layer}' and '{q.layer}': {overlap.sentence}"
+        if min(bodies[k].area for k in overlap.bodies) < 1.001 * overlap.area:
+            text += "; is one a hole in the other? its layer can be given the meaning 'hole' in [drawing.layers]"
         found.append(DxfFault("overlap", p.handle, p.layer, overlap.at, text))
     return found

@@ -26,7 +26,7 @@ def supports_and_loads(
     tolerance : float
         What is drawn nearer than twice this to an edge lies on it [m].
     """
-    shapes = shapely.polygons([shapely.linearrings(p.outline) for p in pieces])
+    shapes = np.array([shapely.Polygon(p.outline, p.holes) for p in pieces])
     rings = shapely.boundary(shapes)
     bands = shapely.buffer(rings, 2 * tolerance)
     supports: list[Support] = []

@@ -11,9 +11,10 @@ take for a formula are written with an apostrophe in front, which reading takes 
     name,outline,material,kind,role,layer,thickness
     b1,0 0; 0.4 0; 0.4 0.2; 0 0.2,block,elastic,block,,1.0
 
-``name`` and ``outline`` must be there; the others, where they are left out or their cell is empty, have the defaults
-of :class:`concio.model.model.Body`. JSON may hold ``mesh_size`` too, and another ``unit`` of its coordinates (thickness
-and mesh size are always in m).
+A further column ``holes`` gives the holes of a block, written as its outline, with ``|`` between them; in JSON they
+are a list of outlines. ``name`` and ``outline`` must be there; the others, where they are left out or their cell is
+empty, have the defaults of :class:`concio.model.model.Body`. JSON may hold ``mesh_size`` too, and another ``unit`` of
+its coordinates (thickness and mesh size are always in m).
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ from concio.units import DECIMAL_COMMA, quantity
 FORMAT, VERSION = "concio blocks", 1
 _TEXTS = ("material", "kind", "role", "layer")
 _NUMBERS = ("thickness", "mesh_size")
-_COLUMNS = ("name", "outline", *_TEXTS, *_NUMBERS)
+_COLUMNS = ("name", "outline", *_TEXTS, *_NUMBERS, "holes")
 
 
 def read_blocks(path: str | Path) -> tuple[Body, ...]:
@@ -91,8 +92,14 @@ def write_blocks(path: str | Path, bodies: Sequence[Body]) -> None:
     bodies : sequence of Body
     """
     path = Path(path)
-    rows = [
-        {"name": b.name, "outline": b.outline.tolist(), **{k: getattr(b, k) for k in _TEXTS + _NUMBERS}} for b in bodies
+    rows: list[dict[str, Any]] = [
+        {
+            "name": b.name,
+            "outline": b.outline.tolist(),
+            **{k: getattr(b, k) for k in _TEXTS + _NUMBERS},
+            "holes": [hole.tolist() for hole in b.holes] or None,
+        }
+        for b in bodies
     ]
     if path.suffix.lower() == ".json":
         rows = [{k: v for k, v in row.items() if v is not None} for row in rows]
@@ -100,10 +107,13 @@ def write_blocks(path: str | Path, bodies: Sequence[Body]) -> None:
         text = f'{{"format": "{FORMAT}", "version": {VERSION}, "unit": "m", "blocks": [\n{blocks}\n]}}\n'
     elif path.suffix.lower() == ".csv":
         stream = io.StringIO()
-        table = csv.DictWriter(stream, _COLUMNS, lineterminator="\n")
+        with_holes = any(row["holes"] for row in rows)
+        table = csv.DictWriter(stream, _COLUMNS if with_holes else _COLUMNS[:-1], lineterminator="\n")
         table.writeheader()
         for row in rows:
-            row["outline"] = "; ".join(f"{x!r} {y!r}" for x, y in row["outline"])
+            row["outline"] = _written(row["outline"])
+            holes = " | ".join(_written(hole) for hole in row.pop("holes") or ())
+            row |= {"holes": holes} if with_holes else {}
             table.writerow({k: guarded(v) if k in ("name", *_TEXTS) else v for k, v in row.items()})
         text = stream.getvalue()
     else:
@@ -149,7 +159,7 @@ def _csv_rows(text: str, where: str) -> Iterable[tuple[str, Mapping[str, Any]]]:
         for name in ("name", "outline"):
             if name not in header:
                 msg = f"the header has no column '{name}'"
-                hint = "the first line must name the columns: " + ",".join(_COLUMNS[:-1])
+                hint = "the first line must name the columns: " + ",".join(_COLUMNS[:-2])
                 if ";" in "".join(header):
                     hint = "columns are separated by commas, vertices by semicolons"
                 raise InputError(msg, where=where, hint=hint)
@@ -194,7 +204,20 @@ def _body(row: Mapping[str, Any], factor: float, where: str) -> Body:
     for key in _NUMBERS:
         if row.get(key) is not None:
             values[key] = quantity(row[key], "length", where=f"{where}, {key}")
-    return Body(name, outline, **values)
+    holes = row.get("holes") or []
+    if isinstance(holes, str):
+        holes = holes.split("|")
+    if not isinstance(holes, list):
+        msg = "holes is not a list of outlines"
+        raise InputError(msg, where=where, hint="write [[[x, y], ...], ...] in JSON, x y; x y; x y | ... in CSV")
+    rings = [factor * _outline(hole, f"{where}, hole {k}") for k, hole in enumerate(holes, 1)]
+    for k, ring in enumerate(rings, 1):
+        check_polygon(ring, f"{name}', hole '{k}")
+    return Body(name, outline, holes=tuple(rings), **values)
+
+
+def _written(ring: Iterable[tuple[float, float]]) -> str:
+    return "; ".join(f"{x!r} {y!r}" for x, y in ring)
 
 
 def _outline(value: Any, where: str) -> Array:

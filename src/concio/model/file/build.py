@@ -267,7 +267,10 @@ def _body(table: BlockTable, number: int, materials: Materials, thickness: float
         role = table.role if table.role is not None else "obstacle" if kind == "fixed" else "block"
         grid = None if table.grid is None else (np.array(table.grid.x), np.array(table.grid.y))
         depth = thickness if table.thickness is None else table.thickness
-        return Body(table.name, outline, table.material, kind, role, table.layer, depth, grid, table.mesh_size)
+        holes = tuple(np.array(hole, dtype=float).reshape(-1, 2) for hole in table.holes)
+        for k, hole in enumerate(holes, 1):
+            check_polygon(hole, f"{table.name}', hole '{k}")
+        return Body(table.name, outline, table.material, kind, role, table.layer, depth, grid, table.mesh_size, holes)
 
 
 def _support(table: SupportTable, number: int) -> Support:

@@ -117,13 +117,20 @@ def file_table() -> type[FileTable]:
 
 def json_schema() -> dict[str, Any]:
     """Return the JSON Schema of a model file (draft 2020-12)."""
-    schema = file_table().model_json_schema()
+    schema = _any_of(file_table().model_json_schema())
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         **schema,
         "title": "concio model file",
         "description": "A masonry structure for concio, written in TOML.",
     }
+
+
+def _any_of(schema: Any) -> Any:
+    """Return a schema in which a text may be read in two ways: the angle of a coefficient and a name are both texts."""
+    if isinstance(schema, dict):
+        return {"anyOf" if key == "oneOf" else key: _any_of(value) for key, value in schema.items()}
+    return [_any_of(value) for value in schema] if isinstance(schema, list) else schema
 
 
 def _first_line(thing: Any) -> str:

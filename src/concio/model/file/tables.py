@@ -162,10 +162,11 @@ class GridTable(Table):
 
 
 class BlockTable(Table):
-    """A block, a mortar film or an obstacle: an outline, or a rectangle by two opposite corners."""
+    """A block, a mortar film or an obstacle: an outline, or a rectangle by two opposite corners; holes in it."""
 
     name: Name
     outline: list[Point] | None = None
+    holes: list[list[Point]] = Field(default_factory=list)
     rectangle: tuple[Point, Point] | None = None
     material: StrictStr = "block"
     kind: Literal["elastic", "rigid", "fixed"] | None = None

@@ -124,6 +124,7 @@ def _body(body: Body) -> dict[str, Any]:
     return {
         "name": body.name,
         "outline": body.outline,
+        "holes": list(body.holes) or None,
         "material": body.material,
         "kind": body.kind,
         "role": body.role,

@@ -15,7 +15,7 @@ from concio.model.model import Array, Body, JointRule, Load, Model
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A block before it is a body: name, outline (n, 2), role, layer, material, thickness (None: the common one)."""
+    """A block before it is a body: name, outline (n, 2), role, layer, material, thickness (None: common), holes."""
 
     name: str
     outline: Array
@@ -23,6 +23,7 @@ class Piece:
     layer: str = ""
     material: str = "block"
     thickness: float | None = None
+    holes: tuple[Array, ...] = ()
 
 
 def rectangle(x0: float, x1: float, y0: float, y1: float) -> Array:
@@ -63,11 +64,13 @@ def assemble(
     """
     table: dict[str, Elastic | Rigid] = {"block": options.block, **(materials or {})}
     bodies = [
-        Body(o.name, o.outline, "", "fixed", o.role, o.layer, o.thickness or options.thickness) for o in obstacles
+        Body(o.name, o.outline, "", "fixed", o.role, o.layer, o.thickness or options.thickness, holes=o.holes)
+        for o in obstacles
     ]
     for p in pieces:
         kind: Literal["elastic", "rigid"] = "rigid" if isinstance(table[p.material], Rigid) else "elastic"
-        bodies.append(Body(p.name, p.outline, p.material, kind, p.role, p.layer, p.thickness or options.thickness))
+        depth = p.thickness or options.thickness
+        bodies.append(Body(p.name, p.outline, p.material, kind, p.role, p.layer, depth, holes=p.holes))
     laws: dict[str, JointLaw] = {"joint": options.law}
     rules = [JointRule("joint")]
     if options.base_law is not None:

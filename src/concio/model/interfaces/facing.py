@@ -26,11 +26,10 @@ class Edges:
     @classmethod
     def of(cls, bodies: Sequence[Body]) -> Edges:
         """Return the edges of all bodies, without those of length zero."""
-        counts = np.array([len(b.outline) for b in bodies])
-        start = np.concatenate([b.outline for b in bodies])
+        counts = np.array([len(b.vertices) for b in bodies])
+        start = np.concatenate([b.vertices for b in bodies])
         first = np.concatenate([[0], np.cumsum(counts)[:-1]])
-        following = np.arange(len(start)) + 1
-        following[first + counts - 1] = first
+        following = np.concatenate([b.following + at for b, at in zip(bodies, first, strict=True)])
         body = np.repeat(np.arange(len(bodies)), counts)
         number = np.arange(len(start)) - first[body]
         end = start[following]

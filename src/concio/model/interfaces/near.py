@@ -125,6 +125,9 @@ def polygons(bodies: Sequence[Body]) -> Array:
     points = np.concatenate([b.outline for b in bodies])
     rings = shapely.linearrings(points, indices=np.repeat(np.arange(len(bodies)), counts))
     result: Array = shapely.polygons(rings)
+    for k, body in enumerate(bodies):
+        if body.holes:
+            result[k] = shapely.Polygon(body.outline, body.holes)
     return result
 
 
@@ -180,8 +183,8 @@ def find_point_touches(bodies: Sequence[Body], known: set[tuple[int, int]], tole
     line = shapely.shortest_line(shapes[i], shapes[j])
     point = shapely.get_point(line, 0)
     corners = shapely.multipoints(
-        np.concatenate([b.outline for b in bodies]),
-        indices=np.repeat(np.arange(len(bodies)), [len(b.outline) for b in bodies]),
+        np.concatenate([b.vertices for b in bodies]),
+        indices=np.repeat(np.arange(len(bodies)), [len(b.vertices) for b in bodies]),
     )
     far_a = shapely.distance(point, corners[i]) > 2 * tolerance
     far_b = shapely.distance(point, corners[j]) > 2 * tolerance

@@ -60,7 +60,9 @@ def images(bodies: Sequence[Body], periods: Periods, near: float) -> list[Image]
             beside = ((low + shift <= high.max(0) + near) & (high + shift >= low.min(0) - near)).all(1)
             for k in np.flatnonzero(beside).tolist():
                 name = f"{bodies[k].name} of the cell at ({i:+d}, {j:+d})"
-                image = replace(bodies[k], name=name, outline=bodies[k].outline + shift, kind="fixed", grid=None)
+                holes = tuple(hole + shift for hole in bodies[k].holes)
+                outline = bodies[k].outline + shift
+                image = replace(bodies[k], name=name, outline=outline, holes=holes, kind="fixed", grid=None)
                 found.append(Image(image, k, (i, j), shift))
     return found
 

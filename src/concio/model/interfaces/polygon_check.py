@@ -69,7 +69,8 @@ def check_polygon(outline: Array, name: str = "", *, tolerance: float = 0.0, sha
 def check_bodies(bodies: Sequence[Body]) -> None:
     """Raise for the first body whose outline has a fault."""
     for body in bodies:
-        check_polygon(body.outline, body.name)
+        for ring in body.rings:
+            check_polygon(ring, body.name)
 
 
 def polygon_faults(outline: Array, *, tolerance: float = 0.0, sharpest: float = SHARPEST) -> tuple[Fault, ...]:

@@ -285,7 +285,7 @@ def scale(problem: ContactProblem, engine: Engine = "superlu", *, loads: Array |
         K=K,
         C=C,
         **_in_units(problem, C, force, length),
-        inertia=problem.inertia / problem.inertia.mean(),
+        inertia=problem.inertia / (float(problem.inertia.sum()) or 1.0) * len(problem.inertia),
         rigid=problem.R,
         factor=factor,
         glued=u / length,

@@ -8,7 +8,8 @@ A problem whose joints are hard between bodies that do not deform is solved with
 and what is wanted is the limit of x as a goes to zero, where M alone is singular: its forces are not unique. Repeated
 solves with residuals of M,  x <- x + (M + a D)^{-1} (b - M x),  converge to that limit, an error of the order a times
 smaller with each, and never bring in forces that balance themselves. Forces are eliminated as in the engine,
-K + C'(aD)^{-1}C, one factorisation for all.
+K + C'(aD)^{-1}C, one factorisation for all. Hard pairs to which nothing was lent, those of bodies that deform, take
+part with the least compliance lent: it only has to be small beside that of their bodies, and is gone in the limit.
 """
 
 from __future__ import annotations
@@ -72,6 +73,7 @@ class _States:
         self.C = sp.csr_array(sp.vstack([hard.C_n, hard.C_t]))[_interleaved(m, d)]
         self.a = _compliance(hard)
         self.added = _compliance(lent) - self.a
+        self.added[self.a + self.added == 0] = self.added.min(initial=np.inf, where=self.added > 0)
         self._blocks()
 
     def _blocks(self) -> None:

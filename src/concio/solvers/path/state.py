@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from concio.errors import InputError
-from concio.problem.certificate import Certificate, certify, scales
+from concio.problem.certificate import Certificate, Kinematics, certify, scales
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Solution
 
@@ -142,11 +142,25 @@ def plastic_position(path: LinearPath, state: PathState) -> tuple[Array, Array]:
     return opening, slip
 
 
+def path_kinematics(path: LinearPath, state: PathState) -> Kinematics:
+    """Return gaps and slips of a state as its path left them: dilatancy opened with every slip, forth and back.
+
+    The crushing of a pair that also dilates is what is left of its offset with the slip taken as one way.
+    """
+    opening, slip = plastic_position(path, state)
+    law = path.problem.laws
+    crushed = state.offset + law.dilatancy * np.abs(slip)
+    crushing = np.where(path.problem.cone.capped, np.maximum(crushed, 0.0), 0.0)
+    return Kinematics(opening + state.offset, slip[:, None], crushing)
+
+
 def energy_of_step(path: LinearPath, before: PathState, after: PathState) -> tuple[float, float]:
     """Return (work, dissipation) between two states joined by a straight line, exactly (trapezoidal rule) [kN m].
 
     The work is that of the loads and of the obstacles; the dissipation -sum int (t_n dy_n + t_t dy_t) holds friction,
-    ductile opening at the tensile strength, crushing, and the negative share of dilatancy.
+    ductile opening at the tensile strength, crushing, and the negative share of dilatancy. It can fall: a joint that
+    closes gives back what opening at its tensile strength took, and of a finite step that ends on a cone it did not
+    begin on, only the share of the straight line is counted, which with much dilatancy may be negative.
     """
     problem = path.problem
     du = after.displacement - before.displacement

@@ -1,4 +1,4 @@
-r"""Direct search for a collapse state of Coulomb friction without dilatancy.
+r"""Collapse states of Coulomb friction without dilatancy, and their certificate.
 
 A *collapse state* is a multiplier lambda, forces t and a rigid motion v with g'v > 0 such that
 
@@ -6,37 +6,27 @@ A *collapse state* is a multiplier lambda, forces t and a rigid motion v with g'
           t_t = -(c + \mu t_n)\, w_t/|w_t| \text{ where } w_t \ne 0,
 
 with w = C v: the structure can begin to move at lambda with the friction that its joints really have. There may be
-many; the least multiplier among them is a mathematical programme with complementarity constraints (Ferris and Tin-Loi,
-Int. J. Mech. Sci. 43, 2001). The search here is the simple iteration on the sliding strength: with the strength frozen
-at c + mu t_n of the forces found last, flow is associated and dilatancy zero, a linear programme; its forces, averaged
-with the old ones, give the next strength (in the spirit of Gilbert, Casapulla and Ahmed, Comput. Struct. 84, 2006).
+many; :mod:`concio.solvers.statics.collapse_search` looks for the least.
 
-Nothing is believed because the iteration stands still: forces of the *true* cones, with every pair in the state that
-the motion asks for, are found by one more linear programme, and the state is rechecked by plain matrix products.
+Here a motion becomes a state: forces of the *true* cones, with every pair in the state that the motion asks for, are
+found by a linear programme, and the state is rechecked by plain matrix products.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
 
-from concio.errors import InputError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.tolerances import CHECKED
-from concio.solvers.statics.limit import associated_limit, static_residual
+from concio.solvers.statics.limit import static_residual
 from concio.solvers.statics.mechanism import pair_velocities
 from concio.solvers.statics.programme import LARGE, Method, StaticProgramme, optimise
 
 MOVES = 1e-8
 """Relative velocities above this share of the largest count as opening or slipping."""
-
-NEARLY_STILL = 1e-3
-"""Relative change of the multiplier of frozen strength below which its motion is tried."""
-
-STILL, PATIENCE = 1e-9, 6
-"""The search ends where that change is below ``STILL`` for ``PATIENCE`` iterations in a row."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,54 +61,6 @@ class CollapseState:
     def certified(self) -> bool:
         """True when all residuals are rounding."""
         return max(self.statics, self.flow) <= CHECKED
-
-
-def find_collapse_state(
-    problem: ContactProblem, live: Array, *, iterations: int = 60, average: float = 0.5
-) -> CollapseState | None:
-    """Search a Coulomb collapse state and return the certified one of least multiplier met, or None.
-
-    Parameters
-    ----------
-    problem : ContactProblem
-        With its dead load; two-dimensional.
-    live : (N,) array
-    iterations : int
-        Linear programmes with frozen strength, at most.
-    average : float
-        Weight of the new forces in the strength.
-    """
-    if problem.dim != 2:
-        msg = "the search for collapse states handles plane problems"
-        raise InputError(msg, hint="follow the load path instead")
-    law = problem.laws
-    start = associated_limit(problem, live)
-    if not np.isfinite(start.multiplier):
-        return None
-    strength = problem.cone.strength(start.normal_force)
-    best: CollapseState | None = None
-    last, still = np.inf, 0
-    zero = np.zeros(problem.pairs)
-    asked: set[bytes] = set()
-    for count in range(1, iterations + 1):
-        frozen = replace(law, friction=zero, dilatancy=zero, cohesion=strength)
-        found = associated_limit(replace(problem, laws=frozen), live)
-        if not np.isfinite(found.multiplier) or found.mechanism is None:
-            return best
-        change = abs(found.multiplier - last) / max(1.0, abs(last)) if count > 1 else 0.0
-        if change <= NEARLY_STILL:
-            motion = Motion.of(problem, found.mechanism.velocity)
-            if motion.key not in asked:
-                asked.add(motion.key)
-                state = certify_collapse(problem, live, found.mechanism.velocity, count)
-                if state is not None and (best is None or state.multiplier < best.multiplier - 1e-12):
-                    best = state
-        still = still + 1 if change <= STILL else 0
-        if still >= PATIENCE:
-            return best
-        last = found.multiplier
-        strength = (1 - average) * strength + average * problem.cone.strength(found.normal_force)
-    return best
 
 
 @dataclass(frozen=True, eq=False)

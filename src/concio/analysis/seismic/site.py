@@ -1,0 +1,228 @@
+"""The site: how strongly the ground shakes, how often, and what the building makes of it at a height."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from concio.analysis.seismic.code import Code, find_code
+from concio.analysis.seismic.floor import FloorSpectrum, Mode, Storeys
+from concio.analysis.seismic.spectrum import Spectrum
+from concio.arguments import closest, strict_class
+from concio.errors import InputError
+from concio.units import quantity
+
+LARGEST, STRONG = 1.0, 0.5
+"""No rock shakes harder than the first [g]; more than the second is told, for m/s2 may have been meant."""
+
+
+@dataclass(frozen=True)
+class Hazard:
+    """What one return period brings.
+
+    Parameters
+    ----------
+    T_R : float
+        Return period [years]; ``nan`` where not stated.
+    a_g : float
+        Peak acceleration on rock, in g.
+    F0 : float
+        Largest amplification.
+    T_star : float
+        Tc* [s].
+    """
+
+    T_R: float
+    a_g: float
+    F0: float = 2.5
+    T_star: float = 0.3
+
+    def __post_init__(self) -> None:
+        if not 0 < self.a_g <= LARGEST:
+            msg = f"a_g = {self.a_g:g} g is no acceleration of a site"
+            hint = "a_g is a share of gravity" + (f"; was {self.a_g:g} m/s2 meant?" if self.a_g > LARGEST else "")
+            raise InputError(msg, hint=hint)
+        if not 1.0 <= self.F0 <= 5.0:
+            msg = f"F0 = {self.F0:g} must lie between 1 and 5"
+            raise InputError(msg, hint="2.2 is the least in Italy")
+        if not 0.05 <= self.T_star <= 2.0:
+            msg = f"Tc* = {self.T_star:g} s must lie between 0.05 and 2 s"
+            raise InputError(msg)
+
+
+@strict_class
+@dataclass(frozen=True)
+class Site:
+    """A site and the limit states to check there.
+
+    Parameters
+    ----------
+    hazard : mapping or sequence
+        By limit state: ``{"SLV": {"a_g": 0.20, "F0": 2.45, "Tc": 0.32}}``; or a table of return periods, a sequence of
+        ``{"T_R": 475, "a_g": 0.20, "F0": 2.45, "Tc": 0.32}``, between which the logarithms are interpolated. a_g in g
+        (or a text with m/s2), Tc* in s.
+    soil, topography : str
+        As the code names them.
+    nominal_life : float
+        V_N [years].
+    use_class : str
+        Class of use, "I" to "IV".
+    code : str
+        "ntc2018", "en1998", or the path of a file.
+    spectrum_type : str
+        Of codes with types of spectra.
+    building : Storeys, Mode, a mapping, or a sequence of modes
+        Modes of the building, for mechanisms that start above the ground; none where they are all checked on the
+        ground. ``{"height": 6.0, "storeys": 2, "T1": 0.25, "xi": 10}`` is the first mode of a regular building, whose
+        shape follows from the height of each mechanism; ``{"T": ..., "participation": ..., "shape": ..., "xi": ...}``
+        one mode with its shape at the height of the mechanism.
+
+    Raises
+    ------
+    InputError
+        Something is not known to the code, or is no number of a site.
+    """
+
+    hazard: Any
+    soil: str = "A"
+    topography: str = "T1"
+    nominal_life: float = 50.0
+    use_class: str = "II"
+    code: str = "ntc2018"
+    spectrum_type: str = "1"
+    building: Any = ()
+
+    def __post_init__(self) -> None:
+        rules = self.rules
+        if isinstance(self.hazard, Mapping):
+            points: Any = {}
+            for level, given in self.hazard.items():
+                rules.pick("levels", level, "limit state")
+                points[level] = _hazard(given, f"hazard of {level}")
+        else:
+            points = tuple(sorted((_hazard(g, f"hazard {k}") for k, g in enumerate(self.hazard, 1)), key=_by_period))
+            if not points or any(math.isnan(p.T_R) for p in points):
+                msg = "a table of hazards needs a return period T_R in every row"
+                raise InputError(msg, hint='or give them by limit state: {"SLV": {"a_g": 0.2, "F0": 2.45, "Tc": 0.32}}')
+        object.__setattr__(self, "hazard", points)
+        given = self.building if isinstance(self.building, list | tuple) else (self.building,)
+        object.__setattr__(self, "building", tuple(_mode(m) for m in given))
+        rules.spectrum(1.0, 2.5, 0.3, self.soil, self.topography, self.spectrum_type)
+        rules.reference_life(self.nominal_life, self.use_class)
+
+    @property
+    def rules(self) -> Code:
+        """The code."""
+        return find_code(self.code)
+
+    @property
+    def life(self) -> float:
+        """Reference life V_R [years]."""
+        return self.rules.reference_life(self.nominal_life, self.use_class)
+
+    @property
+    def levels(self) -> tuple[str, ...]:
+        """Limit states for which the hazard is known."""
+        known = self.rules.choices("levels")
+        return tuple(level for level in known if not isinstance(self.hazard, Mapping) or level in self.hazard)
+
+    def at(self, level: str) -> Hazard:
+        """Return the hazard of a limit state, with its return period.
+
+        Raises
+        ------
+        InputError
+            The hazard of this limit state is not known.
+        """
+        T_R = self.rules.return_period(level, self.life)
+        if isinstance(self.hazard, Mapping):
+            if level not in self.hazard:
+                msg = f"the hazard of {level} is not given"
+                raise InputError(msg, hint="known: " + ", ".join(self.hazard))
+            given: Hazard = self.hazard[level]
+            return given if not math.isnan(given.T_R) else Hazard(T_R, given.a_g, given.F0, given.T_star)
+        return self.interpolated(T_R)
+
+    def interpolated(self, T_R: float) -> Hazard:
+        """Return the hazard of a return period from the table: linear in the logarithms, constant beyond its ends."""
+        rows = self.hazard
+        logs = np.log([p.T_R for p in rows])
+        at = math.log(T_R)
+        values = (np.exp(np.interp(at, logs, np.log([getattr(p, k) for p in rows]))) for k in ("a_g", "F0", "T_star"))
+        a_g, F0, T_star = (float(v) for v in values)
+        return Hazard(T_R, a_g, F0, T_star)
+
+    def spectrum(self, hazard: Hazard) -> Spectrum:
+        """Return the elastic spectrum on the ground."""
+        g = self.rules.gravity
+        return self.rules.spectrum(
+            hazard.a_g * g, hazard.F0, hazard.T_star, self.soil, self.topography, self.spectrum_type
+        )
+
+    def at_height(self, ground: Spectrum, z: float) -> FloorSpectrum | None:
+        """Return the spectrum at the height ``z`` [m]; None where no building is given, or on the ground."""
+        if not self.building or z <= 0:
+            return None
+        rules = self.rules.tables["floor"]
+        modes = tuple(m.mode(z, rules) if isinstance(m, Storeys) else m for m in self.building)
+        return FloorSpectrum(ground, modes, rules)
+
+
+def _by_period(point: Hazard) -> float:
+    return point.T_R
+
+
+def _hazard(given: Any, where: str) -> Hazard:
+    if isinstance(given, Hazard):
+        return given
+    if not isinstance(given, Mapping):
+        msg = f"{given!r} is no hazard"
+        raise InputError(msg, where=where, hint='for example {"a_g": 0.20, "F0": 2.45, "Tc": 0.32}')
+    names = {"T_R": "T_R", "a_g": "a_g", "F0": "F0", "Tc": "T_star"}
+    for key in given:
+        if key not in names:
+            msg = f"unknown key '{key}'"
+            raise InputError(msg, where=where, hint=closest(key, names))
+    if "a_g" not in given:
+        msg = "a_g is missing"
+        raise InputError(msg, where=where, hint="as a share of gravity, for example a_g = 0.20")
+    numbers = {}
+    for key, value in given.items():
+        numbers[names[key]] = _number(value, key, where)
+    try:
+        return Hazard(**{"T_R": math.nan, **numbers})
+    except InputError as error:
+        raise InputError(error.what, where=where, hint=error.hint) from None
+
+
+def _number(value: Any, key: str, where: str) -> float:
+    """Return a number of the hazard; texts may say g, m/s2, s or years."""
+    if isinstance(value, str):
+        for unit, factor in _UNITS.get(key, {}).items():
+            if value.strip().endswith(unit):
+                return quantity(value.strip().removesuffix(unit), "number", where=f"{where}, {key}") * factor
+    return quantity(value, "number", where=f"{where}, {key}")
+
+
+_UNITS = {"a_g": {"m/s2": 1.0 / 9.81, "g": 1.0}, "Tc": {"s": 1.0}, "T_R": {"years": 1.0, "anni": 1.0}}
+
+
+def _mode(given: Any) -> Mode | Storeys:
+    if isinstance(given, Mode | Storeys):
+        return given
+    made = Storeys if "height" in given else Mode
+    known = list(made.__dataclass_fields__)
+    for key in given:
+        if key not in known:
+            msg = f"unknown key '{key}' of a mode of the building"
+            raise InputError(msg, hint=closest(key, known))
+    try:
+        return made(**given)
+    except TypeError as error:
+        msg = f"a mode of the building is not complete: {error}"
+        hint = "give height and storeys (and T1, xi), or T, participation, shape and xi"
+        raise InputError(msg, hint=hint) from None

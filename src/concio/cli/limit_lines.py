@@ -1,0 +1,165 @@
+"""What ``concio limit`` prints: each number as it is found, with what it is and how it was checked."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from concio.analysis.limit_result import NOT_ASKED, LimitResult
+from concio.display import number
+
+if TYPE_CHECKING:
+    from concio.analysis.margins import Margin
+    from concio.contact.assembly import Assembly
+    from concio.solvers.statics.friction import FrictionMargin
+
+REST = " " * 23
+"""Where a number is told on."""
+
+
+def head_lines(assembly: Assembly) -> list[str]:
+    """Return what is asked about."""
+    return [assembly.model.title or "model without a title"]
+
+
+def limit_lines(found: LimitResult) -> list[str]:
+    """Return all that is known in words."""
+    lines = [*head_lines(found.assembly), *bound_lines(found), *stage_lines("friction", found)]
+    lines += step_lines(found) if found.steps is not None else []
+    lines += collapse_lines(found) if found.search != NOT_ASKED else []
+    return [*lines, *path_lines(found), *short_lines(found)]
+
+
+def stage_lines(name: str, found: LimitResult) -> list[str]:
+    """Return the number that was found last in words."""
+    if name == "bound":
+        return bound_lines(found)
+    if name == "friction":
+        return [] if found.friction is None else [margin_line(found.friction)]
+    if name == "steps":
+        return step_lines(found)
+    if name == "collapse state":
+        return collapse_lines(found)
+    return path_lines(found)
+
+
+def named(found: LimitResult) -> str:
+    """Return the live groups in words."""
+    return "' and '".join(found.groups)
+
+
+def bound_lines(found: LimitResult) -> list[str]:
+    """Return the associated bound, and what the load as given is beside it."""
+    bound = found.associated
+    if math.isinf(bound.multiplier):
+        return [f"  associated bound     locked: friction and geometry carry any multiple of '{named(found)}'"]
+    violation = bound.mechanism.violation if bound.mechanism else math.nan
+    residuals = f"forces {bound.residual:.0e}, mechanism {violation:.0e}, gap {bound.gap:.0e}"
+    if bound.checked or not bound.bounds_hold:
+        state = "checked from both sides" if bound.checked else "NOT checked"
+        lines = [
+            f"  associated bound     {bound.multiplier:.6g} times '{named(found)}': no equilibrium beyond it",
+            f"{REST}{state}: {residuals}",
+        ]
+    else:
+        lines = [
+            f"  associated bound     between {bound.multiplier:.9g}, carried, and {bound.upper:.9g}, not exceeded",
+            f"{REST}each is checked, but they do not meet: {residuals}",
+        ]
+    return [*lines, f"  load as given        {as_given(bound.multiplier)}"]
+
+
+def as_given(multiplier: float) -> str:
+    """Return what a bound on the multiplier says of the load as given."""
+    if multiplier > 1:
+        return f"{number(100 / multiplier)} % of that bound: it could grow {number(multiplier)} times at most"
+    if multiplier == 1:
+        return "just that bound"
+    if multiplier > 0:
+        return f"{number(1 / multiplier)} times that bound: it is not carried"
+    return "not carried, nor is any part of it"
+
+
+def margin_line(margin: FrictionMargin) -> str:
+    """Return the friction margin in words: it is that of admissible forces, hence a bound."""
+    head = "  friction             "
+    if margin.factor == 0:
+        return f"{head}the load as given can be carried without any"
+    if margin.factor == float("inf"):
+        shown = margin.below > 0
+        return f"{head}no friction carries the load as given" if shown else f"{head}undecided: no factor could be shown"
+    if not margin.settled:
+        low = f"{margin.below:.6g} is shown to be too little" if margin.below > 0 else "none is shown to be too little"
+        return f"{head}{margin.factor:.6g} times the coefficients given is shown to do, {low}: undecided between"
+    return f"{head}the load as given needs at least {margin.factor:.6g} times the coefficients given"
+
+
+def solving_line(name: str, margin: Margin) -> str:
+    """Return what bisection with solved load steps found, in words."""
+    head = f"  {name + ', by solving':21s}"
+    if margin.holds != margin.holds:
+        return f"{head}no equilibrium was found with {'friction' if name == 'friction' else 'dead load'} as given"
+    if margin.holds == float("inf"):
+        return f"{head}no load is the last"
+    found = f"{head}a certified Coulomb equilibrium at {margin.holds:.6g} times what is given"
+    return found if margin.fails != margin.fails else f"{found}, none found at {margin.fails:.6g}"
+
+
+def step_lines(found: LimitResult) -> list[str]:
+    """Return what the load steps show: what is carried at least, by certified states."""
+    steps = found.steps
+    assert steps is not None
+    head = "  Coulomb load steps   "
+    if not steps.multipliers:
+        return [f"{head}none: the dead load alone came to no certified state ({steps.dead.name.lower()})"]
+    tried = "" if math.isnan(steps.failed) else f"; none found at {steps.failed:.6g}"
+    count = f"{len(steps.multipliers)} certified states from the dead load on"
+    return [f"{head}carried up to {steps.carried:.6g} at least: {count}{tried}"]
+
+
+def collapse_lines(found: LimitResult) -> list[str]:
+    """Return the collapse state in words, or why there is none."""
+    head = "  collapse state       "
+    if found.collapse_state is None:
+        return [f"{head}{found.search}"]
+    value = found.collapse_state.multiplier
+    return [f"{head}{value:.6g}: there Coulomb friction lets it begin to move ({found.search})"]
+
+
+def path_lines(found: LimitResult) -> list[str]:
+    """Return the Coulomb path in words: a collapse multiplier where one is shown, else what is carried at least."""
+    path, head = found.path, "  Coulomb load path    "
+    if path is None:
+        ask = " (--path follows it)" if "unasked" in found.path_note else ""
+        return [] if found.path_note == NOT_ASKED else [f"{head}{found.path_note}{ask}"]
+    end = {
+        "REACHED": "followed on, its load no longer growing, until it had moved far",
+        "MECHANISM": "a mechanism has formed that moves on without change of load",
+        "LIMIT": "no certified state carries more, and the structure can move at that load or provably not carry it",
+        "CANCELLED": "stopped on request",
+        "TOO_MANY": "stopped after more events than allowed",
+    }.get(path.outcome.name, "lost: no certified state was found further on")
+    if found.collapse_shown:
+        lines = [f"{head}collapses at {found.coulomb:.6g}, {len(path.events):,} events"]
+    else:
+        known = f"carries at least {path.peak:.6g}, {len(path.events):,} events; its collapse was not met"
+        lines = [f"{head}{known}"]
+    lines.append(f"{REST}{end}")
+    if path.jumps:
+        first = path.jumps[0].parameter
+        lines.append(f"{REST}parts of the structure snap {len(path.jumps)} times, first at {first:.6g}")
+    return lines
+
+
+def short_lines(found: LimitResult) -> list[str]:
+    """Return what is known in the end in one sentence."""
+    lines = []
+    low, bound = found.bracket
+    if math.isfinite(low) and math.isfinite(bound):
+        lost = found.collapse_state is None or low < found.collapse_state.multiplier
+        least = " (carried; more was not shown)" if lost and not found.collapse_shown else ""
+        load = f"times the load of '{named(found)}'"
+        lines.append(f"  in short             between {low:.6g}{least} and {bound:.6g} {load}")
+    if found.lent_compliance:
+        lines.append("  rigid joints         were followed with a vanishing compliance, as the limit of stiff joints")
+    return lines

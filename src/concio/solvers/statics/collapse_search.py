@@ -1,0 +1,196 @@
+r"""Search for the collapse state of least multiplier, from several starts.
+
+The least multiplier among the collapse states of a structure (:mod:`concio.solvers.statics.collapse_state`) is a
+mathematical programme with complementarity constraints (Ferris and Tin-Loi, Int. J. Mech. Sci. 43, 2001); nobody finds
+it for sure. The search is the simple iteration on the sliding strength: with the strength frozen at c + mu t_n of the
+forces found last, flow is associated and dilatancy zero, a linear programme; its forces, averaged with the old ones,
+give the next strength (in the spirit of Gilbert, Casapulla and Ahmed, Comput. Struct. 84, 2006). Where it ends depends
+on where it begins. So it begins from the forces of the associated limit, and again from admissible forces drawn at
+random: those that minimise a random cost under a random share of the associated load.
+
+The motion of every iteration is tried, not only that at which it comes to stand: many lead to a state of their own.
+What comes out is the least of the states found, each certified for itself; that there is none below is not shown.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from concio.errors import InputError
+from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.solution import Progress, ProgressCallback
+from concio.solvers.statics.collapse_state import CollapseState, Motion, certify_collapse
+from concio.solvers.statics.limit import LimitLoad, associated_limit
+from concio.solvers.statics.programme import StaticProgramme, optimise
+
+STARTS = 12
+"""Starts at most: the least known state of a published wall is found by one in five of them."""
+
+MOST, WORK = 25, 350_000
+"""Linear programmes from one start at most, and their number times the pairs."""
+
+WORK_OF_ALL = 100_000
+"""No further start is made once linear programmes times pairs have come to this."""
+
+STILL, PATIENCE = 1e-9, 3
+"""A start is done where the multiplier changes by less than ``STILL`` in ``PATIENCE`` iterations in a row."""
+
+SAME = 1e-9
+"""States whose multipliers differ by less, relative, count as one."""
+
+
+@dataclass(frozen=True, eq=False)
+class CollapseSearch:
+    """What a search for collapse states found, and how far it looked.
+
+    Parameters
+    ----------
+    state : CollapseState or None
+        The certified one of least multiplier met.
+    starts, programmes : int
+        Starts made and linear programmes solved.
+    multipliers : tuple of float
+        Multipliers of all different states met, in rising order.
+    cancelled : bool
+        Whether it was stopped on request.
+    """
+
+    state: CollapseState | None
+    starts: int
+    programmes: int
+    multipliers: tuple[float, ...]
+    cancelled: bool = False
+
+    @property
+    def words(self) -> str:
+        """What was done, in words."""
+        looked = f"{self.starts} start{'s' if self.starts > 1 else ''}, {self.programmes} linear programmes"
+        looked += ", stopped on request" if self.cancelled else ""
+        if self.state is None:
+            return f"none found from {looked}; that proves nothing"
+        many = len(self.multipliers)
+        return f"the one found from {looked}" if many == 1 else f"least of {many} found from {looked}"
+
+
+def find_collapse_state(
+    problem: ContactProblem,
+    live: Array,
+    *,
+    starts: int = STARTS,
+    iterations: int | None = None,
+    average: float = 0.5,
+    seed: int = 0,
+    work: int = WORK_OF_ALL,
+    progress: ProgressCallback | None = None,
+) -> CollapseSearch:
+    """Search Coulomb collapse states.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+        With its dead load; two-dimensional.
+    live : (N,) array
+    starts : int
+        Starts at most; fewer on large problems.
+    iterations : int, optional
+        Linear programmes with frozen strength from one start, at most; by default 25, fewer on large problems.
+    average : float
+        Weight of the new forces in the strength.
+    seed : int
+        Of the random starts: the same problem is always searched in the same way.
+    work : int
+        Linear programmes times pairs after which no further start is made; one start alone takes no more either where
+        this is less than its own share.
+    progress : callable, optional
+
+    Raises
+    ------
+    InputError
+        The problem is not plane.
+    """
+    if problem.dim != 2:
+        msg = "the search for collapse states handles plane problems"
+        raise InputError(msg, hint="follow the load path instead")
+    top = associated_limit(problem, live)
+    search = _Search(problem, live, average, progress)
+    if not np.isfinite(top.multiplier):
+        return search.outcome(0)
+    share = WORK if work >= WORK_OF_ALL else work
+    most = max(1, min(MOST, share // max(problem.pairs, 1))) if iterations is None else iterations
+    rng = np.random.default_rng(seed)
+    made = 0
+    while made < starts and (made == 0 or search.programmes * problem.pairs < work):
+        forces = top.normal_force if made == 0 else _drawn(problem, live, top, rng)
+        made += 1
+        if forces is not None and not search.run(problem.cone.strength(forces), most, made):
+            return search.outcome(made, cancelled=True)
+    return search.outcome(made)
+
+
+class _Search:
+    """Iterates from one start after another and keeps what was met; no motion is certified twice."""
+
+    def __init__(self, problem: ContactProblem, live: Array, average: float, progress: ProgressCallback | None) -> None:
+        self.problem, self.live, self.average, self.progress = problem, live, average, progress
+        self.states: list[CollapseState] = []
+        self.asked: set[bytes] = set()
+        self.programmes = 0
+
+    def outcome(self, starts: int, *, cancelled: bool = False) -> CollapseSearch:
+        """Return what was found so far."""
+        multipliers: list[float] = []
+        for found in sorted(state.multiplier for state in self.states):
+            if not multipliers or found > multipliers[-1] + SAME * max(1.0, abs(found)):
+                multipliers.append(found)
+        best = min(self.states, key=lambda state: state.multiplier, default=None)
+        return CollapseSearch(best, starts, self.programmes, tuple(multipliers), cancelled)
+
+    def run(self, strength: Array, most: int, start: int) -> bool:
+        """Iterate from a sliding strength (m,); return False where the callback asked to stop."""
+        problem, zero = self.problem, np.zeros(self.problem.pairs)
+        last, still = np.inf, 0
+        for count in range(most):
+            note = Progress("collapse states", self.programmes, 0.0, f"start {start}, programme {count + 1}")
+            if self.progress is not None and self.progress(note):
+                return False
+            laws = replace(problem.laws, friction=zero, dilatancy=zero, cohesion=strength)
+            found = associated_limit(replace(problem, laws=laws), self.live)
+            self.programmes += 1
+            if not np.isfinite(found.multiplier) or found.mechanism is None:
+                return True
+            change = abs(found.multiplier - last) / max(1.0, abs(last))
+            self.certify(found.mechanism.velocity)
+            still = still + 1 if change <= STILL else 0
+            if still >= PATIENCE:
+                return True
+            last = found.multiplier
+            strength = (1 - self.average) * strength + self.average * problem.cone.strength(found.normal_force)
+        return True
+
+    def certify(self, velocity: Array) -> None:
+        """Keep the collapse state of a motion (N,), if there is one and its like was not tried before."""
+        motion = Motion.of(self.problem, velocity)
+        if motion.key in self.asked:
+            return
+        self.asked.add(motion.key)
+        self.programmes += 1
+        state = certify_collapse(self.problem, self.live, velocity, self.programmes)
+        if state is not None:
+            self.states.append(state)
+
+
+def _drawn(problem: ContactProblem, live: Array, top: LimitLoad, rng: np.random.Generator) -> Array | None:
+    """Return normal forces (m,) drawn from those that are admissible under a random share of the associated load."""
+    load = problem.f + rng.uniform(0.0, 1.0) * top.multiplier * live
+    programme = StaticProgramme(problem)
+    A, e0 = programme.equilibrium
+    force = float(np.abs(load).sum()) or 1.0
+    caps = programme.caps
+    limits = None if caps is None else (caps[0], caps[1] / force)
+    cost = np.abs(rng.normal(size=A.shape[1]))
+    bounds = programme.bounds / force
+    cost[~np.isfinite(bounds[:, 0])] = 0.0
+    result = optimise(cost, (A, -(programme.project(load) + e0) / force), bounds, limits)
+    return programme.forces(result.x * force)[0] if result.status == 0 else None

@@ -1,0 +1,142 @@
+"""``limit`` number by number: the quick ones first, each printed when it is found, the slow ones on request."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import concio
+from concio.analysis import limit as limits
+from concio.analysis.limit import dead_and_live, limit_stages
+from concio.analysis.load_steps import load_steps
+from concio.cli.limit_lines import as_given, limit_lines
+from concio.cli.main import app
+from concio.problem.certificate import certify
+from concio.solvers.path.event_path import follow
+from concio.solvers.path.ray import at_rest, homogeneous, ray
+from concio.solvers.path.record import Outcome
+from concio.solvers.path.state import LinearPath, step_problem
+
+
+@pytest.fixture(scope="module")
+def wall() -> concio.Model:
+    """Dry, elastic, low: part of it slides before it topples."""
+    return concio.wall(length=1.0, height=0.5, block_size=(0.25, 0.125), friction=0.5, horizontal=0.2, mesh_size=0.125)
+
+
+def test_numbers_come_one_by_one_and_each_keeps_those_before(wall: concio.Model, monkeypatch) -> None:
+    monkeypatch.setattr(limits, "LARGEST_PATH", 10)
+    found = list(limit_stages(wall, friction=True))
+    assert [name for name, _ in found] == ["bound", "friction", "steps", "collapse state", "path"]
+    first, last = found[0][1], found[-1][1]
+    assert first.steps is None
+    assert first.friction is None
+    assert last.associated is first.associated
+    assert last.friction is not None
+    assert last.path is None
+    assert "not followed unasked" in last.path_note
+    low, high = last.bracket
+    assert 0 < low <= high
+    assert last.carried == last.steps.carried
+    text = "\n".join(limit_lines(last))
+    assert "--path follows it" in text
+    assert f"carried up to {last.carried:.6g} at least" in text
+
+
+def test_small_models_have_their_path_followed_unasked(wall: concio.Model) -> None:
+    slender = concio.wall(length=0.5, height=1.0, block_size=(0.5, 1.0), friction=0.9, horizontal=0.3, block="rigid")
+    assert limits.limit(slender).coulomb == pytest.approx(0.5 / 0.3, rel=1e-6)
+    assert limits.limit(slender, path=False).path is None
+    assert limits.limit(slender, path=False).steps is None
+
+
+@pytest.mark.parametrize(("friction", "expected"), [(0.9, 0.5), (0.3, 0.3)])
+def test_load_steps_come_close_to_what_a_block_carries_and_not_beyond(friction: float, expected: float) -> None:
+    """A block of 0.5 x 1 m topples at half its weight, or slides at its friction, whichever is less."""
+    size = {"length": 0.5, "height": 1.0, "block_size": (0.5, 1.0), "mesh_size": 0.25}
+    model = concio.wall(friction=friction, horizontal=1.0, **size)
+    dead, live = dead_and_live(concio.assemble(model), "live")
+    steps = load_steps(dead, live, expected)
+    assert 0.97 * expected < steps.carried < expected
+    assert steps.failed <= expected
+    assert list(steps.multipliers) == sorted(steps.multipliers)
+
+
+def test_every_load_step_is_certified_by_the_original_problem(wall: concio.Model) -> None:
+    dead, live = dead_and_live(concio.assemble(wall), "live")
+    told: list[float] = []
+    steps = load_steps(dead, live, 3.0, found=told.append)
+    assert steps.worst <= 1e-9
+    assert told == list(steps.multipliers[1:])
+    state = steps.state
+    at = step_problem(LinearPath(dead, live), state, steps.carried)  # repeated at its own load it does not move
+    again = certify(at, state.displacement, state.normal_force, state.friction)
+    assert again.equilibrium <= 1e-9
+    assert again.cone <= 1e-9
+    assert again.penetration <= 1e-9
+
+
+def test_a_dead_load_that_is_not_carried_has_no_steps() -> None:
+    model = concio.wall(length=0.5, height=1.0, block_size=(0.5, 1.0), friction=0.9, horizontal=1.0, block="rigid")
+    dead, live = dead_and_live(concio.assemble(model), "live")
+    pushed = dead.with_loads(dead.f + 3 * live)
+    steps = load_steps(pushed, live, 1.0)
+    assert steps.multipliers == ()
+    assert np.isnan(steps.carried)
+
+
+def test_from_rest_the_path_is_a_ray(wall: concio.Model) -> None:
+    """One load step gives what the exact path reaches event by event; every point between is an equilibrium too."""
+    problem = concio.assemble(wall).problem({"live": 0.0})
+    path = LinearPath(problem.with_loads(0.0 * problem.f), problem.f)
+    assert homogeneous(path)
+    end = ray(path, at_rest(path))
+    walked = follow(path, at_rest(path), until=1.0)
+    assert walked.outcome is Outcome.REACHED
+    scale = np.abs(end.displacement).max()
+    np.testing.assert_allclose(walked.end.displacement, end.displacement, atol=1e-9 * scale)
+    half = certify(path.at(0.5), 0.5 * end.displacement, 0.5 * end.normal_force, 0.5 * end.friction)
+    assert half.certified
+    assert end.work == pytest.approx(walked.end.work, rel=1e-9)
+    assert end.dissipation == pytest.approx(walked.end.dissipation, rel=1e-6, abs=1e-12 * end.work)
+
+
+def test_what_has_a_size_of_its_own_is_no_ray(wall: concio.Model) -> None:
+    law = concio.JointLaw(0.5, cohesion=10.0)
+    glued = concio.wall(length=0.5, height=0.25, friction=law)
+    problem = concio.assemble(glued).problem()
+    assert not homogeneous(LinearPath(problem.with_loads(0.0 * problem.f), problem.f))
+    assert not homogeneous(LinearPath(problem, problem.f)), "a load is there at the beginning"
+
+
+@pytest.mark.parametrize(
+    ("multiplier", "said"),
+    [
+        (4.77, "21 % of that bound: it could grow 4.77 times at most"),
+        (1 / 1.648, "1.65 times that bound: it is not carried"),
+        (0.0, "not carried, nor is any part of it"),
+    ],
+)
+def test_what_the_load_as_given_is_beside_the_bound(multiplier: float, said: str) -> None:
+    assert as_given(multiplier) == said
+
+
+def test_what_was_printed_before_an_interruption_stays(wall: concio.Model, tmp_path: Path, monkeypatch) -> None:
+    file = tmp_path / "wall.toml"
+    concio.save(wall, file)
+    whole = limits.limit_stages
+
+    def interrupted(*args: object, **options: object) -> Iterator[object]:
+        stages = whole(*args, **options)
+        yield next(stages)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(limits, "limit_stages", interrupted)
+    done = CliRunner().invoke(app, ["limit", str(file)])
+    assert done.exit_code == 130
+    assert "associated bound" in done.output
+    assert "stopped on request" in done.output
