@@ -9,6 +9,10 @@ displacements have no part in them and rounding hardly any. What is left is the 
 difference of large numbers if a stiff body rests on soft joints: u, stored in double precision, is known to some
 eps |u|, so that K u is known to eps |K| |u| and no better, whoever solves. :data:`ROUNDING` of that is granted, but
 never more than :data:`GRANTED` of the load: beyond, rounding could hide how a joint shares its force.
+
+Friction is measured by its natural map. In the plane, for forces inside the cone, that is
+min(|y_t| / U, |t_t + (c + mu t_n) sign y_t| / F). In space the second of these would ask for the direction of a slip,
+which rounding of u leaves uncertain by eps U / |y_t|: exact answers would seem wrong by 1e-9 where a pair hardly slips.
 """
 
 from __future__ import annotations
@@ -35,7 +39,8 @@ class Certificate:
     cone : float
         max of the excess of |t_t| over c + mu t_n, of -(t_n + T), and of t_n over the cap, / F, equation (6).
     slip_direction : float
-        max over pairs of min(|y_t| / U, |t_t + (c + mu t_n) y_t / |y_t|| / F), equations (6, 7).
+        max over pairs of |t_t - P(t_t - (F/U) y_t)| / F, equations (6, 7): P projects onto the disc of radius
+        c + mu t_n, and friction is what it should be exactly where this is zero.
     complementarity : float
         max over pairs of min(y_n / U, (t_n + T) / F), and the same for crushing and its cap, equation (5).
     """
@@ -151,14 +156,16 @@ def certify(
     kin = kinematics(problem, u, t_n, t_t)
     equilibrium = max(float(np.abs(part).max(initial=0.0)) for part in imbalance(problem, u, t_n, t_t, force))
     shifted = t_n + cone.tension
-    size_y = np.linalg.norm(kin.slip, axis=1)
-    wrong_way = np.linalg.norm(t_t - cone.opposing(t_n, kin.slip), axis=1)
+    trial = t_t - (force / length) * kin.slip
+    size = np.linalg.norm(trial, axis=1)
+    inside = np.minimum(1.0, cone.strength(t_n) / np.where(size > 0, size, 1.0))
+    wrong_way = np.linalg.norm(t_t - inside[:, None] * trial, axis=1)
     crush = np.minimum(kin.crushing / length, np.where(cone.capped, cone.cap - t_n, 0.0) / force)
     return Certificate(
         equilibrium=equilibrium / force,
         penetration=float(np.maximum(-kin.gap, 0.0).max(initial=0.0) / length),
         cone=float(cone.excess(t_n, t_t).max(initial=0.0) / force),
-        slip_direction=float(np.minimum(size_y / length, wrong_way / force).max(initial=0.0)),
+        slip_direction=float(wrong_way.max(initial=0.0) / force),
         complementarity=float(
             max(np.minimum(kin.gap / length, shifted / force).max(initial=0.0), crush.max(initial=0.0))
         ),

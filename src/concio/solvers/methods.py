@@ -1,39 +1,164 @@
-"""The methods by name: modules with a function ``solve(problem, *, progress=None, ...)`` and its options."""
+"""The methods by name: what each can treat, where its ``solve`` is, and how to add one's own."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import inspect
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from importlib import import_module
+from typing import Any
+
+import numpy as np
 
 from concio.arguments import closest, options_of, refuse_unknown
 from concio.errors import MethodError
-from concio.problem.solution import Solver
+from concio.problem.contact_problem import ContactProblem
+from concio.problem.solution import ProgressCallback, Solution, Solver
 
-METHODS: dict[str, str] = {
-    "auto": "concio.solvers.auto.chain",
-    "interior-point": "concio.solvers.interior.engine",
-    "lemke": "concio.solvers.forms.lemke",
-    "sparse-lemke": "concio.solvers.pivoting.sparse_lemke",
-    "exhaustive": "concio.solvers.exhaustive.search",
-    "klarbring": "concio.solvers.forms.klarbring",
-    "ercolano": "concio.solvers.forms.ercolano",
-    "lee": "concio.solvers.forms.lee",
-    "del-piero": "concio.solvers.forms.del_piero",
-    "penalty": "concio.solvers.iterative.penalty",
-    "alart-curnier": "concio.solvers.iterative.alart_curnier",
-    "simo-laursen": "concio.solvers.iterative.simo_laursen",
-    "de-saxce": "concio.solvers.iterative.de_saxce",
-    "panagiotopoulos": "concio.solvers.iterative.panagiotopoulos",
-    "lagrange": "concio.solvers.iterative.lagrange",
-    "uzawa": "concio.solvers.iterative.uzawa",
-    "gauss-seidel": "concio.solvers.iterative.gauss_seidel",
-    "admm": "concio.solvers.iterative.admm",
+LAWS = ("friction", "cohesion", "tension", "dilatancy", "cap", "stiffness")
+"""Joint laws a method may or may not treat; stiffness stands for joints that give way elastically."""
+
+SPACES = {2: "plane problems", 3: "problems in space"}
+"""Words for dimensions."""
+
+
+@dataclass(frozen=True)
+class Method:
+    """A method, and what it can treat. Called like the ``solve`` of its module, it refuses what it cannot.
+
+    Parameters
+    ----------
+    name : str
+    modules : mapping of int to str or callable
+        For each dimension it treats, the module that holds ``solve``, or the function itself.
+    laws : frozenset of str
+        Joint laws it treats, of :data:`LAWS`.
+    """
+
+    name: str
+    modules: Mapping[int, str | Solver]
+    laws: frozenset[str] = frozenset(LAWS)
+
+    def __call__(
+        self, problem: ContactProblem, *, progress: ProgressCallback | None = None, **options: Any
+    ) -> Solution:
+        """Solve one load step.
+
+        Raises
+        ------
+        MethodError
+            The method does not treat problems of this dimension or with these joint laws, or an option is for another
+            dimension.
+        """
+        self.check(problem)
+        solver = self.solver(problem.dim)
+        for option in options:
+            if option in self.options and option not in options_of(solver):
+                msg = f"method '{self.name}' has no option '{option}' for {SPACES[problem.dim]}"
+                raise MethodError(msg, hint="one of: " + ", ".join(o for o in options_of(solver) if o != "progress"))
+        return solver(problem, progress=progress, **options)
+
+    @property
+    def dimensions(self) -> tuple[int, ...]:
+        """Dimensions it treats."""
+        return tuple(sorted(self.modules))
+
+    def solver(self, dim: int) -> Solver:
+        """Return the function for problems of dimension ``dim``."""
+        found = self.modules[dim]
+        if isinstance(found, str):
+            solve: Solver = import_module(found).solve
+            return solve
+        return found
+
+    @property
+    def options(self) -> tuple[str, ...]:
+        """Names of its options, of all dimensions."""
+        named = (option for dim in self.dimensions for option in options_of(self.solver(dim)))
+        return tuple(dict.fromkeys(option for option in named if option != "progress"))
+
+    @property
+    def __signature__(self) -> inspect.Signature:
+        """What a call takes: the options of all dimensions."""
+        parameters: dict[str, inspect.Parameter] = {}
+        for dim in self.dimensions:
+            parameters |= inspect.signature(self.solver(dim)).parameters
+        return inspect.Signature(sorted(parameters.values(), key=lambda p: p.kind))
+
+    def check(self, problem: ContactProblem) -> None:
+        """Refuse a problem that the method does not treat.
+
+        Raises
+        ------
+        MethodError
+        """
+        if not problem.pairs:
+            return
+        if problem.dim not in self.modules:
+            msg = f"method '{self.name}' does not treat {SPACES[problem.dim]}"
+            raise MethodError(msg, hint="take one of: " + ", ".join(names_for(problem)))
+        foreign = [law for law in laws_of(problem) if law not in self.laws]
+        if foreign:
+            msg = f"method '{self.name}' does not treat {' and '.join(foreign)}"
+            raise MethodError(msg, hint="take one of: " + ", ".join(names_for(problem)))
+
+
+def laws_of(problem: ContactProblem) -> tuple[str, ...]:
+    """Return the joint laws, of :data:`LAWS`, that a problem has."""
+    law = problem.laws
+    there = {
+        "friction": law.friction.any(),
+        "cohesion": law.cohesion.any(),
+        "tension": law.tension.any(),
+        "dilatancy": law.dilatancy.any(),
+        "cap": np.isfinite(law.cap).any(),
+        "stiffness": law.normal_compliance.any() or law.tangential_compliance.any(),
+    }
+    return tuple(name for name in LAWS if there[name])
+
+
+def _method(name: str, plane: str, space: str | None = "", *, without: Iterable[str] = ()) -> Method:
+    """Return a method of ours; ``space`` is its module there, None for none, empty for the same."""
+    modules = {2: f"concio.solvers.{plane}"}
+    if space is not None:
+        modules[3] = f"concio.solvers.{space or plane}"
+    return Method(name, modules, frozenset(LAWS) - frozenset(without))
+
+
+METHODS: dict[str, Method] = {
+    method.name: method
+    for method in (
+        _method("auto", "auto.chain", "auto.space"),
+        _method("interior-point", "interior.engine", "interior.cone_run"),
+        _method("lemke", "forms.lemke", None),
+        _method("sparse-lemke", "pivoting.sparse_lemke", None),
+        _method("exhaustive", "exhaustive.search", None),
+        _method("klarbring", "forms.klarbring", None),
+        _method("ercolano", "forms.ercolano", None),
+        _method("lee", "forms.lee", None),
+        _method("del-piero", "forms.del_piero", None),
+        _method("penalty", "iterative.penalty"),
+        _method("alart-curnier", "iterative.alart_curnier"),
+        _method("simo-laursen", "iterative.simo_laursen"),
+        _method("de-saxce", "iterative.de_saxce"),
+        _method("panagiotopoulos", "iterative.panagiotopoulos"),
+        _method("lagrange", "iterative.lagrange", None),
+        _method("uzawa", "iterative.uzawa"),
+        _method("gauss-seidel", "iterative.gauss_seidel"),
+        _method("admm", "iterative.admm"),
+    )
 }
-"""Name of each method and the module that holds its ``solve``."""
+"""The methods by name."""
 
 
-def find(name: str) -> Solver:
-    """Return the solver called ``name``.
+def names_for(problem: ContactProblem) -> tuple[str, ...]:
+    """Return the names of the methods that treat a problem of this dimension with these joint laws."""
+    laws = set(laws_of(problem))
+    return tuple(name for name, method in METHODS.items() if problem.dim in method.modules and laws <= method.laws)
+
+
+def find(name: str) -> Method:
+    """Return the method called ``name``.
 
     Raises
     ------
@@ -43,7 +168,67 @@ def find(name: str) -> Solver:
     if name not in METHODS:
         msg = f"unknown method '{name}'"
         raise MethodError(msg, hint=closest(name, METHODS, names="one of"))
-    solver: Solver = import_module(METHODS[name]).solve
+    return METHODS[name]
+
+
+def register(
+    name: str,
+    solver: str | Solver,
+    *,
+    dimensions: Iterable[int] = (2,),
+    laws: Iterable[str] = ("friction",),
+) -> Method:
+    """Add a method of one's own: ``concio.solve(model, name)``, the command line and ``compare`` then know it.
+
+    Parameters
+    ----------
+    name : str
+        One that no method has yet.
+    solver : str or callable
+        The function, or the name of a module with a function ``solve``:
+        ``solve(problem, *, progress=None, option=...) -> Solution``, see :func:`concio.problem.solution.judge`.
+    dimensions : iterable of int
+        2, 3, or both: problems of other dimensions are refused before the method sees them.
+    laws : iterable of str
+        Joint laws it treats, of :data:`LAWS`; others are refused likewise.
+
+    Returns
+    -------
+    Method
+
+    Raises
+    ------
+    MethodError
+        The name is taken, the module cannot be imported or has no ``solve``, or a dimension or joint law is unknown.
+    """
+    if name in METHODS:
+        msg = f"there is a method '{name}' already"
+        raise MethodError(msg, hint="choose another name, or take the other out: del METHODS[name]")
+    unknown = [law for law in laws if law not in LAWS]
+    if unknown:
+        msg = f"unknown joint law '{unknown[0]}'"
+        raise MethodError(msg, hint=closest(unknown[0], LAWS, names="one of"))
+    dims = tuple(dimensions)
+    if not dims or any(dim not in SPACES for dim in dims):
+        msg = f"a method treats dimension 2, 3 or both, not {dims}"
+        raise MethodError(msg)
+    function = _function(solver) if isinstance(solver, str) else solver
+    if "progress" not in options_of(function):
+        msg = f"method '{name}' does not take progress"
+        raise MethodError(msg, hint="def solve(problem, *, progress=None, option=...)")
+    METHODS[name] = Method(name, dict.fromkeys(dims, function), frozenset(laws))
+    return METHODS[name]
+
+
+def _function(module: str) -> Solver:
+    try:
+        solver: Callable[..., Any] | None = getattr(import_module(module), "solve", None)
+    except ImportError as error:
+        msg = f"module '{module}' cannot be imported: {error}"
+        raise MethodError(msg, hint="it must lie where Python looks for modules (PYTHONPATH)") from error
+    if not callable(solver):
+        msg = f"module '{module}' has no function 'solve'"
+        raise MethodError(msg, hint="def solve(problem, *, progress=None, option=...)")
     return solver
 
 
@@ -68,5 +253,4 @@ def check_options(name: str, options: Iterable[str], *, function: str, others: t
     MethodError
         There is no method of that name.
     """
-    own = tuple(option for option in options_of(find(name)) if option != "progress")
-    refuse_unknown(options, (*others, *own), function)
+    refuse_unknown(options, (*others, *find(name).options), function)

@@ -166,13 +166,20 @@ class Scaled:
 
     # -- other data, other units ----------------------------------------------------------------------------------
 
-    def step_from(self, u: Array, e: float) -> Scaled:
+    def step_from(self, u: Array, e: float, forgotten: Array | None = None) -> Scaled:
         """Return the problem of one step of slow motion from ``u`` (N,), its unknowns counted from there.
 
         K + e M stands for K; loads, gaps and slip origins are those left at ``u``.
+
+        Parameters
+        ----------
+        u : (N,) array
+        e : float
+        forgotten : (m, d) array, optional
+            Gap and slip that pairs forget at ``u``: their friction opposes the slip made from there on.
         """
         added = e * self.inertia
-        moved = self.along(u)
+        moved = self.along(u) if forgotten is None else self.along(u) - forgotten
         problem, m = self.problem, self.pairs
         return replace(
             self,

@@ -367,9 +367,9 @@ class NewtonStep:
         after = it.gap(moved, self.beta + a * d_beta, self.room - np.where(it.capped, a * d.t[:, 0], 0.0))
         centring = min(1.0, max((after / gap) ** 3, 1e-4)) if a > 0.05 else 0.5
         tau = max(centring * gap, least)
-        rc_t = -product(point, point) - a * product(times(scaling.W, d.eta), times(scaling.inverse, d_beta))
+        rc_t = -product(point, point) - product(times(scaling.W, d.eta), times(scaling.inverse, d_beta))
         rc_t[:, 0] += 2.0 * tau
         d = self.direction(
-            tau - t_n * z.y_n - a * d.t[:, 0] * d.y_n, rc_t, tau - self.room * z.p + a * d.t[:, 0] * d.p, enough
+            tau - t_n * z.y_n - d.t[:, 0] * d.y_n, rc_t, tau - self.room * z.p + d.t[:, 0] * d.p, enough
         )
         return None if d is None else (d, self.longest(d, share))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -96,12 +97,16 @@ class Run:
 
     def __init__(self, scaled: Scaled, progress: ProgressCallback | None = None) -> None:
         self.scaled, self.progress = scaled, progress
-        self.engine = InteriorPoint(scaled)
         self.iterations = 0
         self.trace: list[str] = []
         self.history: list[float] = []
         self.best: Finished | None = None
         self.crossed: Finished | None = None
+
+    @cached_property
+    def engine(self) -> InteriorPoint:
+        """The iteration on plane problems."""
+        return InteriorPoint(self.scaled)
 
     def watch(self, stage: str) -> Any:
         """Return the callback of a stage."""

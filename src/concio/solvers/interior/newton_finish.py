@@ -17,14 +17,17 @@ bodies do no harm: their equations are consistent. Converges quadratically from 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from concio.problem.contact_problem import Array
+from concio.problem.pair_state import Normal, PairStates
+from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.second_order_cone import times
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
+from concio.solvers.interior.exact_finish import Finished, natural_residual, sizes
 
 DELTA = 1e-6
 """Compliance added to pairs of mean area in the factorised matrix, scaled units."""
@@ -35,57 +38,46 @@ LOOSE = 1e-9
 SETTLED = 1e-13
 """Natural-map residual at which Newton's method stops."""
 
-EXACT = 1e-11
-"""Largest natural-map residual of an exact finish."""
-
 STALE = 6
 """Rounds without a smaller residual after which Newton's method gives up."""
+
+UNDECIDED = 1e-10
+"""Violation of its law from which on a pair counts as undecided."""
 
 REFINEMENTS = 8
 """Largest number of times a direction is refined."""
 
-
-@dataclass(frozen=True, eq=False)
-class Finished:
-    """Outcome of the exact finish, scaled units.
-
-    Parameters
-    ----------
-    u, t : (N,), (m, d) arrays
-        Shifted forces.
-    error : float
-        Natural-map residual: largest of imbalance and of the violation of the joint laws, relative.
-    solves : int
-        Linear systems factorised.
-    """
-
-    u: Array
-    t: Array
-    error: float
-    solves: int
+RETURNS = 40
+"""Largest number of refinements of forces that are sought from nothing."""
 
 
-def sizes(u: Array, t: Array) -> tuple[float, float]:
-    """Return the largest force and the largest displacement, at least one."""
-    return max(1.0, float(np.abs(t).max(initial=0.0))), max(1.0, float(np.abs(u).max(initial=0.0)))
-
-
-def natural_residual(s: Scaled, u: Array, t: Array) -> tuple[float, Array]:
-    """Return the largest relative violation of equilibrium and joint laws, and that of the laws for each pair (m,).
-
-    Forces count relative to the largest force, lengths relative to the largest displacement; the natural map
-    t - P(t - y) is taken in these units.
-    """
+def states_of(s: Scaled, u: Array, t: Array) -> PairStates:
+    """Return the states that the natural map assigns to a point."""
     force, length = sizes(u, t)
-    laws: Array = np.linalg.norm(s.natural_map(u, t, force / length), axis=1) / force
-    return max(s.unbalanced(u, t, force), float(laws.max(initial=0.0))), laws
+    w = _trial(s, u, t, force / length)
+    J = _derivative(s, w)
+    size = np.linalg.norm(w[:, 1:], axis=1)
+    mapped = s.cone.project(w, s.dilatancy)
+    slips = s.rough & (size > s.cone.strength(mapped[:, 0])) & (size > 0)
+    direction = np.where(slips[:, None], -w[:, 1:] / np.where(slips, size, 1.0)[:, None], 0.0)
+    crushed = s.cone.capped & (mapped[:, 0] >= s.cone.cap)
+    opened = ~J.any(axis=(1, 2)) & (mapped[:, 0] <= 0.0)
+    normal = np.where(crushed, Normal.CRUSHED, np.where(opened, Normal.OPEN, Normal.CLOSED))
+    return PairStates(normal.astype(np.int8), direction * ~opened[:, None])
 
 
-def _mapped(s: Scaled, u: Array, t: Array, rho: float) -> tuple[Array, Array]:
-    """Return the trial forces t - rho y and what the return map makes of them, (m, d) both."""
-    w = t - rho * s.position(u, t)
+def _trial(s: Scaled, u: Array, t: Array, rho: float) -> Array:
+    """Return the trial forces t - rho y (m, d)."""
+    w: Array = t - rho * s.position(u, t)
     w[~s.rough, 1:] = 0.0
-    return w, s.cone.project(w, s.dilatancy)
+    return w
+
+
+def _derivative(s: Scaled, w: Array) -> Array:
+    """Return the derivative (m, d, d) of the return map at trial forces."""
+    J = s.cone.derivative(w, s.dilatancy)
+    J[~s.rough, 1:, :] = 0.0
+    return J
 
 
 def finish(s: Scaled, u: Array, t: Array, *, rho: float = 1.0, rounds: int = 20) -> Finished:
@@ -101,29 +93,84 @@ def finish(s: Scaled, u: Array, t: Array, *, rho: float = 1.0, rounds: int = 20)
     rounds : int
         Largest number of Newton steps.
     """
-    error, _ = natural_residual(s, u, t)
-    best, stale, solves = Finished(u, t, error, 0), 0, 0
+    error, laws = natural_residual(s, u, t)
+    best, stale, solves = (u, t, error, laws), 0, 0
     for _ in range(rounds):
         force, length = sizes(u, t)
-        found = _newton(s, u, t, rho * force / length)
-        if found is None:
+        moved = _newton(s, u, t, rho * force / length)
+        if moved is None:
             break
-        u, t = found
+        u, t = moved
         solves += 1
-        error, _ = natural_residual(s, u, t)
-        stale = 0 if error < best.error else stale + 1
-        if error < best.error:
-            best = Finished(u, t, error, solves)
+        error, laws = natural_residual(s, u, t)
+        stale = 0 if error < best[2] else stale + 1
+        if error < best[2]:
+            best = u, t, error, laws
         if error < SETTLED or stale >= STALE or not np.isfinite(error):
             break
-    return replace(best, solves=solves)
+    u, t, error, laws = best
+    found = Finished(u, t, states_of(s, u, t), error, solves, np.flatnonzero(laws > UNDECIDED))
+    return of_vanishing_compliance(s, found) if error <= EXACT else found
+
+
+def of_vanishing_compliance(s: Scaled, found: Finished) -> Finished:
+    """Return an exact answer with the forces its hard pairs have as a compliance of theirs vanishes.
+
+    Where pairs are redundant (corners) their forces are not unique, and Newton's method ends somewhere, depending on
+    the frame even. Refinement of the linear equations of the states found, from no forces at all, ends at those of a
+    compliance spread in proportion to one over the areas, as in the plane; displacements are the same.
+    """
+    states = found.states
+    stick = states.closed & ~states.slips & s.rough
+    hard = (s.compliance == 0.0) & np.column_stack([states.closed, *[stick] * (s.dim - 1)])
+    if not hard.any():
+        return found
+    soft = s.compliance + (DELTA / s.share)[:, None]
+    drag = -s.cone.friction[:, None] * states.direction
+    lift = s.dilatancy[:, None] * states.direction
+    normal = soft[:, 0] - (lift * drag * soft[:, 1:]).sum(axis=1)
+    stiff = np.where(states.closed & (normal > 0), 1.0 / np.where(normal > 0, normal, 1.0), 0.0)
+    D = np.zeros((s.pairs, s.dim, s.dim))
+    D[:, 0, 0], D[:, 0, 1:], D[:, 1:, 0] = stiff, -stiff[:, None] * lift, stiff[:, None] * drag
+    D[:, 1:, 1:] = -stiff[:, None, None] * drag[:, :, None] * lift[:, None, :]
+    for k in range(1, s.dim):
+        D[stick, k, k] = 1.0 / soft[stick, k]
+
+    def of_states(t: Array) -> Array:
+        t_n = np.where(states.open, 0.0, np.where(states.crushed, s.cone.cap, t[:, 0]))
+        t_t = np.where(stick[:, None], t[:, 1:], -states.direction * s.cone.strength(t_n)[:, None])
+        return np.column_stack([t_n, t_t])
+
+    try:
+        s.factor.factorise(D, LOOSE)
+    except SingularMatrixError:
+        return found
+    u, t, least = found.u, of_states(np.zeros_like(found.t)), np.inf
+    force, length = sizes(found.u, found.t)
+    best = u, t
+    for _ in range(RETURNS):
+        y = s.position(u, t)
+        y[:, 0] = np.where(states.closed, y[:, 0] - (lift * y[:, 1:]).sum(axis=1), 0.0)
+        y[~stick, 1:] = 0.0
+        left = s.imbalance(u, t)
+        worst = max(float(np.abs(left).max(initial=0.0)) / force, float(np.abs(y).max(initial=0.0)) / length)
+        if not worst < least or worst < 1e-16:
+            break
+        least, best = worst, (u, t)
+        pushed = times(D, y)
+        du = s.factor.solve(-left - s.pull(pushed))
+        u, t = u + du, of_states(t - pushed - times(D, s.along(du)))
+    u, t = best
+    error, laws = natural_residual(s, u, t)
+    if error > max(found.error, EXACT):
+        return found
+    return replace(found, u=u, t=t, error=error, solves=found.solves + 1, undecided=np.flatnonzero(laws > UNDECIDED))
 
 
 def _newton(s: Scaled, u: Array, t: Array, rho: float) -> tuple[Array, Array] | None:
     """Return the point after one Newton step; None where the matrix cannot be factorised."""
-    w, mapped = _mapped(s, u, t, rho)
-    J = s.cone.derivative(w, s.dilatancy)
-    J[~s.rough, 1:, :] = 0.0
+    w = _trial(s, u, t, rho)
+    mapped, J = s.cone.project(w, s.dilatancy), _derivative(s, w)
     eye = np.eye(s.dim)
     soft = s.compliance + (DELTA / s.share)[:, None]
     H = eye - J * (1.0 - rho * s.compliance)[:, None, :]

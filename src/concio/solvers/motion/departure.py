@@ -18,6 +18,8 @@ constant forces, the whole structure accelerating along a, friction opposing the
 
 .. math:: f^T a = a^T M a + \text{(dissipation)} > 0.
 
+In space the slip of a pair turns towards its rate as it grows: what lies across is bounded and left out of account.
+
 That is the proof of :attr:`concio.problem.solution.Status.COLLAPSES`, found from the states of u_e and then recomputed
 from
 the original arrays: the certificate of (u + s_0 a, t) under the loads f - M a, and the laws of the rates along a. It
@@ -116,11 +118,12 @@ def verify_departure(problem: ContactProblem, a: Array, u: Array, t_n: Array, t_
     """
     law = problem.laws
     force, top = problem.total_load or 1.0, float(np.abs(a).max(initial=0.0)) or 1.0
-    certificate = certify(problem.with_loads(problem.f - problem.inertia * a), u, t_n, t_t, total_load=force)
-    stiffness = float(abs(problem.K).max()) if problem.K.nnz else 1.0
-    rigid = float(np.abs(problem.K @ a).max(initial=0.0)) / (stiffness * top)
     w_t = (problem.C_t @ a).reshape(t_t.shape)
     speed = np.linalg.norm(w_t, axis=1)
+    moving = without_slip_across(problem, u, t_t, np.where((speed > STILL * top)[:, None], w_t, 0.0))
+    certificate = certify(moving.with_loads(problem.f - problem.inertia * a), u, t_n, t_t, total_load=force)
+    stiffness = float(abs(problem.K).max()) if problem.K.nnz else 1.0
+    rigid = float(np.abs(problem.K @ a).max(initial=0.0)) / (stiffness * top)
     cone = problem.cone
     w_n = problem.C_n @ a - np.where(cone.rough, law.dilatancy * speed, 0.0)
     opening, closing = np.maximum(w_n, 0.0) / top, np.maximum(-w_n, 0.0) / top
@@ -134,3 +137,17 @@ def verify_departure(problem: ContactProblem, a: Array, u: Array, t_n: Array, t_
         float(np.minimum(speed / top, wrong_way).max(initial=0.0)),
     )
     return Departure(a, problem.inertia, u, t_n, t_t, float(problem.f @ a) / (force * top), violation)
+
+
+def without_slip_across(problem: ContactProblem, u: Array, t_t: Array, w_t: Array) -> ContactProblem:
+    """Return the problem whose slips at u (N,) lie along their rates w_t (m, d-1), where these are not zero.
+
+    What a pair slipped across the direction of its motion stays bounded while the slip along it grows without end: in
+    the limit the slip has the direction of its rate. In the plane there is no across.
+    """
+    slip = (problem.C_t @ u).reshape(t_t.shape) - problem.slip_origin
+    slip += problem.laws.tangential_compliance[:, None] * t_t
+    speed = np.linalg.norm(w_t, axis=1)
+    direction = w_t / np.where(speed > 0, speed, 1.0)[:, None]
+    across = slip - (slip * direction).sum(axis=1, keepdims=True) * direction
+    return replace(problem, slip_origin=problem.slip_origin + np.where((speed > 0)[:, None], across, 0.0))

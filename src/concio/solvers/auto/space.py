@@ -1,0 +1,119 @@
+"""Method ``auto`` in space: a table of strategies, tried in a fixed order until one decides.
+
+1. interior point with round cones and exact finish, from the usual start and from one further out;
+2. a cone programme: either a mechanism, rechecked, proves that there is no equilibrium, or there are statically
+   admissible forces; where no body has to move under them (rigid blocks), they are the answer;
+3. interior point from the other starts;
+4. release: the structure is let go and followed in slow motion, from rest and from the state in which associated flow
+   jams; it comes to rest, which is an equilibrium, or settles into a motion without end, which is the answer.
+
+What was tried is the solution's trace. Words are those of the plane (:mod:`concio.solvers.auto.chain`). Pivoting and
+the exhaustive search, which prove that no Coulomb state exists, know two ways of slipping only and have no place here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.solution import Departure, ProgressCallback, Solution, Status
+from concio.solvers.algebra.scaled import scale
+from concio.solvers.algebra.sparse_factor import Engine
+from concio.solvers.auto.chain import moves_away, statics
+from concio.solvers.interior.cone_run import STARTS, ConeRun
+from concio.solvers.interior.engine import Cancelled, at_rest
+from concio.solvers.motion.cone_release import associated_state, release
+
+Strategy = Callable[[ConeRun], "Solution | None"]
+"""Returns an answer, or None where it decides nothing."""
+
+
+def usual_starts(run: ConeRun) -> Solution | None:
+    """Interior point from the first two starts."""
+    return _from(run, 0, 2)
+
+
+def other_starts(run: ConeRun) -> Solution | None:
+    """Interior point from the starts that are left."""
+    return _from(run, 2, len(STARTS))
+
+
+def released_at_rest(run: ConeRun) -> Solution | None:
+    """Let the structure go, undeformed."""
+    return _released(run, np.zeros(len(run.scaled.f)))
+
+
+def released_jammed(run: ConeRun) -> Solution | None:
+    """Let the structure go from the state in which associated flow holds it."""
+    return _released(run, associated_state(run))
+
+
+STRATEGIES: tuple[tuple[str, Strategy], ...] = (
+    ("interior-point", usual_starts),
+    ("mechanism", statics),
+    ("interior-point, other starts", other_starts),
+    ("release", released_at_rest),
+    ("release, jammed", released_jammed),
+)
+"""What is tried, in this order; the name of the one that decided is ``info["strategy"]``."""
+
+
+def solve(
+    problem: ContactProblem,
+    *,
+    progress: ProgressCallback | None = None,
+    engine: Engine = "superlu",
+) -> Solution:
+    """Solve one load step by whatever it takes.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    progress : callable, optional
+    engine : {"superlu", "pardiso"}
+
+    Returns
+    -------
+    Solution
+        SOLVED, NO_EQUILIBRIUM with its mechanism, COLLAPSES with its motion, or UNDECIDED with what was tried.
+    """
+    rest = at_rest(problem)
+    if rest is not None:
+        return rest
+    run = ConeRun(scale(problem, engine), progress)
+    try:
+        for name, strategy in STRATEGIES:
+            answer = strategy(run)
+            if answer is not None:
+                return replace(answer, info={**answer.info, "strategy": name})
+    except Cancelled:
+        return run.solution(None, Status.CANCELLED)
+    return run.solution(None, Status.UNDECIDED, method="auto")
+
+
+def let_go(problem: ContactProblem, u: Array, progress: ProgressCallback | None = None) -> Solution:
+    """Follow the slow motion from displacements u (N,) [m]: rest, COLLAPSES or UNDECIDED, as in the plane."""
+    run = ConeRun(scale(problem), progress)
+    try:
+        answer = _released(run, u / run.scaled.length)
+    except Cancelled:
+        return run.solution(None, Status.CANCELLED)
+    return answer or run.solution(None, Status.UNDECIDED, method="release")
+
+
+def _from(run: ConeRun, first: int, last: int) -> Solution | None:
+    for start in STARTS[first:last]:
+        found = run.from_start(start)
+        if found is not None:
+            return run.solution(found)
+    return None
+
+
+def _released(run: ConeRun, u: Array) -> Solution | None:
+    ended = release(run, u)
+    if isinstance(ended, Departure):
+        return moves_away(run, ended)
+    return None if ended is None else run.solution(ended)

@@ -1,0 +1,132 @@
+"""Method ``interior-point`` in space: round cones, starts tried in turn, each brought to an exact answer or left."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.solution import ProgressCallback, Solution, Status
+from concio.problem.tolerances import EXACT
+from concio.solvers.algebra.scaled import Scaled, scale
+from concio.solvers.algebra.sparse_factor import Engine
+from concio.solvers.interior.cone_iteration import ConeIteration, ConePoint
+from concio.solvers.interior.engine import Cancelled, Run, at_rest
+from concio.solvers.interior.exact_finish import Finished
+from concio.solvers.interior.newton_finish import finish
+
+TARGETS = (1e-6, 1e-8, 1e-10)
+"""Merits at which the exact finish is tried; a deeper point tells states apart that the one before does not."""
+
+NEAR = 1e-5
+"""Merit of a run that stopped by itself at which the exact finish is worth trying."""
+
+WEIGHTS = (1.0, 0.1, 10.0)
+"""Weights of lengths against forces tried in the exact finish."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """A starting point and how boldly the iteration goes from there.
+
+    Parameters
+    ----------
+    force, length : float
+        Size of forces and of gaps and slips, scaled units.
+    share : float
+        Share of the step to the boundary that is taken.
+    """
+
+    force: float
+    length: float
+    share: float = 0.99
+
+    def __str__(self) -> str:
+        return f"{self.force:g}/{self.length:g}" + ("" if self.share == 0.99 else f" with steps of {self.share:g}")
+
+
+STARTS = (Start(10.0, 100.0), Start(100.0, 100.0), Start(10.0, 10.0), Start(10.0, 10.0, 0.7))
+"""Starts in the order tried: gaps far outside halve the iterations, short steps come through where others jam."""
+
+
+def solve(
+    problem: ContactProblem,
+    *,
+    progress: ProgressCallback | None = None,
+    engine: Engine = "superlu",
+) -> Solution:
+    """Solve one load step of a problem of any dimension.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    progress : callable, optional
+    engine : {"superlu", "pardiso"}
+        Sparse factorisation.
+
+    Returns
+    -------
+    Solution
+        SOLVED with its certificate, or GAVE_UP; this method proves no collapse.
+    """
+    rest = at_rest(problem)
+    if rest is not None:
+        return rest
+    run = ConeRun(scale(problem, engine), progress)
+    try:
+        found = None
+        for start in STARTS:
+            found = found or run.from_start(start)
+    except Cancelled:
+        return run.solution(None, Status.CANCELLED)
+    return run.solution(found)
+
+
+class ConeRun(Run):
+    """One run on one problem of any dimension: keeps count of work and the trace of what was tried.
+
+    Parameters
+    ----------
+    scaled : Scaled
+    progress : callable or None
+    """
+
+    def __init__(self, scaled: Scaled, progress: ProgressCallback | None = None) -> None:
+        super().__init__(scaled, progress)
+        self.cones = ConeIteration(scaled)
+
+    def from_start(self, start: Start, most: int = 100) -> Finished | None:
+        """Iterate from a start; return the exact answer or None."""
+        z = self.cones.start(start.force, start.length)
+        return self.approach(z, f"interior point from {start}", start.share, most)
+
+    def approach(self, z: ConePoint, stage: str, share: float = 0.99, most: int = 100) -> Finished | None:
+        """Iterate to ever smaller targets, trying the exact finish at each, until it succeeds or nothing moves."""
+        for target in TARGETS:
+            outcome = self.cones.run(z, target=target, most=most, share=share, watch=self.watch(stage))
+            self.iterations += outcome.iterations
+            self.trace.append(
+                f"{stage}: {outcome.iterations} iterations, residual {outcome.merit:.1e}"
+                + ("" if outcome.converged else ", stopped")
+            )
+            if outcome.converged or outcome.merit < NEAR:
+                last = target == TARGETS[-1] or not outcome.converged
+                found = self.settle(z.u, z.t, WEIGHTS if last else WEIGHTS[:1], 20 if last else 6)
+                if found is not None:
+                    return found
+            if not outcome.converged:
+                break
+        return None
+
+    def settle(self, u: Array, t: Array, weights: tuple[float, ...] = WEIGHTS, rounds: int = 20) -> Finished | None:
+        """Exact finish of a point by Newton's method; return it if its certificate holds, None if not."""
+        for weight in weights:
+            found = finish(self.scaled, u, t, rho=weight, rounds=rounds)
+            settled = found.error <= EXACT
+            exact = settled and self.certified(found)
+            left = f", {len(found.undecided)} pairs undecided" if not settled else "" if exact else ", runs off"
+            self.trace.append(f"exact finish: {found.solves} linear solves, residual {found.error:.1e}{left}")
+            if (exact or not settled) and (self.best is None or found.error < self.best.error):
+                self.best = found
+            if exact:
+                return found
+        return None

@@ -1,0 +1,101 @@
+"""What methods can treat is a table; what they cannot is refused in a sentence; methods of one's own join it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+import concio
+from concio.errors import MethodError
+from concio.problem.contact_problem import ContactProblem
+from concio.problem.solution import ProgressCallback, Solution, Status, failed
+from concio.solvers.methods import METHODS, find, laws_of, names_for, register
+from space_problems import wall
+
+SPACE = [name for name, method in METHODS.items() if 3 in method.dimensions]
+PLANE_ONLY = [name for name, method in METHODS.items() if 3 not in method.dimensions]
+
+
+def silent(
+    problem: ContactProblem, *, progress: ProgressCallback | None = None, patience: int = 1
+) -> Solution:
+    """Give up at once."""
+    return failed(problem, Status.GAVE_UP, method="silent", iterations=patience)
+
+
+@pytest.fixture(autouse=True)
+def _as_before() -> Iterator[None]:
+    before = dict(METHODS)
+    yield
+    METHODS.clear()
+    METHODS.update(before)
+
+
+def test_there_are_methods_of_both_kinds() -> None:
+    assert {"auto", "interior-point", "alart-curnier", "de-saxce"} <= set(SPACE)
+    assert {"lemke", "exhaustive", "lagrange"} <= set(PLANE_ONLY)
+
+
+@pytest.mark.parametrize("name", PLANE_ONLY)
+def test_methods_of_the_plane_refuse_space_in_one_sentence(name: str) -> None:
+    problem = wall(2, 1, kn=1e3).problem
+    with pytest.raises(MethodError, match=rf"method '{name}' does not treat problems in space .*auto, interior-point"):
+        find(name)(problem)
+
+
+@pytest.mark.parametrize("name", SPACE)
+def test_methods_of_space_are_certified_there_or_say_that_they_stopped(name: str) -> None:
+    problem = wall(2, 2, kn=10.0, mesh=(2, 1, 1)).at(0.2)
+    found = find(name)(problem)
+    assert found.solved or found.status is Status.GAVE_UP
+    reference = find("auto")(problem)
+    assert reference.solved
+    if found.solved:
+        assert np.abs(found.normal_force - reference.normal_force).max() < 1e-6
+
+
+def test_most_methods_of_space_solve_a_small_wall() -> None:
+    problem = wall(2, 2, kn=10.0, mesh=(2, 1, 1)).at(0.2)
+    for name in ("auto", "interior-point", "alart-curnier", "simo-laursen", "de-saxce", "admm"):
+        assert find(name)(problem).solved
+
+
+def test_a_method_of_ones_own() -> None:
+    register("silent", silent, dimensions=(2, 3), laws=("friction", "stiffness"))
+    assert find("silent").options == ("patience",)
+    problem = wall(2, 1, kn=1e3).problem
+    assert find("silent")(problem, patience=3).iterations == 3
+    assert "silent" in names_for(problem)
+    model = concio.column(width=0.5, height=1.0, blocks=2, block="rigid")
+    assert concio.solve(model, "silent", on_failure="return").status is Status.GAVE_UP
+    with pytest.raises(concio.InputError, match="did you mean 'patience'"):
+        concio.solve(model, "silent", patince=2)
+
+
+def test_what_it_does_not_treat_never_reaches_it() -> None:
+    register("silent", silent, dimensions=(2,))
+    problem = wall(2, 1, kn=1e3).problem
+    with pytest.raises(MethodError, match="does not treat problems in space"):
+        find("silent")(problem)
+    with pytest.raises(MethodError, match="method 'silent' does not treat stiffness"):
+        concio.solve(concio.column(width=0.5, height=1.0, blocks=2, block="rigid"), "silent")
+    assert laws_of(problem) == ("friction", "stiffness")
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: register("auto", silent), "there is a method 'auto' already"),
+        (lambda: register("mine", silent, laws=("frction",)), "did you mean 'friction'"),
+        (lambda: register("mine", silent, dimensions=(4,)), "dimension 2, 3 or both"),
+        (lambda: register("mine", "no.such.module"), "cannot be imported"),
+        (lambda: register("mine", "concio.errors"), "has no function 'solve'"),
+        (lambda: register("mine", lambda problem: problem), "does not take progress"),
+        (lambda: find("interior-point")(wall(2, 1, kn=1e3).problem, homotopy=False), "no option 'homotopy' for prob"),
+    ],
+)
+def test_calls_that_cannot_be_meant(call: object, said: str) -> None:
+    with pytest.raises(MethodError, match=said):
+        call()  # type: ignore[operator]

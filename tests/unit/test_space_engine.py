@@ -1,0 +1,150 @@
+"""Round cones: certified answers, collapse proven, motions that never end, nothing that depends on the frame."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import concio
+from concio.kinematics.rigid import rotation_matrix
+from concio.problem.contact_problem import ContactProblem
+from concio.problem.solution import Status
+from concio.solvers.algebra.scaled import scale
+from concio.solvers.interior.cone_iteration import ConeIteration, NewtonStep
+from concio.solvers.methods import find
+from concio.solvers.statics.limit import associated_limit
+from space_problems import barrel, dome, wall
+
+TURN = rotation_matrix(np.array([0.4, -1.1, 0.7]))
+STIFF = {"kn": 1e3}
+
+
+def relative(a: np.ndarray, b: np.ndarray) -> float:
+    return float(np.abs(a - b).max() / np.abs(b).max())
+
+
+@pytest.mark.parametrize(
+    ("problem", "name"),
+    [
+        (wall(3, 4, **STIFF).at(0.4), "rigid blocks, joints with stiffness"),
+        (wall(3, 4, elastic=True).at(0.4), "elastic blocks"),
+        (wall(4, 4, elastic=True, sides=True).at(0.0), "wedged between sides, without a base"),
+        (dome(4, 8, **STIFF).at(0.2), "dome"),
+        (barrel(8, 3, elastic=True).at(0.1), "elastic barrel"),
+    ],
+)
+@pytest.mark.parametrize("method", ["interior-point", "alart-curnier"])
+def test_answers_are_certified_and_two_methods_agree(problem: ContactProblem, name: str, method: str) -> None:
+    found = find(method)(problem)
+    assert found.solved
+    reference = find("auto")(problem)
+    assert reference.certificate.worst < 1e-11
+    assert relative(found.displacement, reference.displacement) < 1e-7
+
+
+@pytest.mark.parametrize("elastic", [False, True])
+def test_turning_the_structure_in_space_changes_nothing(elastic: bool) -> None:
+    options = {"elastic": True} if elastic else STIFF
+    there = find("auto")(wall(3, 3, leaves=2, direction=(0.6, 0.8, 0.0), **options).at(0.15))
+    turned = find("auto")(wall(3, 3, leaves=2, direction=(0.6, 0.8, 0.0), turned=TURN, **options).at(0.15))
+    assert there.solved
+    assert turned.solved
+    if elastic:  # forces of redundant pairs at corners are not unique, displacements are
+        moved = (there.displacement.reshape(-1, 3) @ TURN.T).ravel()
+        assert relative(turned.displacement, moved) < 1e-9
+        return
+    assert relative(turned.normal_force, there.normal_force) < 1e-9
+    size = [np.linalg.norm(a.friction_force, axis=1) for a in (turned, there)]
+    assert relative(*size) < 1e-9
+
+
+def test_every_joint_law_in_space() -> None:
+    problem = wall(3, 3, leaves=2, kn=1e3, direction=(0.6, 0.8, 0.0)).at(0.1)
+    m, rng = problem.pairs, np.random.default_rng(5)
+    law = replace(
+        problem.laws,
+        tension=0.01 * rng.random(m),
+        cohesion=0.02 + 0.03 * rng.random(m),
+        dilatancy=0.3 * rng.random(m),
+        cap=0.05 + 2.0 * rng.random(m),
+    )
+    gap, origin = 1e-5 * rng.normal(size=m), 1e-5 * rng.normal(size=(m, 2))
+    found = find("auto")(replace(problem, laws=law, gap=gap, slip_origin=origin))
+    assert found.solved
+    assert found.certificate.worst < 1e-10
+    assert (found.normal_force > law.cap - 1e-9).any(), "no pair is crushed"
+    assert (found.normal_force < -1e-4).any(), "no pair is pulled"
+
+
+@pytest.mark.parametrize("share", [0.97, 0.99, 1.01])
+@pytest.mark.parametrize("direction", [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0)])
+def test_near_the_limit(share: float, direction: tuple[float, float, float]) -> None:
+    built = wall(3, 4, kn=1e3, direction=direction)
+    limit = associated_limit(built.problem, built.live)
+    assert limit.checked
+    found = find("auto")(built.at(share * limit.multiplier))
+    if share < 1.0:
+        assert found.solved
+        return
+    assert found.status is Status.NO_EQUILIBRIUM
+    assert found.mechanism is not None
+    assert found.mechanism.violation < 1e-11
+    assert found.mechanism.power > 0
+
+
+@pytest.mark.long
+def test_between_the_limits_letting_go_decides() -> None:
+    """A wall of headers: associated flow carries more than Coulomb friction does; forces exist, no state was found."""
+    built = wall(5, 6, leaves=3, kn=1e3)
+    limit = associated_limit(built.problem, built.live)
+    assert limit.checked
+    found = find("auto")(built.at(0.9 * limit.multiplier))
+    assert found.status is Status.COLLAPSES
+    assert found.departure is not None
+    assert found.departure.certified
+    assert found.info["strategy"] == "release"
+    assert any("statically admissible forces exist" in line for line in found.trace)
+
+
+def test_newton_direction_solves_the_linearised_equations() -> None:
+    """What the elimination returns is checked against the equations before any is eliminated."""
+    s = scale(dome(3, 8, **STIFF).at(0.1))
+    it = ConeIteration(s)
+    z = it.start(10.0, 100.0)
+    it.run(z, most=3, target=0.0)
+    for theta in (0.0, 1.0):
+        dilatancy = it.dilatancy(theta)
+        beta, room = it.strength(z), it.room(z)
+        residuals = it.residuals(z, dilatancy)
+        newton = NewtonStep.at(it, z, beta, room, residuals, dilatancy)
+        assert newton is not None
+        rc_n = 0.3 - z.t[:, 0] * z.y_n
+        d = newton.direction(rc_n, np.zeros_like(beta), np.zeros_like(rc_n), 1e-13)
+        assert d is not None
+        size = max(float(np.abs(d.u).max()), 1.0)
+        assert np.abs(s.elastic(d.u) - s.pull(d.t) + residuals.u).max() < 1e-8
+        moved = s.along(d.u) + s.compliance * d.t
+        moved[:, 0] -= dilatancy * d.eta[:, 0]
+        assert np.abs(moved[:, 0] - d.y_n + residuals.n).max() < 1e-9 * size
+        assert np.abs(moved[:, 1:] - d.eta[:, 1:] + residuals.t).max() < 1e-9 * size
+        assert np.abs(z.t[:, 0] * d.y_n + z.y_n * d.t[:, 0] - rc_n).max() < 1e-9 * size
+
+
+def test_a_model_in_space_is_solved_and_hard_joints_keep_their_exact_answer() -> None:
+    plane = concio.wall(length=2.0, height=1.0, block="rigid", horizontal=0.2)
+    result = concio.solve(concio.extrude(plane, 0.3))
+    assert result.solved
+    assert result.lent_compliance > 0
+    assert not result.displacement.any(), "rigid blocks on hard joints do not move"
+    weight = result.contacts.force_on_b
+    assert weight.shape[1] == 3
+
+
+def test_collapse_of_a_model_in_space() -> None:
+    tall = concio.column(width=0.5, height=3.0, blocks=3, block="rigid", friction=0.6, horizontal=0.3)
+    result = concio.solve(concio.extrude(tall, 0.4), on_failure="return")
+    assert result.status is Status.NO_EQUILIBRIUM
+    with pytest.raises(concio.NoEquilibriumError):
+        concio.solve(concio.extrude(tall, 0.4))
