@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from concio.analysis.path import ControlPoint, PathResult, Stage, run_path
     from concio.analysis.result import Result
     from concio.analysis.rocking import rock
+    from concio.analysis.seismic.assess import assess
+    from concio.analysis.seismic.assessment import Assessment
+    from concio.analysis.seismic.site import Site
     from concio.analysis.settlement import settle
     from concio.analysis.step import solve
     from concio.analysis.thrust import thrust_line
@@ -66,6 +69,9 @@ _HOMES = {
     "concio.analysis.motion.push": ("push",),
     "concio.analysis.motion.push_result": ("PushResult",),
     "concio.analysis.rocking": ("rock",),
+    "concio.analysis.seismic.assess": ("assess",),
+    "concio.analysis.seismic.assessment": ("Assessment",),
+    "concio.analysis.seismic.site": ("Site",),
     "concio.model.motion.records": ("read_record",),
     "concio.model.motion.signals": ("Pulse", "Record"),
     "concio.analysis.settlement": ("settle",),
@@ -103,6 +109,7 @@ _HOME = {name: module for module, names in _HOMES.items() for name in names}
 
 __all__ = [
     "Assembly",
+    "Assessment",
     "Body",
     "ConcioError",
     "ControlPoint",
@@ -123,6 +130,7 @@ __all__ = [
     "Record",
     "Result",
     "Rigid",
+    "Site",
     "SolverError",
     "Stage",
     "Status",
@@ -135,6 +143,7 @@ __all__ = [
     "__version__",
     "arch",
     "assemble",
+    "assess",
     "buttress",
     "cell",
     "column",

@@ -17,7 +17,9 @@ from models import box, on_ground, weight
 
 PASSES_ON = {"variable"}
 """Further keywords are the parameters of a distribution, which knows its own."""
-BUILT_BY_CONCIO = {"Assembly", "DynamicsResult", "PathResult", "PushResult", "Result", "Status", "StudyResult"}
+BUILT_BY_CONCIO = {
+    "Assembly", "Assessment", "DynamicsResult", "PathResult", "PushResult", "Result", "Status", "StudyResult",
+}  # fmt: skip
 CALLED = sorted(
     name
     for name in concio.__all__

@@ -2,6 +2,7 @@
 
 A bar of stiffness k and prestress T0 between points a and b carries ``T = max(0, T0 + k e)`` with the elongation e. As
 a pair: C_n u = -e, compliance 1/k, initial gap -T0/k, so ``0 <= y_n = -T0/k - e + T/k _|_ T >= 0``. It has no friction.
+A bar that yields is a pair with a cap.
 """
 
 from __future__ import annotations
@@ -48,6 +49,12 @@ def add_ties(disc: Discretisation, pairs: Pairs, laws: Laws) -> tuple[Pairs, Law
         if not (0 < tie.stiffness < np.inf) or not (0 <= tie.prestress < np.inf):
             msg = f"stiffness {tie.stiffness:g} must be positive and prestress {tie.prestress:g} not negative"
             raise InputError(msg, where=where)
+        if not tie.prestress <= tie.most or not tie.most > 0:
+            msg = f"yield_force {tie.most:g} must be positive and not below the prestress {tie.prestress:g}"
+            raise InputError(msg, where=where, hint="both in kN; leave yield_force out for a bar that never yields")
+        if tie.break_elongation is not None and not 0 < tie.break_elongation < np.inf:
+            msg = f"break_elongation {tie.break_elongation:g} must be positive"
+            raise InputError(msg, where=where, hint="in m; leave it out for a bar that never breaks")
         direction = (b - a) / length
         normals[k] = -direction  # the force on b points back to a
         for side, (name, point, sign) in enumerate(((tie.body_a, a, 1.0), (tie.body_b, b, -1.0))):
@@ -86,6 +93,6 @@ def add_ties(disc: Discretisation, pairs: Pairs, laws: Laws) -> tuple[Pairs, Law
         C_t=sp.csr_array(sp.vstack([pairs.C_t, sp.csr_array((n * (disc.dim - 1), disc.unknowns))])),
         rule=np.concatenate([pairs.rule, np.full(n, CONTACT_MODELS.index("tie"))]),
     )
-    tie_laws = Laws(zero, zero, zero, zero, 1.0 / stiffness, zero, np.full(n, np.inf))
+    tie_laws = Laws(zero, zero, zero, zero, 1.0 / stiffness, zero, np.array([t.most for t in ties]))
     names = Laws.__dataclass_fields__
     return joined, Laws(*(np.concatenate([getattr(laws, name), getattr(tie_laws, name)]) for name in names))

@@ -277,6 +277,10 @@ class Tie:
         E A / L > 0 [kN/m].
     prestress : float
         Tension at zero elongation >= 0 [kN].
+    yield_force : float or None
+        Largest tension, of the bar or of its anchors [kN]; None is unlimited.
+    break_elongation : float or None
+        Elongation at which it breaks [m], which counts where a mechanism is followed far; None is never.
     """
 
     name: str
@@ -286,6 +290,19 @@ class Tie:
     at_b: Point
     stiffness: float
     prestress: float = 0.0
+    yield_force: float | None = None
+    break_elongation: float | None = None
+
+    @property
+    def most(self) -> float:
+        """Largest tension [kN]; ``inf`` where it is unlimited."""
+        return math.inf if self.yield_force is None else self.yield_force
+
+    def force(self, elongation: float) -> float:
+        """Return the tension [kN] at an elongation [m] that was never larger: elastic, then plastic, then broken."""
+        if self.break_elongation is not None and elongation >= self.break_elongation:
+            return 0.0
+        return min(max(self.prestress + self.stiffness * elongation, 0.0), self.most)
 
 
 @strict_class

@@ -288,7 +288,7 @@ def _load(table: LoadTable) -> Load:
 
 
 def _tie(table: TieTable) -> Tie:
-    return Tie(table.name, table.body_a, table.at_a, table.body_b, table.at_b, table.stiffness, table.prestress)
+    return Tie(**table.model_dump())
 
 
 def _stage(table: StageTable, number: int) -> Stage:

@@ -228,6 +228,8 @@ class TieTable(Table):
     at_b: Point
     stiffness: Stiffness
     prestress: Force = 0.0
+    yield_force: Force | None = None
+    break_elongation: Length | None = None
 
 
 class ControlTable(Table):

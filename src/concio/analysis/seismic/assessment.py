@@ -1,0 +1,272 @@
+"""What an assessment found: mechanisms with their curves, limits and checks, weakest first."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from concio.analysis.seismic.chain import Chain
+from concio.analysis.seismic.checks import Check, Displacement, return_period
+from concio.analysis.seismic.curve import CapacityCurve
+from concio.analysis.seismic.linkage import Force, Linkage
+from concio.analysis.seismic.macro_blocks import Mechanics
+from concio.analysis.seismic.mechanism import Found
+from concio.analysis.seismic.site import Hazard, Site
+from concio.contact.assembly import Assembly
+from concio.model.model import Model
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True)
+class LevelOutcome:
+    """What a mechanism can take at one limit state.
+
+    Parameters
+    ----------
+    level : str
+    a_g : float
+        Acceleration on rock at which demand meets capacity [g]; ``inf`` where none does.
+    zeta : float
+        That over the acceleration of the site.
+    T_R : float
+        Its return period [years]; ``nan`` where the hazards known do not tell.
+    check : Check
+        The one that decides.
+    """
+
+    level: str
+    a_g: float
+    zeta: float
+    T_R: float
+    check: Check
+
+    @property
+    def holds(self) -> bool:
+        """Whether the site's acceleration is not larger."""
+        return self.zeta >= 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class LocalMechanism:
+    """One mechanism, examined.
+
+    Parameters
+    ----------
+    name : str
+        As it was asked for.
+    direction : str
+        Which way the earthquake pushes.
+    found : Found
+        Multiplier with its proof.
+    assembly : Assembly
+        With the loads of the earthquake.
+    linkage : Linkage
+        Macro-blocks, joints, forces and control point.
+    chain : Chain
+        The forces of the earthquake.
+    dead : tuple of (str, Force)
+        All other forces on the macro-blocks.
+    control : (body, point)
+    level : float
+        Height at which it starts, above the base of the building [m].
+    multiplier : float
+        alpha_0.
+    confidence : float
+        FC.
+    factor : float
+        Spectral acceleration over alpha: g / (e* FC) [m/s2].
+    followed : CapacityCurve
+    straight : CapacityCurve or None
+        None where alpha does not vanish on the followed curve.
+    limits : dict of str to Displacement
+        By limit state.
+    checks : tuple of Check
+    periods : dict of str to Hazard
+        By limit state.
+    site : Site
+    velocity : (3 G,) array
+        Motion of the macro-blocks, for a control point that moves by one.
+    """
+
+    name: str
+    direction: str
+    found: Found
+    assembly: Assembly
+    linkage: Linkage
+    chain: Chain
+    dead: tuple[tuple[str, Force], ...]
+    control: tuple[str, tuple[float, ...]]
+    level: float
+    multiplier: float
+    confidence: float
+    factor: float
+    followed: CapacityCurve
+    straight: CapacityCurve | None
+    limits: Mapping[str, Displacement]
+    checks: tuple[Check, ...]
+    periods: Mapping[str, Hazard]
+    site: Site
+    velocity: Array = field(repr=False)
+
+    @property
+    def mechanics(self) -> Mechanics:
+        """Macro-blocks and joints."""
+        return self.linkage.mechanics
+
+    @property
+    def e_star(self) -> float:
+        """Share of the mass that takes part."""
+        return self.chain.e_star
+
+    @property
+    def onset(self) -> float:
+        """a_0* [m/s2]."""
+        return self.multiplier * self.factor
+
+    @property
+    def d0(self) -> float:
+        """Spectral displacement at which the multiplier vanishes [m]; ``nan`` where it does not."""
+        return self.chain.spectral * self.followed.end
+
+    def spectral_curve(self, curve: CapacityCurve) -> tuple[Array, Array]:
+        """Return spectral displacements [m] and accelerations [m/s2] of a capacity curve, (n,) each."""
+        return self.chain.spectral * curve.displacement, self.factor * curve.multiplier
+
+    def outcome(self, level: str) -> LevelOutcome:
+        """Return what the mechanism can take at a limit state, over all places where it is checked.
+
+        Of a limit state of displacement the check in displacements decides where there is one, but its acceleration is
+        never less than that of the onset.
+        """
+        own = [c for c in self.checks if c.level == level]
+        decisive = [c for c in own if c.kind == "displacement"] or own
+        best: list[tuple[float, Check]] = []
+        for check in decisive:
+            best.append((max(check.a_g, check.least), check))
+        a_g, check = min(best, key=lambda pair: pair[0])
+        zeta = a_g / self.periods[level].a_g
+        return LevelOutcome(level, a_g, zeta, return_period(self.site, a_g), check)
+
+    @property
+    def outcomes(self) -> tuple[LevelOutcome, ...]:
+        """What it can take at each limit state."""
+        return tuple(self.outcome(level) for level in self.periods if any(c.level == level for c in self.checks))
+
+    @property
+    def zeta(self) -> float:
+        """The least zeta_E of all limit states."""
+        return min((o.zeta for o in self.outcomes), default=math.inf)
+
+    def summary(self) -> dict[str, Any]:
+        """Return its numbers."""
+        return {
+            "name": self.name,
+            "direction": self.direction,
+            "bodies": [list(b.names) for b in self.mechanics.blocks],
+            "alpha0": self.multiplier,
+            "associated_multiplier": self.found.associated.multiplier,
+            "flow": self.found.flow,
+            "e_star": self.e_star,
+            "a0_star": self.onset,
+            "control_body": self.control[0],
+            "control_point": list(self.control[1]),
+            "level": self.level,
+            "d_C0": _number(self.followed.end),
+            "d0": _number(self.d0),
+            "curve_ends": self.followed.reason,
+            "limits": {
+                level: {"d": v.d, "a": v.a, "T": _number(v.T), "set_by": v.why} for level, v in self.limits.items()
+            },
+            "checks": [
+                {
+                    "level": c.level, "kind": c.kind, "place": c.place, "capacity": c.capacity, "demand": c.demand,
+                    "unit": c.unit, "ratio": _number(c.ratio), "holds": c.holds, "a_g": _number(c.a_g),
+                    "zeta": _number(c.zeta), "clause": c.clause,
+                }
+                for c in self.checks
+            ],
+            "outcomes": {
+                o.level: {"a_g": _number(o.a_g), "zeta_E": _number(o.zeta), "T_R": _number(o.T_R)}
+                for o in self.outcomes
+            },
+        }  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Assessment:
+    """What :func:`concio.assess` found.
+
+    Parameters
+    ----------
+    model : Model
+    site : Site
+    levels : tuple of str
+    mechanisms : tuple of LocalMechanism
+        Weakest first.
+    locked : tuple of (name, direction, sentence)
+        Searches in which no mechanism was found to check, and why.
+    knowledge : str
+    confidence : float
+        FC.
+    confidence_by : {"knowledge", "crushing", "given"}
+        Where it comes from; "crushing": joints without compressive strength ask for the largest.
+    curve : {"followed", "straight"}
+        Which capacity curve counts.
+    notes : tuple of str
+        What asks for attention.
+    arguments : mapping
+        Of the call, for assessing a changed model again.
+    """
+
+    model: Model
+    site: Site
+    levels: tuple[str, ...]
+    mechanisms: tuple[LocalMechanism, ...]
+    locked: tuple[tuple[str, str, str], ...]
+    knowledge: str
+    confidence: float
+    confidence_by: str
+    curve: str
+    notes: tuple[str, ...]
+    arguments: Mapping[str, Any]
+
+    @property
+    def worst(self) -> LocalMechanism | None:
+        """The weakest mechanism; None where none was found."""
+        return self.mechanisms[0] if self.mechanisms else None
+
+    @property
+    def zeta(self) -> float:
+        """The least zeta_E; ``inf`` where there is no mechanism."""
+        return self.worst.zeta if self.worst is not None else math.inf
+
+    @property
+    def holds(self) -> bool:
+        """Whether every mechanism can take every limit state."""
+        return self.zeta >= 1.0
+
+    def summary(self) -> dict[str, Any]:
+        """Return the numbers of ``--json``."""
+        return {
+            "code": self.site.rules.name,
+            "levels": list(self.levels),
+            "knowledge": self.knowledge,
+            "confidence_factor": self.confidence,
+            "confidence_by": self.confidence_by,
+            "curve": self.curve,
+            "zeta_E": _number(self.zeta),
+            "holds": self.holds,
+            "mechanisms": [m.summary() for m in self.mechanisms],
+            "no_mechanism": [{"name": n, "direction": d, "why": w} for n, d, w in self.locked],
+            "attention": list(self.notes),
+        }
+
+
+def _number(value: float) -> float | None:
+    """Return a number, or None for what is none."""
+    return value if math.isfinite(value) else None

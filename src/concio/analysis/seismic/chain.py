@@ -1,0 +1,105 @@
+r"""The chain of macro-blocks of a mechanism, as the code sees it: participating mass and spectral quantities.
+
+For every weight P that rests on the chain, and Q that pushes but does not rest, the earthquake has a force (P + Q)
+times alpha. With delta the displacement of its point of application along the push,
+
+.. math::
+
+    e^* = \frac{(\sum (P+Q)\,\delta)^2}{\sum (P+Q) \sum (P+Q)\,\delta^2}, \qquad a = \frac{\alpha g}{e^* FC}, \qquad
+    d = d_C \frac{\sum (P+Q)\,\delta^2}{\delta_C \sum (P+Q)\,\delta}
+
+(C8.7.1.3 to C8.7.1.5). The own weight of a macro-block acts in its centroid, distributed loads in their middle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.analysis.seismic.applied import applied_forces
+from concio.analysis.seismic.linkage import Force
+from concio.analysis.seismic.macro_blocks import Mechanics
+from concio.model.model import Model
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Participant:
+    """One force on one macro-block.
+
+    Parameters
+    ----------
+    block : int
+        Macro-block.
+    kind : str
+        "weight", or the kind and number of the load: "point 3".
+    force : (2,) array
+        [kN].
+    point : (2,) array
+        [m].
+    delta : float
+        Displacement of the point along the force, when the control point moves by one.
+    """
+
+    block: int
+    kind: str
+    force: Array
+    point: Array
+    delta: float
+
+    @property
+    def size(self) -> float:
+        """Size of the force [kN]."""
+        return float(np.hypot(*self.force))
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """The forces of the earthquake on a mechanism, and what the code makes of them.
+
+    Parameters
+    ----------
+    participants : tuple of Participant
+    """
+
+    participants: tuple[Participant, ...]
+
+    @property
+    def sums(self) -> tuple[float, float, float]:
+        """Sums of (P + Q), of (P + Q) delta and of (P + Q) delta^2."""
+        f = np.array([p.size for p in self.participants])
+        d = np.array([p.delta for p in self.participants])
+        return float(f.sum()), float(f @ d), float(f @ d**2)
+
+    @property
+    def e_star(self) -> float:
+        """Share of the mass that takes part."""
+        plain, first, second = self.sums
+        return first**2 / (plain * second)
+
+    @property
+    def spectral(self) -> float:
+        """Spectral displacement over the displacement of the control point."""
+        _, first, second = self.sums
+        return second / first
+
+
+def gathered(model: Model, mechanics: Mechanics, numbers: Sequence[int]) -> list[tuple[str, Force]]:
+    """Return the forces of some loads on the macro-blocks; own weights of a macro-block are one force."""
+    sums: dict[tuple[int, str, bool], list[tuple[Array, Array]]] = {}
+    for found in applied_forces(model, numbers):
+        block = mechanics.of_body.get(found.body)
+        if block is not None and found.force.any():
+            kind = model.loads[found.load].kind
+            name = "weight" if kind == "weight" else f"{kind} {found.load + 1}"
+            key = (block, name, bool(np.abs(found.force[0]) > np.abs(found.force[1])))
+            sums.setdefault(key, []).append((found.force, found.point))
+    result = []
+    for (block, name, _), parts in sorted(sums.items(), key=lambda item: item[0][:2]):
+        size = np.array([np.hypot(*force) for force, _ in parts])
+        point = size @ np.array([point for _, point in parts]) / size.sum()
+        result.append((name, Force(block, np.sum([force for force, _ in parts], axis=0), point)))
+    return result

@@ -1,0 +1,263 @@
+r"""The checks of one mechanism: onset, with the behaviour factor, and in displacements; on the ground and at a height.
+
+.. math::
+
+    T = 1.68\,\pi \sqrt{d_{SLV}/a(d_{SLV})}, \qquad S_{De}(T, \xi) \le d_{SLV}
+
+and so on, with the factors of the code's table. The acceleration a site could have is found by scaling its a_g (or, in
+a table of return periods, by the return period) until demand meets capacity; the least one counts.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from concio.analysis.seismic.curve import CapacityCurve
+from concio.analysis.seismic.site import LARGEST, Hazard, Site
+
+Array = np.ndarray
+Kind = Literal["onset", "linear", "displacement"]
+Place = Literal["ground", "height"]
+
+GRID = 400
+"""Accelerations that are tried between nothing and the largest before bisection."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """One line "capacity / demand".
+
+    Parameters
+    ----------
+    level : str
+        Limit state.
+    kind : {"onset", "linear", "displacement"}
+    place : {"ground", "height"}
+        Which spectrum the demand comes from.
+    capacity, demand : float
+        In m/s2, or in m for displacements.
+    a_g : float
+        Acceleration on rock at which demand meets capacity [g]; ``inf`` where none does.
+    zeta : float
+        That over the acceleration of the site, zeta_E.
+    clause : str
+    T : float
+        Period at which the demand was read [s]; 0 for an acceleration of the ground or the floor.
+    xi : float
+        Damping [%].
+    least : float
+        Of a check in displacements: a_g at which the mechanism begins to move, below which it cannot be [g].
+    """
+
+    level: str
+    kind: Kind
+    place: Place
+    capacity: float
+    demand: float
+    a_g: float
+    zeta: float
+    clause: str
+    T: float = 0.0
+    xi: float = 5.0
+    least: float = 0.0
+
+    @property
+    def ratio(self) -> float:
+        """Capacity over demand."""
+        return self.capacity / self.demand if self.demand > 0 else math.inf
+
+    @property
+    def holds(self) -> bool:
+        """Whether capacity is not less than demand."""
+        return self.demand <= self.capacity
+
+    @property
+    def unit(self) -> str:
+        """Of capacity and demand."""
+        return "m" if self.kind == "displacement" else "m/s2"
+
+
+@dataclass(frozen=True)
+class Displacement:
+    """A limit of displacement on a capacity curve.
+
+    Parameters
+    ----------
+    level : str
+    control : float
+        Displacement of the control point [m].
+    d : float
+        Spectral displacement [m].
+    a : float
+        Spectral acceleration there [m/s2].
+    T : float
+        Secant period [s].
+    xi : float
+        Damping [%].
+    why : str
+        What sets it: "share", "ties" or "given".
+    """
+
+    level: str
+    control: float
+    d: float
+    a: float
+    T: float
+    xi: float
+    why: str
+
+
+def limit_of(
+    level: str, rule: Mapping[str, Any], curve: CapacityCurve, spectral: float, factor: float, given: float = math.inf
+) -> Displacement:
+    """Return the limit of displacement of a limit state.
+
+    Parameters
+    ----------
+    level : str
+    rule : mapping
+        Its entry in the code's table ``[levels]``.
+    curve : CapacityCurve
+        That ends.
+    spectral : float
+        Spectral displacement over that of the control point.
+    factor : float
+        Spectral acceleration over alpha [m/s2].
+    given : float
+        Displacement of the control point that the user does not want exceeded [m].
+    """
+    choices = [(rule["share"] * curve.end, "share"), (given, "given")]
+    if rule.get("mark") == "ties":
+        choices.append((curve.first_below_half_after_a_break(), "ties"))
+    control, why = min(choices)
+    a = max(curve.at(control), 0.0) * factor
+    d = spectral * control
+    T = rule["period"] * math.pi * math.sqrt(d / a) if a > 0 else math.inf
+    return Displacement(level, control, d, a, T, float(rule["damping"]), why)
+
+
+def checks_of(
+    site: Site, level: str, z: float, *, onset: float, limit: Displacement | None, linear: bool = True
+) -> list[Check]:
+    """Return the checks of a limit state.
+
+    Parameters
+    ----------
+    site : Site
+    level : str
+    z : float
+        Height at which the mechanism starts [m].
+    onset : float
+        a_0* [m/s2].
+    limit : Displacement or None
+        None where there is no curve that ends, or for the limit state of onset.
+    linear : bool
+        Whether the check with the behaviour factor is made.
+    """
+    rules = site.rules
+    rule = rules.tables["levels"][level]
+    hazard = site.at(level)
+    found = []
+    places: list[Place] = ["ground"]
+    if site.at_height(site.spectrum(hazard), z) is not None:
+        places.append("height")
+    for place in places:
+
+        def of_site(h: Hazard, place: Place = place) -> Any:
+            ground = site.spectrum(h)
+            return site.at_height(ground, z) if place == "height" else ground
+
+        floor = "; " + rules.clause("floor") if place == "height" else ""
+        if rule["kind"] == "onset" or linear:
+            q = float(rule.get("q", 1.0))
+            kind: Kind = "onset" if rule["kind"] == "onset" else "linear"
+            if kind == "onset" or "q" in rule:
+
+                def demand(h: Hazard, of: Callable[[Hazard], Any] = of_site, q: float = q) -> float:
+                    return float(of(h).acceleration(0.0)) / q
+
+                found.append(
+                    _check(site, level, kind, place, onset, demand, hazard, rules.clause(kind) + floor)
+                )  # fmt: skip
+        if limit is not None and rule["kind"] != "onset":
+
+            def moved(h: Hazard, of: Callable[[Hazard], Any] = of_site, at: Displacement = limit) -> float:
+                return float(of(h).displacement(at.T, at.xi)) if math.isfinite(at.T) else math.inf
+
+            clause = rules.clause("height" if place == "height" else "displacement") + floor
+            made = _check(site, level, "displacement", place, limit.d, moved, hazard, clause)
+
+            def begins(h: Hazard, of: Callable[[Hazard], Any] = of_site) -> float:
+                return float(of(h).acceleration(0.0))
+
+            least = capacity_acceleration(site, hazard, onset, begins)
+            found.append(replace(made, T=limit.T, xi=limit.xi, least=least))
+    return found
+
+
+def _check(
+    site: Site,
+    level: str,
+    kind: Kind,
+    place: Place,
+    capacity: float,
+    demand: Callable[[Hazard], float],
+    hazard: Hazard,
+    clause: str,
+) -> Check:
+    a_g = capacity_acceleration(site, hazard, capacity, demand)
+    return Check(level, kind, place, capacity, demand(hazard), a_g, a_g / hazard.a_g, clause)
+
+
+def capacity_acceleration(site: Site, hazard: Hazard, capacity: float, demand: Callable[[Hazard], float]) -> float:
+    """Return the least a_g [g] at which the demand reaches the capacity; ``inf`` where none does.
+
+    Along a table of return periods all its quantities change; from hazards by limit state only a_g does.
+    """
+    scaled = hazards(site, hazard)
+    shares = np.linspace(0.0, 1.0, GRID + 1)[1:]
+    low = 0.0
+    for share in shares:
+        if demand(scaled(float(share))) > capacity:
+            high = float(share)
+            for _ in range(60):
+                middle = (low + high) / 2
+                low, high = (low, middle) if demand(scaled(middle)) > capacity else (middle, high)
+            return scaled(low).a_g if low > 0 else 0.0
+        low = float(share)
+    return math.inf
+
+
+def hazards(site: Site, hazard: Hazard) -> Callable[[float], Hazard]:
+    """Return the hazards of a site by a share from 0 to 1, the acceleration of 1 being the largest that there is."""
+    if isinstance(site.hazard, Mapping):
+        return lambda share: replace(hazard, a_g=max(share, 1e-9) * LARGEST, T_R=math.nan)
+    rows: tuple[Hazard, ...] = site.hazard
+    first, last = math.log(rows[0].T_R), math.log(rows[-1].T_R)
+    low = rows[0].a_g
+
+    def along(share: float) -> Hazard:
+        # below the table a_g alone falls; the first tenth of the way is for that
+        if share < 0.1:
+            return replace(rows[0], a_g=max(share, 1e-9) / 0.1 * low)
+        return site.interpolated(math.exp(first + (last - first) * (share - 0.1) / 0.9))
+
+    return along
+
+
+def return_period(site: Site, a_g: float) -> float:
+    """Return the return period [years] of an acceleration, between the hazards known; ``nan`` where there is none.
+
+    Linear in the logarithms between limit states or rows of the table; beyond them it is not known.
+    """
+    given = [site.at(level) for level in site.levels] if isinstance(site.hazard, Mapping) else list(site.hazard)
+    known = sorted({(h.a_g, h.T_R) for h in given})
+    if len(known) < 2 or not known[0][0] <= a_g <= known[-1][0]:
+        return math.nan
+    logs = np.log(np.array(known))
+    return float(np.exp(np.interp(math.log(a_g), logs[:, 0], logs[:, 1])))

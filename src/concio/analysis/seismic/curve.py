@@ -1,0 +1,195 @@
+"""Capacity curves: the multiplier against the displacement of the control point, followed, and as a straight line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from concio.analysis.seismic.linkage import Linkage, Point
+
+Array = np.ndarray
+
+STEPS = 100
+"""Points of a followed curve, about."""
+
+FARTHEST = 2.0
+"""The control point is followed to this multiple of the size of the mechanism at most."""
+
+ROOT = 1e-13
+"""Multipliers below this share of the first are zero."""
+
+
+@dataclass(frozen=True, eq=False)
+class CapacityCurve:
+    """alpha(d_C) of one mechanism.
+
+    Parameters
+    ----------
+    kind : {"followed", "straight"}
+    displacement : (n,) array
+        Of the control point [m], growing.
+    multiplier : (n,) array
+        alpha.
+    end : float
+        d_C0, where alpha vanishes [m]; ``nan`` where it does not.
+    reason : str
+        Why it ends where it ends: "falls", or a sentence.
+    broken : tuple of float
+        Displacements at which ties break [m].
+    tie_force : (n, ties) array
+        [kN]; none for a straight line.
+    points : tuple of Point
+        The configurations; none for a straight line.
+    """
+
+    kind: Literal["followed", "straight"]
+    displacement: Array
+    multiplier: Array
+    end: float
+    reason: str = "falls"
+    broken: tuple[float, ...] = ()
+    tie_force: Array | None = None
+    points: tuple[Point, ...] = ()
+
+    @property
+    def ends(self) -> bool:
+        """Whether alpha vanishes somewhere."""
+        return bool(np.isfinite(self.end))
+
+    def at(self, displacement: float) -> float:
+        """Return alpha at a displacement of the control point; where a tie breaks, after it."""
+        d = self.displacement
+        i = int(np.searchsorted(d, displacement, side="right"))
+        if i in (0, len(d)):
+            return float(self.multiplier[min(i, len(d) - 1)])
+        share = (displacement - d[i - 1]) / (d[i] - d[i - 1])
+        return float((1 - share) * self.multiplier[i - 1] + share * self.multiplier[i])
+
+    def first_below_half_after_a_break(self) -> float:
+        """Return where ties have broken and alpha is below half its largest [m]; ``inf`` where that never happens."""
+        if not self.broken:
+            return float("inf")
+        late = (self.displacement >= self.broken[0]) & (self.multiplier < 0.5 * self.multiplier.max())
+        found = self.displacement[late]
+        # before the point after a break stands one at the same displacement with the tie still whole
+        return float(found[0]) if found.size else float("inf")
+
+
+def straight(multiplier: float, end: float) -> CapacityCurve:
+    """Return the line from alpha_0 at rest to zero at d_C0."""
+    return CapacityCurve("straight", np.array([0.0, end]), np.array([multiplier, 0.0]), end)
+
+
+def follow(linkage: Linkage) -> CapacityCurve:
+    """Follow a mechanism with one degree of freedom until its multiplier vanishes.
+
+    Parameters
+    ----------
+    linkage : Linkage
+
+    Returns
+    -------
+    CapacityCurve
+        Of points as equilibrium gives them; where it ends early, its reason says why.
+    """
+    rest = np.zeros((len(linkage.mechanics.blocks), 3))
+    first = linkage.balance(rest)
+    if linkage.freedom != 1 or first is None:
+        n = linkage.freedom
+        why = f"its joints leave {n} ways to move, not one" if n != 1 else "its joints carry no forces in equilibrium"
+        return CapacityCurve("followed", np.zeros(1), np.zeros(1), float("nan"), f"cannot be followed: {why}")
+    points, d = [first], [0.0]
+    step = _first_step(linkage, first)
+    reason = f"the control point has moved by {FARTHEST:g} times the size of the mechanism"
+    end, broken = float("nan"), []
+    while d[-1] < FARTHEST * linkage.size:
+        q = _ahead(linkage, points, d, step)
+        moved = linkage.moved(q, d[-1] + step)
+        now = None if moved is None else linkage.balance(moved)
+        if now is None:
+            if step > 1e-4 * linkage.size:
+                step /= 4
+                continue
+            reason = "its joints come to the end of their way"
+            break
+        if not now.pressed:
+            reason = "a joint opens, and another motion takes over"
+            break
+        snapped = _breaks(linkage, points[-1], now)
+        if snapped:
+            last = points[-1]
+
+            def breaks(p: Point, last: Point = last) -> bool:
+                return bool(_breaks(linkage, last, p))
+
+            at, before, after = _bracket(linkage, last, d[-1], d[-1] + step, breaks)
+            points += [before, after]
+            d += [at, at]
+            broken.append(at)
+            if after.multiplier <= 0:
+                end, reason = at, "falls"
+                break
+            continue
+        if now.multiplier <= ROOT * abs(first.multiplier):
+            at, _, last = _bracket(linkage, points[-1], d[-1], d[-1] + step, lambda p: p.multiplier <= 0)
+            points.append(last)
+            d.append(at)
+            end, reason = at, "falls"
+            break
+        points.append(now)
+        d.append(d[-1] + step)
+    multipliers = np.array([p.multiplier for p in points])
+    if end == end:
+        multipliers[-1] = 0.0 if not broken or d[-1] != broken[-1] else multipliers[-1]
+    forces = np.array([p.tie_force for p in points])
+    return CapacityCurve("followed", np.array(d), multipliers, end, reason, tuple(broken), forces, tuple(points))
+
+
+def _first_step(linkage: Linkage, first: Point) -> float:
+    """Return a step of which some ``STEPS`` lead to where alpha vanishes, by its slope without ties."""
+    tiny = 1e-5 * linkage.size
+    moved = linkage.moved(first.q + tiny * linkage.velocity(first.q).reshape(-1, 3), tiny)
+    after = None if moved is None else linkage.balance(moved)
+    begin, then = first.multiplier, 0.0 if after is None else after.multiplier
+    fall = (begin - then) / tiny
+    length = begin / fall if fall > 0 else 0.5 * linkage.size
+    return min(max(length, 1e-3 * linkage.size), 0.5 * linkage.size) / STEPS
+
+
+def _ahead(linkage: Linkage, points: list[Point], d: list[float], step: float) -> Array:
+    """Return a guess (G, 3) of the next configuration."""
+    guess: Array = points[-1].q + step * linkage.velocity(points[-1].q).reshape(-1, 3)
+    return guess
+
+
+def _breaks(linkage: Linkage, before: Point, after: Point) -> list[int]:
+    """Return the ties that break between two configurations."""
+    found = []
+    for k, (tie, _, _) in enumerate(linkage.ties):
+        limit = tie.break_elongation
+        if limit is not None and before.elongation[k] < limit <= after.elongation[k]:
+            found.append(k)
+    return found
+
+
+def _bracket(
+    linkage: Linkage, start: Point, low: float, high: float, beyond: Callable[[Point], bool]
+) -> tuple[float, Point, Point]:
+    """Return the displacement at which ``beyond`` becomes true, by bisection, with the points just before and after."""
+    before, after = start, start
+    for _ in range(60):
+        middle = (low + high) / 2
+        moved = linkage.moved(before.q, middle)
+        now = None if moved is None else linkage.balance(moved)
+        if now is None:
+            break
+        if beyond(now):
+            high, after = middle, now
+        else:
+            low, before = middle, now
+        if high - low <= 1e-15 * linkage.size:
+            break
+    return high, before, after if after is not start else before

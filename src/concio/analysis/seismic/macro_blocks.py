@@ -1,0 +1,315 @@
+r"""What a mechanism makes of the bodies: macro-blocks that move as one, and the joints between them.
+
+Bodies that touch and have no relative motion are one *macro-block*: thirty courses that topple together count as the
+one rigid body of the code. Where macro-blocks touch and carry force they are joined: by a *hinge* where two points stay
+together, a *roller* where a point slides on a face (without dilatancy, whatever the flow of the limit programme), a
+*bar* where a tie keeps its length. What does not move at all is macro-block -1.
+
+In a joint that crushes, with strength f over the width w, the contact force N stands in the middle of the crushed
+length N/(f w): there is its hinge, set back from the edge by N/(2 f w).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from concio.contact.assembly import Assembly
+from concio.fem.discretisation import FIXED, RIGID
+from concio.kinematics.frames import turned_left
+from concio.kinematics.rigid import rigid_operator
+
+Array = np.ndarray
+
+GROUND = -1
+"""Number of the macro-block that does not move."""
+
+STILL = 1e-7
+"""Relative velocities below this share of the largest are none."""
+
+CARRIES = 1e-9
+"""Forces below this share of the largest are none."""
+
+
+@dataclass(frozen=True, eq=False)
+class MacroBlock:
+    """Bodies that move as one.
+
+    Parameters
+    ----------
+    bodies : tuple of int
+    names : tuple of str
+    centre : (2,) array
+        Of their volume [m].
+    motion : (3,) array
+        Velocity (x, y) of the centre, and rotation.
+    """
+
+    bodies: tuple[int, ...]
+    names: tuple[str, ...]
+    centre: Array
+    motion: Array
+
+    @property
+    def pole(self) -> Array | None:
+        """Absolute centre of rotation (2,); None where it only shifts."""
+        x, y, turn = self.motion
+        if abs(turn) * float(np.abs(self.centre).max() + 1.0) < STILL * float(np.hypot(x, y)):
+            return None
+        found: Array = self.centre + np.array([-y, x]) / turn
+        return found
+
+    @property
+    def label(self) -> str:
+        """Its bodies, in short."""
+        return self.names[0] if len(self.names) == 1 else f"{self.names[0]} ... {self.names[-1]} ({len(self.names)})"
+
+
+@dataclass(frozen=True, eq=False)
+class MacroJoint:
+    """A joint between two macro-blocks, ``b`` on ``a``.
+
+    Parameters
+    ----------
+    kind : {"hinge", "roller", "bar"}
+    a, b : int
+        Macro-blocks; ``GROUND`` is what does not move.
+    point : (2,) array
+        Of a hinge; the point that slides, of a roller; the end on ``a``, of a bar [m].
+    normal : (2,) array
+        From a to b; the unit normal of the face on which a roller slides; of a bar from ``a`` to ``b``.
+    face : {0, 1}
+        Whether the face of a roller belongs to ``a`` or to ``b``.
+    end : (2,) array
+        The end of a bar on ``b`` [m].
+    friction, cohesion : float
+        mu, and c [kN], of what slides.
+    pulls : bool
+        True where it may pull: supports and bars.
+    set_back : float
+        Distance of a hinge from the edge of its joint [m].
+    strength : float
+        Force that crushes a unit of length of its joint [kN/m].
+    inward : (2,) array
+        Unit vector from the edge of the joint to the hinge.
+    """
+
+    kind: Literal["hinge", "roller", "bar"]
+    a: int
+    b: int
+    point: Array
+    normal: Array
+    face: int = 0
+    end: Array | None = None
+    friction: float = 0.0
+    cohesion: float = 0.0
+    pulls: bool = False
+    set_back: float = 0.0
+    strength: float = float("inf")
+    inward: Array | None = None
+
+    def set_back_by(self, force: float) -> MacroJoint:
+        """Return the joint with its hinge in the middle of the length that ``force`` [kN] crushes."""
+        assert self.inward is not None
+        depth = force / (2.0 * self.strength)
+        return replace(self, point=self.point + (depth - self.set_back) * self.inward, set_back=depth)
+
+
+@dataclass(frozen=True, eq=False)
+class Mechanics:
+    """The macro-blocks of a mechanism and their joints.
+
+    Parameters
+    ----------
+    blocks : tuple of MacroBlock
+    joints : tuple of MacroJoint
+    of_body : dict of int to int
+        Macro-block of each body of the model that moves.
+    """
+
+    blocks: tuple[MacroBlock, ...]
+    joints: tuple[MacroJoint, ...]
+    of_body: dict[int, int]
+
+    @property
+    def slides(self) -> bool:
+        """Whether a joint with friction slides."""
+        return any(j.kind == "roller" and j.friction > 0 for j in self.joints)
+
+    @property
+    def level(self) -> float:
+        """Mean height of the joints with what does not move [m]."""
+        heights = [float(j.point[1]) for j in self.joints if GROUND in (j.a, j.b)]
+        return float(np.mean(heights)) if heights else min(float(b.centre[1]) for b in self.blocks)
+
+
+def body_velocities(assembly: Assembly, velocity: Array) -> Array:
+    """Return the rigid motion (B, 3) of each body in a velocity (N_all,): of its centroid, and its rotation."""
+    disc = assembly.disc
+    found = np.zeros((len(disc.shape_of), 3))
+    for b, shape in enumerate(disc.shape_of):
+        own = velocity[disc.offsets[b] : disc.offsets[b + 1]]
+        if shape == FIXED:
+            continue
+        if shape == RIGID:
+            found[b] = own[0], own[1], own[2] / disc.reach[b]
+        else:
+            modes = rigid_operator(disc.nodes(b) - disc.centroids[b], 1.0).reshape(-1, 3)
+            found[b] = np.linalg.lstsq(modes, own, rcond=None)[0]
+    return found
+
+
+def mechanics_of(assembly: Assembly, velocity: Array, normal_force: Array) -> Mechanics:
+    """Return the macro-blocks of a mechanism and the joints between them.
+
+    Parameters
+    ----------
+    assembly : Assembly
+        Plane.
+    velocity : (N_all,) array
+    normal_force : (m,) array
+        That goes with it [kN].
+    """
+    disc, pairs = assembly.disc, assembly.pairs
+    motion = body_velocities(assembly, velocity)
+    size = disc.reach[:, None] if len(disc.reach) else np.ones((1, 1))
+    reach = np.hstack([np.ones((len(motion), 2)), size])
+    top = float(np.abs(motion * reach).max()) or 1.0
+    of_body = _grouped(assembly, motion, top)
+    blocks = []
+    for g in range(max(of_body.values(), default=-1) + 1):
+        bodies = tuple(b for b, own in of_body.items() if own == g)
+        volume = np.array([disc.model.bodies[b].volume for b in bodies])
+        centre = volume @ disc.centroids[list(bodies)] / volume.sum()
+        first = bodies[int(np.argmax(volume))]
+        x, y = motion[first, :2] + motion[first, 2] * turned_left(centre - disc.centroids[first])
+        names = tuple(disc.model.bodies[b].name for b in bodies)
+        blocks.append(MacroBlock(bodies, names, centre, np.array([x, y, motion[first, 2]])))
+    across = np.array([of_body.get(int(b), GROUND) for b in pairs.body_a])
+    beyond = np.array([of_body.get(int(b), GROUND) for b in pairs.body_b])
+    loaded = normal_force > CARRIES * max(float(np.abs(normal_force).max(initial=0.0)), 1e-12)
+    active = np.flatnonzero(loaded & (across != beyond))
+    w_t = (pairs.C_t @ velocity).reshape(len(pairs), -1)[:, 0]
+    joints: list[MacroJoint] = []
+    crushing = np.isfinite(assembly.laws.cap) & (pairs.interface >= 0)
+    for a, b in sorted({(int(across[k]), int(beyond[k])) for k in active if crushing[k]}):
+        own = active[(across[active] == a) & (beyond[active] == b) & crushing[active]]
+        joints += _set_back(assembly, blocks, own, a, b, normal_force, top)
+    for k in active[~crushing[active]]:
+        a, b = int(across[k]), int(beyond[k])
+        if pairs.interface[k] < 0:
+            tie = disc.model.ties[int(np.flatnonzero(np.flatnonzero(pairs.interface < 0) == k)[0])]
+            if abs(float((pairs.C_n[[k]] @ velocity)[0])) <= STILL * top:
+                at_a, at_b = np.array(tie.at_a), np.array(tie.at_b)
+                along = (at_b - at_a) / float(np.linalg.norm(at_b - at_a))
+                joints.append(MacroJoint("bar", a, b, at_a, along, end=at_b, pulls=True))
+            continue
+        if abs(float(w_t[k])) <= STILL * top:
+            joints.append(MacroJoint("hinge", a, b, pairs.point[k], pairs.normal[k]))
+        else:
+            law = assembly.laws
+            face = _face_of(assembly, int(k))
+            joints.append(
+                MacroJoint(
+                    "roller", a, b, pairs.point[k], pairs.normal[k], face,
+                    friction=float(law.friction[k]), cohesion=float(law.cohesion[k]),
+                )
+            )  # fmt: skip
+    joints += _supports(assembly, of_body)
+    return Mechanics(tuple(blocks), tuple(joints), of_body)
+
+
+def _grouped(assembly: Assembly, motion: Array, top: float) -> dict[int, int]:
+    """Return the macro-block of each body that moves: bodies that touch and move alike share one."""
+    disc, pairs = assembly.disc, assembly.pairs
+    at_origin = motion.copy()
+    at_origin[:, 0] += motion[:, 2] * disc.centroids[:, 1]
+    at_origin[:, 1] -= motion[:, 2] * disc.centroids[:, 0]
+    parent = list(range(len(motion)))
+
+    def root(b: int) -> int:
+        while parent[b] != b:
+            parent[b] = parent[parent[b]]
+            b = parent[b]
+        return b
+
+    def speed(m: Array, b: int) -> float:
+        vertices = np.asarray(disc.model.bodies[b].vertices) - disc.centroids[b]
+        return float(np.abs(m[:2] + m[2] * turned_left(vertices)).max())
+
+    moving = [b for b in range(len(motion)) if disc.shape_of[b] != FIXED and speed(motion[b], b) > STILL * top]
+    touching: Iterable[tuple[int, int]] = {
+        (int(a), int(b)) for a, b, i in zip(pairs.body_a, pairs.body_b, pairs.interface, strict=True) if i >= 0
+    }
+    for a, b in sorted(touching):
+        if a not in moving or b not in moving:
+            continue
+        arm = disc.centroids[b] - disc.centroids[a]
+        carried = motion[a].copy()
+        carried[:2] += motion[a, 2] * turned_left(arm)
+        if speed(motion[b] - carried, b) <= STILL * top:
+            parent[root(a)] = root(b)
+    roots: dict[int, int] = {}
+    return {b: roots.setdefault(root(b), len(roots)) for b in moving}
+
+
+def _face_of(assembly: Assembly, k: int) -> int:
+    """Return 0 where the point of a pair is a corner of its side b, so that the face is that of a; else 1."""
+    corners = [
+        float(
+            np.linalg.norm(
+                np.asarray(assembly.model.bodies[int(side[k])].vertices) - assembly.pairs.point[k], axis=1
+            ).min()
+        )
+        for side in (assembly.pairs.body_a, assembly.pairs.body_b)
+    ]
+    return 0 if corners[1] <= corners[0] else 1
+
+
+def _set_back(
+    assembly: Assembly, blocks: list[MacroBlock], own: Array, a: int, b: int, force: Array, top: float
+) -> list[MacroJoint]:
+    """Return the joint that crushing pairs make: a hinge set back from the edge, or rollers where it slides whole."""
+    pairs, law = assembly.pairs, assembly.laws
+    normal, tangent = pairs.normal[own[0]], pairs.tangents[own[0], 0]
+    turns = [blocks[i].motion[2] if i != GROUND else 0.0 for i in (a, b)]
+    every = np.flatnonzero(np.isin(pairs.interface, np.unique(pairs.interface[own])))
+    along = (pairs.point[every] - pairs.point[own[0]]) @ tangent
+    N = float(force[own].sum())
+    per_length = float(law.cap[every].sum() / pairs.area[every].sum() * _width(assembly, own))
+    turning = turns[1] - turns[0]
+    if abs(turning) * max(float(np.ptp(along)), 1e-12) <= STILL * top:
+        return [MacroJoint("roller", a, b, pairs.point[k], normal, friction=float(law.friction[k])) for k in own]
+    # points of b at the place s along the tangent approach a where turning * s is negative along the normal
+    rising = float(turned_left(tangent) @ normal) * turning
+    edge, inwards = (along.min(), 1.0) if rising > 0 else (along.max(), -1.0)
+    at = pairs.point[own[0]] + edge * tangent
+    joint = MacroJoint("hinge", a, b, at, normal, strength=per_length, inward=inwards * tangent)
+    return [joint.set_back_by(N)]
+
+
+def _width(assembly: Assembly, own: Array) -> float:
+    bodies = assembly.model.outlines
+    return min(
+        bodies[int(assembly.pairs.body_a[own[0]])].thickness, bodies[int(assembly.pairs.body_b[own[0]])].thickness
+    )
+
+
+def _supports(assembly: Assembly, of_body: dict[int, int]) -> list[MacroJoint]:
+    """Return the joints that supports of moving bodies are."""
+    disc = assembly.disc
+    number = {b.name: i for i, b in enumerate(disc.model.bodies)}
+    found = []
+    for support in disc.model.supports:
+        b = number[support.body]
+        if b not in of_body:
+            continue
+        points = np.unique(np.array(support.edge), axis=0) if support.edge is not None else disc.nodes(b)
+        for point in points:
+            for axis, normal in (("x", np.array([1.0, 0.0])), ("y", np.array([0.0, 1.0]))):
+                if axis in support.directions or support.directions == "all":
+                    found.append(MacroJoint("roller", GROUND, of_body[b], point, normal, pulls=True))
+    return found
