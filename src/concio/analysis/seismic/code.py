@@ -10,6 +10,7 @@ import math
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -138,6 +139,11 @@ def _entry(table: Mapping[str, Any], soil: str, name: str) -> Mapping[str, Any]:
     return entry
 
 
+@cache
+def _own(name: str) -> str:
+    return (files("concio.analysis.seismic") / "codes" / f"{name}.toml").read_text(encoding="utf-8")
+
+
 def find_code(name: str) -> Code:
     """Return a code by its name, or from a file of the user's.
 
@@ -147,7 +153,7 @@ def find_code(name: str) -> Code:
         There is no such code, or the file is none.
     """
     if name in CODES:
-        text = (files("concio.analysis.seismic") / "codes" / f"{name}.toml").read_text(encoding="utf-8")
+        text = _own(name)
     elif name.endswith(".toml"):
         try:
             text = Path(name).read_text(encoding="utf-8")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -114,7 +115,7 @@ class Site:
         rules.spectrum(1.0, 2.5, 0.3, self.soil, self.topography, self.spectrum_type)
         rules.reference_life(self.nominal_life, self.use_class)
 
-    @property
+    @cached_property
     def rules(self) -> Code:
         """The code."""
         return find_code(self.code)

@@ -15,6 +15,7 @@ from typing import Any, Literal, Union, Unpack, get_args, get_origin, get_type_h
 
 from pydantic import Field, StrictBool, StrictInt, StrictStr, create_model
 
+from concio.model.file.assessment_table import AssessmentEntry, SiteEntry
 from concio.model.file.study_table import Study
 from concio.model.file.tables import Bond, Element, FileTable, Friction, Material, Table
 from concio.model.file.values import TYPES, Number, Size
@@ -112,6 +113,8 @@ def file_table() -> type[FileTable]:
     """Return the table of a whole model file, generators included."""
     members: dict[str, Any] = {name: (generator_table(name), Field(None)) for name in GENERATORS}
     members["study"] = (Study, None)
+    members["site"] = (SiteEntry, None)
+    members["assessment"] = (AssessmentEntry, None)
     return create_model("concio model", __base__=FileTable, __doc__=FileTable.__doc__, **members)
 
 

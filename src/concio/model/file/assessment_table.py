@@ -1,0 +1,131 @@
+"""The tables ``[site]`` and ``[assessment]`` of a model file: what a seismic assessment asks.
+
+They say nothing of the structure: ``concio.load`` checks them and leaves it at that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, TypeVar
+
+from pydantic import Field, StrictInt, StrictStr, ValidationError
+
+from concio.model.file.errors import first_fault
+from concio.model.file.tables import ControlTable, Name, Table
+from concio.model.file.values import FileUnits, Force, Length, Number, Stress
+
+Acceleration = Annotated[StrictStr | float, Field(description="in g, or a text with m/s2")]
+Seconds = Annotated[StrictStr | float, Field(description="in s")]
+Kind = TypeVar("Kind", bound=Table)
+
+
+class HazardTable(Table):
+    """What one limit state or one return period brings."""
+
+    a_g: Acceleration
+    F0: Number = 2.5
+    Tc: Seconds = 0.3
+    T_R: Annotated[StrictStr | float | None, Field(description="return period in years")] = None
+
+
+class BuildingTable(Table):
+    """A mode of the building: of a regular one by height and storeys, or by period, participation and shape."""
+
+    height: Length | None = None
+    storeys: StrictInt | None = None
+    T1: Number | None = None
+    base: Length | None = None
+    T: Number | None = None
+    participation: Number | None = None
+    shape: Number | None = None
+    xi: Number | None = None
+
+
+class SiteTable(Table):
+    """The arguments of :class:`concio.Site`."""
+
+    hazard: dict[str, HazardTable] | list[HazardTable]
+    soil: Name = "A"
+    topography: Name = "T1"
+    nominal_life: Number = 50.0
+    use_class: Name = "II"
+    code: Name = "ntc2018"
+    spectrum_type: Name = "1"
+    building: BuildingTable | list[BuildingTable] = Field(default_factory=list)
+
+
+class HeightsTable(Table):
+    """Bodies by the height of their centroid."""
+
+    above: Length | None = None
+    below: Length | None = None
+
+
+class AnchorTable(Table):
+    """The anchor of a tie; strengths are design values, already divided by their factors."""
+
+    tie: Name
+    steel_area: Annotated[Number | None, Field(description="in m2")] = None
+    steel_strength: Stress | None = None
+    plate: tuple[Length, Length] | None = None
+    wall_thickness: Length | None = None
+    shear_strength: Stress | None = None
+    bearing_strength: Stress | None = None
+    depth: Length | None = None
+    hole: Length | None = None
+
+
+class ReportTextTable(Table):
+    """What stands in the head of the report, and its language."""
+
+    project: StrictStr = ""
+    place: StrictStr = ""
+    author: StrictStr = ""
+    date: StrictStr = ""
+    knowledge: StrictStr = ""
+    language: Literal["en", "it"] = "en"
+
+
+class AssessmentTable(Table):
+    """The arguments of :func:`concio.assess`, ties to dimension, anchors, and what the report is headed with."""
+
+    levels: list[Name] | None = None
+    mechanisms: dict[str, list[StrictStr] | HeightsTable] = Field(default_factory=dict)
+    direction: Literal["both", "right", "left"] = "both"
+    live: list[Name] | None = None
+    knowledge: Name = "LC1"
+    confidence: Number | None = None
+    control: ControlTable | None = None
+    limits: dict[str, Length] = Field(default_factory=dict)
+    curve: Literal["followed", "straight"] = "followed"
+    size_tie: Annotated[StrictStr, Field(description="tie whose force is found that brings zeta_E to one")] = ""
+    largest_tie: Force | None = None
+    sensitivity: bool = True
+    anchors: list[AnchorTable] = Field(default_factory=list)
+    report: ReportTextTable = Field(default_factory=ReportTextTable)
+
+
+SiteEntry = Annotated[SiteTable | None, Field(description="seismic hazard and soil; see concio assess")]
+AssessmentEntry = Annotated[AssessmentTable | None, Field(description="what concio assess looks for")]
+
+
+def assessment_tables(
+    data: Mapping[str, Any], units: FileUnits, where: str
+) -> tuple[SiteTable | None, AssessmentTable]:
+    """Return the tables ``[site]`` and ``[assessment]`` of the tables of a file, checked.
+
+    Raises
+    ------
+    InputError
+        One holds a key that is not known, or a value that does not fit.
+    """
+    site = _checked(data, "site", SiteTable, units, where) if "site" in data else None
+    given = _checked(data, "assessment", AssessmentTable, units, where) if "assessment" in data else AssessmentTable()
+    return site, given
+
+
+def _checked(data: Mapping[str, Any], key: str, kind: type[Kind], units: FileUnits, where: str) -> Kind:
+    try:
+        return kind.model_validate(data[key], context={"units": units})
+    except ValidationError as error:
+        raise first_fault(error, data[key], kind, f"{where}, [{key}]") from None
