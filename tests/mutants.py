@@ -3,10 +3,10 @@
 python tests/mutants.py [--count 60] [--seed 0] [--jobs 2] [--only PATH] [--named]
 
 Each mutant changes one operator, comparison, constant or function of one line of the core (a minus for a plus, a
-maximum for a minimum, a factor of two); the tests of its room are run on a copy of the package that holds it, until one
-fails. Survivors are defects of the tests, or mutants that change nothing: those stand in ``mutants_kept.toml`` with the
-reason. Any other survivor makes the exit code 1. With ``--named`` those of ``mutants_named.toml`` are tried instead of
-a sample.
+maximum for a minimum, a factor of two where a number is no tolerance); the tests of its room are run on a copy of the
+package that holds it, until one fails. Survivors are defects of the tests, or mutants that change nothing: those stand
+in ``mutants_kept.toml`` with the reason. Any other survivor makes the exit code 1. With ``--named`` those of
+``mutants_named.toml`` are tried instead of a sample.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def changes(node: ast.AST) -> Iterator[ast.AST]:
         yield ast.Attribute(node.value, NAMES[node.attr], node.ctx)
     elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("max", "min"):
         yield ast.Call(ast.Name(NAMES[node.func.id], ast.Load()), node.args, node.keywords)
-    elif isinstance(node, ast.Constant) and isinstance(node.value, float) and node.value not in (0.0,):
+    elif isinstance(node, ast.Constant) and isinstance(node.value, float) and abs(node.value) > 1e-3:
         yield ast.Constant(node.value * 2.0)
 
 

@@ -57,7 +57,7 @@ def test_global_and_local_form_have_one_answer() -> None:
 
 def test_the_answer_obeys_the_local_equations() -> None:
     rng = np.random.default_rng(4)
-    for dim in (2,):
+    for dim in (2, 3):
         m, r = 6, 5  # rank below the number of rows
         B = rng.normal(size=(m * dim, r))
         W, q, mu = B @ B.T, B @ rng.normal(size=r), rng.uniform(0.2, 0.9, m)
