@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from concio.analysis.cells.moduli import homogenise
     from concio.analysis.cells.path import strain_path
     from concio.analysis.cells.strength import strength
+    from concio.analysis.continuum.comparison import compare_with_continuum
+    from concio.analysis.continuum.halving import halve_blocks
     from concio.analysis.limit import friction_margin, limit
     from concio.analysis.margins import friction_by_solving, load_margin
     from concio.analysis.motion.dynamics import dynamics
@@ -60,6 +62,8 @@ _HOMES = {
     "concio.analysis.cells.moduli": ("homogenise",),
     "concio.analysis.cells.path": ("strain_path",),
     "concio.analysis.cells.strength": ("strength",),
+    "concio.analysis.continuum.comparison": ("compare_with_continuum",),
+    "concio.analysis.continuum.halving": ("halve_blocks",),
     "concio.analysis.limit": ("friction_margin", "limit"),
     "concio.analysis.margins": ("friction_by_solving", "load_margin"),
     "concio.analysis.path": ("ControlPoint", "PathResult", "Stage", "run_path"),
@@ -147,11 +151,13 @@ __all__ = [
     "buttress",
     "cell",
     "column",
+    "compare_with_continuum",
     "dumps",
     "dynamics",
     "extrude",
     "friction_by_solving",
     "friction_margin",
+    "halve_blocks",
     "homogenise",
     "limit",
     "load",

@@ -21,8 +21,8 @@ ORDER = (
     "fem", "problem", "contact", "contact/moving",
     "solvers/algebra", "solvers/lcp", "solvers/states", "solvers/statics", "solvers/interior", "solvers/pivoting",
     "solvers/forms", "solvers/iterative", "solvers/exhaustive", "solvers/motion", "solvers/stepping", "solvers/auto",
-    "solvers/path", "solvers", "analysis", "analysis/motion", "analysis/cells", "analysis/seismic",
-    "post", "plot", "report", "io", "studies", "cli", "__main__",
+    "solvers/path", "solvers", "analysis", "analysis/motion", "analysis/cells", "analysis/continuum",
+    "analysis/seismic", "post", "plot", "report", "io", "studies", "cli", "__main__",
 )  # fmt: skip
 """Rooms in the order in which things flow: each imports from itself and from those before it."""
 DOORS = {
@@ -32,6 +32,8 @@ DOORS = {
     ("analysis/cells/moduli.py", "concio.plot.cell_accessor"),
     ("analysis/cells/strength.py", "concio.plot.cell_accessor"),
     ("analysis/cells/path_result.py", "concio.plot.cell_accessor"),
+    ("analysis/continuum/comparison.py", "concio.plot.continuum_accessor"),
+    ("analysis/continuum/halving.py", "concio.plot.continuum_accessor"),
 }
 """The only imports upward: what a result offers by name, loaded where it is asked for."""
 MODULES = sorted(ROOT.rglob("*.py"))

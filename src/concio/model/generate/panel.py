@@ -180,7 +180,10 @@ def running_bond_panel(
         element=element,
         refinement=refine,
         title=f"running-bond panel, {n_c} courses of {n_b} blocks, {films}",
-        generator={"kind": "panel", "courses": n_c, "blocks": n_b, "width": width, "height": top, "base": base},
+        generator={
+            "kind": "panel", "courses": n_c, "blocks": n_b, "block_size": [length, height], "joint": t_m,
+            "width": width, "height": top, "base": base,
+        },
     )
 
 

@@ -110,9 +110,13 @@ def wall(
         high = [p for p in parts if p.at[1] + p.height >= y1 - 1e-9]
         edges = [((p.at[0], y1), (p.at[0] + p.length, y1)) for p in high]
         loads = [Load("pressure", (pressure,), edge=edge, group="top") for edge in edges]
-    word = bond if isinstance(bond, str) else "own"
+    one_bond = all(p.bond is None or p.bond == bond for p in parts)
+    word = bond if isinstance(bond, str) and one_bond else "own"
     title = f"wall of {x1 - x0:g} x {y1 - y0:g} m in {word} bond, {len(pieces)} blocks"
-    record = {"kind": "wall", "bond": word, "length": x1 - x0, "height": y1 - y0, "blocks": len(pieces)}
+    record = {
+        "kind": "wall", "bond": word, "block_size": list(size), "lap": float(lap), "length": x1 - x0,
+        "height": y1 - y0, "blocks": len(pieces),
+    }  # fmt: skip
     materials = {"lintel": lintel} if lintel else {}
     return assemble(options, pieces, obstacles, loads=loads, materials=materials, title=title, generator=record)
 

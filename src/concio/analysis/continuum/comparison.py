@@ -1,0 +1,378 @@
+"""A wall block by block beside the homogenised continuum: elastic answers, and limit loads.
+
+Elastic: the blocks with their unilateral joints, the blocks with all joints closed and stuck, and the continuum with
+the moduli of the cell. The second tends to the third as blocks become smaller; what is between the first and the second
+(joints that open and slip, arches) is what moduli cannot have.
+
+Strength: the associated limit load of the blocks, and what is shown of that of the continuum from below (stresses) and
+from above (a mechanism). The blocks tend to it as they become smaller.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+
+from concio.analysis.cells.moduli import Moduli, homogenise
+from concio.analysis.cells.periodic_cell import PeriodicCell
+from concio.analysis.cells.strength import StrengthDomain, strength
+from concio.analysis.continuum.bonded import bonded_displacement
+from concio.analysis.continuum.cell_of_wall import cell_of
+from concio.analysis.continuum.continuum import Continuum, continuum_of
+from concio.analysis.continuum.elastic import ElasticContinuum, solve_elastic
+from concio.analysis.continuum.kinematic_bound import KinematicBound, kinematic_bound
+from concio.analysis.continuum.static_bound import StaticBound, static_bound
+from concio.analysis.limit import LIVE, LimitResult, limit
+from concio.analysis.result import Result
+from concio.analysis.step import solve
+from concio.arguments import closest, strict
+from concio.contact.assembly import Assembly, as_assembly
+from concio.errors import InputError, SolverError
+from concio.fem.discretisation import Discretisation
+from concio.model.model import Model
+from concio.problem.solution import Progress, ProgressCallback
+from concio.problem.tolerances import CHECKED
+
+if TYPE_CHECKING:
+    from concio.plot.continuum_accessor import ContinuumPlots
+
+Array = np.ndarray
+
+ELEMENTS = 8
+"""Rectangles of the default mesh along the longer side of the wall."""
+
+STRETCHES = (1.0, 6.0, 1 / 6)
+"""Shapes of the rectangles of the meshes for the lower bound, of which the best counts: stresses that jump across
+steep or flat lines need such lines in the mesh."""
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticComparison:
+    """Elastic answers.
+
+    Parameters
+    ----------
+    moduli : Moduli
+        Of the cell.
+    blocks : Result
+        The blocks with their unilateral joints; it may say that they do not stand.
+    bonded : (N_all,) array
+        Displacements of the blocks with all joints closed and stuck [m].
+    continuum : ElasticContinuum
+    """
+
+    moduli: Moduli
+    blocks: Result
+    bonded: Array
+    continuum: ElasticContinuum
+
+    @cached_property
+    def free(self) -> Array:
+        """Numbers of the blocks that are compared, mortar films left out."""
+        bodies = self.blocks.model.bodies
+        return np.array([b for b, body in enumerate(bodies) if body.kind != "fixed" and body.role != "mortar"])
+
+    @cached_property
+    def centres(self) -> Array:
+        """Centroids (k, 2) of those blocks; a point inside where an angular block has it outside [m]."""
+        outlines = [shapely.Polygon(self.blocks.model.outlines[b].outline) for b in self.free]
+        places = [p.centroid if p.contains(p.centroid) else p.representative_point() for p in outlines]
+        return np.array([(p.x, p.y) for p in places]).reshape(-1, 2)
+
+    @cached_property
+    def displacements(self) -> tuple[Array, Array, Array]:
+        """Displacements (k, 2) at the centroids [m]: blocks (nan where there is no answer), bonded, continuum."""
+        disc = self.blocks.assembly.disc
+        bonded = _moved(disc, self.bonded, self.free, self.centres)
+        blocks = np.full_like(bonded, np.nan)
+        if self.blocks.solved:
+            blocks = _moved(disc, self.blocks.displacement, self.free, self.centres)
+        return blocks, bonded, self.continuum.at(self.centres)[0]
+
+    @property
+    def settlements(self) -> tuple[float, float, float]:
+        """Largest downward displacement of a centroid [m]: blocks, bonded, continuum."""
+        blocks, bonded, smooth = (max(0.0, -float(u[:, 1].min())) for u in self.displacements)
+        return (blocks if self.blocks.solved else float("nan")), bonded, smooth
+
+    @property
+    def differences(self) -> tuple[float, float]:
+        """Root mean square difference from the continuum's displacements, over their own: blocks, bonded."""
+        blocks, bonded, smooth = self.displacements
+        size = float(np.linalg.norm(smooth)) or 1.0
+        return float(np.linalg.norm(blocks - smooth)) / size, float(np.linalg.norm(bonded - smooth)) / size
+
+    def table(self) -> dict[str, Array]:
+        """Return the blocks as columns: centroid, displacements of the three, mean stresses where there are any."""
+        columns: dict[str, Array] = {"block": np.array([self.blocks.model.bodies[b].name for b in self.free])}
+        columns |= {"x": self.centres[:, 0], "y": self.centres[:, 1]}
+        for name, u in zip(("blocks", "bonded", "continuum"), self.displacements, strict=True):
+            columns |= {f"u_x_{name}": u[:, 0], f"u_y_{name}": u[:, 1]}
+        smooth = self.continuum.at(self.centres)[1]
+        own = self.blocks.stress.mean[self.free] if self.blocks.solved else np.full_like(smooth, np.nan)
+        for k, name in enumerate(("xx", "yy", "xy")):
+            columns |= {f"stress_{name}_blocks": own[:, k], f"stress_{name}_continuum": smooth[:, k]}
+        return columns
+
+
+@dataclass(frozen=True, eq=False)
+class StrengthComparison:
+    """Limit loads.
+
+    Parameters
+    ----------
+    live : tuple of str
+        Load groups that grow.
+    domain : StrengthDomain
+        Of the cell.
+    blocks : LimitResult
+        Of the wall of blocks.
+    static : StaticBound
+        Stresses of the continuum that carry the load, the best of several meshes.
+    kinematic : KinematicBound
+        A mechanism of the continuum.
+    """
+
+    live: tuple[str, ...]
+    domain: StrengthDomain
+    blocks: LimitResult
+    static: StaticBound
+    kinematic: KinematicBound
+
+    @property
+    def bracket(self) -> tuple[float, float]:
+        """Limit load of the continuum: at least, at most."""
+        return self.static.multiplier, self.kinematic.multiplier
+
+    @property
+    def proven(self) -> tuple[bool, bool]:
+        """Whether the lower and the upper bound stand: small residuals, and half-spaces that are the domain.
+
+        Half-spaces that were not found exactly lie around the domain: then only the upper bound is one.
+        """
+        exact = self.domain.domain is not None and self.domain.domain.exact
+        return exact and self.static.residual <= CHECKED, self.kinematic.residual <= CHECKED
+
+
+@dataclass(frozen=True, eq=False)
+class ContinuumComparison:
+    """A wall of blocks beside its homogenised continuum.
+
+    Parameters
+    ----------
+    assembly : Assembly
+        The wall of blocks.
+    cell : PeriodicCell
+    wall : Continuum
+        The wall as a continuum.
+    elastic : ElasticComparison or None
+    strength : StrengthComparison or None
+    elastic_note, strength_note : str
+        Why one of them is not there.
+    """
+
+    assembly: Assembly
+    cell: PeriodicCell
+    wall: Continuum
+    elastic: ElasticComparison | None
+    strength: StrengthComparison | None
+    elastic_note: str = ""
+    strength_note: str = ""
+
+    @property
+    def plot(self) -> ContinuumPlots:
+        """Figures by name, blocks to the left, continuum to the right; matplotlib is loaded here."""
+        from concio.plot.continuum_accessor import ContinuumPlots
+
+        return ContinuumPlots(self)
+
+    @property
+    def checked(self) -> bool:
+        """Whether everything that is told has been proven or certified, be it that the blocks do not stand."""
+        limits = self.strength is None or (all(self.strength.proven) and self.strength.blocks.associated.checked)
+        return limits and (self.elastic is None or self.elastic.blocks.status.exit_code in (0, 3))
+
+    def summary(self) -> dict[str, Any]:
+        """Return the numbers as plain types, kN and m."""
+        found: dict[str, Any] = {
+            "title": self.assembly.model.title,
+            "blocks": len(self.assembly.model.free_bodies),
+            "triangles": len(self.wall.triangles),
+            "cell": self.cell.model.title,
+            "elastic": None,
+            "elastic_note": self.elastic_note,
+            "strength": None,
+            "strength_note": self.strength_note,
+        }
+        if self.elastic is not None:
+            blocks, bonded, smooth = self.elastic.settlements
+            far, near = self.elastic.differences
+            found["elastic"] = {
+                "outcome": self.elastic.blocks.status.name.lower(),
+                "settlement_blocks": _number(blocks),
+                "settlement_bonded": bonded,
+                "settlement_continuum": smooth,
+                "difference_blocks": _number(far),
+                "difference_bonded": near,
+                "reactions_blocks": self.elastic.blocks.reactions if self.elastic.blocks.solved else None,
+                "reactions_continuum": {k: v.tolist() for k, v in self.elastic.continuum.reactions.items()},
+                "continuum_residual": self.elastic.continuum.residual,
+            }
+        if self.strength is not None:
+            low, high = self.strength.bracket
+            found["strength"] = {
+                "groups": list(self.strength.live),
+                "blocks_associated": _number(self.strength.blocks.associated.multiplier),
+                "continuum_at_least": _number(low),
+                "continuum_at_most": _number(high),
+                "lower_proven": self.strength.proven[0],
+                "upper_proven": self.strength.proven[1],
+                "static_residual": _number(self.strength.static.residual),
+                "kinematic_residual": _number(self.strength.kinematic.residual),
+            }
+        return found
+
+
+def _moved(disc: Discretisation, u: Array, bodies: Array, places: Array) -> Array:
+    """Return the displacements (k, 2) of places (k, 2) in bodies (k,)."""
+    found = np.empty((len(bodies), 2))
+    for k, b in enumerate(bodies):
+        index, matrix = disc.point_operator(int(b), places[k])
+        found[k] = matrix @ u[index]
+    return found
+
+
+def _number(value: float) -> float | None:
+    return value if np.isfinite(value) else None
+
+
+@strict
+def compare_with_continuum(
+    wall: Model | Assembly,
+    cell: Model | Assembly | PeriodicCell | None = None,
+    *,
+    factors: Mapping[str, float] | None = None,
+    live: str | Sequence[str] | None = None,
+    mesh_size: float | None = None,
+    elastic: bool = True,
+    strength: bool = True,
+    progress: ProgressCallback | None = None,
+) -> ContinuumComparison:
+    """Solve a wall block by block and as a homogenised continuum.
+
+    Parameters
+    ----------
+    wall : Model or Assembly
+        Blocks on fixed bodies whose outline has edges along x and y only, under weight, loads on edges and movements
+        of the fixed bodies.
+    cell : Model or Assembly, optional
+        The periodic cell that the wall repeats; by default that of the bond the wall was generated in.
+    factors : mapping of str to float, optional
+        Load factors of the elastic comparison; groups not named have 1. Limit loads are those of the live groups, all
+        others having 1.
+    live : str or sequence of str, optional
+        Load groups that grow to the limit load; by default "live" where there is such a group.
+    mesh_size : float, optional
+        Of the continuum [m]; by default an eighth of the longer side of the wall.
+    elastic, strength : bool
+        What is compared.
+    progress : callable, optional
+        True stops, where something can be stopped.
+
+    Raises
+    ------
+    InputError
+        The wall has no counterpart in a continuum, the cell is none or is not known, or a group does not exist.
+    NoEquilibriumError
+        The dead load alone cannot be carried by the blocks.
+    SolverError
+        An answer does not stand up to its check.
+    """
+    assembly = as_assembly(wall)
+    own = PeriodicCell.of(cell_of(assembly) if cell is None else cell)
+    if abs(own.model.bodies[0].thickness - assembly.model.free_bodies[0].thickness) > 1e-9 * own.size:
+        thick = own.model.bodies[0].thickness
+        msg = f"the cell is {thick:g} m thick, the wall {assembly.model.free_bodies[0].thickness:g} m"
+        raise InputError(msg, hint="give both the same thickness")
+    for group in factors or ():
+        if group not in assembly.groups:
+            msg = f"there is no load group '{group}'"
+            raise InputError(msg, hint=closest(group, assembly.groups, names="groups"))
+    size = _mesh_size(assembly, mesh_size)
+    smooth = continuum_of(assembly, size)
+    stretched, note, limits, why = None, "not asked for", None, "not asked for"
+    if elastic:
+        stretched, note = _elastic(assembly, own, smooth, dict(factors or {}), progress)
+    if strength:
+        groups = _groups(assembly, live)
+        if groups:
+            limits, why = _strength(assembly, own, smooth, size, groups, progress), ""
+        else:
+            why = f"there is no load group '{LIVE}' that grows"
+    return ContinuumComparison(assembly, own, smooth, stretched, limits, note, why)
+
+
+def _mesh_size(assembly: Assembly, given: float | None) -> float:
+    if given is None:
+        points = np.vstack([b.outline for b in assembly.model.outlines if b.kind != "fixed"])
+        return float(np.ptp(points, axis=0).max()) / ELEMENTS
+    if isinstance(given, bool) or not isinstance(given, int | float) or not 0 < given < np.inf:
+        msg = f"mesh_size = {given!r} must be positive and finite"
+        raise InputError(msg, hint="give a length in m")
+    return float(given)
+
+
+def _groups(assembly: Assembly, live: str | Sequence[str] | None) -> tuple[str, ...]:
+    if live is None:
+        return (LIVE,) if LIVE in assembly.groups else ()
+    return (live,) if isinstance(live, str) else tuple(live)
+
+
+def _told(progress: ProgressCallback | None, k: int, note: str) -> None:
+    if progress is not None:
+        progress(Progress("continuum", k, 0.0, note))
+
+
+def _elastic(
+    assembly: Assembly, cell: PeriodicCell, wall: Continuum, factors: dict[str, float],
+    progress: ProgressCallback | None,
+) -> tuple[ElasticComparison | None, str]:  # fmt: skip
+    """Return the elastic answers, or why there are none."""
+    _told(progress, 0, "moduli of the cell")
+    try:
+        moduli = homogenise(cell)
+    except InputError as error:
+        return None, error.what
+    _told(progress, 1, "elastic continuum")
+    smooth = solve_elastic(wall, moduli.matrix, factors)
+    try:
+        bonded = bonded_displacement(assembly, factors)
+    except SolverError as error:
+        return None, error.what
+    blocks = solve(assembly, factors=factors, on_failure="return", progress=progress)
+    return ElasticComparison(moduli, blocks, bonded, smooth), ""
+
+
+def _strength(
+    assembly: Assembly, cell: PeriodicCell, wall: Continuum, size: float, groups: tuple[str, ...],
+    progress: ProgressCallback | None,
+) -> StrengthComparison:  # fmt: skip
+    blocks = limit(assembly, groups, path=False, search=False)
+    domain = strength(cell, (), coulomb=False, progress=progress)
+    faces = domain.faces
+    dead = {name: 0.0 if name in groups else 1.0 for name in wall.groups}
+    live = {name: 1.0 if name in groups else 0.0 for name in wall.groups}
+    best: StaticBound | None = None
+    for k, stretch in enumerate(STRETCHES):
+        _told(progress, k, f"stresses of the continuum, mesh {k + 1} of {len(STRETCHES)}")
+        found = static_bound(wall if stretch == 1.0 else continuum_of(assembly, size, stretch), faces, dead, live)
+        if best is None or np.isnan(best.multiplier) or found.multiplier > best.multiplier:
+            best = found
+    assert best is not None
+    _told(progress, len(STRETCHES), "mechanism of the continuum")
+    return StrengthComparison(groups, domain, blocks, best, kinematic_bound(wall, faces, dead, live))

@@ -1,0 +1,88 @@
+"""``concio continuum FILE``: a wall block by block beside its homogenised continuum, side by side."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from concio.cli.outcome import guarded, print_json, say
+from concio.cli.output import check_directory, replaced_directory
+from concio.cli.progress import progress_bar
+from concio.cli.run import Factors, File, Json, factors_of
+
+
+@guarded
+def continuum(
+    file: File,
+    cell: Annotated[
+        Path | None, typer.Option("--cell", "-c", help="File of the cell; by default that of the wall's bond.")
+    ] = None,
+    group: Annotated[
+        list[str] | None, typer.Option("--group", "-g", help="Load group that grows (repeatable); by default live.")
+    ] = None,
+    halve: Annotated[int, typer.Option("--halve", help="Halve the blocks this many times at fixed outline.")] = 0,
+    mesh_size: Annotated[
+        str | None, typer.Option("--mesh-size", help="Of the continuum: '0.2 m'; by default an eighth of the wall.")
+    ] = None,
+    factor: Factors = None,
+    elastic: Annotated[bool, typer.Option("--elastic/--no-elastic", help="Compare elastic answers.")] = True,
+    strength: Annotated[bool, typer.Option("--strength/--no-strength", help="Compare limit loads.")] = True,
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for tables and figures.")] = None,
+    json: Json = False,
+) -> int:
+    """Solve a wall block by block and as a homogenised continuum, and put both side by side.
+
+    The exit code is 0, or 4 where something was not solved or not proven.
+
+    Example: concio continuum wall.toml --halve 2 --out twin
+    """
+    import concio
+    from concio.analysis.continuum.comparison import ContinuumComparison
+    from concio.analysis.continuum.halving import BlockHalving
+    from concio.cli.continuum_files import write_continuum
+    from concio.cli.continuum_lines import continuum_facts, continuum_lines
+    from concio.cli.halved import halved_file
+    from concio.errors import InputError
+    from concio.units import quantity
+
+    if out is not None:
+        check_directory(out)
+    if not 0 <= halve <= 6:
+        msg = f"--halve {halve} is not between 0 and 6"
+        raise InputError(msg, hint="each halving has four times as many blocks")
+    if halve and factor:
+        msg = "--factor does not go with --halve"
+        raise InputError(msg, hint="write the loads into the file as they are to act")
+    size = None if mesh_size is None else quantity(mesh_size, "length", where="--mesh-size")
+    own = None if cell is None else concio.load(cell)
+    live = tuple(group) if group else None
+    found: ContinuumComparison
+    halving: BlockHalving | None = None
+    with progress_bar(shown=not json) as progress:
+        if halve:
+            make = halved_file(file)
+            halving = concio.halve_blocks(
+                make, own, sizes=[2**k for k in range(halve + 1)], live=live, mesh_size=size, elastic=elastic,
+                strength=strength, progress=progress,
+            )  # fmt: skip
+            found = halving.comparisons[0]
+        else:
+            found = concio.compare_with_continuum(
+                concio.load(file), own, factors=factors_of(factor), live=live, mesh_size=size, elastic=elastic,
+                strength=strength, progress=progress,
+            )  # fmt: skip
+    written: list[str] = []
+    if out is not None:
+        with replaced_directory(out) as fresh:
+            written = write_continuum(found, halving, fresh)
+    if json:
+        print_json(continuum_facts(found, halving))
+    else:
+        for line in continuum_lines(found, halving):
+            say(line)
+        if written:
+            say(f"  written      {out}: {', '.join(written)}")
+    done = all(c.checked for c in halving.comparisons) if halving is not None else found.checked
+    return 0 if done else 4

@@ -1,0 +1,94 @@
+"""What ``concio continuum`` prints: elastic answers and limit loads of blocks and continuum, and what lies between."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from concio.analysis.continuum.comparison import ContinuumComparison, ElasticComparison, StrengthComparison
+from concio.analysis.continuum.halving import BlockHalving
+
+
+def continuum_facts(found: ContinuumComparison, halving: BlockHalving | None) -> dict[str, Any]:
+    """Return everything as plain types: the object of ``--json``."""
+    done = all(c.checked for c in halving.comparisons) if halving is not None else found.checked
+    return {
+        "status": "solved" if done else "incomplete",
+        **found.summary(),
+        "halving": None if halving is None else halving.summary(),
+        "units": {"force": "kN", "length": "m", "stress": "kN/m2"},
+    }
+
+
+def continuum_lines(found: ContinuumComparison, halving: BlockHalving | None) -> list[str]:
+    """Return everything in words."""
+    count = len(found.assembly.model.free_bodies)
+    lines = [
+        found.assembly.model.title or "wall without a title",
+        f"  blocks       {count:,}, {len(found.assembly.pairs):,} contact pairs",
+        f"  continuum    {len(found.wall.triangles):,} triangles; {found.cell.model.title}",
+    ]
+    lines += [f"  elastic      none: {found.elastic_note}"] if found.elastic is None else elastic_lines(found.elastic)
+    if found.strength is None:
+        lines.append(f"  limit load   none: {found.strength_note}")
+    else:
+        lines += strength_lines(found.strength)
+    return lines if halving is None else [*lines, *halving_lines(halving)]
+
+
+def elastic_lines(found: ElasticComparison) -> list[str]:
+    """Return the elastic answers."""
+    blocks, bonded, smooth = (f"{1e3 * v:.5g} mm" for v in found.settlements)
+    far, near = found.differences
+    head = f"  elastic      settlement: continuum {smooth}; blocks bonded {bonded}"
+    apart = f"               apart by (root mean square): bonded {100 * near:.3g} %"
+    if found.blocks.solved:
+        head, apart = f"{head}; blocks {blocks}", f"{apart}, blocks with joints that open and slip {100 * far:.3g} %"
+        pushed = found.blocks.reactions
+        lines = [
+            f"  force on wall from {name}: blocks ({_force(pushed.get(name))}), continuum ({_force(own)}) kN"
+            for name, own in found.continuum.reactions.items()
+        ]
+        return [head, apart, *lines]
+    return [f"{head}; blocks: {found.blocks.status.name.lower()}", apart]
+
+
+def _force(value: Any) -> str:
+    if value is None:
+        return "none"
+    size = float(np.abs(value).max()) or 1.0
+    return ", ".join(f"{v if abs(v) > 1e-9 * size else 0.0:.5g}" for v in value)
+
+
+def strength_lines(found: StrengthComparison) -> list[str]:
+    """Return the limit loads."""
+    named, (low, high) = "' and '".join(found.live), found.bracket
+    own = found.blocks.associated.multiplier
+    lower, upper = found.proven
+    words = "any multiple" if np.isinf(own) else f"{own:.6g}"
+    carries = "not even the dead load, on these meshes" if np.isnan(low) else f"{low:.6g}"
+    return [
+        f"  limit load   of '{named}' (associated): blocks {words}",
+        f"               continuum: carries {carries} ({'proven' if lower else 'NOT proven'}); no equilibrium beyond "
+        f"{high:.6g} ({'proven' if upper else 'NOT proven'})",
+    ]
+
+
+def halving_lines(halving: BlockHalving) -> list[str]:
+    """Return the table of the halved blocks."""
+    table = halving.table()
+    lines = ["  halving         blocks   settle [mm]   bonded [mm]  continuum [mm]  bonded apart    limit load"]
+    for k, n in enumerate(halving.sizes):
+        cells = [
+            f"{table['blocks'][k]:12,d}",
+            *(_cell(1e3 * table[f"settlement_{name}"][k], 14) for name in ("blocks", "bonded", "continuum")),
+            _cell(100 * table["difference_bonded"][k], 12, " %"),
+            _cell(table["limit_blocks"][k], 14),
+        ]
+        lines.append(f"  1/{n:<8d}" + "".join(cells))
+    return lines
+
+
+def _cell(value: float, width: int, unit: str = "") -> str:
+    return (f"{value:.5g}{unit}" if np.isfinite(value) else "-").rjust(width)
