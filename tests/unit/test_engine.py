@@ -15,8 +15,8 @@ from concio.problem.solution import Status
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.auto.friction_neighbours import from_neighbours
 from concio.solvers.interior.engine import Cancelled, Run
-from concio.solvers.interior.exact_finish import finish
 from concio.solvers.methods import find
+from concio.solvers.states.settle import Settler
 from concio.solvers.statics.existence import find_mechanism
 from contact_problems import wall as plain_wall
 from models import box, model_of, on_ground, weight
@@ -175,7 +175,7 @@ def test_exact_finish_forgets_where_it_began(begin):
     run = Run(scale(_arch(1.0)))
     found = run.plain(10.0)
     start = {"rest": 0.0 * found.u, "the other way": -3.0 * found.u, "far off": found.u + 1e4}[begin]
-    again = finish(run.scaled, start, found.t, rounds=2, states=found.states)
+    again = Settler(run.scaled).settle(run.scaled, start, found.t, found.states)
     assert again.error <= 1e-11
     assert again.u == pytest.approx(found.u, abs=1e-8 * np.abs(found.u).max())
 

@@ -55,6 +55,13 @@ class BlockFactor:
     bodies : (B+1,) integer array
         Unknowns of body k are ``bodies[k]:bodies[k+1]``.
     engine : {"superlu", "pardiso"}
+
+    Attributes
+    ----------
+    D : (m, d, d) array or None
+        Blocks of the factors at hand; None before there are any.
+    diagonal : (N,) array, float or None
+        The diagonal added with them.
     """
 
     def __init__(
@@ -77,6 +84,8 @@ class BlockFactor:
         ]
         self.pattern = pattern
         self.numeric = OrderedFactor(pattern, PIVOT)
+        self.D: Array | None = None
+        self.diagonal: Array | float | None = None
 
     @property
     def engine(self) -> Engine:
@@ -99,6 +108,7 @@ class BlockFactor:
         other._base = self._base.copy()
         other._base[self._diagonal] += diagonal
         other.numeric = OrderedFactor(self.pattern, PIVOT)
+        other.D = other.diagonal = None
         return other
 
     def factorise(self, D: Array, diagonal: Array | float = 0.0) -> None:
@@ -117,7 +127,9 @@ class BlockFactor:
             block = np.matmul(clique.L.transpose(0, 2, 1), scaled)
             data += np.bincount(clique.slot, weights=block.ravel(), minlength=data.size)
         data[self._diagonal] += diagonal
+        self.D = self.diagonal = None
         self.numeric.factorise(data)
+        self.D, self.diagonal = D, diagonal
 
     def solve(self, b: Array) -> Array:
         """Return the solution for the last matrix factorised; ``b`` is (N,) or (N, k)."""

@@ -31,9 +31,9 @@ from concio.solvers.auto.friction_neighbours import from_neighbours
 from concio.solvers.exhaustive import search as exhaustive
 from concio.solvers.forms import lemke
 from concio.solvers.interior.engine import STARTS, Cancelled, Run, at_rest
-from concio.solvers.interior.exact_finish import Finished
 from concio.solvers.motion.release import associated_state, release
 from concio.solvers.pivoting import sparse_lemke
+from concio.solvers.states.reading import Finished
 from concio.solvers.statics.existence import statically_admissible
 
 OTHERS = (3.0, 30.0, 300.0)

@@ -41,7 +41,7 @@ from concio.problem.solution import Progress, ProgressCallback, Solution, Status
 from concio.solvers.algebra.scaled import Scaled, scale
 from concio.solvers.exhaustive.clauses import Clause, ClauseSearch
 from concio.solvers.exhaustive.states import Empty, Point, StateQuestions
-from concio.solvers.interior.exact_finish import finish
+from concio.solvers.states.settle import Settler
 
 ZERO = 1e-9
 """Forces and gaps below this, scaled, count as zero when a point is read as a state; the answer is judged anyway."""
@@ -104,6 +104,7 @@ class Search:
 
         self.problem = problem
         self.scaled: Scaled = scale(problem)
+        self.settler = Settler(self.scaled)
         self.lp = Relaxation(problem)
         self.questions = StateQuestions(self.lp.m, self.lp.reduction.rough)
         self.clauses = ClauseSearch(self.questions.count)
@@ -230,7 +231,7 @@ class Search:
             u = np.zeros_like(u)  # nothing moves: rounding has no length to be measured by
         if judge(self.problem, u, t_n, t_t, method="exhaustive").solved:
             return u, t_n, t_t
-        close = finish(s, *s.bring(u, t_n, t_t))
+        close = self.settler.settle(s, *s.bring(u, t_n, t_t))
         answer = s.restore(close.u, close.t)
         return answer if judge(self.problem, *answer, method="exhaustive").solved else None
 

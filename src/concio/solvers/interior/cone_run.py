@@ -11,7 +11,7 @@ from concio.solvers.algebra.scaled import Scaled, scale
 from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.interior.cone_iteration import ConeIteration, ConePoint
 from concio.solvers.interior.engine import Cancelled, Run, at_rest
-from concio.solvers.interior.exact_finish import Finished
+from concio.solvers.states.reading import Finished
 from concio.solvers.interior.newton_finish import finish
 
 TARGETS = (1e-6, 1e-8, 1e-10)

@@ -14,9 +14,10 @@ from concio.problem.solution import Progress, ProgressCallback, Solution, Status
 from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled, require_plane, scale
 from concio.solvers.algebra.sparse_factor import Engine
-from concio.solvers.interior.exact_finish import Finished, finish
 from concio.solvers.interior.homotopy import walk
 from concio.solvers.interior.interior_point import START, InteriorPoint, Iterate
+from concio.solvers.states.reading import Finished
+from concio.solvers.states.settle import Settler
 
 NAME = "interior-point"
 
@@ -108,6 +109,11 @@ class Run:
         """The iteration on plane problems."""
         return InteriorPoint(self.scaled)
 
+    @cached_property
+    def settler(self) -> Settler:
+        """What settles states of plane problems."""
+        return Settler(self.scaled)
+
     def watch(self, stage: str) -> Any:
         """Return the callback of a stage."""
 
@@ -136,7 +142,7 @@ class Run:
                 + ("" if outcome.converged else ", stopped")
             )
             if close:
-                found = self.finish(z.u, z.t, rounds=3 if outcome.converged else 12)
+                found = self.finish(z.u, z.t)
             if found is not None or not outcome.converged:
                 break
         return found
@@ -151,13 +157,13 @@ class Run:
         )
         return self.close_in(z, "interior point from there") if path.theta == 0 else None
 
-    def finish(self, u: Array, t: Array, rounds: int = 12) -> Finished | None:
+    def finish(self, u: Array, t: Array) -> Finished | None:
         """Exact finish of a point; return it if exact, None (and keep the best) if not.
 
         The finish measures against the largest force and displacement of the point itself. A point that runs off has
         them as large as it likes; it is exact only where the certificate, which measures against the load, says so.
         """
-        found = finish(self.scaled, u, t, rounds)
+        found = self.settler.settle(self.scaled, u, t)
         settled = found.error <= EXACT
         exact = settled and self.certified(found)
         left = f", {len(found.undecided)} pairs undecided" if not settled else ", runs off" if not exact else ""

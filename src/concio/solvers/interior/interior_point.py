@@ -36,9 +36,7 @@ import numpy as np
 from concio.problem.contact_problem import Array
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
-
-PROXIMAL = 1e-10
-"""Weight of the proximal term that keeps bodies which nothing holds where they are."""
+from concio.solvers.states.given import LOOSE
 
 START = 10.0
 """Size of slacks and multipliers at the start, in scaled units."""
@@ -231,7 +229,7 @@ class Newton:
         self.D = np.empty((s.pairs, 2, 2))
         self.D[:, 0, 0], self.D[:, 0, 1] = h_tt / det, -dilatancy * lean / det
         self.D[:, 1, 0], self.D[:, 1, 1] = -mu * lean / det, np.where(rough, h_nn / det, 0.0)
-        s.factor.factorise(self.D, PROXIMAL)
+        s.factor.factorise(self.D, LOOSE)
 
     def direction(self, change: Array) -> Iterate:
         """Return the direction that changes the products by ``change`` (4, m), to first order."""

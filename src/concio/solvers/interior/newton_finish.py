@@ -27,7 +27,7 @@ from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.second_order_cone import times
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
-from concio.solvers.interior.exact_finish import Finished, natural_residual, sizes
+from concio.solvers.states.reading import Finished, natural_residual, sizes
 
 DELTA = 1e-6
 """Compliance added to pairs of mean area in the factorised matrix, scaled units."""

@@ -88,8 +88,8 @@ class ExplicitInverse:
         matrix = columns.matrix(basis)
         dense = matrix.toarray() if is_sparse(matrix) else matrix
         try:
-            self._inverse: Array = np.asfortranarray(sl.inv(dense, check_finite=False))
-        except sl.LinAlgError as error:
+            self._inverse: Array = np.asfortranarray(np.linalg.inv(dense))
+        except np.linalg.LinAlgError as error:
             raise SingularMatrixError(str(error)) from error
         self.updates = 0
 

@@ -17,7 +17,7 @@ from concio.problem.solution import Departure
 from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.interior.cone_run import STARTS, ConeRun
-from concio.solvers.interior.exact_finish import Finished
+from concio.solvers.states.reading import Finished
 from concio.solvers.interior.newton_finish import finish
 from concio.solvers.motion.cone_departure import departure
 

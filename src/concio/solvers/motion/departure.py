@@ -39,7 +39,8 @@ from concio.problem.pair_state import PairStates
 from concio.problem.solution import Departure
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
-from concio.solvers.interior.exact_finish import solve_states
+from concio.solvers.states.equations import StateEquations
+from concio.solvers.states.given import GivenStates
 
 FINEST = (1e-6, 1e-8)
 """Values of e, scaled units, at which the acceleration of given states is worked out."""
@@ -76,9 +77,10 @@ def departure(s: Scaled, states: PairStates, u: Array, t: Array) -> Departure | 
 
 def _departure(s: Scaled, states: PairStates, u: Array, t: Array, e: float) -> Departure | None:
     """Let given states move by steps of (K + e M)(u' - u) = f - K u + C't until the step no longer changes."""
+    given, held, springs = GivenStates(s), StateEquations(s, states), e * s.inertia
     step, last, size = np.zeros_like(u), np.inf, 0.0
     for k in range(STEPS):
-        new, t, _ = solve_states(s, states, u, t, u, springs=e * s.inertia, again=k > 0)
+        new, t, _ = given.solve(held, u, t, springs=springs)
         change = float(np.abs(new - u - step).max())
         step, u = new - u, new
         size = float(np.abs(step).max())
@@ -91,8 +93,9 @@ def _departure(s: Scaled, states: PairStates, u: Array, t: Array, e: float) -> D
     a = e * (R @ (R.T @ step))
     moving = replace(s, f=s.f - s.inertia * a)
     u = u - step * (float(step @ u) / float(step @ step))
-    u, t, _ = solve_states(moving, states, u, t, u)
-    u, t, _ = solve_states(moving, states, u, t, u, again=True)
+    held = StateEquations(moving, states)
+    for _ in range(2):
+        u, t, _ = given.solve(held, u, t)
     # far enough along the motion that every opening pair is open and every slipping one has slipped its way
     rate_n, rate_t = s.along(a).T
     top = float(np.abs(a).max())

@@ -25,9 +25,10 @@ from concio.problem.solution import Departure, ProgressCallback, Status
 from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.interior.engine import STARTS, Cancelled, Run
-from concio.solvers.interior.exact_finish import Finished, finish, natural_residual, read_states
 from concio.solvers.motion.departure import departure, verify_departure
 from concio.solvers.pivoting import sparse_lemke
+from concio.solvers.states.reading import Finished, natural_residual, read_states
+from concio.solvers.states.settle import Settler
 
 FIRST = 1e-2
 """Resistance e of the first step, scaled units."""
@@ -100,7 +101,7 @@ def release(run: Run, u: Array | None = None) -> Finished | Departure | None:
 
 def _rest(run: Run, now: Finished) -> Finished | None:
     """Return the certified equilibrium that the states of a step belong to, if there is one."""
-    rest = finish(run.scaled, now.u, now.t, rounds=6)
+    rest = run.settler.settle(run.scaled, now.u, now.t)
     return rest if rest.error <= EXACT and run.certified(rest) else None
 
 
@@ -132,8 +133,9 @@ def _steady(s: Scaled, a: Array, now: Finished) -> Departure | None:
 def _solve(run: Run, step: Scaled, shift: Array, here: Finished | None) -> Finished | None:
     """Solve one step: from the states of the last one by exact finish or pivoting, then from nothing."""
     if here is not None:
+        settler = Settler(step)
         for guess, states in ((shift, here.states), (0.0 * shift, None)):
-            new = finish(step, guess, here.t, rounds=20, states=states)
+            new = settler.settle(step, guess, here.t, states)
             if new.error <= STEP:
                 return new
         return _pivot(run, step, here) or _iterate(run, step)

@@ -1,0 +1,129 @@
+r"""The factor at hand, and a few pairs whose blocks have changed since: Woodbury instead of a factorisation.
+
+With factors of :math:`A = K + C^T D C + \rho I` and the rows :math:`C_P` of a few pairs P,
+
+.. math:: (A + C_P^T\,\Delta\,C_P)^{-1} b = x - X\,(I + \Delta W)^{-1} \Delta\, C_P x, \qquad
+          X = A^{-1} C_P^T, \quad W = C_P X, \quad x = A^{-1} b.
+
+The columns X of a pair cost d back-substitutions, many at once much less than one by one; they are kept as long as the
+factor is, whatever becomes of the pair. Stiffness added this way loses no digits; stiffness taken away loses as many as
+the pair was stiffer than what is left, which refinement makes up for.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg as sl
+
+from concio.problem.contact_problem import Array
+from concio.solvers.algebra.scaled import Scaled
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
+
+MOST = 48
+"""Largest number of pairs whose columns are kept."""
+
+ROOM = 3e7
+"""Largest number of entries of the columns kept."""
+
+
+class UpdatedBlocks:
+    """Factors of K + C' D C + diagonal whose blocks D differ in a few pairs from those factorised.
+
+    Parameters
+    ----------
+    s : Scaled
+        Its factor and its C are used; other data do not matter.
+
+    Attributes
+    ----------
+    D : (m, d, d) array or None
+        The blocks as they are now.
+    """
+
+    def __init__(self, s: Scaled) -> None:
+        self.factor, self.C, self.d = s.factor, s.C, s.dim
+        self.most = int(min(MOST, ROOM // max(self.C.shape[1] * self.d, 1)))
+        self._forget()
+
+    def _forget(self) -> None:
+        """Begin with the factor as it is: no columns, no changes."""
+        self.version = self.factor.count
+        self.pairs = np.zeros(0, dtype=int)
+        self.X, self.W = np.zeros((self.C.shape[1], 0)), np.zeros((0, 0))
+        self._delta = np.zeros((0, 0))
+        self.D = self.factor.D
+
+    def factorise(self, D: Array, diagonal: Array | float) -> None:
+        """Factorise anew; no pair differs then.
+
+        Raises
+        ------
+        SingularMatrixError
+            The matrix cannot be factorised.
+        """
+        self.factor.factorise(D, diagonal)
+        self._forget()
+
+    def has(self, diagonal: Array | float) -> bool:
+        """Tell whether there is a factor at hand with this diagonal added to K."""
+        held = self.factor.diagonal
+        return held is not None and np.array_equal(np.asarray(held), np.asarray(diagonal))
+
+    def room_for(self, pairs: Array) -> bool:
+        """Tell whether the columns of some pairs (k,) can join those kept."""
+        kept = self.pairs if self.version == self.factor.count else np.zeros(0, dtype=int)
+        return np.union1d(kept, pairs).size <= self.most
+
+    def change(self, pairs: Array, blocks: Array) -> None:
+        """Let ``blocks`` (k, d, d) stand for those of ``pairs`` (k,), and all others be as they were factorised."""
+        self._meet(pairs)
+        held = self.factor.D
+        assert held is not None, "a factor at hand"
+        delta = np.zeros((self.pairs.size, self.d, self.d))
+        delta[self._places(pairs)] = blocks - held[pairs]
+        self.D = held.copy()
+        self.D[pairs] = blocks
+        self._delta = sl.block_diag(*delta) if self.pairs.size else np.zeros((0, 0))
+        if self._delta.any():
+            system = np.eye(len(self.W)) + self._delta @ self.W
+            try:
+                self._inverse = sl.lu_factor(system, check_finite=False)
+            except (sl.LinAlgError, ValueError) as error:
+                raise SingularMatrixError(str(error)) from error
+
+    def solve(self, b: Array) -> Array:
+        """Return the solution for the blocks as they are now; ``b`` is (N,)."""
+        x = self.factor.solve(b)
+        if not self._delta.any():
+            return x
+        shift = sl.lu_solve(self._inverse, self._delta @ (self.C[self._rows(self.pairs)] @ x), check_finite=False)
+        solution: Array = x - self.X @ shift
+        return solution
+
+    def flexibility(self, pairs: Array) -> Array:
+        """Return C_P (A + ...)^-1 C_P', (k d, k d): displacements of some pairs under unit forces of theirs."""
+        W = self.W
+        if self._delta.any():
+            W = W - W @ sl.lu_solve(self._inverse, self._delta @ W, check_finite=False)
+        at = self._rows(self._places(pairs))
+        return np.asarray(W[np.ix_(at, at)])
+
+    def _places(self, pairs: Array) -> Array:
+        """Return where pairs stand among those with columns."""
+        order = np.argsort(self.pairs)
+        return np.asarray(order[np.searchsorted(self.pairs, pairs, sorter=order)])
+
+    def _rows(self, pairs: Array) -> Array:
+        """Return the numbers of the rows of some pairs, pair after pair."""
+        return np.asarray(pairs[:, None] * self.d + np.arange(self.d)).ravel()
+
+    def _meet(self, pairs: Array) -> None:
+        """Work out the columns of pairs that have none yet."""
+        if self.version != self.factor.count:
+            self._forget()
+        new = np.setdiff1d(pairs, self.pairs)
+        if not new.size:
+            return
+        self.X = np.hstack([self.X, self.factor.solve(self.C[self._rows(new)].T.toarray())])
+        self.pairs = np.concatenate([self.pairs, new])
+        self.W = self.C[self._rows(self.pairs)] @ self.X

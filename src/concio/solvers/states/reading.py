@@ -1,0 +1,68 @@
+"""How far a point is from the joint laws, and the states it shows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.problem.contact_problem import Array
+from concio.problem.pair_state import Normal, PairStates
+from concio.solvers.algebra.scaled import Scaled
+
+
+@dataclass(frozen=True, eq=False)
+class Finished:
+    """A point in given states, scaled units, and how exact it is.
+
+    Parameters
+    ----------
+    u, t : arrays
+        Shapes (N,), (m, d).
+    states : PairStates
+    error : float
+        Natural-map residual: largest of imbalance and of the violation of the joint laws, relative.
+    solves : int
+        Linear systems solved for given states.
+    undecided : (k,) integer array
+        Pairs whose states the point contradicts; empty when exact.
+    """
+
+    u: Array
+    t: Array
+    states: PairStates
+    error: float
+    solves: int
+    undecided: Array
+
+
+def sizes(u: Array, t: Array) -> tuple[float, float]:
+    """Return the largest force and the largest displacement, at least one."""
+    return max(1.0, float(np.abs(t).max(initial=0.0))), max(1.0, float(np.abs(u).max(initial=0.0)))
+
+
+def natural_residual(s: Scaled, u: Array, t: Array) -> tuple[float, Array]:
+    """Return the largest relative violation of equilibrium and joint laws, and that of the laws for each pair (m,).
+
+    Forces count relative to the largest force, lengths relative to the largest displacement.
+    """
+    force, length = sizes(u, t)
+    laws: Array = np.abs(s.natural_map(u, t, force / length)).max(axis=1, initial=0.0) / force
+    return max(s.unbalanced(u, t, force), float(laws.max(initial=0.0))), laws
+
+
+def read_states(s: Scaled, u: Array, t: Array) -> PairStates:
+    """Return the states that the natural map assigns to a point of a plane problem.
+
+    A pair slips where the trial friction t_t - y_t lies beyond the strength it has at its trial normal force, an open
+    pair with strength left too; one without any strength is given no slip.
+    """
+    force, length = sizes(u, t)
+    y = s.position(u, t) * (force / length)
+    slip = np.where(s.rough, y[:, 1], 0.0)
+    trial = t[:, 0] - y[:, 0] + s.dilatancy * np.abs(slip)
+    strength = s.cone.strength(np.clip(trial, 0.0, s.cone.cap))
+    tangential = t[:, 1] - slip
+    sliding = np.where(tangential < -strength, 1, np.where(tangential > strength, -1, 0))
+    normal = np.where(trial > s.cone.cap, Normal.CRUSHED, np.where(trial > 0, Normal.CLOSED, Normal.OPEN))
+    return PairStates.plane(normal, np.where(s.rough & (strength > 0), sliding, 0))

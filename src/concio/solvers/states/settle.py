@@ -1,0 +1,189 @@
+r"""From a point and states that are nearly right to the answer: solve, decide the pairs in question, solve again.
+
+With the states of all pairs given the problem is linear (:mod:`concio.solvers.states.given`). If the answer contradicts
+no state it is exact. Pairs it contradicts are decided together by one small linear complementarity problem in which all
+others keep their states (:mod:`concio.solvers.states.small_problem`); pairs contradicted then join them, and so on. All
+of this happens on one factor, updated by a few columns for each pair in question. Where there are too many of them they
+all take the states the point shows, which costs a factorisation.
+
+Forces of redundant pairs (corners) are not unique. Those reported are of least norm among those of the states, each
+pair's square over its area, so that it is the norm of the tractions: it depends on nothing but the structure, and a
+uniform pressure is reported as one.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import replace
+
+import numpy as np
+
+from concio.problem.contact_problem import Array
+from concio.problem.pair_state import PairStates
+from concio.problem.tolerances import EXACT
+from concio.solvers.algebra.scaled import Scaled
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
+from concio.solvers.states.equations import StateEquations
+from concio.solvers.states.given import LOOSE, TRIED, GivenStates
+from concio.solvers.states.reading import Finished, natural_residual, read_states
+from concio.solvers.states.small_problem import decide
+
+ROUNDS = 12
+"""Largest number of times pairs are decided."""
+
+TOGETHER = 40
+"""Largest number of pairs decided together."""
+
+ANCHORS = 8
+"""Largest number of times the springs of loose unknowns are anchored anew."""
+
+
+class Settler:
+    """Settles the states of the pairs of one structure; its factors and columns live as long as K and C do.
+
+    Parameters
+    ----------
+    s : Scaled
+    """
+
+    def __init__(self, s: Scaled) -> None:
+        self.given = GivenStates(s)
+
+    def settle(
+        self,
+        s: Scaled,
+        u: Array,
+        t: Array,
+        states: PairStates | None = None,
+        *,
+        undecided: Array | None = None,
+        springs: Array | float = LOOSE,
+        rounds: int = ROUNDS,
+        least: bool = True,
+    ) -> Finished:
+        """Settle the states of a problem, from a point near its answer or from states near its own.
+
+        Parameters
+        ----------
+        s : Scaled
+            The structure this settler was made for, perhaps under other loads, gaps and slip origins.
+        u, t : (N,), (m, 2) arrays
+            The point, scaled.
+        states : PairStates, optional
+            States to begin with; default are those the point shows.
+        undecided : (k,) integer array, optional
+            Pairs whose states are in question from the start.
+        springs : (N,) array or float
+        rounds : int
+            Largest number of times pairs are decided.
+        least : bool
+            Whether forces that are not unique are those of least norm; otherwise those near to the point.
+        """
+        states = read_states(s, u, t) if states is None else states
+        run = _Run(self.given, s, u, springs)
+        chosen = np.zeros(s.pairs, dtype=bool)
+        if undecided is not None:
+            chosen[undecided] = True
+        with suppress(SingularMatrixError):
+            self._settle(run, states, u, t, chosen, rounds)
+        found = run.best
+        if found is None:
+            error, laws = natural_residual(s, u, t)
+            found = Finished(u, t, states, error, 0, np.flatnonzero(laws > EXACT))
+        elif found.error < EXACT:
+            found = run.least_norm(found) if least else run.near(found)
+        return replace(found, solves=run.solves)
+
+    def _settle(self, run: _Run, states: PairStates, u: Array, t: Array, chosen: Array, rounds: int) -> None:
+        """Decide the pairs in question until none is contradicted, or nothing new comes of it."""
+        seen: set[bytes] = set()
+        if 0 < chosen.sum() <= TOGETHER:
+            states, u, t = run.decided(states, np.flatnonzero(chosen), u, t) or (states, u, t)
+        for _ in range(rounds):
+            seen.add(states.key())
+            u, t, wrong, shown = run.solved(states, u, t)
+            if not wrong.any():
+                return
+            flipped = _mixed(states, shown, wrong)
+            found = None
+            if (chosen | wrong).sum() <= TOGETHER:
+                chosen |= wrong
+                found = run.decided(states, np.flatnonzero(chosen), u, t)
+            else:
+                chosen = np.zeros_like(chosen)
+            if found is None or found[0].key() in seen:
+                found = flipped, u, t
+            if found[0].key() in seen:
+                return
+            states, u, t = found
+
+
+class _Run:
+    """One problem being settled: its best point so far, and the steps of which settling is made."""
+
+    def __init__(self, given: GivenStates, s: Scaled, anchor: Array, springs: Array | float) -> None:
+        self.given, self.s, self.anchor, self.springs = given, s, anchor, springs
+        self.best: Finished | None = None
+        self.begun = given.solves
+
+    @property
+    def solves(self) -> int:
+        """Linear systems solved for given states."""
+        return self.given.solves - self.begun
+
+    def solved(self, states: PairStates, u: Array, t: Array) -> tuple[Array, Array, Array, PairStates]:
+        """Solve for given states; return u, t, which pairs (m,) contradict them, and the states they show instead."""
+        equations = StateEquations(self.s, states)
+        u, t, _ = self.given.solve(equations, u, t, self.anchor, springs=self.springs, accuracy=TRIED)
+        error, laws = natural_residual(self.s, u, t)
+        shown = read_states(self.s, u, t)
+        wrong = (laws > EXACT) & shown.differ(states)
+        for _ in range(ANCHORS):  # a slender arch is hardly stiffer than the springs: where it goes far, they pull
+            if error < EXACT or wrong.any():
+                break
+            self.anchor = u
+            v, p, _ = self.given.solve(equations, u, t, self.anchor, springs=self.springs, own=True)
+            new, laws = natural_residual(self.s, v, p)
+            if not new < error:
+                break
+            slow = new > 0.5 * error
+            u, t, error, shown = v, p, new, read_states(self.s, v, p)
+            wrong = (laws > EXACT) & shown.differ(states)
+            if slow:
+                break
+        if self.best is None or error < self.best.error:
+            self.best = Finished(u, t, states, error, 0, np.flatnonzero(wrong))
+        return u, t, wrong, shown
+
+    def decided(
+        self, states: PairStates, pick: Array, u: Array, t: Array
+    ) -> tuple[PairStates, Array, Array] | None:
+        """Decide the pairs picked, all others held; return the states and a point near, None where that fails."""
+        found = decide(self.given, self.s, states, pick, u, t, self.anchor, springs=self.springs)
+        return None if found is None else (found.states, found.u, found.t)
+
+    def least_norm(self, found: Finished) -> Finished:
+        """Return the answer with the least-norm forces among those of its states, if these obey the joint laws.
+
+        Refinement from zero forces, on the factor of these very states, ends at the least norm; the displacements are
+        the same. The springs of loose unknowns are anchored anew at the answer, which takes their last influence out.
+        """
+        return self._from(found, np.zeros_like(found.t), own=True) or self.near(found)
+
+    def near(self, found: Finished) -> Finished:
+        """Return the answer refined once more from its own forces, springs anchored at it."""
+        return self._from(found, found.t, own=False) or found
+
+    def _from(self, found: Finished, start: Array, *, own: bool) -> Finished | None:
+        """Return the answer refined from other forces, None where these do not obey the joint laws."""
+        equations = StateEquations(self.s, found.states)
+        u, t, _ = self.given.solve(equations, found.u, start, found.u, springs=self.springs, own=own)
+        error, _ = natural_residual(self.s, u, t)
+        return replace(found, u=u, t=t, error=error) if error <= max(found.error, EXACT) else None
+
+
+def _mixed(states: PairStates, shown: PairStates, wrong: Array) -> PairStates:
+    """Return the states, those of the pairs marked (m,) as they show."""
+    return PairStates(
+        np.where(wrong, shown.normal, states.normal), np.where(wrong[:, None], shown.direction, states.direction)
+    )
