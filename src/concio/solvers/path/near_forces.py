@@ -29,7 +29,8 @@ from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution, judge
 from concio.solvers.algebra.scaled import scale, typical_stiffness
 from concio.solvers.interior import engine
-from concio.solvers.interior.exact_finish import finish, read_states
+from concio.solvers.states.reading import read_states
+from concio.solvers.states.settle import Settler
 
 SOFT = 1e-5
 """The compliance lent to hard pairs of mean area, over the typical compliance of the bodies."""
@@ -114,7 +115,7 @@ def solve_near(
     s = scale(problem)
     v, p = s.bring(first.displacement, first.normal_force, first.friction_force)
     lent = s.renewed(soft)
-    found = finish(s, v, p, states=read_states(lent, v, p), least=False)
+    found = Settler(s).settle(s, v, p, read_states(lent, v, p), least=False)
     still = float(np.abs(found.u).max(initial=0.0)) < engine.AT_REST
     v, p_n, p_t = s.restore(found.u, found.t)
     rest = np.zeros_like(v)
