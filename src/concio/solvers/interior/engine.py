@@ -11,7 +11,6 @@ import numpy as np
 from concio.problem.certificate import certify
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Progress, ProgressCallback, Solution, Status, judge
-from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled, require_plane, scale
 from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.interior.homotopy import walk
@@ -164,11 +163,10 @@ class Run:
         them as large as it likes; it is exact only where the certificate, which measures against the load, says so.
         """
         found = self.settler.settle(self.scaled, u, t)
-        settled = found.error <= EXACT
-        exact = settled and self.certified(found)
-        left = f", {len(found.undecided)} pairs undecided" if not settled else ", runs off" if not exact else ""
+        exact = found.settled and self.certified(found)
+        left = f", {len(found.undecided)} pairs undecided" if not found.settled else ", runs off" if not exact else ""
         self.trace.append(f"exact finish: {found.solves} linear solves, residual {found.error:.1e}{left}")
-        if (exact or not settled) and (self.best is None or found.error < self.best.error):
+        if (exact or not found.settled) and (self.best is None or found.error < self.best.error):
             self.best = found
         return found if exact else None
 

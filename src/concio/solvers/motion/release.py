@@ -22,7 +22,6 @@ import numpy as np
 from concio.problem.contact_problem import Array
 from concio.problem.pair_state import PairStates
 from concio.problem.solution import Departure, ProgressCallback, Status
-from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.interior.engine import STARTS, Cancelled, Run
 from concio.solvers.motion.departure import departure, verify_departure
@@ -102,7 +101,7 @@ def release(run: Run, u: Array | None = None) -> Finished | Departure | None:
 def _rest(run: Run, now: Finished) -> Finished | None:
     """Return the certified equilibrium that the states of a step belong to, if there is one."""
     rest = run.settler.settle(run.scaled, now.u, now.t)
-    return rest if rest.error <= EXACT and run.certified(rest) else None
+    return rest if rest.settled and run.certified(rest) else None
 
 
 def _cross(run: Run, s: Scaled, now: Finished) -> Finished | None:

@@ -8,6 +8,7 @@ import numpy as np
 
 from concio.problem.contact_problem import Array
 from concio.problem.pair_state import Normal, PairStates
+from concio.problem.tolerances import CERTIFIED, EXACT
 from concio.solvers.algebra.scaled import Scaled
 
 
@@ -34,6 +35,14 @@ class Finished:
     error: float
     solves: int
     undecided: Array
+
+    @property
+    def settled(self) -> bool:
+        """Whether the states are the right ones: the error is rounding, or the point contradicts none of them.
+
+        Where joints are all but redundant refinement stops a little above rounding; the certificate judges the rest.
+        """
+        return self.error <= EXACT or (not self.undecided.size and self.error <= CERTIFIED)
 
 
 def sizes(u: Array, t: Array) -> tuple[float, float]:

@@ -90,7 +90,7 @@ class Settler:
         if found is None:
             error, laws = natural_residual(s, u, t)
             found = Finished(u, t, states, error, 0, np.flatnonzero(laws > EXACT))
-        elif found.error < EXACT:
+        elif found.settled:
             found = run.least_norm(found) if least else run.near(found)
         return replace(found, solves=run.solves)
 
