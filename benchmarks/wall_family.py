@@ -6,8 +6,8 @@ Walls: running bond of dry elastic blocks 2:1, 2 x 2 elements, friction 0.6, own
 it. Head joints are coupled at the inner nodes of a block's end, bed joints at every node. Panels: 0.2 x 0.1 m blocks,
 4 x 2 elements, between rigid walls on a full base, 10 kN/m2 on top.
 
-Times are CPU times. The yardstick is one SuperLU factorisation of K + C'C of the same problem with SciPy's best built-in ordering
-(``mmd``) and with nested dissection (``nd``): ratios to it do not depend on the machine.
+Times are CPU times. The yardstick is one SuperLU factorisation of K + C'C of the same problem with SciPy's best
+built-in ordering (``mmd``) and with nested dissection (``nd``): ratios to it do not depend on the machine.
 """
 
 from __future__ import annotations

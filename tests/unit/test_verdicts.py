@@ -9,7 +9,7 @@ import pytest
 
 import concio
 from concio.analysis.lent_compliance import SHEAR_TO_NORMAL, lent_assembly
-from concio.cli.limit import limit_lines
+from concio.cli.limit_lines import limit_lines
 from concio.errors import InputError
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Body, Load, Support
@@ -199,7 +199,7 @@ def test_limit_tells_the_bound_where_the_path_is_not_begun():
     assert found.path_note.startswith("not begun")
     assert "proves nothing" in found.path_note
     assert np.isnan(found.coulomb)
-    told = "\n".join(limit_lines(found, ["live"]))
+    told = "\n".join(limit_lines(found))
     assert "associated bound     40" in told
     assert "not begun" in told
 
