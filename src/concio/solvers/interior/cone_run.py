@@ -11,8 +11,8 @@ from concio.solvers.algebra.scaled import Scaled, scale
 from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.interior.cone_iteration import ConeIteration, ConePoint
 from concio.solvers.interior.engine import Cancelled, Run, at_rest
-from concio.solvers.states.reading import Finished
 from concio.solvers.interior.newton_finish import finish
+from concio.solvers.states.reading import Finished
 
 TARGETS = (1e-6, 1e-8, 1e-10)
 """Merits at which the exact finish is tried; a deeper point tells states apart that the one before does not."""

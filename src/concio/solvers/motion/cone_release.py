@@ -17,9 +17,9 @@ from concio.problem.solution import Departure
 from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.interior.cone_run import STARTS, ConeRun
-from concio.solvers.states.reading import Finished
 from concio.solvers.interior.newton_finish import finish
 from concio.solvers.motion.cone_departure import departure
+from concio.solvers.states.reading import Finished
 
 FIRST = 1e-2
 """Resistance e of the first step, scaled units."""
