@@ -13,6 +13,7 @@ from concio.problem.contact_problem import ContactProblem, Laws
 from concio.solvers.path.event_path import follow
 from concio.solvers.path.record import Outcome
 from concio.solvers.path.state import CRUSHED, OPEN, LinearPath, PathState
+from concio.solvers.path.state import at_rest as unloaded
 from path_helpers import at_rest, energy_error, least_dissipation, weight_then, worst_certificate
 from rigid_walls import block_on_incline
 
@@ -179,8 +180,9 @@ def test_three_dimensions_are_refused():
         sp.csr_array((3, 3)), np.zeros(3), sp.csr_array(np.eye(3)[2:]), sp.csr_array(np.eye(3)[:2]), np.zeros(1),
         Laws.coulomb(0.5, 1), sp.csc_array(np.eye(3)), np.array([0, 3]),
     )  # fmt: skip
+    path = LinearPath(p, np.zeros(3))
     with pytest.raises(InputError, match="two-dimensional"):
-        LinearPath(p, np.zeros(3))
+        follow(path, unloaded(p), until=1.0)
 
 
 def test_cancelling():

@@ -17,9 +17,9 @@ from concio.cli.limit_lines import as_given, limit_lines
 from concio.cli.main import app
 from concio.problem.certificate import certify
 from concio.solvers.path.event_path import follow
-from concio.solvers.path.ray import at_rest, homogeneous, ray
+from concio.solvers.path.ray import homogeneous, ray
 from concio.solvers.path.record import Outcome
-from concio.solvers.path.state import LinearPath, step_problem
+from concio.solvers.path.state import LinearPath, at_rest, step_problem
 
 
 @pytest.fixture(scope="module")
@@ -94,8 +94,8 @@ def test_from_rest_the_path_is_a_ray(wall: concio.Model) -> None:
     problem = concio.assemble(wall).problem({"live": 0.0})
     path = LinearPath(problem.with_loads(0.0 * problem.f), problem.f)
     assert homogeneous(path)
-    end = ray(path, at_rest(path))
-    walked = follow(path, at_rest(path), until=1.0)
+    end = ray(path, at_rest(path.problem))
+    walked = follow(path, at_rest(path.problem), until=1.0)
     assert walked.outcome is Outcome.REACHED
     scale = np.abs(end.displacement).max()
     np.testing.assert_allclose(walked.end.displacement, end.displacement, atol=1e-9 * scale)

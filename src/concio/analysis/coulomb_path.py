@@ -10,9 +10,9 @@ from concio.errors import SolverError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback
 from concio.solvers.path.event_path import follow
-from concio.solvers.path.ray import at_rest, homogeneous, ray, restarted
+from concio.solvers.path.ray import homogeneous, ray, restarted
 from concio.solvers.path.record import EventPath, Outcome
-from concio.solvers.path.state import LinearPath, PathState
+from concio.solvers.path.state import LinearPath, PathState, at_rest
 
 FAR = 50.0
 """The path is followed to this multiple of the displacement at its first limit point."""
@@ -47,7 +47,7 @@ def dead_state(
 ) -> tuple[PathState | None, str]:
     """Return the state under the dead load grown from nothing; None, and why, where its path was lost."""
     weight = LinearPath(problem.with_loads(0.0 * problem.f), problem.f)
-    rest = at_rest(weight)
+    rest = at_rest(weight.problem)
     if homogeneous(weight):
         end = ray(weight, rest, progress=progress)
         if end is not None:

@@ -146,9 +146,12 @@ def limit_stages(
         none = "not tried: no load is the last"
         yield "bound", replace(found, search=none, path_note=none)
         return
+    if path and dead.dim != 2:
+        msg = "exact paths are for models in the plane; the model is in space"
+        raise InputError(msg, hint="load steps are followed instead: leave path out")
     exact = path if path is not None else dead.dim == 2 and dead.pairs <= LARGEST_PATH
     stepped = steps if steps is not None else path is None and not exact
-    if stepped and dead.dim == 2 and bound > 0:
+    if stepped and bound > 0:
         tell("load steps")
         found = replace(found, steps=load_steps(dead, load, bound, progress=progress))
         yield "steps", found

@@ -120,6 +120,8 @@ class LimitResult:
             "coulomb_path_carries": None if self.path is None else self.path.peak,
             "coulomb_steps_carry": None if self.steps is None else _finite(self.steps.carried),
             "coulomb_steps_fail": None if self.steps is None else _finite(self.steps.failed),
+            "coulomb_steps_outcome": None if self.steps is None or self.steps.outcome is None
+            else self.steps.outcome.name.lower(),
             "collapse_state_multiplier": None if self.collapse_state is None else self.collapse_state.multiplier,
             "collapse_state_search": self.search,
             "coulomb_first_limit": None if self.path is None else self.first_limit,

@@ -5,6 +5,10 @@ before (10, 11), so that friction has its history. A step that finds no certifie
 the associated bound. What was reached is carried, by forces that obey every law; that more is not carried is not shown.
 The exact path (:mod:`concio.solvers.path.event_path`) follows every event and can show collapse, at a price that grows
 with the square of the number of pairs; these are some fifteen load steps, whatever the size.
+
+In space there are neither exact paths nor a search for collapse states. There the structure is released at the least
+multiplier that found no certified state: where it moves away, a motion proves that, and the two multipliers bracket
+collapse under Coulomb friction.
 """
 
 from __future__ import annotations
@@ -16,7 +20,8 @@ import numpy as np
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution, Status
-from concio.solvers.interior import engine
+from concio.solvers.interior import cone_run, engine
+from concio.solvers.methods import find
 from concio.solvers.path.near_forces import needed, solve_near
 from concio.solvers.path.ray import solve_from_rest
 from concio.solvers.path.state import LinearPath, PathState, state_of, step_problem
@@ -46,6 +51,8 @@ class LoadSteps:
         Load steps tried.
     dead : Status
         Outcome of the dead load in one step.
+    outcome : Status or None
+        What is proven at ``failed`` where the load is put on in one step; None where nothing was asked.
     """
 
     multipliers: tuple[float, ...]
@@ -54,6 +61,7 @@ class LoadSteps:
     worst: float
     solves: int
     dead: Status
+    outcome: Status | None = None
 
     @property
     def carried(self) -> float:
@@ -75,7 +83,7 @@ def load_steps(
     Parameters
     ----------
     dead : ContactProblem
-        With its dead load; two-dimensional.
+        With its dead load.
     live : (N,) array
     bound : float
         Associated multiplier, finite and positive: no step goes beyond it.
@@ -111,7 +119,11 @@ def load_steps(
         worst = max(worst, solution.certificate.worst)
         if found is not None:
             found(trial)
-    return LoadSteps(tuple(reached), failed, state, worst, solves, first.status)
+    outcome = None
+    if dead.dim == 3 and failed < bound:
+        outcome = find("auto")(dead.with_loads(dead.f + failed * live), progress=progress).status
+        solves += 1
+    return LoadSteps(tuple(reached), failed, state, worst, solves, first.status, outcome)
 
 
 def _step(problem: ContactProblem, state: PathState, progress: ProgressCallback | None) -> Solution:
@@ -119,4 +131,6 @@ def _step(problem: ContactProblem, state: PathState, progress: ProgressCallback 
     solution = solve_near(problem, *near, starts=START, progress=progress)
     if solution.solved or solution.status is Status.CANCELLED or not needed(problem):
         return solution
+    if problem.dim == 3:
+        return cone_run.solve(problem, progress=progress)
     return engine.solve(problem, homotopy=False, starts=START, progress=progress)

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from concio.analysis.lent_compliance import lent_assembly
 from concio.analysis.limit import dead_and_live, factored_problem
@@ -22,7 +23,7 @@ from concio.contact.assembly import Assembly
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Status
-from concio.solvers.auto.chain import solve as solve_step
+from concio.solvers.methods import find
 from concio.solvers.statics.friction import smallest_friction
 from concio.solvers.statics.limit import associated_limit
 
@@ -126,13 +127,15 @@ def friction_by_solving(
 
 def _bisect(problem: Callable[[float], ContactProblem], safe: float, limit: float, width: float) -> Margin:
     """Bisect between ``safe``, which ought to hold, and ``limit``, beyond which nothing does."""
-    first = solve_step(problem(safe), pivoting=False)
+    auto, start = find("auto"), problem(safe)
+    options: dict[str, Any] = {"pivoting": False} if start.dim == 2 else {}
+    first = auto(start, **options)
     if not first.solved:
         return Margin(float("nan"), safe, first.status, limit, 1)
     holds, fails, outcome, count = safe, limit, None, 1
     while abs(fails - holds) > width:
         middle = 0.5 * (holds + fails)
-        found = solve_step(problem(middle), pivoting=False)
+        found = auto(problem(middle), **options)
         count += 1
         if found.solved:
             holds = middle

@@ -7,7 +7,7 @@ Within a stage slip is measured from the last converged state (10, 11).
 ``method="events"`` follows the exact polygon (:mod:`concio.solvers.path.event_path`), over jumps where the structure
 snaps, and goes over to steps when there are more events than asked for; the notes of the result tell both.
 ``method="steps"`` takes load steps with the solver named, halving a step that fails or that changes too many states
-at once.
+at once. Models in space are followed in steps: where a slip turns, a path has no corners.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from concio.problem.solution import ProgressCallback
 from concio.solvers.methods import find
 from concio.solvers.path.event_path import follow
 from concio.solvers.path.record import EventPath, Outcome
-from concio.solvers.path.state import OPEN, LinearPath, PathState, certify_step, elastic_energy
+from concio.solvers.path.state import LinearPath, PathState, at_rest, certify_step, elastic_energy
 from concio.solvers.path.step_path import StepPath, follow_in_steps
 
 __all__ = ["ControlPoint", "NamedEvent", "PathResult", "PathStep", "Stage", "control_functional", "run_path"]
@@ -42,7 +42,7 @@ def run_path(
     model: Model | Assembly,
     stages: Sequence[Stage] = (),
     *,
-    method: Literal["events", "steps"] = "events",
+    method: Literal["events", "steps"] | None = None,
     solver: str = "auto",
     restart: tuple[PathResult, int] | None = None,
     max_events: int = 20_000,
@@ -56,7 +56,8 @@ def run_path(
     model : Model or Assembly
     stages : sequence of Stage
         By default those that come with the model.
-    method : {"events", "steps"}
+    method : {"events", "steps"}, optional
+        By default events in the plane, steps in space.
     solver : str
         Method of the load steps and of the start of event paths.
     restart : (PathResult, int), optional
@@ -80,7 +81,11 @@ def run_path(
     if not stages:
         msg = "a load path needs at least one stage"
         raise InputError(msg, hint="for example Stage('weight', {'dead': 1.0})")
-    if brittle and method != "steps":
+    method = method or ("events" if assembly.model.dim == 2 else "steps")
+    if method == "events" and assembly.model.dim != 2:
+        msg = "paths event by event are for models in the plane; the model is in space"
+        raise InputError(msg, hint="use method='steps'")
+    if brittle and method == "events":
         msg = "joints that break are followed in steps only"
         raise InputError(msg, hint="use method='steps'")
     factors = dict.fromkeys(assembly.groups, 0.0)
@@ -192,7 +197,8 @@ def _target(assembly: Assembly, factors: Mapping[str, float], stage: Stage) -> d
 def _linear(assembly: Assembly, start: Mapping[str, float], end: Mapping[str, float]) -> LinearPath:
     """Return the path of a stage: everything a problem holds is linear in the load factors."""
     a, b = assembly.problem(start), assembly.problem(end)
-    return LinearPath(a, b.f - a.f, b.gap - a.gap, (a.slip_origin - b.slip_origin)[:, 0], b.load - a.load)
+    tangential = a.slip_origin - b.slip_origin
+    return LinearPath(a, b.f - a.f, b.gap - a.gap, tangential[:, 0] if a.dim == 2 else tangential, b.load - a.load)
 
 
 def _at_rest(path: LinearPath) -> PathState:
@@ -201,6 +207,4 @@ def _at_rest(path: LinearPath) -> PathState:
     if (problem.gap < 0).any() or np.abs(problem.f).any():
         msg = "the path does not begin at rest: loads or overlaps are there before the first stage"
         raise SolverError(msg, hint="give every load and imposed displacement a load group")
-    zero = np.zeros(problem.pairs)
-    contact = np.where(problem.gap > 0, OPEN, 1).astype(np.int8)
-    return PathState(0.0, np.zeros(problem.unknowns), zero, zero, contact, zero.astype(np.int8), zero, zero)
+    return at_rest(problem)

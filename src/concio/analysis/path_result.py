@@ -63,7 +63,7 @@ class NamedEvent:
         "opens", "closes", "slips", "sticks", "crushes", "recovers", "breaks"; "jumps" and "restarts" are finite steps
         of the whole structure, named after the joint that moves most.
     bodies : (str, str)
-    at : (x, y)
+    at : (x, y) or (x, y, z)
         [m].
     pair : int
     """
@@ -73,12 +73,13 @@ class NamedEvent:
     parameter: float
     kind: str
     bodies: tuple[str, str]
-    at: tuple[float, float]
+    at: tuple[float, ...]
     pair: int
 
     def __str__(self) -> str:
         a, b = self.bodies
-        return f"{self.parameter:.6g}: {a} | {b} {self.kind} at ({self.at[0]:.4g}, {self.at[1]:.4g})"
+        place = ", ".join(f"{x:.4g}" for x in self.at)
+        return f"{self.parameter:.6g}: {a} | {b} {self.kind} at ({place})"
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,9 +198,9 @@ def named_event(assembly: Assembly, stage: int, first: int, event: Event) -> Nam
     k = event.pair
     names = (bodies[int(pairs.body_a[k])].name, _other(assembly, k))
     size = float(np.abs(pairs.point).max(initial=0.0))
-    x, y = (float(v) if abs(v) > DUST * size else 0.0 for v in pairs.point[k])
+    place = tuple(float(v) if abs(v) > DUST * size else 0.0 for v in pairs.point[k])
     parameter = event.parameter if abs(event.parameter) > DUST else 0.0
-    return NamedEvent(stage, first + event.step, parameter, event.kind, names, (x, y), k)
+    return NamedEvent(stage, first + event.step, parameter, event.kind, names, place, k)
 
 
 def _other(assembly: Assembly, k: int) -> str:

@@ -28,7 +28,7 @@ class SettlementResult:
         Both stages: loads, then movement.
     share : (n,) array
         Share of the movement at each step of the second stage, 0 to 1.
-    reactions : mapping of str to (n, 2) array
+    reactions : mapping of str to (n, 2) array, in space (n, 3)
         Reactions of fixed bodies and supports at the same steps [kN].
     """
 
@@ -48,7 +48,7 @@ def settle(
     group: str = "settlement",
     *,
     amount: float = 1.0,
-    method: Literal["events", "steps"] = "events",
+    method: Literal["events", "steps"] | None = None,
     progress: ProgressCallback | None = None,
 ) -> SettlementResult:
     """Apply all loads, then move the supports of a group.
@@ -60,7 +60,8 @@ def settle(
         Load group of the imposed displacements.
     amount : float
         Factor of the imposed displacements at the end.
-    method : {"events", "steps"}
+    method : {"events", "steps"}, optional
+        By default events in the plane, steps in space.
     progress : callable, optional
 
     Raises

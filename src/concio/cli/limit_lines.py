@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from concio.analysis.limit_result import NOT_ASKED, LimitResult
 from concio.display import number
+from concio.problem.solution import PROVEN_FAILURES
 
 if TYPE_CHECKING:
     from concio.analysis.margins import Margin
@@ -114,7 +115,11 @@ def step_lines(found: LimitResult) -> list[str]:
         return [f"{head}none: the dead load alone came to no certified state ({steps.dead.name.lower()})"]
     tried = "" if math.isnan(steps.failed) else f"; none found at {steps.failed:.6g}"
     count = f"{len(steps.multipliers)} certified states from the dead load on"
-    return [f"{head}carried up to {steps.carried:.6g} at least: {count}{tried}"]
+    lines = [f"{head}carried up to {steps.carried:.6g} at least: {count}{tried}"]
+    if steps.outcome is not None and steps.outcome in PROVEN_FAILURES:
+        said = steps.outcome.value[0].lower() + steps.outcome.value[1:]
+        lines.append(f"{REST}put on in one step, {steps.failed:.6g} is not carried: {said}")
+    return lines
 
 
 def collapse_lines(found: LimitResult) -> list[str]:

@@ -23,14 +23,19 @@ def path(
         list[str] | None,
         typer.Option("--stage", "-s", help="Load factors at the end of a stage: dead=1,top=1 (repeatable, in order)."),
     ] = None,
-    point: Annotated[str | None, typer.Option("--point", "-p", help="Control point: BODY,X,Y.")] = None,
-    along: Annotated[Literal["x", "y", "-x", "-y"], typer.Option("--along", help="Direction of its motion.")] = "x",
+    point: Annotated[
+        str | None, typer.Option("--point", "-p", help="Control point: BODY,X,Y; in space BODY,X,Y,Z.")
+    ] = None,
+    along: Annotated[
+        Literal["x", "y", "z", "-x", "-y", "-z"], typer.Option("--along", help="Direction of its motion.")
+    ] = "x",
     until: Annotated[
         str | None, typer.Option("--until", help="Motion of the point that ends the last stage: 0.02 or '20 mm'.")
     ] = None,
     method: Annotated[
-        Literal["events", "steps"], typer.Option("--method", "-m", help="Exact, or in steps.")
-    ] = "events",
+        Literal["events", "steps"] | None,
+        typer.Option("--method", "-m", help="Exact (by default, in the plane), or in steps (always so in space)."),
+    ] = None,
     steps: Annotated[int, typer.Option("--steps", help="Steps of a stage that is walked in steps.")] = 20,
     brittle: Annotated[
         bool, typer.Option("--brittle", help="Joints lose tension and cohesion once exceeded (with --method steps).")
@@ -59,7 +64,7 @@ def path(
     if out is not None:
         check_directory(out)
     assembly = concio.assemble(in_units(concio.load(file), units))
-    control = None if point is None else _control(point, along)
+    control = None if point is None else _control(point, along, assembly.model.dim)
     if control is None and until is not None:
         msg = "--until is the motion of a control point, and there is none"
         raise InputError(msg, where="--until", hint="add --point BODY,X,Y")
@@ -98,15 +103,19 @@ def _words(factors: dict[str, float]) -> str:
     return ", ".join(f"{group} = {value:g}" for group, value in factors.items())
 
 
-def _control(text: str, along: str) -> ControlPoint:
+def _control(text: str, along: str, dim: int) -> ControlPoint:
     from concio.analysis.path import ControlPoint
     from concio.errors import InputError
     from concio.units import quantity
 
-    parts = text.rsplit(",", 2)
-    if len(parts) != 3:
+    parts = text.rsplit(",", dim)
+    if len(parts) != dim + 1:
         msg = f"'{text}' is not a point of a body"
-        raise InputError(msg, where="--point", hint="write for example --point c03-b02,1.0,0.75")
-    x, y = (quantity(part.strip(), "length", where="--point") for part in parts[1:])
-    direction = {"x": (1.0, 0.0), "y": (0.0, 1.0), "-x": (-1.0, 0.0), "-y": (0.0, -1.0)}[along]
-    return ControlPoint(parts[0].strip(), (x, y), direction)
+        raise InputError(msg, where="--point", hint="write for example --point c03-b02,1.0,0.75" + ",0.3" * (dim - 2))
+    at = tuple(quantity(part.strip(), "length", where="--point") for part in parts[1:])
+    axis = "xyz".index(along[-1])
+    if axis >= dim:
+        msg = "the model is in the plane"
+        raise InputError(msg, where="--along", hint="x, y, -x or -y")
+    sign = -1.0 if along.startswith("-") else 1.0
+    return ControlPoint(parts[0].strip(), at, tuple(sign * (k == axis) for k in range(dim)))

@@ -52,9 +52,9 @@ def curve_point(found: PathResult) -> ControlPoint:
         size = np.linalg.norm(motion, axis=1)
         k = int(size.argmax())
         if best is None or size[k] > best[0]:
-            at, u = end.nodes(b)[k], motion[k] / size[k] if size[k] > 0 else np.array([0.0, 1.0])
+            at, u = end.nodes(b)[k], motion[k] / size[k] if size[k] > 0 else np.eye(motion.shape[1])[-1]
             u = np.where(np.abs(u) > SLIGHT, u, 0.0)
-            best = float(size[k]), ControlPoint(body.name, (float(at[0]), float(at[1])), (float(u[0]), float(u[1])))
+            best = float(size[k]), ControlPoint(body.name, tuple(map(float, at)), tuple(map(float, u)))
     assert best is not None  # a model without free bodies is not assembled
     return best[1]
 
@@ -86,9 +86,9 @@ def path_lines(found: PathResult, point: ControlPoint, *, every: bool) -> list[s
     lines += list(found.notes)
     for later in found.stages[len(found.outcomes) :]:
         lines.append(f"stage {later.name}: not begun")
-    (x, y), (dx, dy) = point.at, point.direction
+    at, along = ", ".join(f"{x:.4g}" for x in point.at), ", ".join(f"{x:.3g}" for x in point.direction)
     lines += [
-        f"  point        '{point.body}' at ({x:.4g}, {y:.4g}) m, moving along ({dx:.3g}, {dy:.3g})",
+        f"  point        '{point.body}' at ({at}) m, moving along ({along})",
         f"  certificate  worst {found.certificate:.1e} of {len(found.steps):,} states; energy closed to "
         f"{found.energy_error:.1e}",
     ]
@@ -148,8 +148,10 @@ def write_path(found: PathResult, point: ControlPoint, place: Path) -> None:
         "kind": np.array([e.kind for e in found.events]),
         "body_a": np.array([e.bodies[0] for e in found.events]),
         "body_b": np.array([e.bodies[1] for e in found.events]),
-        "x [m]": np.array([e.at[0] for e in found.events]),
-        "y [m]": np.array([e.at[1] for e in found.events]),
+        **{
+            f"{axis} [m]": np.array([e.at[k] for e in found.events])
+            for k, axis in enumerate("xyz"[: found.assembly.model.dim])
+        },
     }
     write_csv(events, place / "events.csv")
     label = "stage and load factor within it [-]" if len(found.outcomes) > 1 else "load factor [-]"

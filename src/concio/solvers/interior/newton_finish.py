@@ -80,7 +80,9 @@ def _derivative(s: Scaled, w: Array) -> Array:
     return J
 
 
-def finish(s: Scaled, u: Array, t: Array, *, rho: float = 1.0, rounds: int = 20) -> Finished:
+def finish(
+    s: Scaled, u: Array, t: Array, *, rho: float = 1.0, rounds: int = 20, least: bool = True
+) -> Finished:
     """Turn a point close to a solution into the solution, if Newton's method converges.
 
     Parameters
@@ -92,6 +94,8 @@ def finish(s: Scaled, u: Array, t: Array, *, rho: float = 1.0, rounds: int = 20)
         Weight of lengths against forces in the natural map, scaled by the largest of both.
     rounds : int
         Largest number of Newton steps.
+    least : bool
+        Whether forces that are not unique are those of a vanishing compliance; otherwise those near to the point.
     """
     error, laws = natural_residual(s, u, t)
     best, stale, solves = (u, t, error, laws), 0, 0
@@ -110,7 +114,7 @@ def finish(s: Scaled, u: Array, t: Array, *, rho: float = 1.0, rounds: int = 20)
             break
     u, t, error, laws = best
     found = Finished(u, t, states_of(s, u, t), error, solves, np.flatnonzero(laws > UNDECIDED))
-    return of_vanishing_compliance(s, found) if error <= EXACT else found
+    return of_vanishing_compliance(s, found) if least and error <= EXACT else found
 
 
 def of_vanishing_compliance(s: Scaled, found: Finished) -> Finished:

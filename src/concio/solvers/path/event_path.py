@@ -19,6 +19,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from concio.errors import InputError
 from concio.problem.contact_problem import Array
 from concio.problem.solution import Progress, ProgressCallback
 from concio.solvers.path.direction import LARGEST_VERTEX, find_direction
@@ -87,6 +88,9 @@ def follow(
     stop : callable, optional
         Asked at every corner; true ends the path there with outcome REACHED.
     """
+    if path.problem.dim != 2:
+        msg = "event-by-event paths are two-dimensional, the problem is in space"
+        raise InputError(msg, hint="use load steps")
     return _Follower(path, start, until, control).run(max_events, progress, stop)
 
 

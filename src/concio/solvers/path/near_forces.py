@@ -28,7 +28,7 @@ from concio.problem.certificate import certify
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution, judge
 from concio.solvers.algebra.scaled import scale, typical_stiffness
-from concio.solvers.interior import engine
+from concio.solvers.interior import cone_run, engine, newton_finish
 from concio.solvers.states.reading import read_states
 from concio.solvers.states.settle import Settler
 
@@ -42,9 +42,9 @@ NAME = "interior-point near the last forces"
 
 
 def needed(problem: ContactProblem) -> bool:
-    """Tell whether a plane problem has hard pairs, whose forces may not be unique."""
+    """Tell whether a problem has hard pairs, whose forces may not be unique."""
     law = problem.laws
-    return problem.dim == 2 and not ((law.normal_compliance > 0) & (law.tangential_compliance > 0)).all()
+    return not ((law.normal_compliance > 0) & (law.tangential_compliance > 0)).all()
 
 
 def softened(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> ContactProblem:
@@ -55,7 +55,7 @@ def softened(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> Conta
     problem : ContactProblem
     u : (N,) array
         [m].
-    t_n, t_t : (m,) arrays
+    t_n, t_t : (m,), (m,) or (m, d-1) arrays
         [kN].
     """
     law = problem.laws
@@ -66,7 +66,7 @@ def softened(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> Conta
         normal_compliance=law.normal_compliance + lent_n,
         tangential_compliance=law.tangential_compliance + lent_t,
     )
-    origin = problem.slip_origin + (lent_t * t_t)[:, None]
+    origin = problem.slip_origin + lent_t[:, None] * t_t.reshape(problem.pairs, -1)
     held = TETHER * typical_stiffness(problem)
     return replace(
         problem,
@@ -88,17 +88,17 @@ def solve_near(
     starts: tuple[float, ...] = engine.STARTS,
     progress: ProgressCallback | None = None,
 ) -> Solution:
-    """Solve one plane load step, taking of all answers it allows the one near to the state given.
+    """Solve one load step, taking of all answers it allows the one near to the state given.
 
     Parameters
     ----------
     problem : ContactProblem
     u : (N,) array
         Displacements of the last state [m].
-    t_n, t_t : (m,) arrays
+    t_n, t_t : (m,), (m,) or (m, d-1) arrays
         Its forces [kN].
     starts : tuple of float
-        Sizes of the interior point's starting points.
+        Sizes of the interior point's starting points, in the plane.
     progress : callable, optional
 
     Returns
@@ -106,16 +106,25 @@ def solve_near(
     Solution
         Certified by the problem itself, or GAVE_UP (or CANCELLED).
     """
+    plane = problem.dim == 2
+
+    def solve(step: ContactProblem) -> Solution:
+        if not plane:
+            return cone_run.solve(step, progress=progress)
+        return engine.solve(step, homotopy=False, starts=starts, progress=progress)
+
     if not needed(problem):
-        return engine.solve(problem, homotopy=False, starts=starts, progress=progress)
+        return solve(problem)
     soft = softened(problem, u, t_n, t_t)
-    first = engine.solve(soft, homotopy=False, starts=starts, progress=progress)
+    first = solve(soft)
     if not first.solved:
         return replace(first, method=NAME)
     s = scale(problem)
     v, p = s.bring(first.displacement, first.normal_force, first.friction_force)
-    lent = s.renewed(soft)
-    found = Settler(s).settle(s, v, p, read_states(lent, v, p), least=False)
+    if plane:
+        found = Settler(s).settle(s, v, p, read_states(s.renewed(soft), v, p), least=False)
+    else:
+        found = newton_finish.finish(s, v, p, least=False)
     still = float(np.abs(found.u).max(initial=0.0)) < engine.AT_REST
     v, p_n, p_t = s.restore(found.u, found.t)
     rest = np.zeros_like(v)

@@ -13,10 +13,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution, Status
 from concio.solvers.auto import chain as auto
-from concio.solvers.interior import engine
+from concio.solvers.auto import space
+from concio.solvers.interior import cone_run, engine
 from concio.solvers.path.state import LinearPath, PathState, state_of
 
 SMALL = 1000
@@ -53,18 +54,15 @@ def ray(
 
 def solve_from_rest(problem: ContactProblem, progress: ProgressCallback | None) -> Solution:
     """Solve one load step quickly; small problems by whatever else it takes."""
-    solution = engine.solve(problem, homotopy=False, progress=progress)
+    if problem.dim == 2:
+        solution = engine.solve(problem, homotopy=False, progress=progress)
+    else:
+        solution = cone_run.solve(problem, progress=progress)
     if solution.solved or problem.pairs > SMALL or solution.status is Status.CANCELLED:
         return solution
-    return auto.solve(problem, pivoting=False, progress=progress)
-
-
-def at_rest(path: LinearPath) -> PathState:
-    """Return the state before any load: nothing carries force, pairs without a gap touch."""
-    problem = path.problem
-    zero: Array = np.zeros(problem.pairs)
-    touching = np.where(problem.gap > 0, 0, 1).astype(np.int8)
-    return PathState(0.0, np.zeros(problem.unknowns), zero, zero, touching, zero.astype(np.int8), zero, zero)
+    if problem.dim == 2:
+        return auto.solve(problem, pivoting=False, progress=progress)
+    return space.solve(problem, progress=progress)
 
 
 def restarted(state: PathState) -> PathState:

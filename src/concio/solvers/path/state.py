@@ -36,10 +36,11 @@ class LinearPath:
     Parameters
     ----------
     problem : ContactProblem
-        The problem at parameter 0; two-dimensional.
+        The problem at parameter 0.
     load_rate : (N,) array
         Loads added for each unit of the parameter [kN].
-    gap_rate, tangent_rate : (m,) arrays, optional
+    gap_rate : (m,) array, optional
+    tangent_rate : (m,) array, in space (m, 2), optional
         Normal and tangential movement of side b against side a that does not come from u [m].
     total_rate : float, optional
         Total load added for each unit of the parameter [kN], where ``load_rate`` holds more than loads; default: the
@@ -54,21 +55,19 @@ class LinearPath:
 
     def __post_init__(self) -> None:
         m, n = self.problem.pairs, self.problem.unknowns
-        if self.problem.dim != 2:
-            msg = f"event-by-event paths are two-dimensional, the problem has dimension {self.problem.dim}"
-            raise InputError(msg, hint="use load steps")
-        for name, size in (("load_rate", n), ("gap_rate", m), ("tangent_rate", m)):
+        tangential = (m,) if self.problem.dim == 2 else (m, self.problem.dim - 1)
+        for name, shape in (("load_rate", (n,)), ("gap_rate", (m,)), ("tangent_rate", tangential)):
             value = np.asarray(getattr(self, name), dtype=float)
             if not value.size:
-                value = np.zeros(size)
-            if value.shape != (size,):
-                msg = f"{name} has shape {value.shape}, expected ({size},)"
+                value = np.zeros(shape)
+            if value.shape != shape:
+                msg = f"{name} has shape {value.shape}, expected {shape}"
                 raise InputError(msg)
             object.__setattr__(self, name, value)
 
     def moved(self, parameter: float) -> float:
         """Return how far obstacles have moved at a value of the parameter [m]."""
-        rates = np.abs(self.gap_rate).max(initial=0.0), np.abs(self.tangent_rate).max(initial=0.0)
+        rates = np.abs(self.gap_rate).max(initial=0.0), size_of(self.tangent_rate).max(initial=0.0)
         return abs(parameter) * float(max(rates))
 
     def at(self, parameter: float) -> ContactProblem:
@@ -78,7 +77,7 @@ class LinearPath:
             f=self.problem.f + parameter * self.load_rate,
             load=0.0 if self.total_rate is None else max(self.problem.load + parameter * self.total_rate, 0.0),
             gap=self.problem.gap + parameter * self.gap_rate,
-            slip_origin=self.problem.slip_origin - parameter * self.tangent_rate[:, None],
+            slip_origin=self.problem.slip_origin - parameter * self.tangent_rate.reshape(self.problem.pairs, -1),
         )
 
 
@@ -91,13 +90,15 @@ class PathState:
     parameter : float
     displacement : (N,) array
         u [m].
-    normal_force, friction_force : (m,) arrays
-        t_n, t_t [kN].
+    normal_force : (m,) array
+        t_n [kN].
+    friction_force : (m,) array, in space (m, 2)
+        t_t [kN].
     contact : (m,) integer array
         OPEN, CLOSED or CRUSHED.
     sliding : (m,) integer array
-        STICK, +1 or -1; without meaning where an open pair has no strength.
-    slip : (m,) array
+        STICK, +1 or -1, in space +1 whatever the direction; without meaning where an open pair has no strength.
+    slip : (m,) array, in space (m, 2)
         s, slip accumulated up to now [m].
     offset : (m,) array
         o, crushing less dilatancy accumulated up to now [m].
@@ -121,14 +122,31 @@ class PathState:
 
     @property
     def friction(self) -> Array:
-        """Friction forces as (m, 1) [kN]."""
-        return self.friction_force[:, None]
+        """Friction forces as (m, d-1) [kN]."""
+        return self.friction_force.reshape(len(self.normal_force), -1)
+
+
+def at_rest(problem: ContactProblem) -> PathState:
+    """Return the state before any load: nothing carries force, pairs without a gap touch."""
+    m = problem.pairs
+    zero, tangential = np.zeros(m), np.zeros(m if problem.dim == 2 else (m, problem.dim - 1))
+    contact = np.where(problem.gap > 0, OPEN, CLOSED).astype(np.int8)
+    return PathState(
+        0.0, np.zeros(problem.unknowns), zero, tangential, contact, np.zeros(m, dtype=np.int8), tangential, zero
+    )
+
+
+def size_of(tangential: Array) -> Array:
+    """Return the sizes (m,) of tangential quantities (m,) or (m, d-1)."""
+    sizes: Array = np.abs(tangential) if tangential.ndim == 1 else np.linalg.norm(tangential, axis=1)
+    return sizes
 
 
 def elastic_energy(problem: ContactProblem, state: PathState) -> float:
     """Return the energy stored in bodies and compliant joints [kN m]."""
     u, law = state.displacement, problem.laws
-    joints = law.normal_compliance @ state.normal_force**2 + law.tangential_compliance @ state.friction_force**2
+    sheared = law.tangential_compliance @ size_of(state.friction_force) ** 2
+    joints = law.normal_compliance @ state.normal_force**2 + sheared
     return 0.5 * float(u @ (problem.K @ u) + joints)
 
 
@@ -137,9 +155,9 @@ def plastic_position(path: LinearPath, state: PathState) -> tuple[Array, Array]:
     problem, law = path.problem, path.problem.laws
     u, tau = state.displacement, state.parameter
     opening = problem.gap + tau * path.gap_rate + problem.C_n @ u + law.normal_compliance * state.normal_force
-    slip = problem.C_t @ u - problem.slip_origin[:, 0] + tau * path.tangent_rate
-    slip = slip + law.tangential_compliance * state.friction_force
-    return opening, slip
+    slip = (problem.C_t @ u).reshape(problem.slip_origin.shape) - problem.slip_origin
+    slip = slip + law.tangential_compliance[:, None] * state.friction
+    return opening, slip.reshape(state.friction_force.shape) + tau * path.tangent_rate
 
 
 def path_kinematics(path: LinearPath, state: PathState) -> Kinematics:
@@ -149,9 +167,9 @@ def path_kinematics(path: LinearPath, state: PathState) -> Kinematics:
     """
     opening, slip = plastic_position(path, state)
     law = path.problem.laws
-    crushed = state.offset + law.dilatancy * np.abs(slip)
+    crushed = state.offset + law.dilatancy * size_of(slip)
     crushing = np.where(path.problem.cone.capped, np.maximum(crushed, 0.0), 0.0)
-    return Kinematics(opening + state.offset, slip[:, None], crushing)
+    return Kinematics(opening + state.offset, slip.reshape(len(opening), -1), crushing)
 
 
 def energy_of_step(path: LinearPath, before: PathState, after: PathState) -> tuple[float, float]:
@@ -168,9 +186,9 @@ def energy_of_step(path: LinearPath, before: PathState, after: PathState) -> tup
     t_n = 0.5 * (before.normal_force + after.normal_force)
     t_t = 0.5 * (before.friction_force + after.friction_force)
     load = problem.f + 0.5 * (before.parameter + after.parameter) * path.load_rate
-    work = float(load @ du) - dtau * float(t_n @ path.gap_rate + t_t @ path.tangent_rate)
+    work = float(load @ du) - dtau * float(t_n @ path.gap_rate + np.vdot(t_t, path.tangent_rate))
     (n0, s0), (n1, s1) = plastic_position(path, before), plastic_position(path, after)
-    return work, -float(t_n @ (n1 - n0) + t_t @ (s1 - s0))
+    return work, -float(t_n @ (n1 - n0) + np.vdot(t_t, s1 - s0))
 
 
 def weakened(problem: ContactProblem, broken: Array | None) -> ContactProblem:
@@ -211,7 +229,7 @@ def step_problem(path: LinearPath, before: PathState, parameter: float) -> Conta
     """
     problem = weakened(path.at(parameter), before.broken)
     _, position = plastic_position(path, before)
-    origin = problem.slip_origin + position[:, None]
+    origin = problem.slip_origin + position.reshape(problem.slip_origin.shape)
     return replace(problem, gap=problem.gap + before.offset, slip_origin=origin)
 
 
@@ -237,7 +255,7 @@ def state_of(
     ----------
     path : LinearPath
     parameter : float
-    u, t_n, t_t : arrays (N,), (m,), (m,) or (m, 1)
+    u, t_n, t_t : arrays (N,), (m,), (m,) or (m, d-1)
     before : PathState, optional
         Last converged state; its work and dissipation are carried on, and slip directions are measured from it.
     tolerance : float
@@ -245,17 +263,18 @@ def state_of(
     """
     problem = path.problem if before is None else weakened(path.problem, before.broken)
     law = problem.laws
-    t_t = np.asarray(t_t, dtype=float).reshape(-1)
-    force, length = scales(path.at(parameter), u, t_n, t_t[:, None])
+    t_t = np.asarray(t_t, dtype=float).reshape(path.tangent_rate.shape)
+    force, length = scales(path.at(parameter), u, t_n, t_t.reshape(problem.pairs, -1))
     contact = np.where(t_n + law.tension > tolerance * force, CLOSED, OPEN)
     contact = np.where(law.cap - t_n <= tolerance * force, CRUSHED, contact).astype(np.int8)
     zero = np.zeros(problem.pairs)
-    state = PathState(parameter, u, t_n, t_t, contact, zero.astype(np.int8), zero, zero)
+    state = PathState(parameter, u, t_n, t_t, contact, zero.astype(np.int8), np.zeros_like(t_t), zero)
     opening, position = plastic_position(path, state)
-    start = plastic_position(path, before)[1] if before is not None else zero
-    used = np.abs(t_t) >= problem.cone.strength(t_n) - tolerance * force
-    moved = np.abs(position - start) > tolerance * length
-    sliding = np.where(used & moved, np.where(t_t > 0, -1, 1), STICK).astype(np.int8)
+    start = plastic_position(path, before)[1] if before is not None else np.zeros_like(t_t)
+    used = size_of(t_t) >= problem.cone.strength(t_n) - tolerance * force
+    moved = size_of(position - start) > tolerance * length
+    side = np.where(t_t > 0, -1, 1) if problem.dim == 2 else 1
+    sliding = np.where(used & moved, side, STICK).astype(np.int8)
     carried = before.offset if before is not None else zero
     plastic = (contact != OPEN) & ((law.dilatancy > 0) | np.isfinite(law.cap))
     state = replace(state, sliding=sliding, slip=position, offset=np.where(plastic, -opening, carried))
