@@ -141,7 +141,7 @@ def test_a_wall_against_a_rock_is_locked() -> None:
     rock = concio.Body("rock", np.array([[-1.0, 0.0], [0.0, 0.0], [0.0, 7.0], [-1.0, 7.0]]), kind="fixed", role="rock")
     found = concio.assess(replace(model, bodies=(*model.bodies, rock)), site=site(), direction="left")
     assert found.worst is None
-    assert found.locked[0][2].startswith("locked")
+    assert found.locked[0].sentence.startswith("locked")
     assert found.holds
 
 
@@ -270,5 +270,5 @@ def test_a_stout_wall_has_no_mechanism_below_two_g() -> None:
     )  # fmt: skip
     found = concio.assess(model, site=site(), direction="left")
     assert found.worst is None
-    assert "no mechanism below 2 g" in found.locked[0][2]
+    assert "no mechanism below 2 g" in found.locked[0].sentence
     assert found.summary()["zeta_E"] is None

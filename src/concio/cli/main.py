@@ -7,7 +7,22 @@ import sys
 
 import typer
 
-from concio.cli import cell, check, compare, continuum, export, limit, new, outcome, path, run, schema, study, view
+from concio.cli import (
+    assess,
+    cell,
+    check,
+    compare,
+    continuum,
+    export,
+    limit,
+    new,
+    outcome,
+    path,
+    run,
+    schema,
+    study,
+    view,
+)
 
 app = typer.Typer(
     name="concio",
@@ -49,6 +64,7 @@ app.command("path")(path.path)
 app.command("limit")(limit.limit)
 app.command("cell")(cell.cell)
 app.command("continuum")(continuum.continuum)
+app.command("assess")(assess.assess)
 app.command("compare")(compare.compare)
 app.command("study")(study.study)
 app.command("view")(view.view)

@@ -10,7 +10,7 @@ import typer
 from concio.cli.outcome import guarded, say
 from concio.cli.output import check_file, replaced_file
 
-Kind = Literal["panel", "wall", "arch", "column", "cell", "blocks"]
+Kind = Literal["panel", "wall", "arch", "column", "cell", "assessment", "blocks"]
 
 
 @guarded

@@ -9,18 +9,20 @@ from typing import Any, Literal
 import numpy as np
 
 from concio.analysis.seismic.applied import EARTHQUAKE, pushed
-from concio.analysis.seismic.assessment import Assessment, LocalMechanism
+from concio.analysis.seismic.assessment import Assessment, LocalMechanism, NoMechanism
 from concio.analysis.seismic.chain import Chain, Participant, gathered
 from concio.analysis.seismic.checks import Displacement, checks_of, limit_of
 from concio.analysis.seismic.curve import follow, straight
 from concio.analysis.seismic.linkage import Force, Linkage
 from concio.analysis.seismic.macro_blocks import GROUND
 from concio.analysis.seismic.mechanism import LARGEST, Found, chosen_bodies, find
+from concio.analysis.seismic.pushed_curve import pushed_curve
 from concio.analysis.seismic.site import STRONG, Site
 from concio.arguments import closest, strict
 from concio.contact.assembly import Assembly, assemble, require_model
 from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
+from concio.model.stages import ControlPoint
 
 Array = np.ndarray
 Direction = Literal["right", "left", "both"]
@@ -111,7 +113,7 @@ def assess(
     if not groups and LIVE in {load.group for load in model.loads}:
         groups = (LIVE,)
     made: list[LocalMechanism] = []
-    locked: list[tuple[str, str, str]] = []
+    locked: list[NoMechanism] = []
     sought = {EVERY: (), **(mechanisms or {})}
     assemblies: dict[float, tuple[Assembly, tuple[str, ...], float]] = {}
     for sign in SIGNS[direction]:
@@ -134,9 +136,8 @@ def assess(
                 found = find(assembly, push, moving, factor_of_push)
             except NoEquilibriumError as error:
                 raise NoEquilibriumError(error.what, where=None if name == EVERY else name, hint=error.hint) from None
-            sentence = _no_mechanism(found)
-            if sentence:
-                locked.append((name, way, sentence))
+            if found.locked or found.multiplier > LARGEST:
+                locked.append(NoMechanism(name, way, found.multiplier))
                 continue
             made.append(
                 _examined(
@@ -158,15 +159,6 @@ def _one_of(what: str, word: str, known: tuple[str, ...]) -> None:
     if word not in known:
         msg = f"there is no {what} '{word}'"
         raise InputError(msg, hint=closest(word, known))
-
-
-def _no_mechanism(found: Found) -> str:
-    """Return why a search gave no mechanism to check; nothing where it gave one."""
-    if found.locked:
-        return "locked: friction and geometry carry any push, so that no mechanism forms"
-    if found.multiplier > LARGEST:
-        return f"no mechanism below {LARGEST:g} g: the least multiplier is {found.multiplier:.4g}"
-    return ""
 
 
 def _confidence(model: Model, table: Mapping[str, Any], knowledge: str, given: float | None) -> tuple[float, str]:
@@ -260,6 +252,12 @@ def _examined(
         )
     )  # fmt: skip
     followed = follow(linkage)
+    if followed.reason in ("several motions", "no forces"):
+        moving = (
+            found.moving if found.moving is not None else [i for i, b in enumerate(model.bodies) if b.kind != "fixed"]
+        )
+        point = ControlPoint(chosen[0], (float(at[0]), float(at[1])), (float(along[0]), float(along[1])))
+        followed = pushed_curve(model, groups, sign, moving, point) or followed
     line = straight(alpha, followed.end) if followed.ends else None
     used = followed if curve == "followed" else line
     factor = site.rules.gravity / (chain.e_star * confidence)

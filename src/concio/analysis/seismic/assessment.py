@@ -14,7 +14,7 @@ from concio.analysis.seismic.checks import Check, Displacement, return_period
 from concio.analysis.seismic.curve import CapacityCurve
 from concio.analysis.seismic.linkage import Force, Linkage
 from concio.analysis.seismic.macro_blocks import Mechanics
-from concio.analysis.seismic.mechanism import Found
+from concio.analysis.seismic.mechanism import LARGEST, Found
 from concio.analysis.seismic.site import Hazard, Site
 from concio.contact.assembly import Assembly
 from concio.model.model import Model
@@ -197,6 +197,30 @@ class LocalMechanism:
         }  # fmt: skip
 
 
+@dataclass(frozen=True)
+class NoMechanism:
+    """A search that gave no mechanism to check.
+
+    Parameters
+    ----------
+    name : str
+    direction : str
+    multiplier : float
+        The least one; ``inf`` where any push is carried.
+    """
+
+    name: str
+    direction: str
+    multiplier: float
+
+    @property
+    def sentence(self) -> str:
+        """Why."""
+        if math.isinf(self.multiplier):
+            return "locked: friction and geometry carry any push, so that no mechanism forms"
+        return f"no mechanism below {LARGEST:g} g: the least multiplier is {self.multiplier:.4g}"
+
+
 @dataclass(frozen=True, eq=False)
 class Assessment:
     """What :func:`concio.assess` found.
@@ -208,7 +232,7 @@ class Assessment:
     levels : tuple of str
     mechanisms : tuple of LocalMechanism
         Weakest first.
-    locked : tuple of (name, direction, sentence)
+    locked : tuple of NoMechanism
         Searches in which no mechanism was found to check, and why.
     knowledge : str
     confidence : float
@@ -227,7 +251,7 @@ class Assessment:
     site: Site
     levels: tuple[str, ...]
     mechanisms: tuple[LocalMechanism, ...]
-    locked: tuple[tuple[str, str, str], ...]
+    locked: tuple[NoMechanism, ...]
     knowledge: str
     confidence: float
     confidence_by: str
@@ -262,7 +286,7 @@ class Assessment:
             "zeta_E": _number(self.zeta),
             "holds": self.holds,
             "mechanisms": [m.summary() for m in self.mechanisms],
-            "no_mechanism": [{"name": n, "direction": d, "why": w} for n, d, w in self.locked],
+            "no_mechanism": [{"name": n.name, "direction": n.direction, "why": n.sentence} for n in self.locked],
             "attention": list(self.notes),
         }
 

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from concio.analysis.seismic.applied import applied_forces
+from concio.analysis.seismic.applied import EARTHQUAKE, applied_forces
 from concio.analysis.seismic.linkage import Force
 from concio.analysis.seismic.macro_blocks import Mechanics
 from concio.model.model import Model
@@ -94,7 +94,7 @@ def gathered(model: Model, mechanics: Mechanics, numbers: Sequence[int]) -> list
         block = mechanics.of_body.get(found.body)
         if block is not None and found.force.any():
             kind = model.loads[found.load].kind
-            name = "weight" if kind == "weight" else f"{kind} {found.load + 1}"
+            name = "weight" if kind == "weight" else f"{kind} {_original(model, found.load) + 1}"
             key = (block, name, bool(np.abs(found.force[0]) > np.abs(found.force[1])))
             sums.setdefault(key, []).append((found.force, found.point))
     result = []
@@ -103,3 +103,12 @@ def gathered(model: Model, mechanics: Mechanics, numbers: Sequence[int]) -> list
         point = size @ np.array([point for _, point in parts]) / size.sum()
         result.append((name, Force(block, np.sum([force for force, _ in parts], axis=0), point)))
     return result
+
+
+def _original(model: Model, k: int) -> int:
+    """Return the number of the load that a load of the earthquake was made of; of any other load its own."""
+    load = model.loads[k]
+    if load.group != EARTHQUAKE:
+        return k
+    same = (load.bodies, load.edge, load.at)
+    return next(j for j, other in enumerate(model.loads) if (other.bodies, other.edge, other.at) == same)

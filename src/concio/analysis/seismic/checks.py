@@ -24,7 +24,7 @@ Array = np.ndarray
 Kind = Literal["onset", "linear", "displacement"]
 Place = Literal["ground", "height"]
 
-GRID = 400
+GRID = 150
 """Accelerations that are tried between nothing and the largest before bisection."""
 
 
@@ -225,7 +225,7 @@ def capacity_acceleration(site: Site, hazard: Hazard, capacity: float, demand: C
     for share in shares:
         if demand(scaled(float(share))) > capacity:
             high = float(share)
-            for _ in range(60):
+            for _ in range(45):
                 middle = (low + high) / 2
                 low, high = (low, middle) if demand(scaled(middle)) > capacity else (middle, high)
             return scaled(low).a_g if low > 0 else 0.0

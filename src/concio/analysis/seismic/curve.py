@@ -18,6 +18,16 @@ STEPS = 100
 FARTHEST = 2.0
 """The control point is followed to this multiple of the size of the mechanism at most."""
 
+REASONS = {
+    "falls": "the multiplier vanishes",
+    "far": f"the control point has moved by {FARTHEST:g} times the size of the mechanism",
+    "joints end": "its joints come to the end of their way; what may stand beyond does not count",
+    "joint opens": "a joint opens or a tie goes slack or yields; what may stand beyond does not count",
+    "several motions": "its joints leave more than one way to move, or none",
+    "no forces": "its joints carry no forces in equilibrium",
+}
+"""Why a curve ends where it ends."""
+
 ROOT = 1e-13
 """Multipliers below this share of the first are zero."""
 
@@ -28,15 +38,16 @@ class CapacityCurve:
 
     Parameters
     ----------
-    kind : {"followed", "straight"}
+    kind : {"followed", "pushed", "straight"}
+        "pushed": equilibrium at large displacements without a mechanism kept (:func:`concio.push`).
     displacement : (n,) array
         Of the control point [m], growing.
     multiplier : (n,) array
         alpha.
     end : float
-        d_C0, where alpha vanishes [m]; ``nan`` where it does not.
+        d_C0, where alpha vanishes or the motion ends [m]; ``nan`` where neither happens.
     reason : str
-        Why it ends where it ends: "falls", or a sentence.
+        Why it ends where it ends, a key of ``REASONS``.
     broken : tuple of float
         Displacements at which ties break [m].
     tie_force : (n, ties) array
@@ -45,7 +56,7 @@ class CapacityCurve:
         The configurations; none for a straight line.
     """
 
-    kind: Literal["followed", "straight"]
+    kind: Literal["followed", "pushed", "straight"]
     displacement: Array
     multiplier: Array
     end: float
@@ -56,7 +67,7 @@ class CapacityCurve:
 
     @property
     def ends(self) -> bool:
-        """Whether alpha vanishes somewhere."""
+        """Whether alpha vanishes, or the motion ends, somewhere."""
         return bool(np.isfinite(self.end))
 
     def at(self, displacement: float) -> float:
@@ -99,11 +110,11 @@ def follow(linkage: Linkage) -> CapacityCurve:
     first = linkage.balance(rest)
     if linkage.freedom != 1 or first is None:
         n = linkage.freedom
-        why = f"its joints leave {n} ways to move, not one" if n != 1 else "its joints carry no forces in equilibrium"
-        return CapacityCurve("followed", np.zeros(1), np.zeros(1), float("nan"), f"cannot be followed: {why}")
+        why = "several motions" if n != 1 else "no forces"
+        return CapacityCurve("followed", np.zeros(1), np.zeros(1), float("nan"), why)
     points, d = [first], [0.0]
     step = _first_step(linkage, first)
-    reason = f"the control point has moved by {FARTHEST:g} times the size of the mechanism"
+    reason = "far"
     end, broken = float("nan"), []
     while d[-1] < FARTHEST * linkage.size:
         q = _ahead(linkage, points, d, step)
@@ -113,10 +124,13 @@ def follow(linkage: Linkage) -> CapacityCurve:
             if step > 1e-4 * linkage.size:
                 step /= 4
                 continue
-            reason = "its joints come to the end of their way"
+            end, reason = d[-1], "joints end"
             break
         if not now.pressed:
-            reason = "a joint opens, and another motion takes over"
+            end, before, _ = _bracket(linkage, points[-1], d[-1], d[-1] + step, lambda p: not p.pressed)
+            points.append(before)
+            d.append(end)
+            reason = "joint opens"
             break
         snapped = _breaks(linkage, points[-1], now)
         if snapped:
@@ -142,8 +156,12 @@ def follow(linkage: Linkage) -> CapacityCurve:
         points.append(now)
         d.append(d[-1] + step)
     multipliers = np.array([p.multiplier for p in points])
-    if end == end:
-        multipliers[-1] = 0.0 if not broken or d[-1] != broken[-1] else multipliers[-1]
+    if reason in ("joints end", "joint opens"):  # what may still stand beyond does not count
+        points.append(points[-1])
+        d.append(end)
+        multipliers = np.append(multipliers, 0.0)
+    elif end == end and not (broken and d[-1] == broken[-1]):
+        multipliers[-1] = 0.0
     forces = np.array([p.tie_force for p in points])
     return CapacityCurve("followed", np.array(d), multipliers, end, reason, tuple(broken), forces, tuple(points))
 

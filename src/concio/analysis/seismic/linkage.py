@@ -66,7 +66,7 @@ class Point:
     tie_force, elongation : (n,) arrays
         [kN], [m].
     pressed : bool
-        Whether every joint that cannot pull is pressed.
+        Whether every joint that cannot pull is pressed, and every bar pulls no more than it can.
     normal_force : (j,) array
         Of each joint: along the normal of hinges and rollers, the pull of bars [kN].
     """
@@ -308,5 +308,9 @@ class Linkage:
         top = max(float(np.abs(f.force).max()) for f in (*self.dead, *self.push))
         if float(np.abs(left).max()) > BALANCED * top * 10:
             return None
-        pressed = all(solved[i] > -1e-6 * top for i in pushing)
+        pressed = all(solved[i] > -1e-6 * top for i in pushing) and all(
+            -1e-6 * top < solved[i] < joint.strength + 1e-6 * top
+            for i, joint in zip(first, self.mechanics.joints, strict=True)
+            if joint.kind == "bar"
+        )
         return Point(q, float(solved[-1]), forces, longer, pressed, solved[first])

@@ -92,7 +92,7 @@ class MacroJoint:
     set_back : float
         Distance of a hinge from the edge of its joint [m].
     strength : float
-        Force that crushes a unit of length of its joint [kN/m].
+        Force that crushes a unit of length of its joint [kN/m]; of a bar, the force at which it yields [kN].
     inward : (2,) array
         Unit vector from the edge of the joint to the hinge.
     """
@@ -205,7 +205,7 @@ def mechanics_of(assembly: Assembly, velocity: Array, normal_force: Array) -> Me
             if abs(float((pairs.C_n[[k]] @ velocity)[0])) <= STILL * top:
                 at_a, at_b = np.array(tie.at_a), np.array(tie.at_b)
                 along = (at_b - at_a) / float(np.linalg.norm(at_b - at_a))
-                joints.append(MacroJoint("bar", a, b, at_a, along, end=at_b, pulls=True))
+                joints.append(MacroJoint("bar", a, b, at_a, along, end=at_b, pulls=True, strength=tie.most))
             continue
         if abs(float(w_t[k])) <= STILL * top:
             joints.append(MacroJoint("hinge", a, b, pairs.point[k], pairs.normal[k]))

@@ -49,6 +49,8 @@ class Found:
         [kN].
     mechanics : Mechanics or None
         None where nothing can move.
+    moving : tuple of int or None
+        Bodies that were let move; None for all.
     """
 
     associated: LimitLoad
@@ -57,6 +59,7 @@ class Found:
     velocity: Array
     normal_force: Array
     mechanics: Mechanics | None
+    moving: tuple[int, ...] | None = None
 
     @property
     def locked(self) -> bool:
@@ -125,7 +128,11 @@ def find(assembly: Assembly, live: Iterable[str], moving: Sequence[int] | None =
     NoEquilibriumError
         The bodies do not stand under their own weight.
     """
-    groups = tuple(live)
+    found = _found(assembly, tuple(live), moving, sign)
+    return replace(found, moving=None if moving is None else tuple(moving))
+
+
+def _found(assembly: Assembly, groups: tuple[str, ...], moving: Sequence[int] | None, sign: float) -> Found:
     whole = assembly.problem(dict.fromkeys(groups, 0.0))
     whole = replace(whole, laws=replace(whole.laws, tension=np.zeros(whole.pairs)))
     push = sign * (assembly.problem(dict.fromkeys(groups, 1.0)).f - whole.f)

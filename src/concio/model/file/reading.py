@@ -97,7 +97,7 @@ def model_from_tables(
     InputError
         As :func:`load`.
     """
-    units = _units(data, name)
+    units = file_units(data, name)
     try:
         table = file_table().model_validate(data, context={"units": units})
     except ValidationError as error:
@@ -148,7 +148,8 @@ def _syntax_error(error: tomllib.TOMLDecodeError, text: str, name: str) -> Input
     return InputError(said[:1].lower() + said[1:], where=place, hint=hint)
 
 
-def _units(data: dict[str, Any], name: str) -> FileUnits:
+def file_units(data: dict[str, Any], name: str) -> FileUnits:
+    """Return the system of units that the tables of a file state."""
     try:
         table = UnitsTable.model_validate(data.get("units", {}))
     except ValidationError as error:

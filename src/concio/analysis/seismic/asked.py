@@ -1,0 +1,113 @@
+"""What a model file asks of an assessment: its site, its arguments, its anchors, the head of its report."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from concio.analysis.seismic.anchors import Anchor
+from concio.analysis.seismic.site import Site
+from concio.errors import InputError
+from concio.model.file.assessment_table import AssessmentTable, HeightsTable, SiteTable, assessment_tables
+from concio.model.file.reading import file_units, model_from_tables, read_tables
+from concio.model.model import Model
+
+
+@dataclass(frozen=True)
+class Head:
+    """What a report is headed with.
+
+    Parameters
+    ----------
+    project, place, author, date : str
+    knowledge : str
+        Why the level of knowledge is what it is.
+    language : {"en", "it"}
+    """
+
+    project: str = ""
+    place: str = ""
+    author: str = ""
+    date: str = ""
+    knowledge: str = ""
+    language: str = "en"
+
+
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """A model with what is asked of it.
+
+    Parameters
+    ----------
+    model : Model
+    arguments : mapping
+        Of :func:`concio.assess`, the site included.
+    size_tie : str
+        Tie whose force is to be found; empty for none.
+    largest_tie : float or None
+        Where to stop looking [kN].
+    sensitivity : bool
+    anchors : tuple of Anchor
+    head : Head
+    """
+
+    model: Model
+    arguments: Mapping[str, Any]
+    size_tie: str = ""
+    largest_tie: float | None = None
+    sensitivity: bool = True
+    anchors: tuple[Anchor, ...] = ()
+    head: Head = field(default_factory=Head)
+
+
+def read_asked(path: str | os.PathLike[str]) -> Asked:
+    """Return the model of a file and what the file asks of its assessment.
+
+    Raises
+    ------
+    InputError
+        As :func:`concio.load`; or there is no site, or something in it is not known to its code.
+    """
+    path = Path(path)
+    data = read_tables(path)
+    name = str(path)
+    model = model_from_tables(data, folder=path.parent, name=name)
+    site, asked = assessment_tables(data, file_units(data, name), name)
+    if site is None:
+        msg = "there is no table [site]"
+        hint = "give the hazard and the soil, for example [site] soil = 'B' and [site.hazard.SLV] a_g = 0.20"
+        raise InputError(msg, where=name, hint=hint)
+    anchors = tuple(Anchor(**a.model_dump(exclude_unset=True)) for a in asked.anchors)
+    for k, anchor in enumerate(anchors, 1):
+        anchor.check(model, f"{name}, [[assessment.anchors]] {k}")
+    try:
+        place = _site(site, path.parent)
+    except InputError as error:
+        raise InputError(error.what, where=f"{name}, [site]", hint=error.hint) from None
+    return Asked(
+        model, _arguments(asked, place), asked.size_tie, asked.largest_tie, asked.sensitivity, anchors,
+        Head(**asked.report.model_dump()),
+    )  # fmt: skip
+
+
+def _site(table: SiteTable, folder: Path) -> Site:
+    given = table.model_dump(exclude_none=True)
+    if given["code"].endswith(".toml"):
+        given["code"] = str(folder / given["code"])
+    return Site(**given)
+
+
+def _arguments(table: AssessmentTable, site: Site) -> dict[str, Any]:
+    mechanisms = {
+        name: words.model_dump(exclude_none=True) if isinstance(words, HeightsTable) else tuple(words)
+        for name, words in table.mechanisms.items()
+    }
+    control = None if table.control is None else (table.control.body, table.control.at)
+    return {
+        "site": site, "levels": table.levels, "mechanisms": mechanisms, "direction": table.direction,
+        "live": table.live, "knowledge": table.knowledge, "confidence": table.confidence, "control": control,
+        "limits": table.limits, "curve": table.curve,
+    }  # fmt: skip

@@ -1,0 +1,157 @@
+"""Other assessments of the same model: with other strengths of the joints, and with the tie force that is needed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from scipy.optimize import brentq
+
+from concio.analysis.seismic.assess import assess
+from concio.analysis.seismic.assessment import Assessment
+from concio.arguments import closest, strict
+from concio.errors import InputError, NoEquilibriumError
+from concio.model.model import Model
+
+ENOUGH = 1e-4
+"""Relative accuracy of a tie force."""
+
+SHARES = {"friction": (0.8, 1.2), "strength": (0.5, 2.0)}
+"""Factors of the friction and of the compressive strength of all joints."""
+
+
+@dataclass(frozen=True, eq=False)
+class TieForce:
+    """The force of a tie that brings zeta_E to a value.
+
+    Parameters
+    ----------
+    tie : str
+    wanted : float
+        zeta_E.
+    force : float
+        Yield force [kN]; zero where none is needed, ``inf`` where none does.
+    reached : float
+        zeta_E with it, or with the largest force that was tried.
+    largest : float
+        Largest force that was tried [kN].
+    assessment : Assessment
+        With that force.
+    """
+
+    tie: str
+    wanted: float
+    force: float
+    reached: float
+    largest: float
+    assessment: Assessment
+
+
+@strict
+def tie_force(model: Model, tie: str, *, zeta: float = 1.0, largest: float | None = None, **arguments: Any) -> TieForce:
+    """Return the yield force of a tie that brings the least zeta_E of all mechanisms to ``zeta``, by solving.
+
+    Every trial searches the mechanisms anew, since the weakest one changes with the force.
+
+    Parameters
+    ----------
+    model : Model
+    tie : str
+        Name of one of its ties; its own yield force does not count.
+    zeta : float
+    largest : float, optional
+        Largest force to try [kN]; by default the weight of the model.
+    **arguments
+        Of :func:`concio.assess`.
+
+    Raises
+    ------
+    InputError
+        There is no such tie; or as :func:`concio.assess`.
+    """
+    names = [t.name for t in model.ties]
+    if tie not in names:
+        msg = f"there is no tie called '{tie}'"
+        raise InputError(msg, hint=closest(tie, names) if names else "give the model a tie")
+    if largest is None:
+        largest = sum(model.materials[b.material].unit_weight * b.volume for b in model.free_bodies)
+
+    tried: dict[float, Assessment] = {}
+
+    def with_force(force: float) -> Assessment:
+        if force not in tried:
+            ties = tuple(
+                replace(t, yield_force=force, prestress=min(t.prestress, force)) if t.name == tie else t
+                for t in model.ties
+            )
+            kept = tuple(t for t in ties if t.name != tie) if force <= 0 else ties
+            tried[force] = assess(replace(model, ties=kept), **arguments)
+        return tried[force]
+
+    def missing(force: float) -> float:
+        try:
+            return min(with_force(force).zeta, 10.0 * zeta) - zeta
+        except NoEquilibriumError:  # without the tie a thrust may push the wall over before any earthquake
+            return -zeta
+
+    if missing(0.0) >= 0:
+        return TieForce(tie, zeta, 0.0, with_force(0.0).zeta, 0.0, with_force(0.0))
+    if missing(largest) < 0:
+        best = with_force(largest)
+        return TieForce(tie, zeta, math.inf, best.zeta, largest, best)
+    found = float(brentq(missing, 0.0, largest, xtol=ENOUGH * largest * 0.01, rtol=ENOUGH))
+    while missing(found) < 0:  # on the safe side of the accuracy
+        found *= 1 + ENOUGH
+    return TieForce(tie, zeta, found, with_force(found).zeta, largest, with_force(found))
+
+
+@dataclass(frozen=True)
+class Variation:
+    """An assessment with one property of all joints changed.
+
+    Parameters
+    ----------
+    what : {"friction", "strength"}
+    factor : float
+    multiplier, zeta : float
+        alpha_0 of the weakest mechanism and zeta_E; ``nan`` where the model does not stand, ``inf`` without mechanism.
+    """
+
+    what: str
+    factor: float
+    multiplier: float
+    zeta: float
+
+
+def variations(found: Assessment) -> tuple[Variation, ...]:
+    """Return how the weakest mechanism changes with the friction and, where joints crush, with their strength."""
+    result = []
+    crush = any(law.compressive_strength is not None for law in found.model.laws.values())
+    for what, factors in SHARES.items():
+        if what == "strength" and not crush:
+            continue
+        for factor in factors:
+            model = replace(found.model, laws=_changed(found.model, what, factor))
+            try:
+                other = assess(model, site=found.site, **found.arguments)
+            except NoEquilibriumError:
+                result.append(Variation(what, factor, math.nan, math.nan))
+                continue
+            alpha = other.worst.multiplier if other.worst is not None else math.inf
+            result.append(Variation(what, factor, alpha, other.zeta))
+    return tuple(result)
+
+
+def _changed(model: Model, what: str, factor: float) -> Mapping[str, Any]:
+    def law(old: Any) -> Any:
+        if what == "friction":
+            mu = factor * old.friction
+            tension = min(old.tensile_strength, old.cohesion / mu) if mu > 0 else old.tensile_strength
+            return replace(old, friction=mu, dilatancy=min(old.dilatancy, mu), tensile_strength=tension)
+        if old.compressive_strength is None:
+            return old
+        return replace(old, compressive_strength=factor * old.compressive_strength)
+
+    return {name: law(old) for name, old in model.laws.items()}

@@ -1,0 +1,111 @@
+"""``concio assess FILE``: seismic assessment of local mechanisms."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from concio.cli.outcome import guarded, print_json, say
+from concio.cli.output import check_directory, replaced_directory
+from concio.cli.run import File, Json, Quiet
+
+if TYPE_CHECKING:
+    from concio.analysis.seismic.assessment import Assessment
+    from concio.analysis.seismic.variations import TieForce
+
+
+@guarded
+def assess(
+    file: File,
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for the report and the numbers.")] = None,
+    language: Annotated[
+        str | None, typer.Option("--language", "-l", help="Language of the report, en or it; by default the file's.")
+    ] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> int:
+    """Find the local mechanisms under an earthquake and check them at the site that the file states.
+
+    Example: concio assess facade.toml --out assessment --language it
+    """
+    import concio
+    from concio.analysis.seismic.asked import read_asked
+    from concio.analysis.seismic.variations import tie_force, variations
+    from concio.report.assessment_texts import words_of
+
+    if language is not None:
+        words_of(language)
+    if out is not None:
+        check_directory(out)
+    asked = read_asked(file)
+    found = concio.assess(asked.model, **asked.arguments)
+    tie = (
+        tie_force(asked.model, asked.size_tie, largest=asked.largest_tie, **asked.arguments) if asked.size_tie else None
+    )
+    told: dict[str, Any] = {"status": "solved", **found.summary()}
+    if tie is not None:
+        finite = tie.force if tie.force < float("inf") else None
+        told["tie_force"] = {"tie": tie.tie, "force": finite, "zeta_E": tie.reached}
+    varied = variations(found) if asked.sensitivity and found.worst is not None and out is not None else ()
+    written: list[str] = []
+    if out is not None:
+        from concio.cli.assess_files import write_assessment
+
+        with replaced_directory(out) as fresh:
+            written = write_assessment(found, told, fresh, language or asked.head.language, head=asked.head, tie=tie,
+                                       anchors=asked.anchors, varied=varied)  # fmt: skip
+    if json:
+        print_json(told)
+    elif not quiet:
+        for line in assess_lines(found, tie):
+            say(line)
+        if written:
+            say(f"  written              {out}: {', '.join(written)}")
+    return 0
+
+
+def assess_lines(found: Assessment, tie: TieForce | None = None) -> list[str]:
+    """Return what an assessment found, in words."""
+    from concio.display import number
+
+    lines = [found.model.title or "model without a title"]
+    lines += [f"  attention            {note}" for note in found.notes]
+    lines.append(f"  code                 {found.site.rules.name}, FC {number(found.confidence)}")
+    for m in found.mechanisms:
+        lines.append(f"  {m.name}, push to the {m.direction}")
+        lines.append(
+            f"    alpha_0            {m.multiplier:.6g}, e* {number(m.e_star, 4)}, a_0* {number(m.onset, 4)} m/s2"
+        )
+        for c in m.checks:
+            word = "verified" if c.holds else "not verified"
+            place = "" if c.place == "ground" else ", at height"
+            lines.append(
+                f"    {c.level + ', ' + c.kind + place:18s} demand {number(c.demand, 4)} {c.unit}, capacity "
+                f"{number(c.capacity, 4)} {c.unit}: {word}, {number(c.ratio, 4)}"
+            )
+        if not m.followed.ends:
+            from concio.analysis.seismic.curve import REASONS
+
+            lines.append(f"    no check in displacements: {REASONS[m.followed.reason]}")
+        for o in m.outcomes:
+            period = f", return period {number(o.T_R)} years" if o.T_R == o.T_R else ""
+            lines.append(f"    {o.level:18s} a_g of capacity {number(o.a_g, 4)} g, zeta_E {number(o.zeta, 4)}{period}")
+    lines += [f"  {n.name}, push to the {n.direction}: {n.sentence}" for n in found.locked]
+    if found.worst is not None:
+        word = "verified" if found.holds else "not verified"
+        lines.append(f"  in short             {word}: zeta_E {number(found.zeta, 4)} of '{found.worst.name}'")
+    if tie is not None:
+        if tie.force == 0:
+            lines.append(f"  tie '{tie.tie}'          not needed: zeta_E is {number(tie.reached, 4)} without it")
+        elif tie.force == float("inf"):
+            largest = number(tie.largest, 4)
+            lines.append(
+                f"  tie '{tie.tie}'          no force up to {largest} kN does: zeta_E {number(tie.reached, 4)}"
+            )
+        else:
+            lines.append(
+                f"  tie '{tie.tie}'          {number(tie.force, 4)} kN bring zeta_E to {number(tie.reached, 4)}"
+            )
+    return lines

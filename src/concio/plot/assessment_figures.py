@@ -1,0 +1,206 @@
+"""Figures of an assessment: the model as drawn for a report, a mechanism with its joints, capacity and demand.
+
+Words come in from outside, so that one figure serves several languages.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from concio.analysis.seismic.applied import applied_forces
+from concio.display import number
+from concio.plot import style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from concio.analysis.seismic.assessment import Assessment, LocalMechanism
+
+Array = np.ndarray
+Words = Mapping[str, str]
+
+ENLARGED = 0.10
+"""Largest motion in the picture of a mechanism, over the size of the model."""
+DEMAND = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
+DASHES: tuple[Any, ...] = ("-", (0, (5, 2)))
+
+
+def model_figure(found: Assessment, ax: Axes | None = None) -> Axes:
+    """Draw the blocks, what is fixed, supports, ties and loads with their resultants."""
+    model = found.model
+    points = np.vstack([b.outline for b in model.outlines if b.kind != "fixed"])
+    low, high = points.min(0), points.max(0)
+    size = float((high - low).max())
+    ends = [np.array(p) for t in model.ties for p in (t.at_a, t.at_b)]
+    box = style.box_of(np.vstack([points, *([np.array(ends)] if ends else [])]), margin=0.14)
+    ax = style.axes_for(box, ax)
+    for body in model.outlines:
+        fixed = body.kind == "fixed"
+        ax.fill(*body.outline.T, fc="#D9D9D9" if fixed else style.BLOCK, ec=style.EDGE, lw=0.5, hatch="////" * fixed)
+    for tie in model.ties:
+        ax.plot(*np.array([tie.at_a, tie.at_b]).T, color=style.TENSION.colour, lw=2.0, marker="s", ms=4)
+        ax.annotate(tie.name, _xy((np.array(tie.at_a) + np.array(tie.at_b)) / 2), xytext=(0, 4),
+                    textcoords="offset points", ha="center", fontsize=7.5, color=style.TENSION.colour)  # fmt: skip
+    for support in model.supports:
+        corners = np.array(support.edge) if support.edge is not None else model.body(support.body).vertices
+        ax.plot(*corners.mean(0), marker="^", ms=9, mfc="none", mec=style.INK)
+    numbers = [k for k, load in enumerate(model.loads) if load.kind != "weight"]
+    forces = applied_forces(model, numbers)
+    largest = max((float(np.hypot(*f.force)) for f in forces), default=1.0)
+    for f in forces:
+        arrow = f.force / largest * 0.12 * size
+        _arrow(ax, f.point - arrow, f.point)
+        if len(forces) <= 20:
+            text = f"{number(float(np.hypot(*f.force)), 3)} kN"
+            ax.annotate(text, _xy(f.point - arrow), fontsize=7.5, color=style.LOAD.colour, ha="center",
+                        va="bottom" if arrow[1] < 0 else "center")  # fmt: skip
+    if len(model.free_bodies) <= 60:
+        for block in model.free_bodies:
+            ax.annotate(block.name, _xy(block.centroid), ha="center", va="center", fontsize=6.5, color="#555555")
+    style.dress(ax, box, "")
+    return ax
+
+
+def mechanism_figure(mechanism: LocalMechanism, ax: Axes | None = None) -> Axes:
+    """Draw a mechanism at its onset, enlarged, with its joints and its control point."""
+    model, mechanics = mechanism.assembly.model, mechanism.mechanics
+    free = [b for b in model.outlines if b.kind != "fixed"]
+    points = np.vstack([b.outline for b in free])
+    size = float(np.ptp(points, axis=0).max())
+    linkage = mechanism.linkage
+    v = mechanism.velocity.reshape(-1, 3)
+    still = np.zeros_like(v)
+
+    def moved(b: int, outline: Array, scale: float) -> Array:
+        block = mechanics.of_body.get(b)
+        if block is None:
+            return outline
+        return np.array([linkage.place(still, block, p) + scale * _velocity(linkage, v, block, p) for p in outline])
+
+    fastest = max(float(np.hypot(*_velocity(linkage, v, g, p))) for b, g in mechanics.of_body.items()
+                  for p in model.outlines[b].outline)  # fmt: skip
+    scale = ENLARGED * size / fastest
+    shapes = {b: moved(b, body.outline, scale) for b, body in enumerate(model.outlines)}
+    box = style.box_of(points, *(shapes[b] for b in mechanics.of_body), margin=0.06)
+    ax = style.axes_for(box, ax)
+    for b, body in enumerate(model.outlines):
+        fixed, moves = body.kind == "fixed", b in mechanics.of_body
+        if moves:
+            ax.fill(*body.outline.T, fc="none", ec=style.GHOST, lw=0.5, ls=":")
+        face = "#D9D9D9" if fixed else style.BLOCK if moves else "#FFFFFF"
+        ax.fill(*shapes[b].T, fc=face, ec=style.EDGE, lw=0.6, zorder=2)
+    for tie in model.ties:
+        ax.plot(*np.array([tie.at_a, tie.at_b]).T, color=style.TENSION.colour, lw=1.4, zorder=3)
+    for joint in mechanics.joints:
+        look = {"hinge": "o", "roller": "s", "bar": "D"}[joint.kind]
+        place = joint.point
+        if joint.a >= 0:
+            place = place + scale * _velocity(linkage, v, joint.a, joint.point)
+        ax.plot(*place, look, ms=5.5, mfc="#FFFFFF", mec=style.INK, mew=1.2, zorder=5)
+    for participant in mechanism.chain.participants:
+        way = participant.force / participant.size
+        _arrow(ax, participant.point, participant.point + 0.09 * size * way)
+    at = np.array(mechanism.control[1])
+    block = linkage.control[0]
+    ax.plot(*(at + scale * _velocity(linkage, v, block, at)), "x", ms=8, mew=2, color=style.TENSION.colour, zorder=6)
+    style.dress(ax, box, "")
+    return ax
+
+
+def _xy(point: Array) -> tuple[float, float]:
+    return float(point[0]), float(point[1])
+
+
+def _arrow(ax: Axes, start: Array, end: Array) -> None:
+    look = {"arrowstyle": "-|>", "color": style.LOAD.colour, "lw": 1.3}
+    ax.annotate("", _xy(end), _xy(start), arrowprops=look, zorder=6)
+
+
+def _velocity(linkage: Any, v: Array, block: int, point: Array) -> Array:
+    x, y, turn = v[block]
+    arm = point - linkage.mechanics.blocks[block].centre
+    return np.array([x - turn * arm[1], y + turn * arm[0]])
+
+
+def curve_figure(mechanism: LocalMechanism, words: Words, ax: Axes | None = None) -> Axes:
+    """Draw alpha against the displacement of the control point: followed, and as a straight line."""
+    ax = _plain(ax)
+    followed = mechanism.followed
+    ax.plot(followed.displacement, followed.multiplier, color=style.COMPRESSION.colour, lw=1.8,
+            label=words["legend_followed"])  # fmt: skip
+    if mechanism.straight is not None:
+        line = mechanism.straight
+        ax.plot(
+            line.displacement, line.multiplier, color=style.INK, lw=1.0, ls=(0, (5, 2)), label=words["legend_straight"]
+        )
+    for level, limit in mechanism.limits.items():
+        ax.plot([limit.control], [limit.a / mechanism.factor], "o", ms=5, color=style.TENSION.colour)
+        ax.annotate(f"d_{level}", (limit.control, limit.a / mechanism.factor), xytext=(5, 5),
+                    textcoords="offset points", fontsize=8)  # fmt: skip
+    return _finish(ax, words["axis_dC"], words["axis_alpha"])
+
+
+def demand_figure(mechanism: LocalMechanism, words: Words, ax: Axes | None = None) -> Axes:
+    """Draw the capacity curves and the demand of each limit state in acceleration-displacement form."""
+    ax = _plain(ax)
+    for curve, colour, dash, word in (
+        (mechanism.followed, style.INK, "-", "legend_followed"),
+        (mechanism.straight, style.INK, (0, (5, 2)), "legend_straight"),
+    ):
+        if curve is not None:
+            ax.plot(*mechanism.spectral_curve(curve), color=colour, lw=1.8 if dash == "-" else 1.0, ls=dash,
+                    label=words[word])  # fmt: skip
+    site = mechanism.site
+    _, a = mechanism.spectral_curve(mechanism.followed)
+    d_most = 1.15 * float(mechanism.d0) if math.isfinite(mechanism.d0) else 0.5
+    T = np.linspace(0.02, 6.0, 900)
+    shown: list[tuple[str, str]] = []
+    for check in mechanism.checks:
+        if check.kind == "displacement" and (check.level, check.place) not in shown:
+            shown.append((check.level, check.place))
+    for k, (level, place) in enumerate(shown):
+        hazard = mechanism.periods[level]
+        spectrum: Any = site.spectrum(hazard)
+        if place == "height":
+            spectrum = site.at_height(spectrum, mechanism.level)
+        limit = mechanism.limits[level]
+        d, s = spectrum.displacement(T, limit.xi), spectrum.acceleration(T, limit.xi)
+        word = words["legend_demand"].format(level=level, place=words[place])
+        ax.plot(d, s, color=DEMAND[k % len(DEMAND)], lw=1.2, ls=DASHES[place == "height"], label=word)
+        if place == "ground":
+            ax.plot([limit.d], [limit.a], "o", ms=5, color=DEMAND[k % len(DEMAND)])
+            slope = limit.a / limit.d if limit.d > 0 else 0.0
+            ax.plot([0, d_most], [0, slope * d_most], color=DEMAND[k % len(DEMAND)], lw=0.6, ls=":")
+            ax.annotate(f"d_{level}", (limit.d, limit.a), xytext=(5, 5), textcoords="offset points", fontsize=8)
+    ax.set_xlim(0, d_most)
+    ax.set_ylim(0, 2.2 * max(float(a.max(initial=0.0)), mechanism.onset))
+    return _finish(ax, words["axis_d"], words["axis_a"])
+
+
+def _plain(ax: Axes | None) -> Axes:
+    if ax is not None:
+        return ax
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(5.6, 3.6), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes: Axes = figure.add_subplot()
+    return axes
+
+
+def _finish(ax: Axes, x: str, y: str) -> Axes:
+    ax.set_xlabel(x, fontsize=8.5)
+    ax.set_ylabel(y, fontsize=8.5)
+    ax.tick_params(labelsize=8)
+    ax.set_xlim(left=0)
+    ax.set_ylim(bottom=0)
+    ax.grid(visible=True, lw=0.3, color="#DDDDDD")
+    for side in ("top", "right"):
+        ax.spines[side].set_visible(False)
+    ax.legend(frameon=False, fontsize=7.5)
+    return ax

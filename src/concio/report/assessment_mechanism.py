@@ -1,0 +1,122 @@
+"""One mechanism in the assessment report: picture, forces, quantities, curves, checks."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import TYPE_CHECKING
+
+from concio.plot.assessment_figures import curve_figure, demand_figure, mechanism_figure
+from concio.report.assessment_texts import Texts
+
+if TYPE_CHECKING:
+    from concio.analysis.seismic.assessment import LocalMechanism
+    from concio.analysis.seismic.checks import Check
+
+
+def mechanism_html(t: Texts, m: LocalMechanism, place: int, used: str) -> str:
+    """Return what was found of one mechanism."""
+    title = f"{place}. " + t.words["mechanism"].format(name=t.name(m), direction=t.words[m.direction])
+    flow = {"no sliding": "flow_none", "Coulomb": "flow_coulomb", "associated": "flow_associated"}[m.found.flow]
+    said = t.say(flow, bound=t.n(m.found.associated.multiplier, 6))
+    x, y = m.control[1]
+    control = t.say("control_text", x=t.n(x), y=t.n(y), body=m.control[0], z=t.n(m.level))
+    backs = [t.n(j.set_back) for j in m.mechanics.joints if j.inward is not None]
+    back = t.say("set_back_text", values="; ".join(backs)) if backs else ""
+    return (
+        f'<section class=mechanism id="m{place}"><h2>{escape(title)}</h2>'
+        f"{t.figure(mechanism_figure(m), 'figure_mechanism', 'tall')}<p>{said} {control} {back}</p>"
+        f"{_chain(t, m)}{_quantities(t, m)}{_curve(t, m, used)}{_checks(t, m)}</section>"
+    )
+
+
+def _chain(t: Texts, m: LocalMechanism) -> str:
+    """Return the tables of forces."""
+    w = t.words
+
+    def kind(word: str) -> str:
+        name, _, count = word.partition(" ")
+        return w["weight_row"] if word == "weight" else f"{w['load_' + name]} {count}"
+
+    rows = [
+        [escape(m.mechanics.blocks[p.block].label), escape(kind(p.kind)), t.n(p.size), t.pair(p.point),
+         t.n(p.delta)]
+        for p in m.chain.participants
+    ]  # fmt: skip
+    others = [
+        [escape(m.mechanics.blocks[f.block].label), escape(kind(word)), t.pair(f.force), t.pair(f.point)]
+        for word, f in m.dead
+    ]
+    head = [w[k] for k in ("block", "kind", "force", "at", "delta")]
+    text = t.say("chain_text", clause=m.site.rules.clause("multiplier"))
+    return (
+        f"<p>{text}</p>{t.table(head, rows, 2)}<p>{t.say('dead_text')}</p>"
+        f"{t.table([w[k] for k in ('block', 'kind', 'force_xy', 'at')], others, 2)}"
+    )
+
+
+def _quantities(t: Texts, m: LocalMechanism) -> str:
+    """Return the formulas with their clauses and values."""
+    c = m.site.rules.clause
+    delta = "(P+Q)&thinsp;&delta;"
+    rows = [
+        ("&alpha;<sub>0</sub>", "formula_alpha", c("multiplier"), t.n(m.multiplier, 6), "-"),
+        (f"e* = (&Sigma; {delta})&sup2; / [&Sigma;(P+Q) &Sigma; {delta}&sup2;]", "formula_e", c("acceleration"),
+         t.n(m.e_star, 6), "-"),
+        ("a<sub>0</sub>* = &alpha;<sub>0</sub> g / (e* FC)", "formula_a0", c("acceleration"), t.n(m.onset, 6),
+         "m/s2"),
+        (f"d = d<sub>C</sub> &Sigma; {delta}&sup2; / (&delta;<sub>C</sub> &Sigma; {delta})", "formula_d",
+         c("acceleration"), f"{t.n(m.chain.spectral, 6)} d<sub>C</sub>", "m"),
+    ]  # fmt: skip
+    if m.followed.ends:
+        rows.append(("d<sub>C0</sub>", "formula_dC0", c("acceleration"), t.n(m.followed.end, 6), "m"))
+    made = [[f, t.say(key), escape(clause), value, unit] for f, key, clause, value, unit in rows]
+    head = [t.words[k] for k in ("formulas", "kind", "clause", "value", "unit")]
+    return f"<h3>{t.say('formulas')}</h3>{t.table(head, made, 3)}"
+
+
+def _curve(t: Texts, m: LocalMechanism, used: str) -> str:
+    """Return the capacity curves and the limits of displacement."""
+    w = t.words
+    head = f"<h3>{t.say('curve_title')}</h3>"
+    if not m.followed.ends:
+        reason = w["reason_" + m.followed.reason.replace(" ", "_")]
+        return f"{head}<p>{t.say('curve_none', reason=reason)}</p>"
+    text = t.say("curve_text", used=w[f"curve_{used}"])
+    pictures = t.figure(curve_figure(m, w), "figure_curve", "half")
+    pictures += t.figure(demand_figure(m, w), "figure_adrs", "half")
+    difference = ""
+    if m.straight is not None and m.limits:
+        level, limit = next(iter(m.limits.items()))
+        a, b = (m.factor * curve.at(limit.control) for curve in (m.followed, m.straight))
+        difference = f"<p>{t.say('curve_difference', level=level, a=t.n(a, 6), b=t.n(b, 6))}</p>"
+    rules = m.site.rules
+    rows = []
+    for level, v in m.limits.items():
+        rule = rules.tables["levels"][level]
+        formula = f"{t.n(rule['period'])} &pi; &radic;(d/a)"
+        rows.append([level, t.n(v.d, 6), escape(w[v.why]) + (f" {t.n(rule['share'])}" * (v.why == "share")),
+                     t.n(v.a, 6), f"{formula} = {t.n(v.T, 6)}", t.n(v.xi),
+                     escape(rules.clause("displacement"))])  # fmt: skip
+    table = t.table([w[k] for k in ("level", "d", "set_by", "a", "T", "xi", "clause")], rows) if rows else ""
+    return f"{head}<p>{text}</p><div class=pair>{pictures}</div>{difference}<h3>{t.say('limits_text')}</h3>{table}"
+
+
+def _checks(t: Texts, m: LocalMechanism) -> str:
+    """Return the lines capacity over demand, and the acceleration of capacity."""
+    w = t.words
+    rows = [_line(t, c, m) for c in m.checks]
+    head = [w[k] for k in ("level", "check", "where", "clause", "demand", "capacity", "ratio")]
+    found = [[o.level, t.n(o.a_g), t.n(o.zeta), t.n(o.T_R), t.verdict(o.zeta, o.holds)] for o in m.outcomes]
+    names = [w[k] for k in ("level", "a_cap", "zeta", "T_cap", "outcome")]
+    return (
+        f"<h3>{t.say('checks')}</h3>{t.table(head, rows, 4)}<h3>{t.say('outcomes')}</h3>"
+        f"<p>{t.say('outcomes_text')}</p>{t.table(names, found)}"
+    )
+
+
+def _line(t: Texts, c: Check, m: LocalMechanism) -> list[str]:
+    """Return one line of the checks."""
+    q = m.site.rules.tables["levels"][c.level].get("q", 1.0)
+    kind = t.say(c.kind, q=t.n(float(q))) if c.kind == "linear" else t.say(c.kind)
+    return [c.level, kind, t.say(c.place), escape(c.clause), f"{t.n(c.demand, 5)} {c.unit}",
+            f"{t.n(c.capacity, 5)} {c.unit}", t.verdict(c.ratio, c.holds)]  # fmt: skip

@@ -1,0 +1,253 @@
+"""The report of an assessment: one HTML file that prints to a clean PDF, in English or Italian."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import concio
+from concio.analysis.seismic.applied import applied_forces
+from concio.analysis.seismic.asked import Head
+from concio.analysis.seismic.floor import Storeys
+from concio.analysis.seismic.site import STRONG
+from concio.plot.assessment_figures import model_figure
+from concio.report.assessment_mechanism import mechanism_html
+from concio.report.assessment_texts import Texts
+
+if TYPE_CHECKING:
+    from concio.analysis.seismic.anchors import Anchor
+    from concio.analysis.seismic.assessment import Assessment
+    from concio.analysis.seismic.variations import TieForce, Variation
+
+UNITS = {"weight": "-", "pressure": "kN/m2", "traction": "kN/m2", "point": "kN", "body": "kN/m3"}
+
+
+def write_assessment_report(found: Assessment, path: Path | str, **options: Any) -> Path:
+    """Write the report of an assessment; options as :class:`AssessmentReport`."""
+    path = Path(path)
+    path.write_text(AssessmentReport(found, **options).html(), encoding="utf-8")
+    return path
+
+
+class AssessmentReport(Texts):
+    """Makes the report of an assessment.
+
+    Parameters
+    ----------
+    found : Assessment
+    head : Head, optional
+        Project, author, language.
+    tie : TieForce, optional
+    anchors : sequence of Anchor
+    varied : sequence of Variation
+    language : str, optional
+        Instead of that of the head.
+    """
+
+    def __init__(
+        self,
+        found: Assessment,
+        *,
+        head: Head | None = None,
+        tie: TieForce | None = None,
+        anchors: Sequence[Anchor] = (),
+        varied: Sequence[Variation] = (),
+        language: str | None = None,
+    ) -> None:
+        self.found, self.head = found, head or Head()
+        super().__init__(language or self.head.language)
+        self.tie, self.anchors, self.varied = tie, tuple(anchors), tuple(varied)
+
+    # -- the whole ----------------------------------------------------------------------------------------------------
+
+    def html(self) -> str:
+        """Return the page."""
+        style = "".join((files("concio.report") / name).read_text(encoding="utf-8")
+                        for name in ("report.css", "assessment.css"))  # fmt: skip
+        title = self.head.project or self.found.model.title or self.words["title"]
+        parts = [self.header(title), self.top(), self.site(), self.model(), self.search()]
+        parts += [mechanism_html(self, m, k, self.found.curve) for k, m in enumerate(self.found.mechanisms, 1)]
+        parts += [self.varied_part(), self.tie_part()]
+        footer = self.say("footer", version=concio.__version__)
+        return (
+            f'<!DOCTYPE html><html lang="{self.language}"><head><meta charset="utf-8">'
+            '<meta name="viewport" content="width=device-width, initial-scale=1">'
+            f'<title>{escape(title)} &middot; concio</title><link rel="icon" href="data:,">'
+            f"<style>{style}</style></head>"
+            f"<body class=assessment><main>{''.join(parts)}<footer>{footer}</footer></main></body></html>\n"
+        )
+
+    def header(self, title: str) -> str:
+        """Return the head: title, project, author, date, code."""
+        rows = [(key, getattr(self.head, key)) for key in ("project", "place", "author", "date")]
+        rows = [(self.words[key], value) for key, value in rows if value]
+        rows.append((self.words["code"], f"{self.found.site.rules.name}"))
+        facts = "".join(f"<tr><th>{escape(k)}</th><td>{escape(v)}</td></tr>" for k, v in rows)
+        return (
+            f'<header><p class="brand">concio</p><p class=kind>{self.say("title")}</p><h1>{escape(title)}</h1>'
+            f"<table class=facts><tbody>{facts}</tbody></table></header>"
+        )
+
+    def top(self) -> str:
+        """Return what was found, in short."""
+        found, worst = self.found, self.found.worst
+        if worst is None:
+            text, tone = self.say("verdict_none"), "unsure"
+        else:
+            text = self.say("verdict_holds" if found.holds else "verdict_fails", zeta=self.n(found.zeta))
+            tone = "good" if found.holds else "bad"
+        more = ""
+        if worst is not None:
+            way = self.words[worst.direction]
+            more = (
+                f"<p>{self.say('weakest', name=self.name(worst), direction=way, alpha=self.n(worst.multiplier, 6))}</p>"
+            )
+        strong = [level for level in found.levels if found.site.at(level).a_g > STRONG]
+        said = "".join(f"<li>{self.say('strong', level=v, a_g=self.n(found.site.at(v).a_g))}</li>" for v in strong)
+        attention = f"<h3>{self.say('attention')}</h3><ul>{said}</ul>" if said else ""
+        return f'<section id=verdict><div class="verdict {tone}"><h2>{text}</h2>{more}</div>{attention}</section>'
+
+    def site(self) -> str:
+        """Return site, limit states, knowledge."""
+        site, w = self.found.site, self.words
+        rules = site.rules
+        rows = []
+        for level in self.found.levels:
+            hazard = site.at(level)
+            s = site.spectrum(hazard)
+            corners = ", ".join(self.n(v) for v in (s.T_B, s.T_C, s.T_D))
+            rows.append([level, self.n(hazard.T_R), self.n(hazard.a_g), self.n(hazard.F0), self.n(hazard.T_star),
+                         self.n(s.S), corners])  # fmt: skip
+        head = [w[k] for k in ("level", "T_R", "a_g", "F0", "Tc", "S", "corners")]
+        text = self.say("site_text", soil=site.soil, topography=site.topography, life=self.n(site.nominal_life),
+                        use=site.use_class, clause=rules.clause("spectrum"))  # fmt: skip
+        building = ""
+        if site.building:
+            modes = "; ".join(self.mode(m) for m in site.building)
+            building = f"<p>{self.say('building_text', clause=rules.clause('floor'), modes=modes)}</p>"
+        reason = f" ({self.head.knowledge})" if self.head.knowledge else ""
+        known = self.say("knowledge_text", level=self.found.knowledge, reason=reason, FC=self.n(self.found.confidence),
+                         clause=rules.clause("knowledge"))  # fmt: skip
+        why = self.say(f"FC_{self.found.confidence_by}")
+        return (
+            f"<section id=site><h2>{self.say('site')}</h2><p>{text}</p>{self.table(head, rows)}{building}"
+            f"<h3>{self.say('knowledge')}</h3><p>{known} {why}</p></section>"
+        )
+
+    def mode(self, mode: Any) -> str:
+        """Return a mode of the building in words."""
+        if isinstance(mode, Storeys):
+            T = mode.mode(mode.base, self.found.site.rules.tables["floor"]).T
+            return self.words["mode_regular"].format(
+                n=mode.storeys, H=self.n(mode.height), T=self.n(T), xi=self.n(mode.xi)
+            )
+        shape = abs(mode.participation * mode.shape)
+        return self.words["mode_given"].format(T=self.n(mode.T), shape=self.n(shape), xi=self.n(mode.xi))
+
+    def model(self) -> str:
+        """Return the model: a drawing, and its loads."""
+        model, w = self.found.model, self.words
+        used = {rule.law for rule in model.rules}
+        frictions = ", ".join(sorted({self.n(model.laws[k].friction) for k in used}))
+        given = (model.laws[k].compressive_strength for k in used)
+        strength = "".join(w["strength_text"].format(f=self.n(v)) for v in sorted({v for v in given if v is not None}))
+        joints = len(self.found.mechanisms[0].assembly.detection.interfaces) if self.found.mechanisms else 0
+        deep = ", ".join(sorted({self.n(b.thickness) for b in model.outlines}))
+        free = len(model.free_bodies)
+        text = self.say(
+            "model_text", title=model.title or w["model"], free=str(free), fixed=str(len(model.bodies) - free),
+            joints=str(joints), friction=frictions, strength=strength, thickness=deep,
+        )  # fmt: skip
+        rows = []
+        for k, load in enumerate(model.loads):
+            forces = applied_forces(model, [k])
+            total = np.sum([f.force for f in forces], axis=0) if forces else np.zeros(2)
+            size = np.array([float(np.hypot(*f.force)) for f in forces])
+            point = size @ np.array([f.point for f in forces]) / size.sum() if size.sum() > 0 else np.zeros(2)
+            value = ", ".join(self.n(v) for v in load.value)
+            rows.append([escape(load.group), escape(w[f"load_{load.kind}"]), value, UNITS[load.kind],
+                         self.pair(total), self.pair(point)])  # fmt: skip
+        head = [w[k] for k in ("group", "kind", "value", "unit", "resultant", "point")]
+        ties = ""
+        if model.ties:
+            made = [
+                [escape(t.name), self.n(t.stiffness), self.n(t.prestress),
+                 w["unlimited"] if t.yield_force is None else self.n(t.yield_force),
+                 w["unlimited"] if t.break_elongation is None else self.n(t.break_elongation)]
+                for t in model.ties
+            ]  # fmt: skip
+            names = [w["tie_title"], *(w[k] for k in ("stiffness", "prestress", "yield_force", "break"))]
+            ties = f"<h3>{self.say('ties_text')}</h3>{self.table(names, made)}"
+        drawn = self.figure(model_figure(self.found), "figure_model", "tall")
+        return (
+            f"<section id=model><h2>{self.say('model')}</h2><p>{text}</p>{drawn}"
+            f"<h3>{self.say('loads')}</h3>{self.table(head, rows, 2)}{ties}</section>"
+        )
+
+    def search(self) -> str:
+        """Return the table of mechanisms."""
+        w, found = self.words, self.found
+        gap = max((m.found.associated.worst for m in found.mechanisms), default=0.0)
+        rows = []
+        for k, m in enumerate(found.mechanisms, 1):
+            rows.append([f'<a href="#m{k}">{escape(self.name(m))}</a>', escape(w[m.direction]), self.n(m.multiplier, 6),
+                         self.n(m.e_star), self.n(m.onset), self.n(m.d0), self.n(m.zeta),
+                         self.verdict(m.zeta, m.zeta >= 1)])  # fmt: skip
+        for none in found.locked:
+            said = "no_locked" if math.isinf(none.multiplier) else "no_large"
+            text = self.say(said, alpha=self.n(none.multiplier))
+            rows.append([escape(self.name(none)), escape(w[none.direction]), *["&ndash;"] * 5, text])
+        head = [w[k] for k in ("name", "direction", "alpha0", "e_star", "a0_star", "d0", "zeta", "outcome")]
+        text = self.say("search_text", gap=f"{gap:.0e}")
+        return f"<section id=search><h2>{self.say('search')}</h2><p>{text}</p>{self.table(head, rows, 2)}</section>"
+
+    # -- what if ------------------------------------------------------------------------------------------------------
+
+    def varied_part(self) -> str:
+        """Return how the weakest mechanism changes with the joints."""
+        if not self.varied or self.found.worst is None:
+            return ""
+        rows = [[self.say("as_given"), self.n(self.found.worst.multiplier, 6), self.n(self.found.zeta)]]
+        for v in self.varied:
+            stands = v.multiplier == v.multiplier
+            text = self.n(v.multiplier, 6) if stands else self.say("does_not_stand")
+            rows.append([self.say(f"vary_{v.what}", factor=self.n(v.factor)), text, self.n(v.zeta)])
+        head = [self.words[k] for k in ("sensitivity", "alpha0", "zeta")]
+        return (
+            f"<section id=sensitivity><h2>{self.say('sensitivity')}</h2><p>{self.say('sensitivity_text')}</p>"
+            f"{self.table(head, rows)}</section>"
+        )
+
+    def tie_part(self) -> str:
+        """Return the tie force that is needed, and the checks of the anchors."""
+        parts = []
+        tie = self.tie
+        if tie is not None:
+            key = "tie_zero" if tie.force == 0 else "tie_never" if math.isinf(tie.force) else "tie_found"
+            text = self.say(key, force=self.n(tie.force), tie=tie.tie, reached=self.n(tie.reached),
+                            largest=self.n(tie.largest))  # fmt: skip
+            parts.append(f"<p>{text}</p>")
+        forces = {t.name: t.yield_force for t in self.found.model.ties}
+        for anchor in self.anchors:
+            force, key = forces.get(anchor.tie), "anchor_text"
+            if tie is not None and tie.tie == anchor.tie and 0 < tie.force < math.inf:
+                force, key = tie.force, "anchor_needed"
+            if force is None:
+                continue
+            rows = [
+                [self.say(c.kind), self.n(c.demand), self.n(c.capacity), self.verdict(c.ratio, c.holds)]
+                for c in anchor.checks(force)
+            ]
+            head = [
+                self.words["check"],
+                *(f"{self.words[k]} [kN]" for k in ("demand", "capacity")),
+                self.words["ratio"],
+            ]
+            parts.append(f"<p>{self.say(key, tie=anchor.tie, force=self.n(force))}</p>{self.table(head, rows)}")
+        return f"<section id=tie><h2>{self.say('tie_title')}</h2>{''.join(parts)}</section>" if parts else ""

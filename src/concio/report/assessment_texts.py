@@ -1,0 +1,95 @@
+"""Texts, tables and figures of the assessment report in one language."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from html import escape
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+from concio.analysis.seismic.assess import EVERY
+from concio.arguments import closest
+from concio.display import number
+from concio.errors import InputError
+from concio.report.html_parts import figure_html
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+@cache
+def words_of(language: str) -> Mapping[str, str]:
+    """Return the words of a language.
+
+    Raises
+    ------
+    InputError
+        There is no such language.
+    """
+    table = tomllib.loads((files("concio.report") / "assessment_words.toml").read_text(encoding="utf-8"))
+    if language not in table:
+        msg = f"there is no report in the language '{language}'"
+        raise InputError(msg, hint=closest(language, tuple(table)))
+    found: Mapping[str, str] = table[language]
+    return found
+
+
+class Texts:
+    """Words, numbers and pieces of HTML of one language; figures are numbered as they come.
+
+    Parameters
+    ----------
+    language : str
+    """
+
+    def __init__(self, language: str) -> None:
+        self.language = language
+        self.words = words_of(language)
+        self.figures = 0
+
+    def n(self, value: float, digits: int = 4) -> str:
+        """Return a number as the language writes it."""
+        if not math.isfinite(value):
+            return self.words["unknown"]
+        text = number(value, digits)
+        if self.language != "it":
+            return text
+        return text.replace(",", "\u2009").replace(".", ",")
+
+    def say(self, key: str, **values: str) -> str:
+        """Return a sentence of the language, escaped."""
+        return escape(self.words[key].format(**values))
+
+    def name(self, mechanism: Any) -> str:
+        """Return the name of a mechanism as it was asked for."""
+        return self.words["every"] if mechanism.name == EVERY else str(mechanism.name)
+
+    def table(self, headings: Iterable[str], rows: Iterable[Sequence[str]], texts: int = 1) -> str:
+        """Return a table; the first ``texts`` columns are words, the others numbers."""
+        head = "".join(f"<th>{escape(h)}</th>" for h in headings)
+        body = "".join(
+            "<tr>" + "".join(f"<td{' class=n' * (i >= texts)}>{cell}</td>" for i, cell in enumerate(row)) + "</tr>"
+            for row in rows
+        )
+        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+    def figure(self, axes: Axes, caption: str, kind: str = "") -> str:
+        """Return a figure with its caption under it."""
+        self.figures += 1
+        drawn = figure_html(axes, f"assessment-{self.figures}", self.words[caption])
+        text = f"<figcaption>{self.say(caption)}</figcaption></figure>"
+        return drawn.replace("<figure ", f'<figure class="{kind}" ', 1).replace("</figure>", text)
+
+    def verdict(self, ratio: float, holds: bool) -> str:
+        """Return "verified" with its ratio."""
+        tone = "good" if holds else "bad"
+        return f'<b class="{tone}">{self.say("verified" if holds else "not_verified", ratio=self.n(ratio))}</b>'
+
+    def pair(self, vector: Any) -> str:
+        """Return the two numbers of a vector."""
+        x, y = (float(v) for v in vector)
+        size = math.hypot(x, y)
+        return "(" + "; ".join(self.n(0.0 if abs(v) < 1e-9 * size else v) for v in (x, y)) + ")"

@@ -1,0 +1,163 @@
+"""Assessments from files: command line, report in two languages, ties that are sized, anchors, sensitivity."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import tomllib
+from importlib.resources import files
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import concio
+from commands import run
+from concio.analysis.seismic.anchors import Anchor
+from concio.analysis.seismic.applied import pushed
+from concio.analysis.seismic.asked import Head, read_asked
+from concio.analysis.seismic.pushed_curve import pushed_curve
+from concio.analysis.seismic.variations import tie_force, variations
+from concio.errors import InputError
+from concio.model.stages import ControlPoint
+from concio.report.assessment_page import AssessmentReport
+from concio.report.assessment_texts import words_of
+from seismic_walls import overturning, site
+
+TEMPLATE = (files("concio.model") / "templates" / "assessment.toml").read_text(encoding="utf-8")
+TIE = concio.Tie("tie", "c1", (0.0, 5.5), "", (5.0, 5.5), stiffness=5000.0, yield_force=2.0)
+
+
+def edited(folder: Path, *changes: tuple[str, str]) -> Path:
+    text = TEMPLATE
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path = folder / "strip.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_the_languages_have_the_same_keys_and_places() -> None:
+    table = tomllib.loads((files("concio.report") / "assessment_words.toml").read_text(encoding="utf-8"))
+    assert set(table) == {"en", "it"}
+    assert list(table["en"]) == list(table["it"])
+    for key, text in table["en"].items():
+        assert set(re.findall(r"\{(\w+)\}", text)) == set(re.findall(r"\{(\w+)\}", table["it"][key])), key
+    with pytest.raises(InputError, match="language 'fr'"):
+        words_of("fr")
+
+
+@pytest.mark.parametrize("language", ["en", "it"])
+def test_report_holds_what_was_computed_and_never_verified_without_a_ratio(language: str) -> None:
+    found = concio.assess(overturning(), site=site(), direction="left", control=("c1", (0.0, 6.0)))
+    text = AssessmentReport(found, head=Head(project="Casa & torre", author="NN"), language=language).html()
+    assert f'<html lang="{language}">' in text
+    assert "Casa &amp; torre" in text
+    decimal = "," if language == "it" else "."
+    for number in ("0.101106", "0.945572", "0.776996", "0.136736"):
+        assert number.replace(".", decimal) in text
+    word = {"en": "verified", "it": "verificato"}[language]
+    plain = re.sub(r"<[^>]*>", "|", text)
+    for hit in re.finditer(rf"(?i){word}", plain):
+        assert re.match(rf"(?i){word}(, \d|: )", plain[hit.start() :]), plain[hit.start() - 40 : hit.start() + 40]
+    assert "Circolare, C8.7.1.2.1.8" in text
+    assert text.count("<figure") == 1 + 3 * len(found.mechanisms)
+    assert "http" not in re.sub(r"data:[^\"]*", "", text)
+
+
+def test_command_writes_report_numbers_and_curves(tmp_path: Path) -> None:
+    size = 'size_tie = "roof tie"                 # find the force that brings zeta_E to one\n'
+    path = edited(tmp_path, (size, ""), ("[assessment]\n", '[assessment]\nlevels = ["SLV"]\n'))
+    code, shown, errors = run("assess", path, "--out", tmp_path / "out", "--language", "it")
+    assert code == 0, errors
+    assert "zeta_E" in shown
+    assert sorted(p.name for p in (tmp_path / "out").iterdir() if p.suffix in (".html", ".csv")) == [
+        "curves.csv", "report.html",
+    ]  # fmt: skip
+    told = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
+    assert told["mechanisms"][0]["alpha0"] == pytest.approx(0.2373, abs=1e-3)
+    assert told["levels"] == ["SLV"]
+    assert 'lang="it"' in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('soil = "B"', 'soil = "F"', "no soil 'F'"),
+        ('soil = "B"', 'sole = "B"', "did you mean 'soil'"),
+        ("a_g = 0.205", "a_g = 2.01", "was 2.01 m/s2 meant"),
+        ('knowledge = "LC2"', 'knowledge = "LC9"', "no level of knowledge 'LC9'"),
+        ('tie = "roof tie"', 'tie = "roof"', "no tie called 'roof'"),
+        ('size_tie = "roof tie"', 'size_tie = "tie"', "no tie called 'tie'"),
+        ('"upper storey" = { above = 3.5 }', '"upper storey" = { over = 3.5 }', "over"),
+        ("[site]", "[sites]", "did you mean 'site'"),
+        ("yield_force = 10.0", "yield_force = -1.0", "yield_force"),
+    ],
+)
+def test_bad_files_are_refused_in_a_sentence(tmp_path: Path, old: str, new: str, said: str) -> None:
+    code, _, errors = run("assess", edited(tmp_path, (old, new)), "--out", tmp_path / "out")
+    assert code == 2
+    assert said in errors
+    assert "Traceback" not in errors
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_file_without_a_site_says_what_to_add(tmp_path: Path) -> None:
+    path = tmp_path / "wall.toml"
+    path.write_text(TEMPLATE[: TEMPLATE.index("[site]")], encoding="utf-8")
+    with pytest.raises(InputError, match=r"no table \[site\]"):
+        read_asked(path)
+
+
+def test_the_tie_force_that_is_needed_is_the_least_that_does() -> None:
+    model = overturning(ties=(TIE,))
+    arguments = {"site": site(), "direction": "left", "levels": ["SLD"]}
+    found = tie_force(model, "tie", zeta=1.0, **arguments)
+    # SLD: a_0* = 0.07 x 1.2 x 9.81 m/s2 needs alpha_0, and the tie's work gives it
+    alpha = 0.07 * 9.81 * 1.2 * found.assessment.worst.e_star * 1.35 / 9.81  # type: ignore[union-attr]
+    assert found.force == pytest.approx((alpha * 271.2 - 27.42) / 5.5, rel=2e-3)
+    assert 1.0 <= found.reached < 1.002
+    strong = tie_force(model, "tie", zeta=1.0, site=site(hazard={"SLD": {"a_g": 0.01}}), direction="left")
+    assert strong.force == 0.0
+    never = tie_force(model, "tie", zeta=1.0, largest=0.2, **arguments)
+    assert math.isinf(never.force)
+    with pytest.raises(InputError, match="no tie called 'ties'"):
+        tie_force(model, "ties", **arguments)
+
+
+def test_anchor_formulas() -> None:
+    anchor = Anchor("tie", steel_area=314e-6, steel_strength=224e3, plate=(0.3, 0.2), wall_thickness=0.45,
+                    shear_strength=50.0, bearing_strength=1000.0, depth=0.4, hole=0.05)  # fmt: skip
+    assert anchor.capacities == pytest.approx(
+        {
+            "steel": 70.336, "punching": 2 * (0.75 + 0.65) * 0.45 * 50.0, "bearing": 60.0,
+            "cone": math.pi * 0.4 * 0.45 * 50.0,
+        }
+    )  # fmt: skip
+    steel = anchor.checks(80.0)[0]
+    assert not steel.holds
+    assert steel.ratio == pytest.approx(70.336 / 80.0)
+
+
+def test_sensitivity_to_set_back_and_friction() -> None:
+    found = concio.assess(overturning(strength=2000.0), site=site(), direction="left", levels=["SLV"])
+    varied = {(v.what, v.factor): v.multiplier for v in variations(found)}
+    assert varied["friction", 0.8] == pytest.approx(found.worst.multiplier)  # type: ignore[union-attr]
+    assert varied["strength", 0.5] == pytest.approx((27.42 - 84.4**2 / (2 * 1000.0)) / 271.2)
+
+
+def test_pushing_over_meets_the_linkage() -> None:
+    """Equilibrium at large displacements, which keeps no mechanism, finds the curve of the mechanism kept."""
+    model = overturning(2)
+    found = concio.assess(model, site=site(), direction="left", levels=["SLV"])
+    worst = found.worst
+    assert worst is not None
+    control = ControlPoint(worst.control[0], (worst.control[1][0], worst.control[1][1]), (-1.0, 0.0))
+    curve = pushed_curve(pushed(model, -1.0), ["earthquake"], 1.0, [1, 2], control)
+    assert curve is not None
+    late = curve.displacement > 0.02 * worst.followed.end
+    met = np.interp(curve.displacement[late], worst.followed.displacement, worst.followed.multiplier)
+    assert curve.multiplier[late][:-1] == pytest.approx(met[:-1], abs=2e-4)
+    assert curve.end == pytest.approx(worst.followed.end, rel=2e-3)
