@@ -15,7 +15,7 @@ from pathlib import Path
 from types import ModuleType
 
 HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parent / "tests" / "validation")]
+sys.path[:0] = [str(HERE.parent / "tests" / "validation"), str(HERE.parent / "tests")]
 
 from validation_cases import CASES  # noqa: E402
 from validation_cases.row import Row  # noqa: E402

@@ -84,6 +84,29 @@ def check_load_path(found):
     assert found["events"] > 0
 
 
+def check_cells_of_four_bonds(found):
+    assert abs(found["stack"]) < 1e-6
+    assert found["running"] == pytest.approx(65.0, rel=1e-9)
+    assert found["flemish"] > found["english"] > 50
+    assert all(found[f"{bond} E_y"] == pytest.approx(found["stack E_y"]) for bond in ("running", "flemish", "english"))
+
+
+def check_panel_and_its_continuum(found):
+    assert found["bonded"] == pytest.approx(found["continuum"], rel=0.02)
+    assert found["blocks"] > 9 * found["continuum"]
+    assert found["thrust"] > 2 * 0.65
+    assert found["thrust"] > 50 * found["push"]
+    assert found["smaller"] > 2.5 * found["blocks"]
+    assert found["high"] < 1e-9
+    assert found["limit"] == float("inf")
+
+
+def check_smaller_and_smaller_blocks(found):
+    assert found["1"] > found["2"] > found["4"] > found["8"] > found["high"] > found["low"]
+    assert found["low"] < 2 * found["8"] - found["4"] < found["high"]
+    assert found["high"] < 1.1 * found["low"]
+
+
 def check_bonds(found):
     assert min(found, key=found.get) == "stack"
     assert all(0 < v <= 0.65 + 1e-9 for v in found.values())

@@ -21,6 +21,8 @@ CASES: dict[str, str] = {
     "one_node": "One node, large friction",
     "cantilever_wall": "Cantilever walls",
     "granite_walls": "Dry granite walls in shear and compression",
+    "homogenised_cells": "Homogenised running bond",
+    "wall_and_continuum": "Walls beside their homogenised continuum",
     "mesh_orders": "Orders of convergence",
 }
 """Name of each module and the title of its section in the validation book, in the book's order."""
