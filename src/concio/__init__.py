@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from concio.contact.assembly import Assembly, assemble
     from concio.display import Units
     from concio.errors import ConcioError, GeometryError, InputError, MethodError, NoEquilibriumError, SolverError
+    from concio.model.compose import merge, place
     from concio.model.drawing.drawing import model_from_dxf
     from concio.model.file.reading import load, loads
     from concio.model.file.writing import dumps, save
@@ -99,6 +100,7 @@ _HOMES = {
     "concio.model.generate.cells": ("cell",),
     "concio.model.generate.columns": ("buttress", "column"),
     "concio.model.generate.extrusion": ("extrude",),
+    "concio.model.compose": ("merge", "place"),
     "concio.model.drawing.drawing": ("model_from_dxf",),
     "concio.model.file.reading": ("load", "loads"),
     "concio.model.file.writing": ("dumps", "save"),
@@ -164,7 +166,9 @@ __all__ = [
     "load_margin",
     "load_study",
     "loads",
+    "merge",
     "model_from_dxf",
+    "place",
     "push",
     "read_record",
     "rock",

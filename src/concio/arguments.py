@@ -99,7 +99,7 @@ def _strict(function: Callable[P, T], expected: _Expected) -> Callable[P, T]:
 
 @dataclass(frozen=True)
 class _Expected:
-    """What a function takes: names in order, those without a default with their places, and whether it takes more."""
+    """What a function takes: names in order, those without a default with their places, whether it takes more."""
 
     name: str
     order: tuple[str, ...]
@@ -107,6 +107,7 @@ class _Expected:
     needed: tuple[tuple[str, float], ...]
     passes_on: bool
     own: int
+    any_number: bool = False
 
     @classmethod
     def of(cls, function: Callable[..., object], *, also: tuple[str, ...] = (), method_of: str = "") -> _Expected:
@@ -118,7 +119,9 @@ class _Expected:
             (p.name, float(order.index(p.name)) if p.name in order else math.inf) for p in named if p.default is p.empty
         )
         more = any(p.kind is p.VAR_KEYWORD for p in parameters) and not also
-        return cls(method_of or function.__name__, order, (*(p.name for p in named), *also), needed, more, own)
+        known = (*(p.name for p in named), *also)
+        any_number = any(p.kind is p.VAR_POSITIONAL for p in parameters)
+        return cls(method_of or function.__name__, order, known, needed, more, own, any_number)
 
     def check(self, given: int, named: Mapping[str, object]) -> None:
         """Raise where a call with ``given`` arguments by place and others by name is not one the function takes."""
@@ -129,7 +132,7 @@ class _Expected:
             if place >= given and name not in named:
                 msg = f"{self.name}() needs the argument '{name}'"
                 raise ArgumentError(msg, hint=f"its arguments: {', '.join(self.known)}")
-        if given > len(self.order):
+        if given > len(self.order) and not self.any_number:
             msg = f"{self.name}() takes {len(self.order)} arguments by place, {given} were given"
             raise ArgumentError(msg, hint="give the others by name: " + ", ".join(self.known[len(self.order) :]))
         for name in self.order[:given]:

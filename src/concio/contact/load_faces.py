@@ -9,7 +9,7 @@ import numpy as np
 
 from concio.arguments import closest
 from concio.errors import InputError
-from concio.model.model import Load, Model
+from concio.model.model import Load, Model, called
 
 Array = np.ndarray
 
@@ -77,7 +77,7 @@ def loaded_bodies(model: Model, load: Load) -> list[int]:
         return [i for i, b in enumerate(bodies) if b.kind != "fixed"]
     chosen = []
     for word in load.bodies:
-        found = [i for i, b in enumerate(bodies) if b.kind != "fixed" and word in (b.name, b.role, b.layer)]
+        found = [i for i, b in enumerate(bodies) if b.kind != "fixed" and called(word, b)]
         if not found:
             msg = f"a {load.kind} load acts on '{word}', but no free body has that name, role or layer"
             known = dict.fromkeys(w for b in bodies if b.kind != "fixed" for w in (b.role, b.layer, b.name) if w)

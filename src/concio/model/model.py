@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from functools import cached_property
 from typing import ClassVar, Literal, get_args
 
@@ -126,6 +127,13 @@ class Body:
         return self.area * self.thickness
 
 
+def called(word: str, body: Body | Polyhedron) -> bool:
+    """Return whether a word is the name, role or layer of a body, or a pattern (with ``*``) of its name."""
+    if "*" in word:
+        return word == "*" or fnmatchcase(body.name, word)
+    return word != "" and word in (body.name, body.role, body.layer)
+
+
 @strict_class
 @dataclass(frozen=True)
 class JointRule:
@@ -136,8 +144,9 @@ class JointRule:
     law : str
         Key of ``Model.laws``.
     between : pair of str
-        Each matches a body by name, role, layer or (unless it is fixed) material; "*" matches any. Order does not
-        matter. The last rule that matches an interface wins. A word that names no body of a model is refused.
+        Each matches a body by name, role, layer, (unless it is fixed) material, or by a pattern of names such as
+        ``"tower-*"``; "*" matches any. Order does not matter. The last rule that matches an interface wins. A word
+        that names no body of a model is refused.
     gap : float
         Initial opening of these interfaces, added to what the geometry shows >= 0 [m].
     """
@@ -155,7 +164,7 @@ class JointRule:
         """Return whether the rule speaks of interfaces between ``a`` and ``b``."""
 
         def fits(word: str, body: Body | Polyhedron) -> bool:
-            return word == "*" or (word != "" and word in _words(body))
+            return called(word, body) or (word == body.material != "" and body.kind != "fixed")
 
         p, q = self.between
         return (fits(p, a) and fits(q, b)) or (fits(p, b) and fits(q, a))
@@ -172,7 +181,7 @@ def check_rules(rules: Sequence[JointRule], bodies: Sequence[Body | Polyhedron],
     known = dict.fromkeys(word for place in range(4) for b in bodies for word in (_words(b)[place],) if word)
     for rule in rules:
         for word in rule.between:
-            if word != "*" and word not in known:
+            if word not in known and not any("*" in word and called(word, b) for b in bodies):
                 msg = f"the rule for the joint law '{rule.law}' names '{word}', but no body has that name, role, layer "
                 msg += "or material"
                 hint = closest(word, known, otherwise="see the names with 'concio check --all'" * (len(known) > 30))
@@ -237,7 +246,7 @@ class Load:
         traction: vector [kN/m2] on an edge or polygon. point: vector [kN] at ``at``. body: vector per volume [kN/m3].
     value : tuple of float
     bodies : tuple of str
-        Names, roles or layers; empty means every body that is not fixed.
+        Names, roles, layers, or patterns of names such as ``"tower-*"``; empty means every body that is not fixed.
     edge : (point, point) or None
         Segment for pressure and traction in the plane; only outline parts that lie on it are loaded.
     at : point or None

@@ -20,7 +20,7 @@ import numpy as np
 from concio.arguments import strict
 from concio.errors import InputError
 from concio.model.generate.arguments import positive
-from concio.model.model import Body, Load, Model, Point, Support, Tie
+from concio.model.model import Body, Load, Model, Point, Support, Tie, called
 from concio.model.polyhedron import Polyhedron
 from concio.model.stages import Stage
 from concio.model.surfaces import from_grid, prism
@@ -142,9 +142,7 @@ def _load(load: Load, model: Model, deep: dict[str, float], widest: float) -> Lo
 
 
 def _takes(load: Load, body: Body) -> bool:
-    return body.kind != "fixed" and (
-        not load.bodies or any(word in (body.name, body.role, body.layer) for word in load.bodies)
-    )
+    return body.kind != "fixed" and (not load.bodies or any(called(word, body) for word in load.bodies))
 
 
 def _tie(tie: Tie) -> Tie:
