@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -40,17 +41,17 @@ def merged_faces(points: Array, faces: Sequence[Loop], holes: Sequence[tuple[int
     area = top.area_vectors(points)
     length = np.linalg.norm(area, axis=1)
     normal = area / np.where(length > 0, length, 1.0)[:, None]
-    count = np.bincount(top.face)
-    middle = np.stack([np.bincount(top.face, points[top.start][:, k]) / count for k in range(3)], 1)
+    middle = top.by_face(points[top.start]) / top.sides_of_face[:, None]
     a, b = top.edge_faces.T
-    off = np.zeros(len(faces) * 2)
-    vertex = points[top.start]
+    order = np.argsort(top.face, kind="stable")
+    begin = np.concatenate([[0], np.cumsum(top.sides_of_face)])
     worst = np.zeros(len(a))
     for first, second in ((a, b), (b, a)):  # vertices of the second off the plane of the first
-        for k in range(len(a)):
-            own = vertex[top.face == second[k]]
-            worst[k] = max(worst[k], float(np.abs((own - middle[first[k]]) @ normal[first[k]]).max()))
-    del off
+        count = top.sides_of_face[second]
+        edge = np.repeat(np.arange(len(a)), count)
+        side = order[np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count) + begin[second][edge]]
+        off = np.abs(((points[top.start[side]] - middle[first][edge]) * normal[first][edge]).sum(1))
+        np.maximum.at(worst, edge, off)
     same = (worst <= COPLANAR * size) & ((normal[a] * normal[b]).sum(1) > 0.5)
     graph = sp.coo_array((np.ones(same.sum()), (a[same], b[same])), shape=(len(faces), len(faces)))
     number, group = connected_components(graph, directed=False)
@@ -201,32 +202,36 @@ def prism(name: str, rings: Sequence[Array], direction: Array, **fields: Any) ->
     ----------
     name : str
     rings : sequence of (n, 3) arrays
-        Boundary of the polygon counter-clockwise about ``direction``, then those of its holes clockwise [m].
+        Boundary of the polygon counter-clockwise about ``direction``, then those of its holes, either way round [m].
     direction : (3,) array
         [m].
     **fields
         Further fields of :class:`Polyhedron`.
     """
-    low = np.concatenate(rings)
     if not np.linalg.norm(direction) > 0:
         msg = "the prism has no height"
         raise GeometryError(msg, where=f"block '{name}'")
+    points, faces, holes = prism_surface(rings, np.asarray(direction, dtype=float))
+    return Polyhedron(name, points, faces, holes=holes, **fields)
+
+
+def prism_surface(rings: Sequence[Array], direction: Array) -> Surface:
+    """Return the closed surface of a prism; see :func:`prism`."""
+    axes = tangents(direction / np.linalg.norm(direction))
+    turned = [ring if (signed_area(ring @ axes.T) > 0) == (k == 0) else ring[::-1] for k, ring in enumerate(rings)]
+    low = np.concatenate(turned)
     n = len(low)
+    ends = np.cumsum([0] + [len(ring) for ring in turned]).tolist()
     faces: list[Loop] = []
     holes: list[tuple[int, Loop]] = []
-    first = 0
-    for k, ring in enumerate(rings):
-        loop = tuple(range(first, first + len(ring)))
-        lower, upper = loop[::-1], tuple(v + n for v in loop)
+    for k, (p, q) in enumerate(pairwise(ends)):
+        lower, upper = tuple(range(q - 1, p - 1, -1)), tuple(range(p + n, q + n))
         if k == 0:
             faces += [lower, upper]
         else:
             holes += [(0, lower), (1, upper)]
-        first += len(ring)
-    first = 0
-    for ring in rings:
-        for k in range(len(ring)):
-            p, q = first + k, first + (k + 1) % len(ring)
-            faces.append((p, q, q + n, p + n))
-        first += len(ring)
-    return Polyhedron(name, np.vstack([low, low + direction]), tuple(faces), holes=tuple(holes), **fields)
+    for p, q in pairwise(ends):
+        for v in range(p, q):
+            w = v + 1 if v + 1 < q else p
+            faces.append((v, w, w + n, v + n))
+    return np.vstack([low, low + direction]), tuple(faces), tuple(holes)

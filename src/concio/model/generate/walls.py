@@ -180,7 +180,7 @@ def panel_pieces(
     holes = [hole for opening in openings for hole in opening.holes]
     for c, (y0, y1) in enumerate(pairwise(levels)):
         lines = l * head_joints(courses[c % len(courses)], panel.length / l)
-        outlines = _course_outlines(f"{where}, course {c + 1}", lines, float(y0), float(y1), holes, l)
+        outlines = course_outlines(f"{where}, course {c + 1}", lines, float(y0), float(y1), holes, l)
         for k, outline in enumerate(outlines):
             name = f"{prefix}{numbered('c', c + 1, len(levels) - 1)}-{numbered('b', k + 1, len(outlines))}"
             sort = sort_of_piece(float(np.ptp(outline[:, 0])) / l)
@@ -204,7 +204,7 @@ def course_levels(height: float, courses: Sequence[Course]) -> Array:
     return np.array([*levels[:-1], height])
 
 
-def _course_outlines(
+def course_outlines(
     where: str, lines: Array, y0: float, y1: float, holes: Sequence[tuple[float, float, float, float]], l: float
 ) -> list[Array]:
     """Return the outlines of a course from y0 to y1 with head joints ``lines``, holes left out."""
