@@ -86,25 +86,16 @@ def arch(
     where = "arch"
     options = checked(where, common)
     s, t, n = positive(where, "span", span), positive(where, "ring", ring), count(where, "voussoirs", voussoirs, 2)
-    choice(where, "shape", shape, ("semicircular", "segmental", "pointed", "flat"))
     choice(where, "edges", edges, ("curved", "straight"))
     tolerance = 1e-3 * t if chord_tolerance is None else positive(where, "chord_tolerance", chord_tolerance)
     force = finite(where, "crown_load", crown_load, "force")
     given = None if rise is None else positive(where, "rise", rise)
-    if shape == "flat":
-        if given is not None:
-            msg = "a flat arch has no rise"
-            raise InputError(msg, where=where, hint="leave rise out, or take shape = 'segmental'")
-        outlines, joints = _flat(where, s, t, n, skew)
-    elif shape == "pointed":
-        outlines, joints = _pointed(where, s, given, t, n, tolerance if edges == "curved" else None)
-    else:
-        outlines, joints = _one_arc(where, shape, s, given, t, n, tolerance if edges == "curved" else None)
+    outlines, joints = ring_outlines(where, shape, s, given, t, n, tolerance if edges == "curved" else None, skew)
     pieces = [Piece(numbered("v", k + 1, n), outline, layer="voussoir") for k, outline in enumerate(outlines)]
     if n % 2:
         pieces[n // 2] = Piece(pieces[n // 2].name, outlines[n // 2], layer="keystone")
     obstacles = [
-        Piece(f"{side} abutment", _abutment(joint, t), "abutment")
+        Piece(f"{side} abutment", abutment_outline(joint, t), "abutment")
         for side, joint in zip(("left", "right"), joints, strict=True)
     ]
     loads = []
@@ -113,6 +104,37 @@ def arch(
     title = f"{shape} arch, span {s:g} m, ring {t:g} m, {n} voussoirs"
     record = {"kind": "arch", "shape": shape, "span": s, "ring": t, "voussoirs": n}
     return assemble(options, pieces, obstacles, loads=loads, title=title, generator=record)
+
+
+def ring_outlines(
+    where: str, shape: str, s: float, rise: float | None, t: float, n: int, tolerance: float | None, skew: float = 60.0
+) -> tuple[list[Array], list[Array]]:
+    """Return the outlines of voussoirs and the two springing joints, each from intrados to extrados.
+
+    Parameters
+    ----------
+    where : str
+        For messages.
+    shape : str
+    s, t : float
+        Clear span and thickness of the ring [m].
+    rise : float or None
+    n : int
+        Number of voussoirs.
+    tolerance : float or None
+        Of chords [m]; None for one chord a voussoir.
+    skew : float
+        Angle of the springings of a flat arch with the horizontal [degrees].
+    """
+    choice(where, "shape", shape, ("semicircular", "segmental", "pointed", "flat"))
+    if shape == "flat":
+        if rise is not None:
+            msg = "a flat arch has no rise"
+            raise InputError(msg, where=where, hint="leave rise out, or take shape = 'segmental'")
+        return _flat(where, s, t, n, skew)
+    if shape == "pointed":
+        return _pointed(where, s, rise, t, n, tolerance)
+    return _one_arc(where, shape, s, rise, t, n, tolerance)
 
 
 def _chords(radius: float, angle: float, tolerance: float | None) -> int:
@@ -198,7 +220,7 @@ def _flat(where: str, s: float, t: float, n: int, skew: float) -> tuple[list[Arr
     return outlines, [np.array([[low[k], 0.0], [high[k], t]]) for k in (0, -1)]
 
 
-def _abutment(joint: Array, t: float) -> Array:
+def abutment_outline(joint: Array, t: float) -> Array:
     """Return a fixed block (4, 2) behind a springing joint, given from intrados to extrados."""
     along = joint[1] - joint[0]
     outward = turned_right(along) if along[0] > 0 else turned_left(along)

@@ -201,3 +201,20 @@ def runs_of(
             found.append((start, a))
         start = max(start, b)
     return found
+
+
+def require_clear_corners(where: str, walls: Sequence[PlanWall], meeting: Sequence[Junction], half: float) -> None:
+    """Refuse openings and lintels that reach into a square that two walls share.
+
+    Raises
+    ------
+    InputError
+    """
+    for junction in meeting:
+        for own, other in ((junction.through, junction.butting), (junction.butting, junction.through)):
+            low, high = walls[other].across - half, walls[other].across + half
+            for s0, s1, z0, _ in walls[own].holes:
+                if s0 < high - 1e-9 and s1 > low + 1e-9 and z0 < walls[other].height - 1e-9:
+                    msg = f"an opening or its lintel of wall {own + 1} reaches into its corner with wall {other + 1}"
+                    hint = f"keep it out of {low:g} to {high:g} m along the wall"
+                    raise InputError(msg, where=where, hint=hint)

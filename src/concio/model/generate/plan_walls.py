@@ -23,7 +23,15 @@ from concio.model.generate.arguments import choice, count, finite, positive
 from concio.model.generate.bonds import without_short_pieces
 from concio.model.generate.masonry import numbered
 from concio.model.generate.openings import Opening
-from concio.model.generate.plan import Junction, PlanWall, WallLine, checked_plan, junctions, runs_of
+from concio.model.generate.plan import (
+    Junction,
+    PlanWall,
+    WallLine,
+    checked_plan,
+    junctions,
+    require_clear_corners,
+    runs_of,
+)
 from concio.model.generate.solid_masonry import (
     CommonSpace,
     SolidPiece,
@@ -134,6 +142,7 @@ def walls(
         msg = f"{area:g} m2 of wall of blocks of {bricks.length:g} x {bricks.height:g} m are too many blocks"
         raise InputError(msg, where=where, hint=f"at most {LARGEST_BLOCKS:,}; block_size is in m")
     meeting = junctions(plan, 0.5 * bricks.thick)
+    require_clear_corners(where, plan, meeting, 0.5 * bricks.thick)
     pieces = [p for k in range(len(plan)) for p in _wall(where, plan, k, meeting, bricks, "lintel" if lintel else "")]
     loads = _pressed(plan, meeting, bricks.thick, pressure) if pressure else []
     extent = _extent(plan, bricks.thick)
