@@ -40,11 +40,17 @@ if TYPE_CHECKING:
     from concio.model.drawing.drawing import model_from_dxf
     from concio.model.file.reading import load, loads
     from concio.model.file.writing import dumps, save
+    from concio.model.generate.arch_on_piers import arch_on_piers
     from concio.model.generate.arches import arch
+    from concio.model.generate.barrel import barrel
     from concio.model.generate.cells import cell
     from concio.model.generate.columns import buttress, column
+    from concio.model.generate.dome import dome
+    from concio.model.generate.drums import drums
     from concio.model.generate.extrusion import extrude
+    from concio.model.generate.groins import cloister_vault, cross_vault
     from concio.model.generate.panel import running_bond_panel
+    from concio.model.generate.plan_walls import tower, walls
     from concio.model.generate.rubble import rubble
     from concio.model.generate.walls import wall, wall_of_courses
     from concio.model.materials import Elastic, JointLaw, Rigid
@@ -96,7 +102,13 @@ _HOMES = {
     "concio.studies.study": ("Stop", "study"),
     "concio.studies.study_result": ("StudyResult", "load_study"),
     "concio.studies.variables": ("Variable", "variable"),
+    "concio.model.generate.arch_on_piers": ("arch_on_piers",),
     "concio.model.generate.arches": ("arch",),
+    "concio.model.generate.barrel": ("barrel",),
+    "concio.model.generate.dome": ("dome",),
+    "concio.model.generate.drums": ("drums",),
+    "concio.model.generate.groins": ("cloister_vault", "cross_vault"),
+    "concio.model.generate.plan_walls": ("tower", "walls"),
     "concio.model.generate.cells": ("cell",),
     "concio.model.generate.columns": ("buttress", "column"),
     "concio.model.generate.extrusion": ("extrude",),
@@ -148,12 +160,18 @@ __all__ = [
     "Variable",
     "__version__",
     "arch",
+    "arch_on_piers",
     "assemble",
     "assess",
+    "barrel",
     "buttress",
     "cell",
+    "cloister_vault",
     "column",
     "compare_with_continuum",
+    "cross_vault",
+    "dome",
+    "drums",
     "dumps",
     "dynamics",
     "extrude",
@@ -182,9 +200,11 @@ __all__ = [
     "strength",
     "study",
     "thrust_line",
+    "tower",
     "variable",
     "wall",
     "wall_of_courses",
+    "walls",
 ]
 
 

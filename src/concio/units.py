@@ -101,6 +101,19 @@ def unit_of(symbol: str) -> float:
     return found[0]
 
 
+def degrees(value: float | str, *, where: str | None = None) -> float:
+    """Return an angle in degrees: a bare number is in degrees already, a text may say another unit.
+
+    Raises
+    ------
+    InputError
+        As :func:`quantity`.
+    """
+    if isinstance(value, str) and re.search(r"[A-Za-z]\s*$", value):
+        return math.degrees(quantity(value, "angle", where=where))
+    return quantity(value, "number", where=where)
+
+
 def quantity(value: float | str, kind: str, *, where: str | None = None) -> float:
     """Return ``value`` as a number in kN and m.
 

@@ -44,7 +44,7 @@ def test_every_public_function_and_class_refuses_what_it_does_not_know(name: str
     meant = all_arguments(function)[-1]
     needed = {
         p.name: None for p in inspect.signature(function).parameters.values()
-        if p.default is p.empty and p.kind is not p.VAR_KEYWORD
+        if p.default is p.empty and p.kind not in (p.VAR_KEYWORD, p.VAR_POSITIONAL)
     }  # fmt: skip
     given = {"model": stack(2)} if "model" in needed else {}
     with pytest.raises(concio.InputError, match=rf"has no argument '{meant}_'.*did you mean '{meant}'\?"):

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 import concio
 from concio.errors import GeometryError, InputError
-from concio.fem.elements import FAMILIES
+from concio.fem.elements import FAMILIES, SOLID_FAMILIES
 from concio.files import LARGEST
 from concio.model.file.block_table import write_blocks
 from concio.model.file.generator_tables import KINDS, file_table, hints_of, json_schema
@@ -425,7 +425,7 @@ def test_every_argument_is_a_key(name: str) -> None:
 
 
 def test_the_elements_a_file_may_name_are_those_there_are() -> None:
-    assert set(get_args(Element)) == set(FAMILIES)
+    assert set(get_args(Element)) == {*FAMILIES, *SOLID_FAMILIES}
 
 
 TEMPLATES = sorted(p.name for p in files("concio.model").joinpath("templates").iterdir())
@@ -442,4 +442,4 @@ def test_templates_obey_the_published_schema(name: str) -> None:
         jsonschema.validate({**tomllib.loads(text), "colour": "red"}, schema)
     model = concio.loads(text)
     assert model.title
-    assert all(math.isfinite(body.area) for body in model.bodies)
+    assert all(math.isfinite(body.volume) for body in model.bodies)

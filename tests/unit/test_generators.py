@@ -242,7 +242,9 @@ def test_bad_arguments_are_named(kind, arguments, message):
 
 def test_common_options_are_known_to_all_generators():
     for kind in GENERATORS:
-        assert {"friction", "block", "thickness"} <= set(arguments_of(kind))
+        known = set(arguments_of(kind))
+        assert {"friction", "block"} <= known
+        assert ("thickness" in known) != ("contact_points" in known)  # the options of the plane, or those of space
 
 
 def test_a_course_needs_positive_lengths():

@@ -46,6 +46,7 @@ def check(
         assembly = assemble(model)
         facts = {
             "pairs": len(assembly.pairs),
+            "contact_model": assembly.pairs.contact_model,
             "unknowns": assembly.disc.unknowns,
             "total_load": resultants(assembly),
         }
@@ -75,14 +76,17 @@ def _check_picture(out: Path, *, force: bool) -> None:
 
 
 def _draw(model: Model, detection: Detection, out: Path) -> None:
+    import numpy as np
     from matplotlib.figure import Figure
 
     from concio.plot.model_figure import plot_model
+    from concio.plot.solid_figure import plot_solid_model, projected
 
-    axes = plot_model(model)
+    axes = plot_model(model) if model.dim == 2 else plot_solid_model(model, detection=detection)
     for things, mark, word in ((detection.overlaps, "X", "overlap"), (detection.near_misses, "o", "near miss")):
         if things:
-            x, y = zip(*(t.at for t in things), strict=True)
+            at = np.array([t.at for t in things])
+            x, y = (at if model.dim == 2 else projected(at, "axonometry")[0]).T
             axes.plot(x, y, mark, mec="#c1272d", mfc="none", ms=9, label=word, ls="")
     figure = axes.figure
     assert isinstance(figure, Figure)

@@ -15,8 +15,10 @@ from concio.errors import InputError
 from concio.fem.discretisation import RIGID
 from concio.model.described import law_words, material_words
 from concio.model.interfaces.detect import Detection
+from concio.model.interfaces.patches import Patch
 from concio.model.model import Body, Model
 from concio.model.plausibility import implausible
+from concio.model.polyhedron import Polyhedron
 
 MOST_LINES = 20
 """More findings than this are counted, unless all are asked for."""
@@ -57,12 +59,12 @@ def check_lines(
     """
     units = model.report
     scale, symbol = units.factor("length")
-    width, height = np.ptp(np.vstack([body.outline for body in model.outlines]), axis=0)
+    sizes = np.ptp(np.vstack([body.vertices for body in model.bodies]), axis=0)
+    kind = f"plane {model.plane}" if model.dim == 2 else "in space"
     lines = [
         model.title or "model without a title",
-        f"size         {number(scale * width, 4)} x {number(scale * height, 4)} {symbol}, plane {model.plane}, "
-        f"elements {model.element}",
-        *_bodies(model, float(max(width, height)), every=every),
+        f"size         {' x '.join(number(scale * v, 4) for v in sizes)} {symbol}, {kind}, elements {model.element}",
+        *_bodies(model, float(sizes.max()), every=every),
     ]
     if model.periods is not None:
         (a, b), (c, d) = model.periods
@@ -73,18 +75,20 @@ def check_lines(
     lines += [f"joint law    {name}: {law_words(law, units)}" for name, law in model.laws.items()]
     lines += _interfaces(model, detection)
     if facts:
-        lines.append(f"contact      {facts['pairs']:,} pairs, {facts['unknowns']:,} displacements")
+        stated = ", ".join(f"{count:,} {name}" for name, count in facts["contact_model"].items())
+        lines.append(f"contact      {facts['pairs']:,} pairs ({stated}), {facts['unknowns']:,} displacements")
+        lines += _torsion(model, detection, facts["contact_model"])
     for group in model.load_groups:
         kinds = Counter(load.kind for load in model.loads if load.group == group)
         words = [f"{n} {kind}" for kind, n in kinds.items()]
         moved = sum(s.group == group for s in model.supports)
         words += [f"{moved} support{'s' if moved > 1 else ''}"] if moved else []
         total = facts.get("total_load", {}).get(group)
-        force = f", {units.force_vector((total[0], total[1]))} in all" if total else ""
+        force = f", {units.force_vector(total)} in all" if total else ""
         lines.append(f"load group   {group}: {', '.join(words)}{force}")
-    if model.periods is None and not model.loads and not any(any(s.displacement) or s.rotation for s in model.supports):
+    if model.periods is None and not model.loads and not any(s.moves for s in model.supports):
         lines.append("attention    there are no loads and nothing is moved: everything stays as it is")
-    lines += _edge_loads(model, every=every)
+    lines += _edge_loads(model, every=every) if model.dim == 2 else []
     for tie in model.ties:
         lines.append(f"tie          {tie.name}: {tie.body_a} to {tie.body_b or 'a fixed point'}")
     geometry = [f"overlap      {o.sentence}" for o in detection.overlaps if o.sentence not in fault]
@@ -107,11 +111,13 @@ def _bodies(model: Model, size: float, *, every: bool) -> list[str]:
         of = f" of '{material}'" if material else ""
         lines.append(f"bodies       {count:,} {kind}, role '{role}'{of}")
     if every or len(model.bodies) <= MOST_LINES:
-        for body in model.outlines:
-            x, y = np.round(body.centroid / size, 9) * size + 0.0
-            lines.append(
-                f"  '{body.name}': {_corners(body)}, area {body.area:.4g} m2, centroid ({x:.4g}, {y:.4g}) m"
-            )
+        for body in model.bodies:
+            at = ", ".join(f"{v:.4g}" for v in np.round(body.centroid / size, 9) * size + 0.0)
+            if isinstance(body, Polyhedron):
+                shape = f"{len(body.vertices)} vertices, {len(body.faces)} faces, volume {body.volume:.4g} m3"
+            else:
+                shape = f"{_corners(body)}, area {body.area:.4g} m2"
+            lines.append(f"  '{body.name}': {shape}, centroid ({at}) m")
     return lines
 
 
@@ -125,15 +131,15 @@ def _interfaces(model: Model, detection: Detection) -> list[str]:
     deciding: set[int] = set()
     length: dict[str, float] = defaultdict(float)
     apart: Counter[str] = Counter()
-    for interface in detection.segments:
+    for interface in detection.interfaces:
         rule = model.rule_between(model.bodies[interface.a], model.bodies[interface.b])
         found[rule.law] += 1
         deciding.add(id(rule))
-        length[rule.law] += interface.length
+        length[rule.law] += interface.area if isinstance(interface, Patch) else interface.length
         apart[rule.law] += bool(rule.gap or interface.gap.max() > 0)
     lines = []
     for law, count in found.items():
-        text = f"joints       {count:,} with law '{law}', {length[law]:.4g} m in all"
+        text = f"joints       {count:,} with law '{law}', {length[law]:.4g} {'m' if model.dim == 2 else 'm2'} in all"
         lines.append(text + (f", {apart[law]:,} of them open at first" if apart[law] else ""))
     for k, rule in enumerate(model.rules, 1):
         if detection.interfaces and id(rule) not in deciding and rule.between != ("*", "*"):
@@ -143,6 +149,25 @@ def _interfaces(model: Model, detection: Detection) -> list[str]:
                 f"such bodies, or a later rule decides it"
             )
     return lines or ["joints       none: no two bodies touch"]
+
+
+def _torsion(model: Model, detection: Detection, contact_model: Mapping[str, int]) -> list[str]:
+    """Return a line where blocks can turn about joints whose pressure stands at their corners."""
+    if "corners of the patch" not in contact_model:
+        return []
+    normals: dict[int, list[np.ndarray]] = defaultdict(list)
+    for patch in detection.patches:
+        for body in (patch.a, patch.b):
+            if model.bodies[body].kind == "rigid":
+                normals[body].append(patch.normal)
+    parallel = [b for b, own in normals.items() if all(abs(n @ own[0]) > 1 - 1e-6 for n in own)]
+    if not parallel:
+        return []
+    word = "block is" if len(parallel) == 1 else "blocks are"
+    return [
+        f"attention    {len(parallel):,} {word} held by parallel joints alone, stated at their corners: friction "
+        "resists torsion there up to 1.85 times better than under uniform pressure (contact_points = 4 spreads it)"
+    ]
 
 
 def _edge_loads(model: Model, *, every: bool) -> list[str]:
@@ -195,13 +220,14 @@ def _noted(model: Model, what: str) -> tuple[str, ...]:
 
 
 def resultants(assembly: Assembly) -> dict[str, list[float]]:
-    """Return the resultant (x, y) of each load group [kN]."""
+    """Return the resultant (x, y) or (x, y, z) of each load group [kN]."""
     disc = assembly.disc
     found = {}
     for group, f in assembly.loads.items():
-        total = np.zeros(2)
+        d = disc.dim
+        total = np.zeros(d)
         for b, free in enumerate(np.diff(disc.offsets)):
             own = f[disc.offsets[b] : disc.offsets[b + 1]]
-            total += own[:2] if disc.shape_of[b] == RIGID else own.reshape(-1, 2).sum(0) if free else 0.0
+            total += own[:d] if disc.shape_of[b] == RIGID else own.reshape(-1, d).sum(0) if free else 0.0
         found[group] = total.tolist()
     return found

@@ -19,7 +19,7 @@ from concio.model.materials import JointLaw
 from concio.model.model import Body, JointRule, Load, Model, Point, Support, Tie, called
 from concio.model.polyhedron import Polyhedron
 from concio.model.stages import Stage
-from concio.units import quantity
+from concio.units import degrees, quantity
 
 Array = np.ndarray
 T = TypeVar("T")
@@ -112,7 +112,7 @@ def _motion(
     if not set(mirror) <= set(AXES[:d]):
         msg = f"mirror = '{mirror}' is not made of {', '.join(AXES[:d])}"
         raise InputError(msg, where=where)
-    angle = float(quantity(turn, "number", where="turn"))
+    angle = degrees(turn, where="turn")
     if not np.isfinite(angle):
         msg = f"turn = {angle} must be finite"
         raise InputError(msg, where=where)
@@ -148,12 +148,13 @@ def _named(model: Model, words: Sequence[str]) -> set[str]:
 
 
 def _moved_body(body: Body | Polyhedron, matrix: Array, shift: Array) -> Body | Polyhedron:
-    points = body.vertices @ matrix.T + shift
     if isinstance(body, Body):
+        outline, *holes = (ring @ matrix.T + shift for ring in body.rings)
         grid = None
         if body.grid is not None and np.array_equal(matrix, np.eye(2)):
             grid = (body.grid[0] + shift[0], body.grid[1] + shift[1])
-        return replace(body, outline=points, grid=grid)
+        return replace(body, outline=outline, holes=tuple(holes), grid=grid)
+    points = body.vertices @ matrix.T + shift
     cells = None if body.grid is None else body.grid @ matrix.T + shift
     if np.linalg.det(matrix) > 0:
         return replace(body, vertices=points, grid=cells)

@@ -13,6 +13,7 @@ import numpy as np
 from concio.arguments import strict_class
 from concio.errors import GeometryError, InputError
 from concio.kinematics.mass import Moments, polyhedron_moments
+from concio.model.convex_pieces import ConvexPiece, convex_pieces
 from concio.model.polyhedron_check import require_sound
 from concio.model.topology import Loop, Topology, face_triangles, topology
 
@@ -174,6 +175,11 @@ class Polyhedron:
         """Whether no vertex stands out of the plane of any face."""
         out = self.vertices @ self.normals.T - self.offsets
         return bool(out.max() <= CONVEX * np.ptp(self.vertices, axis=0).max())
+
+    @cached_property
+    def pieces(self) -> tuple[ConvexPiece, ...] | None:
+        """Convex pieces of the block, itself where it is convex; None where it falls into too many."""
+        return convex_pieces(self)
 
     def loops_of(self, face: int) -> list[Loop]:
         """Return the boundary of a face and those of its holes."""

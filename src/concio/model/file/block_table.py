@@ -12,9 +12,10 @@ take for a formula are written with an apostrophe in front, which reading takes 
     b1,0 0; 0.4 0; 0.4 0.2; 0 0.2,block,elastic,block,,1.0
 
 A further column ``holes`` gives the holes of a block, written as its outline, with ``|`` between them; in JSON they
-are a list of outlines. ``name`` and ``outline`` must be there; the others, where they are left out or their cell is
-empty, have the defaults of :class:`concio.model.model.Body`. JSON may hold ``mesh_size`` too, and another ``unit`` of
-its coordinates (thickness and mesh size are always in m).
+are a list of outlines. A block in space has ``vertices`` and ``faces`` (and perhaps ``holes``, pairs of a face and a
+loop) in place of its outline; it goes into a JSON table. ``name`` and the shape must be there; the others, where they
+are left out or their cell is empty, have the defaults of :class:`concio.model.model.Body`. JSON may hold ``mesh_size``
+too, and another ``unit`` of its coordinates (thickness and mesh size are always in m).
 """
 
 from __future__ import annotations
@@ -34,15 +35,29 @@ from concio.errors import InputError
 from concio.files import guarded, read_text, unguarded, whole_file
 from concio.model.interfaces.polygon_check import check_polygon
 from concio.model.model import Array, Body
+from concio.model.polyhedron import Polyhedron
 from concio.units import DECIMAL_COMMA, quantity
 
 FORMAT, VERSION = "concio blocks", 1
 _TEXTS = ("material", "kind", "role", "layer")
 _NUMBERS = ("thickness", "mesh_size")
 _COLUMNS = ("name", "outline", *_TEXTS, *_NUMBERS, "holes")
+_SOLID = ("vertices", "faces", "holes")
 
 
-def read_blocks(path: str | Path) -> tuple[Body, ...]:
+def _row(body: Body | Polyhedron) -> dict[str, Any]:
+    row: dict[str, Any] = {"name": body.name}
+    if isinstance(body, Body):
+        row["outline"] = body.outline.tolist()
+        row |= {k: getattr(body, k) for k in _TEXTS + _NUMBERS}
+        return {**row, "holes": [hole.tolist() for hole in body.holes] or None}
+    row |= {"vertices": body.vertices.tolist(), "faces": [list(face) for face in body.faces]}
+    if body.holes:
+        row["holes"] = [[face, list(loop)] for face, loop in body.holes]
+    return {**row, **{k: getattr(body, k) for k in _TEXTS}, "mesh_size": body.mesh_size}
+
+
+def read_blocks(path: str | Path) -> tuple[Body | Polyhedron, ...]:
     """Return the blocks of a table, every outline checked.
 
     Parameters
@@ -67,7 +82,7 @@ def read_blocks(path: str | Path) -> tuple[Body, ...]:
     else:
         msg = f"a table of blocks ends in .json or .csv, not in '{path.suffix}'"
         raise InputError(msg, where=str(path))
-    bodies: list[Body] = []
+    bodies: list[Body | Polyhedron] = []
     seen: set[str] = set()
     for where, row in rows:
         body = _body(row, factor, where)
@@ -82,25 +97,20 @@ def read_blocks(path: str | Path) -> tuple[Body, ...]:
     return tuple(bodies)
 
 
-def write_blocks(path: str | Path, bodies: Sequence[Body]) -> None:
+def write_blocks(path: str | Path, bodies: Sequence[Body | Polyhedron]) -> None:
     """Write a table of blocks; reading it gives the same bodies to the last bit (their ``grid`` is not kept).
 
     Parameters
     ----------
     path : str or Path
         Ends in ``.json`` or ``.csv``. An existing file is replaced only when the new one is complete.
-    bodies : sequence of Body
+    bodies : sequence of Body or Polyhedron
     """
     path = Path(path)
-    rows: list[dict[str, Any]] = [
-        {
-            "name": b.name,
-            "outline": b.outline.tolist(),
-            **{k: getattr(b, k) for k in _TEXTS + _NUMBERS},
-            "holes": [hole.tolist() for hole in b.holes] or None,
-        }
-        for b in bodies
-    ]
+    rows = [_row(b) for b in bodies]
+    if path.suffix.lower() == ".csv" and any(isinstance(b, Polyhedron) for b in bodies):
+        msg = "blocks in space do not fit into a .csv table"
+        raise InputError(msg, where=str(path), hint="take a .json table")
     if path.suffix.lower() == ".json":
         rows = [{k: v for k, v in row.items() if v is not None} for row in rows]
         blocks = ",\n".join("  " + json.dumps(row, ensure_ascii=False) for row in rows)
@@ -179,9 +189,9 @@ def _csv_rows(text: str, where: str) -> Iterable[tuple[str, Mapping[str, Any]]]:
         raise InputError(msg, where=where, hint="tables with outlines as long as that go into a .json file") from None
 
 
-def _body(row: Mapping[str, Any], factor: float, where: str) -> Body:
+def _body(row: Mapping[str, Any], factor: float, where: str) -> Body | Polyhedron:
     for key in row:
-        if key not in _COLUMNS:
+        if key not in (*_COLUMNS, *_SOLID):
             msg = f"unknown key '{key}'"
             raise InputError(msg, where=where, hint=closest(key, _COLUMNS))
     name = row.get("name")
@@ -189,11 +199,13 @@ def _body(row: Mapping[str, Any], factor: float, where: str) -> Body:
         msg = "the block has no name"
         raise InputError(msg, where=where)
     where = f"{where} '{name}'"
-    if "outline" not in row:
+    solid = "vertices" in row or "faces" in row
+    if "outline" not in row and not solid:
         msg = "outline is missing"
         raise InputError(msg, where=where, hint="give its vertices, for example [[0, 0], [0.4, 0], [0.4, 0.2]]")
-    outline = factor * _outline(row["outline"], where)
-    check_polygon(outline, name)
+    if solid and "outline" in row:
+        msg = "outline and vertices are given together"
+        raise InputError(msg, where=where, hint="a block is an outline, or vertices and faces in space")
     values: dict[str, Any] = {}
     for key in _TEXTS:
         if key in row:
@@ -204,6 +216,10 @@ def _body(row: Mapping[str, Any], factor: float, where: str) -> Body:
     for key in _NUMBERS:
         if row.get(key) is not None:
             values[key] = quantity(row[key], "length", where=f"{where}, {key}")
+    if solid:
+        return _solid(row, factor, where, name, values)
+    outline = factor * _outline(row["outline"], where)
+    check_polygon(outline, name)
     holes = row.get("holes") or []
     if isinstance(holes, str):
         holes = holes.split("|")
@@ -218,6 +234,22 @@ def _body(row: Mapping[str, Any], factor: float, where: str) -> Body:
 
 def _written(ring: Iterable[tuple[float, float]]) -> str:
     return "; ".join(f"{x!r} {y!r}" for x, y in ring)
+
+
+def _solid(row: Mapping[str, Any], factor: float, where: str, name: str, values: dict[str, Any]) -> Polyhedron:
+    """Return a block in space."""
+    if "thickness" in values:
+        msg = "a block in space has no thickness"
+        raise InputError(msg, where=where, hint="leave it out")
+    try:
+        vertices = np.array(row.get("vertices"), dtype=float)
+        faces = tuple(tuple(map(int, face)) for face in row.get("faces", ()))
+        holes = tuple((int(face), tuple(map(int, loop))) for face, loop in row.get("holes") or ())
+    except (TypeError, ValueError, OverflowError, RecursionError):
+        msg = "vertices, faces or holes are not lists of numbers"
+        hint = '"vertices": [[x, y, z], ...], "faces": [[0, 2, 3, 1], ...], "holes": [[face, [4, 5, 6]], ...]'
+        raise InputError(msg, where=where, hint=hint) from None
+    return Polyhedron(name, factor * vertices, faces, holes=holes, **values)
 
 
 def _outline(value: Any, where: str) -> Array:

@@ -6,8 +6,9 @@ the materials, joints, rules, supports, loads and ties of the file on top of wha
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any, Literal
 
@@ -19,10 +20,12 @@ from concio.errors import GeometryError, InputError
 from concio.model.drawing.drawing import model_from_dxf
 from concio.model.file.block_table import read_blocks
 from concio.model.file.errors import placed
+from concio.model.file.parts import assembled_parts
 from concio.model.file.tables import (
     BlockTable,
     CourseTable,
     FileTable,
+    HoleTable,
     JointTable,
     LoadTable,
     MaterialTable,
@@ -32,17 +35,19 @@ from concio.model.file.tables import (
     TieTable,
 )
 from concio.model.generate.bonds import Course
+from concio.model.generate.extrusion import extrude
 from concio.model.generate.generators import GENERATORS
 from concio.model.interfaces.polygon_check import check_polygon
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Body, JointRule, Load, Model, Support, Tie, check_rules
+from concio.model.polyhedron import Polyhedron
 from concio.model.stages import ControlPoint, Stage
 
 Materials = dict[str, Elastic | Rigid]
 Laws = dict[str, JointLaw]
 
 
-def build(data: FileTable, folder: Path, where: str) -> Model:
+def build(data: FileTable, folder: Path, where: str, read: Callable[[str], Model]) -> Model:
     """Return the model that the tables of a file describe, in kN and m.
 
     Parameters
@@ -52,6 +57,8 @@ def build(data: FileTable, folder: Path, where: str) -> Model:
         ``blocks_file`` is relative to it.
     where : str
         Name of the file, for messages.
+    read : function
+        Returns the model of another file, which a part names.
 
     Raises
     ------
@@ -61,8 +68,8 @@ def build(data: FileTable, folder: Path, where: str) -> Model:
     with placed(where):
         materials = {name: _material(table, f"[materials.{name}]") for name, table in data.materials.items()}
         laws = {name: _law(table, f"[joints.{name}]") for name, table in data.joints.items()}
-        start = _start(data, materials, laws, folder)
-        bodies = [*(start.outlines if start else ()), *_blocks_of_file(data, materials, folder)]
+        start = _start(data, materials, laws, folder, read)
+        bodies = [*(start.bodies if start else ()), *_blocks_of_file(data, materials, folder)]
         bodies += [_body(b, k, materials, data.analysis.thickness) for k, b in enumerate(data.blocks, 1)]
         if not bodies:
             msg = "the file describes no blocks"
@@ -72,11 +79,14 @@ def build(data: FileTable, folder: Path, where: str) -> Model:
         model = replace(start, **parts) if start else Model(**parts)
     with placed(where):
         _check_names(model)
+        if data.extrusion is not None:
+            with placed("[extrusion]", own="extrude"):
+                model = extrude(model, data.extrusion.thickness, held=data.extrusion.held)
     return model
 
 
 def _parts(
-    data: FileTable, bodies: list[Body], start: Model | None, materials: Materials, laws: Laws
+    data: FileTable, bodies: list[Body | Polyhedron], start: Model | None, materials: Materials, laws: Laws
 ) -> dict[str, Any]:
     """Return the fields of the model; analysis keys count only where the file states them."""
     analysis = data.analysis
@@ -119,7 +129,7 @@ def _parts(
     return given
 
 
-def _rules(data: FileTable, before: list[JointRule], laws: Laws, bodies: list[Body]) -> list[JointRule]:
+def _rules(data: FileTable, before: list[JointRule], laws: Laws, bodies: Sequence[Body | Polyhedron]) -> list[JointRule]:
     found = list(before)
     if data.rules is None and not before:
         if len(laws) != 1:
@@ -136,21 +146,32 @@ def _rules(data: FileTable, before: list[JointRule], laws: Laws, bodies: list[Bo
     return found
 
 
-def _start(data: FileTable, materials: Materials, laws: Laws, folder: Path) -> Model | None:
-    """Return the model of the generator or of the drawing, None where there is neither."""
+def _start(
+    data: FileTable, materials: Materials, laws: Laws, folder: Path, read: Callable[[str], Model]
+) -> Model | None:
+    """Return the model of the generator, of the parts or of the drawing, None where there is none of them."""
     named = [name for name in GENERATORS if getattr(data, name, None) is not None]
     drawing = data.blocks_file is not None and data.blocks_file.lower().endswith(".dxf")
-    if len(named) + drawing > 1:
-        msg = "more than one of " + ", ".join([f"[{n}]" for n in named] + ["a drawing"] * drawing)
-        raise InputError(msg, hint="one file describes one structure; further blocks go into [[blocks]]")
+    parts = getattr(data, "parts", [])
+    if len(named) + drawing + bool(parts) > 1:
+        words = [f"[{n}]" for n in named] + ["a drawing"] * drawing + ["[[parts]]"] * bool(parts)
+        msg = "more than one of " + ", ".join(words)
+        raise InputError(msg, hint="one file describes one structure; several generators go into [[parts]]")
     if data.drawing is not None and not drawing:
         msg = "[drawing] is given, but blocks_file is not a .dxf file"
         raise InputError(msg, hint="add blocks_file = 'wall.dxf' at the top, or leave [drawing] out")
     if drawing:
         return _from_drawing(data, materials, laws, folder)
-    if not named:
+    if parts:
+        return assembled_parts(parts, lambda part, label: _generated(part, materials, laws), read, data.title)
+    return _generated(data, materials, laws)
+
+
+def _generated(data: Any, materials: Materials, laws: Laws) -> Model | None:
+    """Return the model of the generator whose table is given, None where there is none."""
+    name = next((name for name in GENERATORS if getattr(data, name, None) is not None), None)
+    if name is None:
         return None
-    name = named[0]
     table = getattr(data, name)
     arguments = {key: _argument(getattr(table, key), name, key, materials, laws) for key in table.model_fields_set}
     own = "wall" if name == "wall_of_courses" else name
@@ -217,14 +238,14 @@ def _from_drawing(data: FileTable, materials: Materials, laws: Laws, folder: Pat
     return replace(model, laws={}, rules=()) if laws else model
 
 
-def _blocks_of_file(data: FileTable, materials: Materials, folder: Path) -> list[Body]:
+def _blocks_of_file(data: FileTable, materials: Materials, folder: Path) -> list[Body | Polyhedron]:
     if data.blocks_file is None or data.blocks_file.lower().endswith(".dxf"):
         return []
     bodies = read_blocks(folder / data.blocks_file)
     return [_rigid_where_its_material_is(b, materials) for b in bodies]
 
 
-def _rigid_where_its_material_is(body: Body, materials: Materials) -> Body:
+def _rigid_where_its_material_is(body: Body | Polyhedron, materials: Materials) -> Body | Polyhedron:
     rigid = body.kind == "elastic" and isinstance(materials.get(body.material), Rigid)
     return replace(body, kind="rigid") if rigid else body
 
@@ -248,43 +269,101 @@ def _law(table: JointTable, place: str) -> JointLaw:
         return JointLaw(**table.model_dump())
 
 
-def _body(table: BlockTable, number: int, materials: Materials, thickness: float) -> Body:
+def _body(table: BlockTable, number: int, materials: Materials, thickness: float) -> Body | Polyhedron:
     with placed(f"[[blocks]] {number} '{table.name}'", own=f"block '{table.name}'"):
+        if table.box is not None or table.vertices is not None or table.faces is not None:
+            return _solid(table, materials)
         if (table.outline is None) == (table.rectangle is None):
             msg = "give either an outline or a rectangle" + ("" if table.outline is None else ", not both")
             raise InputError(msg, hint="outline = [[x, y], ...] or rectangle = [[x1, y1], [x2, y2]]")
         if table.rectangle is not None:
+            _plane_points(table.rectangle)
             (x0, x1), (y0, y1) = (sorted(values) for values in zip(*table.rectangle, strict=True))
             if x0 == x1 or y0 == y1:
                 msg = "the rectangle has no area"
                 raise GeometryError(msg, hint="give two opposite corners")
             outline = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
         else:
+            assert table.outline is not None
+            _plane_points(table.outline)
             outline = np.array(table.outline, dtype=float).reshape(-1, 2)
             check_polygon(outline, table.name)
-        kind: Literal["elastic", "rigid", "fixed"]
-        kind = table.kind or ("rigid" if isinstance(materials.get(table.material), Rigid) else "elastic")
-        role = table.role if table.role is not None else "obstacle" if kind == "fixed" else "block"
+        kind, role = _sort(table, materials)
         grid = None if table.grid is None else (np.array(table.grid.x), np.array(table.grid.y))
         depth = thickness if table.thickness is None else table.thickness
-        holes = tuple(np.array(hole, dtype=float).reshape(-1, 2) for hole in table.holes)
+        holes = tuple(_plane_hole(hole) for hole in table.holes)
         for k, hole in enumerate(holes, 1):
             check_polygon(hole, f"{table.name}', hole '{k}")
         return Body(table.name, outline, table.material, kind, role, table.layer, depth, grid, table.mesh_size, holes)
 
 
+def _plane_hole(hole: HoleTable | Sequence[Sequence[float]]) -> np.ndarray:
+    if isinstance(hole, HoleTable):
+        msg = "a hole of a block in the plane is an outline"
+        raise InputError(msg, hint="holes = [[[x, y], ...], ...]")
+    _plane_points(hole)
+    return np.array(hole, dtype=float).reshape(-1, 2)
+
+
+def _plane_points(points: Sequence[Sequence[float]]) -> None:
+    if any(len(p) != 2 for p in points):
+        msg = "a point of an outline or a rectangle has three coordinates"
+        raise InputError(msg, hint="a block in space has vertices and faces, or box = [[x, y, z], [x, y, z]]")
+
+
+def _sort(table: BlockTable, materials: Materials) -> tuple[Literal["elastic", "rigid", "fixed"], str]:
+    kind: Literal["elastic", "rigid", "fixed"]
+    kind = table.kind or ("rigid" if isinstance(materials.get(table.material), Rigid) else "elastic")
+    role = table.role if table.role is not None else "obstacle" if kind == "fixed" else "block"
+    return kind, role
+
+
+def _solid(table: BlockTable, materials: Materials) -> Polyhedron:
+    """Return a block in space."""
+    flat = [key for key in ("outline", "rectangle", "thickness", "grid") if getattr(table, key) is not None]
+    if flat or (table.box is None) == (table.vertices is None) or (table.vertices is None) != (table.faces is None):
+        msg = f"'{flat[0]}' is no key of a block in space" if flat else "give either vertices and faces, or a box"
+        raise InputError(msg, hint="vertices = [[x, y, z], ...], faces = [[0, 2, 3, 1], ...], or box = two corners")
+    kind, role = _sort(table, materials)
+    words: dict[str, Any] = {
+        "material": table.material, "kind": kind, "role": role, "layer": table.layer, "mesh_size": table.mesh_size
+    }  # fmt: skip
+    if table.box is not None:
+        if any(len(p) != 3 for p in table.box):
+            msg = "a corner of the box has two coordinates"
+            raise InputError(msg, hint="box = [[x, y, z], [x, y, z]]")
+        low, high = (f(table.box, axis=0).tolist() for f in (np.min, np.max))
+        return Polyhedron.box(table.name, low, high, **words)
+    assert table.vertices is not None
+    assert table.faces is not None
+    if any(len(p) != 3 for p in table.vertices):
+        msg = "a vertex has two coordinates"
+        raise InputError(msg, hint="vertices = [[x, y, z], ...]")
+    holes = []
+    for hole in table.holes:
+        if not isinstance(hole, HoleTable):
+            msg = "a hole of a block in space is a face and a loop of vertices"
+            raise InputError(msg, hint="holes = [{ face = 0, loop = [4, 5, 6] }]")
+        holes.append((hole.face, tuple(hole.loop)))
+    grid = None if table.hexahedra is None else np.array(table.hexahedra, dtype=float)
+    faces = tuple(map(tuple, table.faces))
+    return Polyhedron(table.name, np.array(table.vertices), faces, holes=tuple(holes), grid=grid, **words)
+
+
 def _support(table: SupportTable, number: int) -> Support:
-    if table.edge is not None and table.at is not None:
-        msg = "edge and at are given together"
+    if sum(v is not None for v in (table.edge, table.at, table.polygon)) > 1:
+        msg = "edge and at are given together" if table.polygon is None else "two of edge, polygon and at are given"
         raise InputError(msg, where=f"[[supports]] {number} '{table.name}'", hint="a support holds an edge or a point")
     edge = table.edge if table.at is None else (table.at, table.at)
+    region = None if table.polygon is None else tuple(table.polygon)
     return Support(
-        table.name, table.body, edge, table.directions, table.displacement, table.rotation, table.group
+        table.name, table.body, edge, table.directions, table.displacement or (), table.rotation, table.group, region
     )  # fmt: skip
 
 
 def _load(table: LoadTable) -> Load:
-    return Load(table.kind, table.value, tuple(table.bodies), table.edge, table.at, table.group, table.face)
+    region = None if table.polygon is None else tuple(table.polygon)
+    return Load(table.kind, table.value, tuple(table.bodies), table.edge, table.at, table.group, table.face, region)
 
 
 def _tie(table: TieTable) -> Tie:
@@ -310,7 +389,7 @@ def _check_names(model: Model) -> None:
     used += [(f"[[stages]] '{s.name}'", s.control.body, names) for s in model.stages if s.control]
     used += [(f"[[loads]] of kind {load.kind}", w, sorts) for load in model.loads for w in load.bodies]
     for place, word, known in used:
-        if word not in known:
+        if word not in known and not ("*" in word and any(fnmatchcase(name, word) for name in names)):
             msg = f"there is no body called '{word}'"
             hint = closest(word, sorted(known))
             if len(known) > 30 and not hint.startswith("did"):

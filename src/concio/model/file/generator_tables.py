@@ -7,28 +7,30 @@ arguments are written here, by name, so that a bare number can be in the units o
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from functools import cache
 from types import GenericAlias, NoneType, UnionType
-from typing import Any, Literal, Union, Unpack, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Literal, Union, Unpack, get_args, get_origin, get_type_hints
 
-from pydantic import Field, StrictBool, StrictInt, StrictStr, create_model
+from pydantic import Discriminator, Field, StrictBool, StrictInt, StrictStr, Tag, create_model
 
 from concio.model.file.assessment_table import AssessmentEntry, SiteEntry
 from concio.model.file.study_table import Study
-from concio.model.file.tables import Bond, Element, FileTable, Friction, Material, Table
-from concio.model.file.values import TYPES, Number, Size
+from concio.model.file.tables import Bond, Element, FileTable, Friction, Material, PartTable, Table
+from concio.model.file.values import TYPES, Length, Number, Size
 from concio.model.generate.arguments import Common
 from concio.model.generate.generators import GENERATORS
 from concio.model.generate.openings import Opening
+from concio.model.generate.plan import WallLine
 from concio.model.generate.wall_panels import Panel
 from concio.model.materials import Elastic, JointLaw, Rigid
 
 LENGTHS = (
-    "at", "base", "bearing", "block_length", "block_size", "chord_tolerance", "eccentricity", "height", "joint",
-    "length", "lintel", "mesh_size", "ring", "rise", "side_gap", "span", "stone", "thickness", "thrust_at", "top",
-    "width", "x", "y",
+    "at", "base", "bearing", "block_length", "block_size", "chord_tolerance", "course", "depth", "diameter",
+    "eccentricity", "fill", "height", "joint", "length", "lintel", "mesh_size", "oculus", "pier_height", "pier_width",
+    "ring", "rise", "side_gap", "span", "spread", "stone", "thickness", "thrust_at", "top", "top_diameter", "width",
+    "x", "y",
 )  # fmt: skip
 KINDS: Mapping[str, str] = {
     **dict.fromkeys(LENGTHS, "length"),
@@ -36,6 +38,9 @@ KINDS: Mapping[str, str] = {
     "unit_weight": "unit weight",
     "base_friction": "friction",
     "wall_friction": "friction",
+    "lantern": "force",
+    "skew": "degrees",
+    "springing": "degrees",
     "crown_load": "force",
     "top_force": "force",
     "thrust": "force",
@@ -57,9 +62,11 @@ def hints_of(function: Callable[..., Any]) -> dict[str, tuple[Any, Any]]:
     return found
 
 
-def field_type(name: str, hint: Any) -> Any:
-    """Return the type of a key of a file from the annotation of the argument it stands for."""
+def field_type(name: str, hint: Any, default: Any = None) -> Any:
+    """Return the type of a key of a file from annotation and default of the argument it stands for."""
     parts = [p for p in _parts(hint) if p is not NoneType]
+    if name == "contact_points":
+        return StrictInt | Literal["auto", "corners"]
     if name == "element":
         return Element
     if JointLaw in parts:
@@ -70,17 +77,44 @@ def field_type(name: str, hint: Any) -> Any:
         return {bool: StrictBool, int: StrictInt, str: StrictStr}[parts[0]]
     if all(get_origin(p) is Literal for p in parts):
         return Literal[tuple(word for p in parts for word in get_args(p))]
-    if name in ("block_size", "at"):
+    if name == "block_size" and isinstance(default, tuple) and len(default) == 3:
+        return tuple[Size, Size, Size]
+    if name in ("block_size", "at") or (name == "eccentricity" and float not in parts):
         return tuple[Size, Size]
+    if name == "towards":
+        return tuple[Number, Number]
+    if name in ("start", "end"):
+        return tuple[Length, Length]
+    if name == "lines":
+        return GenericAlias(list, (_line_type(),))
     if name in ("elements_per_block", "repeat"):
         return tuple[StrictInt, StrictInt]
     if any(p is float for p in parts):
         return TYPES[KINDS.get(name, "number")]
     if name in ("openings", "panels"):
-        return GenericAlias(list, (_table_of(Opening if name == "openings" else Panel),))
+        own = GenericAlias(list, (_table_of(Opening if name == "openings" else Panel),))
+        return GenericAlias(list, (own,)) if _nested(hint) else own
     if name == "bond":
         return Bond
     return list[list[Number]]
+
+
+def _nested(hint: Any) -> bool:
+    """Return whether an annotation is a sequence of sequences."""
+    inner = get_args(hint)
+    return bool(inner) and get_origin(inner[0]) is Sequence
+
+
+def _line_branch(value: Any) -> str:
+    return "<table>" if isinstance(value, dict | Table) else "<list>"
+
+
+@cache
+def _line_type() -> Any:
+    """Return the type of a wall in plan: a table, or a pair of points."""
+    pair = tuple[tuple[Length, Length], tuple[Length, Length]]
+    table = _table_of(WallLine)
+    return Annotated[Annotated[table, Tag("<table>")] | Annotated[pair, Tag("<list>")], Discriminator(_line_branch)]
 
 
 def _parts(hint: Any) -> tuple[Any, ...]:
@@ -103,7 +137,7 @@ def generator_table(name: str) -> type[Table]:
     function = GENERATORS[name]
     members: dict[str, Any] = {}
     for key, (hint, default) in hints_of(function).items():
-        kind = field_type(key, hint)
+        kind = field_type(key, hint, default)
         members[key] = (kind, Field(...)) if default is ... else (kind, Field(None))
     return create_model(name, __base__=Table, __doc__=_first_line(function), **members)
 
@@ -112,9 +146,11 @@ def generator_table(name: str) -> type[Table]:
 def file_table() -> type[FileTable]:
     """Return the table of a whole model file, generators included."""
     members: dict[str, Any] = {name: (generator_table(name), Field(None)) for name in GENERATORS}
+    part = create_model("part", __base__=PartTable, __doc__=PartTable.__doc__, **members)
     members["study"] = (Study, None)
     members["site"] = (SiteEntry, None)
     members["assessment"] = (AssessmentEntry, None)
+    members["parts"] = (GenericAlias(list, (part,)), Field(default_factory=list))
     return create_model("concio model", __base__=FileTable, __doc__=FileTable.__doc__, **members)
 
 

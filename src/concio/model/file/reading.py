@@ -57,7 +57,7 @@ def load(path: str | os.PathLike[str]) -> Model:
         The file is missing, not readable, or says something that cannot be used; the message names the key.
     """
     path = Path(path)
-    return model_from_tables(read_tables(path), folder=path.parent, name=str(path))
+    return model_from_tables(read_tables(path), folder=path.parent, name=str(path), chain=(path.resolve(),))
 
 
 def read_tables(path: Path) -> dict[str, Any]:
@@ -88,9 +88,12 @@ def loads(text: str, *, folder: str | os.PathLike[str] = ".", name: str = "model
 
 
 def model_from_tables(
-    data: dict[str, Any], *, folder: str | os.PathLike[str] = ".", name: str = "model text"
-) -> Model:
+    data: dict[str, Any], *, folder: str | os.PathLike[str] = ".", name: str = "model text",
+    chain: tuple[Path, ...] = (),
+) -> Model:  # fmt: skip
     """Return the model that the tables of a TOML text describe; ``folder`` and ``name`` as in :func:`loads`.
+
+    ``chain`` holds the files that are being read: a part of a file may be a file with parts.
 
     Raises
     ------
@@ -102,7 +105,17 @@ def model_from_tables(
         table = file_table().model_validate(data, context={"units": units})
     except ValidationError as error:
         raise first_fault(error, data, file_table(), name) from None
-    return build(table, Path(folder), name)
+    return build(table, Path(folder), name, lambda part: _read_part(Path(folder) / part, chain))
+
+
+def _read_part(path: Path, chain: tuple[Path, ...]) -> Model:
+    """Return the model of a file that a part of another names."""
+    own = path.resolve()
+    if own in chain:
+        names = " -> ".join(p.name for p in (*chain, own))
+        msg = f"the file is a part of itself: {names}"
+        raise InputError(msg, where=str(path), hint="a part may not hold the whole")
+    return model_from_tables(read_tables(path), folder=path.parent, name=str(path), chain=(*chain, own))
 
 
 def parse(text: str, name: str) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from pydantic import (
     ConfigDict,
     Discriminator,
     Field,
+    StrictBool,
     StrictInt,
     StrictStr,
     Tag,
@@ -23,6 +24,7 @@ from pydantic import (
 from concio.model.file.values import (
     Angle,
     Coefficient,
+    Degrees,
     Force,
     JointStiffness,
     Length,
@@ -35,18 +37,20 @@ from concio.model.file.values import (
 )
 from concio.model.model import Face
 
-Point = tuple[Length, Length]
-Element = Literal["Q4", "Q4I", "Q8", "Q9", "T3", "T6"]
+Point = Annotated[tuple[Length, ...], Field(min_length=2, max_length=3)]
+"""Two coordinates in the plane, three in space."""
+Vector = Annotated[tuple[Number, ...], Field(min_length=2, max_length=3)]
+Element = Literal["Q4", "Q4I", "Q8", "Q9", "T3", "T6", "H8I", "H8", "H27", "T4", "T10"]
 Name = Annotated[StrictStr, Field(min_length=1)]
 
-LOAD_KINDS: dict[str, tuple[str, int]] = {
-    "weight": ("number", 2),
-    "pressure": ("stress", 1),
-    "traction": ("stress", 2),
-    "point": ("force", 2),
-    "body": ("unit weight", 2),
+LOAD_KINDS: dict[str, tuple[str, tuple[int, ...]]] = {
+    "weight": ("number", (2, 3)),
+    "pressure": ("stress", (1,)),
+    "traction": ("stress", (2, 3)),
+    "point": ("force", (2, 3)),
+    "body": ("unit weight", (2, 3)),
 }
-"""Kind of quantity and number of entries of ``value`` for each kind of load."""
+"""Kind of quantity and possible numbers of entries of ``value`` for each kind of load."""
 
 
 class Table(BaseModel):
@@ -161,13 +165,34 @@ class GridTable(Table):
     y: list[Length]
 
 
+class HoleTable(Table):
+    """A hole in a face of a block in space: the number of the face from 0, and its vertices."""
+
+    face: StrictInt
+    loop: list[StrictInt]
+
+
+Hole = Annotated[
+    Annotated[HoleTable, Tag("<table>")] | Annotated[list[Point], Tag("<list>")], Discriminator(_course_branch)
+]
+"""A hole in a face of a block in space, or an outline in the plane."""
+
+
 class BlockTable(Table):
-    """A block, a mortar film or an obstacle: an outline, or a rectangle by two opposite corners; holes in it."""
+    """A block, a mortar film or an obstacle.
+
+    In the plane an outline, or a rectangle by two opposite corners, and holes in it; in space vertices and faces, or a
+    box by two opposite corners.
+    """
 
     name: Name
     outline: list[Point] | None = None
-    holes: list[list[Point]] = Field(default_factory=list)
+    holes: list[Hole] = Field(default_factory=list)
     rectangle: tuple[Point, Point] | None = None
+    vertices: list[Point] | None = None
+    faces: list[list[StrictInt]] | None = None
+    box: tuple[Point, Point] | None = None
+    hexahedra: list[list[list[Point]]] | None = Field(None, description="corners of hexahedra that fill the block")
     material: StrictStr = "block"
     kind: Literal["elastic", "rigid", "fixed"] | None = None
     role: StrictStr | None = None
@@ -177,16 +202,28 @@ class BlockTable(Table):
     grid: GridTable | None = None
 
 
+def _rotation_branch(value: Any) -> str:
+    return "<list>" if isinstance(value, list | tuple) else "<number>"
+
+
+Rotation = Annotated[
+    Annotated[Angle, Tag("<number>")] | Annotated[tuple[Angle, Angle, Angle], Tag("<list>")],
+    Discriminator(_rotation_branch),
+]
+"""An angle in the plane; in space a vector of rotation about x, y, z."""
+
+
 class SupportTable(Table):
-    """A support: of a whole body, of an edge, or of the point ``at``."""
+    """A support: of a whole body, of an edge, of a polygon on faces in space, or of the point ``at``."""
 
     name: Name
     body: Name
     edge: tuple[Point, Point] | None = None
+    polygon: list[Point] | None = None
     at: Point | None = None
-    directions: Literal["x", "y", "xy"] = "xy"
-    displacement: Point = (0.0, 0.0)
-    rotation: Angle = 0.0
+    directions: Literal["all", "x", "y", "z", "xy", "xz", "yz", "xyz"] = "all"
+    displacement: Point | None = None
+    rotation: Rotation = 0.0
     group: Name = "settlement"
 
 
@@ -194,8 +231,8 @@ def _load_value(kind: str, value: Any, info: ValidationInfo) -> tuple[float, ...
     """Return the numbers of a load in kN and m."""
     quantity, entries = LOAD_KINDS[kind]
     parts = value if isinstance(value, list) else [value]
-    if len(parts) != entries:
-        form = "one number" if entries == 1 else "two numbers [x, y]"
+    if len(parts) not in entries:
+        form = "one number" if entries == (1,) else "two numbers [x, y], or three in space"
         msg = f"a {kind} load takes {form}, not {len(parts)}"
         raise ValueError(msg)
     return tuple(converted(part, quantity, units_of(info)) for part in parts)
@@ -205,9 +242,10 @@ class LoadTable(Table):
     """A load; the unit of ``value`` follows from its kind."""
 
     kind: Literal["weight", "pressure", "traction", "point", "body"]
-    value: Annotated[Any, Field(description="a number for pressure, [x, y] otherwise")]
+    value: Annotated[Any, Field(description="a number for pressure, [x, y] otherwise, [x, y, z] in space")]
     bodies: list[StrictStr] = Field(default_factory=list)
     edge: tuple[Point, Point] | None = None
+    polygon: list[Point] | None = None
     at: Point | None = None
     group: Name = "dead"
     face: Face | None = None
@@ -237,7 +275,7 @@ class ControlTable(Table):
 
     body: Name
     at: Point
-    direction: tuple[Number, Number] = (1.0, 0.0)
+    direction: Vector = (1.0, 0.0)
 
 
 class StageTable(Table):
@@ -270,6 +308,28 @@ class AnalysisTable(Table):
     gap_tolerance: Length | None = None
     gap_reach: Length = 0.0
     thickness: Length = 1.0
+    contact_points: StrictInt | Literal["auto", "corners"] = "auto"
+
+
+class ExtrusionTable(Table):
+    """Sweeps the plane structure of the file into space; see :func:`concio.extrude`."""
+
+    thickness: Length | None = None
+    held: StrictBool = False
+
+
+class PartTable(Table):
+    """A part of the structure: a model file or a generator, placed; see :func:`concio.place`."""
+
+    name: Name | None = None
+    file: Name | None = None
+    at: Point | None = None
+    turn: Degrees = 0.0
+    axis: tuple[Number, Number, Number] | None = None
+    mirror: StrictStr = ""
+    without: StrictStr | list[StrictStr] = ""
+    repeat: Annotated[StrictInt, Field(ge=1, le=10_000)] = 1
+    step: Point | None = None
 
 
 class LayerTable(Table):
@@ -322,6 +382,7 @@ class FileTable(Table):
     blocks_file: Name | None = None
     periods: tuple[Point, Point] | None = Field(None, description="the blocks are a cell that these vectors repeat")
     drawing: DrawingTable | None = None
+    extrusion: ExtrusionTable | None = None
     supports: list[SupportTable] = Field(default_factory=list)
     loads: list[LoadTable] = Field(default_factory=list)
     ties: list[TieTable] = Field(default_factory=list)

@@ -16,7 +16,7 @@ from pydantic import AfterValidator, BeforeValidator, ValidationInfo, WithJsonSc
 from pydantic_core import PydanticCustomError
 
 from concio.errors import InputError
-from concio.units import KINDS, SYMBOL, quantity
+from concio.units import KINDS, SYMBOL, degrees, quantity
 
 
 @dataclass(frozen=True)
@@ -117,12 +117,28 @@ def _size(value: float) -> float:
     return value
 
 
+def _degrees(value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        what = f"{_shown(value)} is not an angle"
+        raise _fault(what, "write a number of degrees, or a text with a unit")
+    try:
+        return degrees(value)
+    except InputError as error:
+        raise _fault(error.what, error.hint) from None
+
+
+Degrees = Annotated[
+    float,
+    BeforeValidator(_degrees),
+    WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string"}], "description": "degrees, or another unit"}),
+]
 Size = Annotated[Length, AfterValidator(_size)]
 """A length that a generator works with: coordinates of outlines may hold rounding errors, sizes may not."""
 
 TYPES: dict[str, Any] = {
     "number": Number,
     "friction": Coefficient,
+    "degrees": Degrees,
     "length": Size,
     "force": Force,
     "stress": Stress,

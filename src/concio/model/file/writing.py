@@ -22,6 +22,7 @@ from concio.files import whole_file
 from concio.model.file.block_table import write_blocks
 from concio.model.materials import Elastic, Rigid
 from concio.model.model import Body, Load, Model, Support
+from concio.model.polyhedron import Polyhedron
 from concio.model.stages import Stage
 
 
@@ -42,7 +43,8 @@ def dumps(model: Model, *, blocks_file: str | None = None) -> str:
     lines += ["", "[units]", 'force = "kN"', 'length = "m"']
     if model.report != Units():
         lines += _table("report", asdict(model.report))
-    lines += _table("analysis", {key: getattr(model, key) for key in _ANALYSIS if getattr(model, key) is not None})
+    own = _ANALYSIS if model.dim == 2 else _IN_SPACE
+    lines += _table("analysis", {key: getattr(model, key) for key in own if getattr(model, key) is not None})
     for name, material in model.materials.items():
         lines += _table(f"materials.{_key(name)}", _material(material))
     for name, law in model.laws.items():
@@ -50,7 +52,7 @@ def dumps(model: Model, *, blocks_file: str | None = None) -> str:
     for rule in model.rules:
         lines += _table("rules", {"law": rule.law, "between": rule.between, "gap": rule.gap or None}, many=True)
     if blocks_file is None:
-        for body in model.outlines:
+        for body in model.bodies:
             lines += _table("blocks", _body(body), many=True)
     for support in model.supports:
         lines += _table("supports", _support(support), many=True)
@@ -102,7 +104,7 @@ def save(model: Model, path: str | os.PathLike[str], *, blocks_file: str | None 
     text = dumps(model, blocks_file=blocks_file)
     try:
         if blocks_file is not None:
-            write_blocks(path.parent / blocks_file, model.outlines)
+            write_blocks(path.parent / blocks_file, model.bodies)
         with whole_file(path) as fresh:
             fresh.write_text(text, encoding="utf-8")
     except OSError as error:
@@ -111,6 +113,7 @@ def save(model: Model, path: str | os.PathLike[str], *, blocks_file: str | None 
 
 
 _ANALYSIS = ("plane", "element", "mesh_size", "refinement", "gap_tolerance", "gap_reach")
+_IN_SPACE = ("element", "mesh_size", "refinement", "gap_tolerance", "gap_reach", "contact_points")
 
 
 def _material(material: Elastic | Rigid) -> dict[str, Any]:
@@ -119,7 +122,20 @@ def _material(material: Elastic | Rigid) -> dict[str, Any]:
     return {"E": material.E, "nu": material.nu, "unit_weight": material.unit_weight}
 
 
-def _body(body: Body) -> dict[str, Any]:
+def _body(body: Body | Polyhedron) -> dict[str, Any]:
+    if isinstance(body, Polyhedron):
+        return {
+            "name": body.name,
+            "vertices": body.vertices,
+            "faces": body.faces,
+            "holes": [{"face": face, "loop": loop} for face, loop in body.holes] or None,
+            "hexahedra": body.grid if body.kind == "elastic" else None,
+            "material": body.material,
+            "kind": body.kind,
+            "role": body.role,
+            "layer": body.layer or None,
+            "mesh_size": body.mesh_size,
+        }
     grid = None if body.grid is None else {"x": body.grid[0], "y": body.grid[1]}
     return {
         "name": body.name,

@@ -14,10 +14,11 @@ import numpy as np
 from concio.arguments import strict_with
 from concio.errors import InputError
 from concio.model.generate.arches import Shape, abutment_outline, ring_outlines
-from concio.model.generate.arguments import choice, count, finite, positive
+from concio.model.generate.arguments import choice, count, positive
 from concio.model.generate.masonry import numbered
 from concio.model.generate.solid_masonry import CommonSpace, SolidPiece, assemble_space, checked_space, prism_piece
 from concio.model.model import Model
+from concio.units import degrees
 
 Array = np.ndarray
 
@@ -72,7 +73,7 @@ def barrel(
     s, t, l = positive(where, "span", span), positive(where, "ring", ring), positive(where, "length", length)
     n, m = count(where, "voussoirs", voussoirs, 2), count(where, "blocks", blocks)
     choice(where, "bond", bond, ("running", "stack"))
-    angle = finite(where, "skew", skew, "number")
+    angle = degrees(skew, where=f"{where}, skew")
     if not abs(angle) < 75:
         msg = f"skew = {angle:g} must lie between -75 and 75 degrees"
         raise InputError(msg, where=where)

@@ -90,7 +90,7 @@ def _body(body: Body, t: float, model: Model) -> Polyhedron:
     if body.grid is not None and body.kind == "elastic":
         x, y, z = np.meshgrid(body.grid[0], [-0.5 * t, 0.5 * t], body.grid[1], indexing="ij")
         return from_grid(body.name, np.stack([x, y, z], -1), **common)
-    rings = [body.outline, *getattr(body, "holes", ())]
+    rings = [body.outline, *body.holes]
     swept = [np.column_stack([ring[:, 0], np.full(len(ring), 0.5 * t), ring[:, 1]]) for ring in rings]
     return prism(body.name, swept, np.array([0.0, -t, 0.0]), **common)
 

@@ -5,15 +5,20 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
 from concio.arguments import closest
 from concio.errors import InputError
+from concio.model.generate.arch_on_piers import arch_on_piers
 from concio.model.generate.arches import arch
-from concio.model.generate.arguments import Common
+from concio.model.generate.barrel import barrel
 from concio.model.generate.cells import cell
 from concio.model.generate.columns import buttress, column
+from concio.model.generate.dome import dome
+from concio.model.generate.drums import drums
+from concio.model.generate.groins import cloister_vault, cross_vault
 from concio.model.generate.panel import running_bond_panel
+from concio.model.generate.plan_walls import tower, walls
 from concio.model.generate.rubble import rubble
 from concio.model.generate.walls import wall, wall_of_courses
 from concio.model.model import Model
@@ -28,6 +33,14 @@ GENERATORS: Mapping[str, Callable[..., Model]] = MappingProxyType(
         "buttress": buttress,
         "rubble": rubble,
         "cell": cell,
+        "arch_on_piers": arch_on_piers,
+        "walls": walls,
+        "tower": tower,
+        "barrel": barrel,
+        "dome": dome,
+        "cloister_vault": cloister_vault,
+        "cross_vault": cross_vault,
+        "drums": drums,
     }
 )
 """Functions that return a model, by the name of their table in a model file."""
@@ -44,9 +57,12 @@ def arguments_of(kind: str) -> tuple[str, ...]:
     if kind not in GENERATORS:
         msg = f"there is no generator '{kind}'"
         raise InputError(msg, hint=closest(kind, GENERATORS))
+    function = GENERATORS[kind]
+    hints = get_type_hints(function)
     names: list[str] = []
-    for name, parameter in inspect.signature(GENERATORS[kind]).parameters.items():
-        names += Common.__annotations__ if parameter.kind is inspect.Parameter.VAR_KEYWORD else [name]
+    for name, parameter in inspect.signature(function).parameters.items():
+        further = parameter.kind is inspect.Parameter.VAR_KEYWORD
+        names += get_type_hints(get_args(hints[name])[0]) if further else [name]
     return tuple(names)
 
 

@@ -28,7 +28,7 @@ from concio.model.generate.solid_masonry import (
     prism_piece,
 )
 from concio.model.model import Model
-from concio.units import quantity
+from concio.units import degrees
 
 Array = np.ndarray
 Groin = Literal["stone", "mitre"]
@@ -215,7 +215,7 @@ def cross_vault(
     l = positive(where, "block_length", block_length)
     n = count(where, "courses", courses)
     choice(where, "groin", groin, ("stone", "mitre"))
-    low = np.deg2rad(float(quantity(springing, "number", where=f"{where}, springing")))
+    low = float(np.deg2rad(degrees(springing, where=f"{where}, springing")))
     r, edge = 0.5 * s, 0.5 * s
     least = float(np.arccos((edge - 0.05 * s) / (r + t)))
     if not least < low < np.deg2rad(85):

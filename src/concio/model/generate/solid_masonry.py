@@ -119,8 +119,7 @@ class SolidPiece:
         """Return the body of the block."""
         points, faces, holes = self.surface
         material = "" if kind == "fixed" else self.material
-        grid = self.grid if kind == "elastic" else None
-        return Polyhedron(self.name, points, faces, material, kind, self.role, self.layer, holes, grid)
+        return Polyhedron(self.name, points, faces, material, kind, self.role, self.layer, holes, self.grid)
 
 
 def box_piece(name: str, low: Sequence[float], high: Sequence[float], **words: Any) -> SolidPiece:

@@ -1,9 +1,9 @@
 """Near misses, overlaps and touches of polyhedra: what to tell of blocks in space that are not put together properly.
 
 Two convex bodies overlap where no plane keeps them apart; it is enough to try the planes of their faces and those along
-one edge of each (separating axes). Where one is not convex, points are tried that must lie in the other if they
-overlap: edges are cut by the planes of the other's faces, and the middles of the pieces, of the faces and of the body
-are looked up in it.
+one edge of each (separating axes). Bodies that are not convex are taken as convex pieces. Where one falls into too many
+of them, points are tried that must lie in the other if they overlap: edges are cut by the planes of the other's faces,
+and the middles of the pieces, of the faces and of the body are looked up in it.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
 from concio.kinematics.frames import cross, tangents
+from concio.model.convex_pieces import ConvexPiece
 from concio.model.interfaces.faces import Faces
 from concio.model.interfaces.near import MissKind, NearMiss, Overlap
 from concio.model.polyhedron import Polyhedron
@@ -63,23 +64,36 @@ def find_overlaps_in_space(
     found = []
     for m, n in zip(i.tolist(), j.tolist(), strict=True):
         a, b = bodies[m], bodies[n]
-        both = a.convex and b.convex
-        depth, at = _convex_depth(a, b) if both else _sampled_depth(a, b)
-        if depth <= tolerance:
-            continue
-        volume = 0.0
-        if both:
-            volume, at = _common_volume(a, b, at)
-        elif any((winding(q, p.vertices) > 0.5).all() for p, q in ((a, b), (b, a))):
-            volume = min(a.volume, b.volume)  # one lies inside the other
-        found.append(_overlap(a, b, (m, n), depth, at, volume))
+        depth, at, volume = _depth(a, b, tolerance)
+        if depth > tolerance:
+            found.append(_overlap(a, b, (m, n), depth, at, volume))
     return found
+
+
+def _depth(a: Polyhedron, b: Polyhedron, tolerance: float) -> tuple[float, Array, float]:
+    """Return how deep two bodies overlap, where, and the volume they share."""
+    if a.pieces is None or b.pieces is None:
+        depth, at = _sampled_depth(a, b)
+        inside = any((winding(q, p.vertices) > 0.9).all() for p, q in ((a, b), (b, a))) if depth > tolerance else False
+        return depth, at, min(a.volume, b.volume) if inside else 0.0
+    depth, at, volume = 0.0, a.centroid, 0.0
+    for p in a.pieces:
+        for q in b.pieces:
+            own = _convex_depth(p, q)
+            if own <= tolerance:
+                continue
+            shared, place_of_it = _common_volume(p, q)
+            volume += shared
+            if own > depth and shared > 0:
+                depth, at = own, place_of_it
+    return depth, at, volume
 
 
 def _overlap(a: Polyhedron, b: Polyhedron, pair: tuple[int, int], depth: float, at: Array, volume: float) -> Overlap:
     small, large = (a, b) if a.volume <= b.volume else (b, a)
     names = f"'{a.name}' and '{b.name}'"
-    same = volume > 0.999 * large.volume or (
+    shared = volume > 0.999 * large.volume
+    same = shared or (
         a.vertices.shape == b.vertices.shape
         and np.abs(np.sort(a.vertices, axis=0) - np.sort(b.vertices, axis=0)).max() < 1e-6 * large.size
     )
@@ -158,34 +172,42 @@ def _stacked(bodies: Sequence[Polyhedron], members: Array) -> tuple[Array, list[
     return sort, stacks
 
 
-def _convex_depth(a: Polyhedron, b: Polyhedron) -> tuple[float, Array]:
-    """Return how deep two convex bodies overlap along the axis that separates them best, and a point nearby."""
-    edges = []
-    for body in (a, b):
-        p, q = body.topology.edges.T
-        along = body.vertices[q] - body.vertices[p]
-        along /= np.linalg.norm(along, axis=1)[:, None]
-        along *= np.where(along @ np.array([1.0, 1e-3, 1e-6]) < 0, -1.0, 1.0)[:, None]
-        edges.append(np.unique(np.round(along, 9), axis=0))
+def _convex_depth(a: ConvexPiece, b: ConvexPiece) -> float:
+    """Return how deep two convex pieces overlap along the axis that separates them best."""
+    axes = np.concatenate([a.normals, b.normals])
+    common = _overlap_along(a, b, axes)
+    if common <= 0:
+        return common
+    edges = [_directions(piece) for piece in (a, b)]
     mixed = cross(edges[0][:, None], edges[1][None]).reshape(-1, 3)
     length = np.linalg.norm(mixed, axis=1)
-    axes = np.concatenate([a.normals, b.normals, mixed[length > 1e-6] / length[length > 1e-6, None]])
+    mixed = mixed[length > 1e-6] / length[length > 1e-6, None]
+    return min(common, _overlap_along(a, b, mixed)) if len(mixed) else common
+
+
+def _overlap_along(a: ConvexPiece, b: ConvexPiece, axes: Array) -> float:
     ha, hb = a.vertices @ axes.T, b.vertices @ axes.T
-    common = np.minimum(ha.max(0) - hb.min(0), hb.max(0) - ha.min(0))
-    k = int(np.argmin(common))
-    low = np.maximum(a.vertices.min(0), b.vertices.min(0))
-    high = np.minimum(a.vertices.max(0), b.vertices.max(0))
-    return float(common[k]), 0.5 * (low + high)
+    return float(np.minimum(ha.max(0) - hb.min(0), hb.max(0) - ha.min(0)).min())
 
 
-def _common_volume(a: Polyhedron, b: Polyhedron, at: Array) -> tuple[float, Array]:
-    """Return the volume of what two convex bodies share, and a point in it."""
-    planes = np.vstack([np.column_stack([body.normals, -body.offsets]) for body in (a, b)])
-    # the largest ball inside all planes
+def _directions(piece: ConvexPiece) -> Array:
+    """Return the directions of the edges of a convex piece: where two of its planes meet in two of its corners."""
+    on = np.abs(piece.vertices @ piece.normals.T - piece.offsets) <= 1e-6 * float(np.ptp(piece.vertices, axis=0).max())
+    shared = on.astype(int) @ on.T.astype(int)  # planes that two corners share
+    p, q = np.nonzero(np.triu(shared >= 2, 1))
+    along = piece.vertices[q] - piece.vertices[p]
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    along *= np.where(along @ np.array([1.0, 1e-3, 1e-6]) < 0, -1.0, 1.0)[:, None]
+    return np.unique(np.round(along, 9), axis=0)
+
+
+def _common_volume(a: ConvexPiece, b: ConvexPiece) -> tuple[float, Array]:
+    """Return the volume of what two convex pieces share, and the middle of the largest ball in it."""
+    planes = np.vstack([np.column_stack([piece.normals, -piece.offsets]) for piece in (a, b)])
     system = np.column_stack([planes[:, :3], np.ones(len(planes))])
     found = linprog([0.0, 0.0, 0.0, -1.0], A_ub=system, b_ub=-planes[:, 3], bounds=[(None, None)] * 3 + [(0, None)])
     if found.x is None or found.x[3] <= 0:
-        return 0.0, at
+        return 0.0, a.vertices.mean(0)
     inside = np.array(found.x[:3])
     try:
         return float(ConvexHull(HalfspaceIntersection(planes, inside).intersections).volume), inside
@@ -209,7 +231,7 @@ def _sampled_depth(a: Polyhedron, b: Polyhedron) -> tuple[float, Array]:
         along = first.vertices[p[edge]] + middle[some][:, None] * (first.vertices[q[edge]] - first.vertices[p[edge]])
         cells, _ = first.triangles
         points = np.vstack([along, first.vertices[cells].mean(1), inner_point(first)[None]])
-        inside = points[winding(second, points) > 0.5]
+        inside = points[winding(second, points) > 0.9]
         if len(inside):
             depth = distance_to_surface(second, inside)
             k = int(np.argmax(depth))
