@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import concio
-from concio import Elastic, InputError, JointLaw, Load, Model, Rigid, Support, Tie
+from concio import Body, Elastic, InputError, JointLaw, Load, Model, Rigid, Support, Tie
 
 PIER = {"width": 0.8, "height": 2.0, "blocks": 4, "block": "rigid"}
 
@@ -214,3 +214,13 @@ def test_bad_parts_in_files(tmp_path: Path, text: str, words: str) -> None:
     (tmp_path / "whole.toml").write_text(text)
     with pytest.raises(InputError, match=words):
         concio.load(tmp_path / "whole.toml")
+
+
+def test_holes_move_with_their_block() -> None:
+    square, hole = np.array([[0, 0], [2, 0], [2, 2], [0, 2.0]]), np.array([[0.5, 0.5], [1, 0.5], [1, 1.0]])
+    model = Model(
+        (Body("b", square, kind="rigid", material="m", holes=(hole,)),), {"m": Rigid(20.0)}, {"joint": JointLaw(0.6)}
+    )
+    moved = concio.place(model, at=(3.0, 0.0), turn=90.0, mirror="x").outlines[0]
+    assert moved.area == pytest.approx(model.outlines[0].area)
+    assert sorted(map(tuple, moved.holes[0].tolist())) == [(2.0, -1.0), (2.5, -1.0), (2.5, -0.5)]

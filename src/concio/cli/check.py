@@ -80,13 +80,14 @@ def _draw(model: Model, detection: Detection, out: Path) -> None:
     from matplotlib.figure import Figure
 
     from concio.plot.model_figure import plot_model
-    from concio.plot.solid_figure import plot_solid_model, projected
+    from concio.plot.space_figures import directions, plot_space_model
 
-    axes = plot_model(model) if model.dim == 2 else plot_solid_model(model, detection=detection)
+    axes = plot_model(model) if model.dim == 2 else plot_space_model(model)
+    seen = np.eye(2) if model.dim == 2 else np.array(directions("axonometry")[:2])
     for things, mark, word in ((detection.overlaps, "X", "overlap"), (detection.near_misses, "o", "near miss")):
         if things:
             at = np.array([t.at for t in things])
-            x, y = (at if model.dim == 2 else projected(at, "axonometry")[0]).T
+            x, y = seen @ at.T
             axes.plot(x, y, mark, mec="#c1272d", mfc="none", ms=9, label=word, ls="")
     figure = axes.figure
     assert isinstance(figure, Figure)

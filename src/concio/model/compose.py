@@ -149,11 +149,11 @@ def _named(model: Model, words: Sequence[str]) -> set[str]:
 
 def _moved_body(body: Body | Polyhedron, matrix: Array, shift: Array) -> Body | Polyhedron:
     if isinstance(body, Body):
-        outline, *holes = (ring @ matrix.T + shift for ring in body.rings)
+        outline, *inner = (ring @ matrix.T + shift for ring in body.rings)
         grid = None
         if body.grid is not None and np.array_equal(matrix, np.eye(2)):
             grid = (body.grid[0] + shift[0], body.grid[1] + shift[1])
-        return replace(body, outline=outline, holes=tuple(holes), grid=grid)
+        return replace(body, outline=outline, holes=tuple(inner), grid=grid)
     points = body.vertices @ matrix.T + shift
     cells = None if body.grid is None else body.grid @ matrix.T + shift
     if np.linalg.det(matrix) > 0:

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 Array = np.ndarray
 View = Literal["front", "side", "plan", "axonometry"]
+NAMED = 60
+"""Up to this many bodies get their names written."""
 
 VIEWS: dict[str, tuple[float, float]] = {
     "front": (0.0, 0.0),
@@ -50,17 +52,47 @@ def directions(view: View) -> tuple[Array, Array, Array]:
 
 
 @strict
-def plot_space_model(model: Model, ax: Axes | None = None, *, view: View = "axonometry") -> Axes:
-    """Draw the blocks of a model in space.
+def plot_space_model(
+    model: Model, ax: Axes | None = None, *, view: View = "axonometry", names: bool | None = None
+) -> Axes:
+    """Draw the blocks, ties and point loads of a model in space, as it is described.
 
     Parameters
     ----------
     model : Model
     ax : Axes, optional
     view : {"front", "side", "plan", "axonometry"}
+    names : bool, optional
+        Write the names of the blocks that are seen; default for up to 60 bodies.
     """
     shown = model_solids(model)
-    return _draw(shown, _block_colours(model), view, ax, 0.0, model.title or "Model")
+    ax, picture = _draw(shown, _block_colours(model), view, ax, 0.0, model.title or "Model")
+    if len(model.bodies) <= NAMED if names is None else names:
+        _names(ax, model, picture)
+    for load in model.loads:
+        if load.at is not None:
+            ax.plot(*(picture.axes[:2] @ np.array(load.at)), "v", color=style.LOAD.colour, ms=7, zorder=5)
+    for tie in model.ties:
+        ends = np.array([tie.at_a, tie.at_b]) @ picture.axes[:2].T
+        ax.plot(ends[:, 0], ends[:, 1], color=style.TENSION.colour, lw=1.6, zorder=5)
+    return ax
+
+
+def _names(ax: Axes, model: Model, picture: Picture) -> None:
+    """Write the name of each block on the nearest of its faces whose middle is seen."""
+    for body in model.polyhedra:
+        if body.kind == "fixed":
+            continue
+        middles = np.array([body.vertices[list(face)].mean(0) for face in body.faces])
+        x, y, depth = picture.placed(middles).T
+        height, width = picture.depth.shape
+        column, row = np.clip(x.astype(int), 0, width - 1), np.clip(y.astype(int), 0, height - 1)
+        seen = np.flatnonzero(
+            (body.normals @ picture.axes[2] > 0.2) & (depth >= picture.depth[row, column] - 1e-3 * body.size)
+        )
+        if len(seen):
+            at = picture.axes[:2] @ middles[seen[np.argmax(body.normals[seen] @ picture.axes[2])]]
+            ax.text(at[0], at[1], body.name, fontsize=5.5, ha="center", va="center", color=style.INK, zorder=6)
 
 
 @strict
@@ -92,7 +124,7 @@ def plot_space(
         corners = faces.corners + chosen * moved
         extra += [(corners[k], looks[int(state[k])]) for k in np.flatnonzero(np.isin(state, tuple(looks)))]
     title = "Collapse mechanism" if mechanism else f"Displaced shape, {number(chosen)} times"
-    return _draw(shown, _block_colours(result.model), view, ax, chosen, title, extra)
+    return _draw(shown, _block_colours(result.model), view, ax, chosen, title, extra)[0]
 
 
 def _block_colours(model: Model) -> list[str]:
@@ -108,7 +140,7 @@ def _draw(
     scale: float,
     title: str,
     extra: Sequence[tuple[Array, str]] = (),
-) -> Axes:
+) -> tuple[Axes, Picture]:
     from matplotlib.colors import to_rgb
 
     right, up, eye = directions(view)
@@ -139,4 +171,4 @@ def _draw(
         ax.set_ylabel(f"{names[view][1]} [m]", fontsize=8)
     else:
         ax.set_axis_off()
-    return ax
+    return ax, picture

@@ -129,7 +129,9 @@ def _parts(
     return given
 
 
-def _rules(data: FileTable, before: list[JointRule], laws: Laws, bodies: Sequence[Body | Polyhedron]) -> list[JointRule]:
+def _rules(
+    data: FileTable, before: list[JointRule], laws: Laws, bodies: Sequence[Body | Polyhedron]
+) -> list[JointRule]:
     found = list(before)
     if data.rules is None and not before:
         if len(laws) != 1:

@@ -19,7 +19,7 @@ import numpy as np
 
 from concio.arguments import strict_with
 from concio.errors import InputError
-from concio.model.generate.arguments import choice, count, finite, positive
+from concio.model.generate.arguments import check_blocks, choice, count, finite, positive
 from concio.model.generate.bonds import without_short_pieces
 from concio.model.generate.masonry import numbered
 from concio.model.generate.openings import Opening
@@ -40,7 +40,7 @@ from concio.model.generate.solid_masonry import (
     checked_space,
     prism_piece,
 )
-from concio.model.generate.walls import LARGEST_BLOCKS, course_outlines
+from concio.model.generate.walls import course_outlines
 from concio.model.materials import Elastic, Rigid
 from concio.model.model import Load, Model
 
@@ -138,9 +138,7 @@ def walls(
     pressure = finite(where, "top_pressure", top_pressure, "stress")
     plan = checked_plan(where, lines, height, bricks.thick)
     area = sum((w.high - w.low) * w.height for w in plan)
-    if area / (bricks.length * bricks.height) * bricks.wythes > LARGEST_BLOCKS:
-        msg = f"{area:g} m2 of wall of blocks of {bricks.length:g} x {bricks.height:g} m are too many blocks"
-        raise InputError(msg, where=where, hint=f"at most {LARGEST_BLOCKS:,}; block_size is in m")
+    check_blocks(where, area / (bricks.length * bricks.height) * bricks.wythes, "block_size is in m")
     meeting = junctions(plan, 0.5 * bricks.thick)
     require_clear_corners(where, plan, meeting, 0.5 * bricks.thick)
     pieces = [p for k in range(len(plan)) for p in _wall(where, plan, k, meeting, bricks, "lintel" if lintel else "")]
