@@ -112,6 +112,18 @@ def check_bonds(found):
     assert all(0 < v <= 0.65 + 1e-9 for v in found.values())
 
 
+def check_facade_strip(found):
+    assert found["gap"] <= 1e-9
+    assert found["zeta"] < 1
+    assert found["force"] > found["yields"]
+    assert found["reached"] == pytest.approx(1.0, abs=2e-3)
+    # moments about the set-back hinge: lower and upper wall, floor, roof and thrust, tie, for a width of 4 m
+    back = (39.9 + 25.65 + 9 + 6) / (2 * 2000)
+    stable = 4 * (39.9 * 0.30 + 25.65 * 0.225 + 9 * 0.525 + 6 * 0.25 - 80.55 * back - 0.8 * 6.5) + 8.0 * 6.3
+    push = 4 * (39.9 * 1.75 + 25.65 * 5.0 + 9 * 3.5 + 6 * 6.5)
+    assert found["alpha"] == pytest.approx(stable / push, abs=1e-9)
+
+
 NAMES = sorted(p.stem for p in EXAMPLES.glob("[0-9]*.py"))
 
 

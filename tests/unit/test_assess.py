@@ -136,6 +136,15 @@ def test_a_tie_adds_its_work_and_breaks() -> None:
     assert broken.limits["SLC"].why == "share"
 
 
+def test_a_tie_that_gets_shorter_does_not_pull() -> None:
+    inward = concio.assess(overturning(strength=2000.0, ties=(TIE,)), site=site(), direction="right").worst
+    free = concio.assess(overturning(strength=2000.0), site=site(), direction="right").worst
+    assert inward is not None
+    assert free is not None
+    assert inward.multiplier == pytest.approx(free.multiplier, abs=1e-12)
+    assert inward.multiplier == pytest.approx(inward.found.associated.multiplier, rel=0.1)
+
+
 def test_a_wall_against_a_rock_is_locked() -> None:
     model = overturning()
     rock = concio.Body("rock", np.array([[-1.0, 0.0], [0.0, 0.0], [0.0, 7.0], [-1.0, 7.0]]), kind="fixed", role="rock")

@@ -37,7 +37,7 @@ def model_figure(found: Assessment, ax: Axes | None = None) -> Axes:
     size = float((high - low).max())
     ends = [np.array(p) for t in model.ties for p in (t.at_a, t.at_b)]
     box = style.box_of(np.vstack([points, *([np.array(ends)] if ends else [])]), margin=0.14)
-    ax = style.axes_for(box, ax)
+    ax = _drawing(box) if ax is None else ax
     for body in model.outlines:
         fixed = body.kind == "fixed"
         ax.fill(*body.outline.T, fc="#D9D9D9" if fixed else style.BLOCK, ec=style.EDGE, lw=0.5, hatch="////" * fixed)
@@ -86,7 +86,7 @@ def mechanism_figure(mechanism: LocalMechanism, ax: Axes | None = None) -> Axes:
     scale = ENLARGED * size / fastest
     shapes = {b: moved(b, body.outline, scale) for b, body in enumerate(model.outlines)}
     box = style.box_of(points, *(shapes[b] for b in mechanics.of_body), margin=0.06)
-    ax = style.axes_for(box, ax)
+    ax = _drawing(box) if ax is None else ax
     for b, body in enumerate(model.outlines):
         fixed, moves = body.kind == "fixed", b in mechanics.of_body
         if moves:
@@ -131,7 +131,7 @@ def curve_figure(mechanism: LocalMechanism, words: Words, ax: Axes | None = None
     ax = _plain(ax)
     followed = mechanism.followed
     ax.plot(followed.displacement, followed.multiplier, color=style.COMPRESSION.colour, lw=1.8,
-            label=words["legend_followed"])  # fmt: skip
+            label=words[f"legend_{followed.kind}"])  # fmt: skip
     if mechanism.straight is not None:
         line = mechanism.straight
         ax.plot(
@@ -148,7 +148,7 @@ def demand_figure(mechanism: LocalMechanism, words: Words, ax: Axes | None = Non
     """Draw the capacity curves and the demand of each limit state in acceleration-displacement form."""
     ax = _plain(ax)
     for curve, colour, dash, word in (
-        (mechanism.followed, style.INK, "-", "legend_followed"),
+        (mechanism.followed, style.INK, "-", f"legend_{mechanism.followed.kind}"),
         (mechanism.straight, style.INK, (0, (5, 2)), "legend_straight"),
     ):
         if curve is not None:
@@ -157,7 +157,6 @@ def demand_figure(mechanism: LocalMechanism, words: Words, ax: Axes | None = Non
     site = mechanism.site
     _, a = mechanism.spectral_curve(mechanism.followed)
     d_most = 1.15 * float(mechanism.d0) if math.isfinite(mechanism.d0) else 0.5
-    T = np.linspace(0.02, 6.0, 900)
     shown: list[tuple[str, str]] = []
     for check in mechanism.checks:
         if check.kind == "displacement" and (check.level, check.place) not in shown:
@@ -165,6 +164,7 @@ def demand_figure(mechanism: LocalMechanism, words: Words, ax: Axes | None = Non
     for k, (level, place) in enumerate(shown):
         hazard = mechanism.periods[level]
         spectrum: Any = site.spectrum(hazard)
+        T = np.linspace(0.02, spectrum.T_E, 900)
         if place == "height":
             spectrum = site.at_height(spectrum, mechanism.level)
         limit = mechanism.limits[level]
@@ -181,13 +181,27 @@ def demand_figure(mechanism: LocalMechanism, words: Words, ax: Axes | None = Non
     return _finish(ax, words["axis_d"], words["axis_a"])
 
 
+def _drawing(box: Array) -> Axes:
+    """Return axes of a figure as large as a drawing is in print, so that its letters keep their size."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    width, height = np.maximum(box[1] - box[0], 1e-9)
+    tall = float(np.clip(6.0 * height / width, 1.5, 4.2))
+    wide = float(np.clip(tall * width / height, 1.6, 6.2))
+    figure = Figure(figsize=(wide + 0.7, tall + 0.6), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes: Axes = figure.add_subplot()
+    return axes
+
+
 def _plain(ax: Axes | None) -> Axes:
     if ax is not None:
         return ax
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(5.6, 3.6), layout="constrained")
+    figure = Figure(figsize=(4.3, 3.2), layout="constrained")
     FigureCanvasAgg(figure)
     axes: Axes = figure.add_subplot()
     return axes

@@ -81,7 +81,11 @@ def _curve(t: Texts, m: LocalMechanism, used: str) -> str:
     if not m.followed.ends:
         reason = w["reason_" + m.followed.reason.replace(" ", "_")]
         return f"{head}<p>{t.say('curve_none', reason=reason)}</p>"
-    text = t.say("curve_text", used=w[f"curve_{used}"])
+    how = "curve_pushed" if m.followed.kind == "pushed" else "curve_text"
+    text = t.say(how, used=w[f"curve_{used}"])
+    if m.followed.reason != "falls":
+        reason = w["reason_" + m.followed.reason.replace(" ", "_")]
+        text += " " + t.say("curve_cut", d=t.n(m.followed.end), reason=reason)
     pictures = t.figure(curve_figure(m, w), "figure_curve", "half")
     pictures += t.figure(demand_figure(m, w), "figure_adrs", "half")
     difference = ""

@@ -20,6 +20,7 @@ CASES: dict[str, str] = {
     "flat_punch": "Rigid flat punch",
     "one_node": "One node, large friction",
     "cantilever_wall": "Cantilever walls",
+    "local_mechanisms": "Local mechanisms under an earthquake",
     "granite_walls": "Dry granite walls in shear and compression",
     "homogenised_cells": "Homogenised running bond",
     "wall_and_continuum": "Walls beside their homogenised continuum",

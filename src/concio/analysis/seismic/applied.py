@@ -74,6 +74,13 @@ def applied_forces(model: Model, numbers: Sequence[int]) -> list[Applied]:
     return found
 
 
+def pushes_sideways(model: Model, group: str) -> bool:
+    """Return whether a load group is there and acts along x rather than along y."""
+    numbers = [k for k, load in enumerate(model.loads) if load.group == group]
+    total = sum((np.abs(f.force) for f in applied_forces(model, numbers)), np.zeros(2))
+    return bool(total[0] > total[1])
+
+
 def pushed(model: Model, direction: float) -> Model:
     """Return a model with one more load group: every weight it carries once more, sideways.
 

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from concio.analysis.seismic.applied import EARTHQUAKE, pushed
+from concio.analysis.seismic.applied import EARTHQUAKE, pushed, pushes_sideways
 from concio.analysis.seismic.assessment import Assessment, LocalMechanism, NoMechanism
 from concio.analysis.seismic.chain import Chain, Participant, gathered
 from concio.analysis.seismic.checks import Displacement, checks_of, limit_of
@@ -66,8 +66,8 @@ def assess(
     direction : {"both", "right", "left"}
         Which way the earthquake pushes along x; where ``live`` is given, "left" is against it.
     live : str or sequence of str, optional
-        Load groups that push, for a multiplier of one. By default "live" where the model has such a group; otherwise
-        every weight of the model pushes sideways.
+        Load groups that push, for a multiplier of one. By default "live" where the model has such a group and it
+        pushes sideways; otherwise every weight of the model, imposed loads included, pushes sideways.
     knowledge : str
         Level of knowledge, which gives the confidence factor.
     confidence : float, optional
@@ -88,6 +88,9 @@ def assess(
     """
     require_model(model)
     _ = model.outlines
+    if model.periods is not None:
+        msg = "this is a periodic cell, which has no mechanism of a wall"
+        raise InputError(msg, hint="assess the wall itself")
     rules = site.rules
     wanted = tuple(site.levels if levels is None else levels)
     for level in wanted:
@@ -110,7 +113,7 @@ def assess(
     ]
     factor, reason = _confidence(model, rules.tables["knowledge"], knowledge, confidence)
     groups = (live,) if isinstance(live, str) else tuple(live) if live is not None else ()
-    if not groups and LIVE in {load.group for load in model.loads}:
+    if not groups and pushes_sideways(model, LIVE):
         groups = (LIVE,)
     made: list[LocalMechanism] = []
     locked: list[NoMechanism] = []

@@ -193,9 +193,9 @@ class Linkage:
                 joint.set_back_by(float(N)) if joint.inward is not None else joint
                 for joint, N in zip(found.mechanics.joints, now.normal_force, strict=True)
             )
-            moved = max((abs(a.set_back - b.set_back) for a, b in zip(joints, found.mechanics.joints, strict=True)))
+            gone = [abs(a.set_back - b.set_back) for a, b in zip(joints, found.mechanics.joints, strict=True)]
             found = replace(found, mechanics=replace(found.mechanics, joints=joints))
-            if moved <= CLOSED * self.size:
+            if max(gone, default=0.0) <= CLOSED * self.size:
                 break
         return found
 
@@ -246,13 +246,15 @@ class Linkage:
             total += self.row(q, f.block, f.point, f.force)
         return total
 
-    def tie_state(self, q: Array, *, plastic: bool = False) -> tuple[Array, Array, Array]:
+    def tie_state(self, q: Array, rate: Array | None = None) -> tuple[Array, Array, Array]:
         """Return forces (n,) [kN], elongations (n,) [m] of the ties that are no bars, and their pull (3 G,).
 
         Parameters
         ----------
-        plastic : bool
-            Whether they have their yield force from the beginning, as at the onset of a mechanism.
+        q : (G, 3) array
+        rate : (3 G,) array, optional
+            Motion under which ties that get longer yield at once and others are slack, as at the onset of a mechanism;
+            by default they have the force of their elongation.
         """
         pull = np.zeros(self.unknowns)
         forces, longer = np.zeros(len(self.ties)), np.zeros(len(self.ties))
@@ -261,9 +263,10 @@ class Linkage:
             apart = self.place(q, b, at_b) - self.place(q, a, at_a)
             length, first = float(np.linalg.norm(apart)), float(np.linalg.norm(at_b - at_a))
             longer[k] = length - first
-            forces[k] = tie.force(longer[k]) if not plastic else tie.most
             along = apart / length
-            pull += forces[k] * (self.row(q, a, at_a, along) - self.row(q, b, at_b, along))
+            shortening = self.row(q, a, at_a, along) - self.row(q, b, at_b, along)
+            forces[k] = tie.force(longer[k]) if rate is None else tie.most if shortening @ rate < 0 else 0.0
+            pull += forces[k] * shortening
         return forces, longer, pull
 
     def balance(self, q: Array, *, plastic: bool = False) -> Point | None:
@@ -298,7 +301,7 @@ class Linkage:
                 along = self.apart(q, joint)
                 along = along / float(np.linalg.norm(along))
                 columns.append(self.row(q, joint.a, joint.point, along) - self.row(q, joint.b, joint.end, along))
-        forces, longer, pull = self.tie_state(q, plastic=plastic)
+        forces, longer, pull = self.tie_state(q, v if plastic else None)
         load = self.gathered(q, self.dead) + fixed + pull
         push = self.gathered(q, self.push)
         weight = np.tile([1.0, 1.0, 1.0 / self.size], len(self.mechanics.blocks))
