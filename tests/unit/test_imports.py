@@ -29,6 +29,7 @@ DOORS = {
     ("analysis/result.py", "concio.plot.plots_of"),
     ("analysis/result.py", "concio.post.tables_of"),
     ("analysis/result.py", "concio.report.notebook"),
+    ("analysis/path_result.py", "concio.plot.path_accessor"),
     ("analysis/cells/moduli.py", "concio.plot.cell_accessor"),
     ("analysis/cells/strength.py", "concio.plot.cell_accessor"),
     ("analysis/cells/path_result.py", "concio.plot.cell_accessor"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,8 +16,12 @@ from concio.errors import InputError
 from concio.model.stages import ControlPoint, Stage
 from concio.problem.certificate import Certificate
 from concio.problem.solution import Status, judge
+from concio.problem.tolerances import CERTIFIED
 from concio.solvers.path.record import Event, Outcome
 from concio.solvers.path.state import LinearPath, PathState, path_kinematics, weakened
+
+if TYPE_CHECKING:
+    from concio.plot.path_accessor import PathPlots
 
 Array = np.ndarray
 
@@ -112,6 +117,53 @@ class PathResult:
     def complete(self) -> bool:
         """True when every stage reached its end."""
         return len(self.outcomes) == len(self.stages) and all(o is Outcome.REACHED for o in self.outcomes)
+
+    @property
+    def collapsed(self) -> bool:
+        """True where the path ended in a collapse: the load grows no further, or a mechanism has formed."""
+        return self.outcomes[-1] in (Outcome.LIMIT, Outcome.MECHANISM)
+
+    @property
+    def certified(self) -> bool:
+        """True when every state of the path passes its check."""
+        return bool(self.certificate <= CERTIFIED)
+
+    @property
+    def sentence(self) -> str:
+        """How the path ended, and at which load, in one sentence."""
+        if self.complete:
+            whole = "The stage is" if len(self.stages) == 1 else f"All {len(self.stages)} stages are"
+            return f"{whole} carried to the end."
+        name, values = self.load()
+        stage = self.stages[len(self.outcomes) - 1].name
+        most = f"{name} = {float(values.max()):.6g}"
+        if self.collapsed:
+            return f"Collapses in stage '{stage}': it carries no more than {most}."
+        if self.outcomes[-1] is Outcome.LOST:
+            return f"Lost in stage '{stage}': at least {most} is carried, and what follows is not known."
+        return f"Stopped in stage '{stage}', which was carried up to {most}."
+
+    def load(self, stage: int = -1) -> tuple[str, Array]:
+        """Return what changes in a stage, in words, and its value where the stage begins and at each of its steps.
+
+        That is the load factor of the groups that change, where they change alike, else the share of the stage.
+        """
+        wanted = stage % len(self.outcomes)
+        own = [i for i, step in enumerate(self.steps) if step.stage == wanted]
+        own = [own[0] - 1, *own] if own and own[0] > 0 else own
+        first, target = self.steps[own[0]].factors, {**self.steps[own[0]].factors, **self.stages[wanted].factors}
+        changed = [g for g in first if target[g] != first[g]]
+        if changed and len({(first[g], target[g]) for g in changed}) == 1:
+            return " and ".join(changed), np.array([self.steps[i].factors[changed[0]] for i in own])
+        share = [self.steps[i].parameter if self.steps[i].stage == wanted else 0.0 for i in own]
+        return f"share of '{self.stages[wanted].name}'", np.array(share)
+
+    @property
+    def plot(self) -> PathPlots:
+        """Figures by name: ``path.plot.curve()``; matplotlib is loaded here."""
+        from concio.plot.path_accessor import PathPlots
+
+        return PathPlots(self)
 
     @property
     def certificate(self) -> float:

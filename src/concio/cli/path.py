@@ -57,8 +57,9 @@ def path(
     """
     import concio
     from concio.analysis.path import Stage, run_path
-    from concio.cli.path_lines import curve_point, path_facts, path_lines, write_path
+    from concio.cli.path_lines import path_facts, path_lines, write_path
     from concio.errors import InputError
+    from concio.post.path_curve import most_moving
     from concio.units import quantity
 
     if out is not None:
@@ -78,7 +79,7 @@ def path(
         stages[-1] = Stage(last.name, last.factors, control, quantity(until, "length", where="--until"), steps)
     with progress_bar(shown=not json) as progress:
         found = run_path(assembly, stages, method=method, brittle=brittle, progress=progress)
-    chosen = control or curve_point(found)
+    chosen = control or most_moving(found)
     if out is not None:
         with replaced_directory(out) as fresh:
             write_path(found, chosen, fresh)
@@ -96,7 +97,7 @@ def exit_code(found: PathResult) -> int:
     """Return 0 where the end was reached, 3 where the structure carries no more, 4 where the path was lost."""
     if found.complete:
         return 0
-    return 3 if found.outcomes[-1].name in ("LIMIT", "MECHANISM") else 4
+    return 3 if found.collapsed else 4
 
 
 def _words(factors: dict[str, float]) -> str:

@@ -12,6 +12,7 @@ import numpy as np
 
 from concio.display import DEFAULT, Units
 from concio.post.tables import KINDS
+from concio.report.wording import Verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,6 +28,15 @@ HEADINGS: dict[str, str] = {
 
 LARGEST_SVG = 350_000
 """Drawings above this many bytes are embedded as images of dots."""
+
+
+def verdict_html(verdict: Verdict, certificate: str, details: str = "") -> str:
+    """Return an outcome: headline, meaning and certificate, details in HTML, and what to do next."""
+    steps = "".join(f"<li>{escape(s)}</li>" for s in verdict.next_steps)
+    return (
+        f'<div class="verdict {verdict.tone}"><h2>{escape(verdict.headline)}</h2><p>{escape(verdict.meaning)}</p>'
+        f"<p class=cert>{escape(certificate)}</p></div>{details}<h3>What to do next</h3><ul>{steps}</ul>"
+    )
 
 
 def table_html(

@@ -17,7 +17,7 @@ from concio.display import Units, number
 from concio.errors import InputError
 from concio.model.described import law_words, material_words
 from concio.plot.figures import TITLES, suitable_figures
-from concio.report.html_parts import figure_html, table_html
+from concio.report.html_parts import figure_html, table_html, verdict_html
 from concio.report.space_data import space_view_data
 from concio.report.space_tables import space_tables_html
 from concio.report.view_data import view_data
@@ -75,6 +75,11 @@ def report_html(
         msg = "the steps belong to different models"
         raise InputError(msg, hint="write one report for each model")
     labels = [_label(s, i) for i, s in enumerate(steps)] if labels is None else list(labels)
+    return page(steps, labels, verdict=_verdict(steps[-1]), figures=_figures(steps[-1]) if figures else "")
+
+
+def page(steps: Sequence[Result], labels: Sequence[str], *, verdict: str, figures: str, more: str = "") -> str:
+    """Return a report of steps that share one assembly: what was found in HTML, the view, figures, ``more``, tables."""
     last = steps[-1]
     space = last.model.dim == 3
     shown = space_view_data(steps, labels) if space else view_data(steps, labels)
@@ -84,10 +89,10 @@ def report_html(
         "STYLE": _resource("report.css") + (_resource("space_view.css") if space else ""),
         "SCRIPT": _resource("space_view.js" if space else "view.js"),
         "VIEW": _resource("space_view.html" if space else "view.html"),
-        "VERDICT": _verdict(last),
+        "VERDICT": verdict,
         "MODEL": _model(last),
-        "FIGURES": _figures(last) if figures else "",
-        "TABLES": _tables(last),
+        "FIGURES": figures,
+        "TABLES": more + _tables(last),
         "TRIED": _tried(last),
         "DATA": data,
         "UNITS": escape(_units_sentence(last.model.report)),
@@ -120,22 +125,18 @@ def _label(result: Result, index: int) -> str:
 
 def _verdict(result: Result) -> str:
     v = verdict(result)
-    steps = "".join(f"<li>{escape(s)}</li>" for s in v.next_steps)
-    text = (
-        f'<div class="verdict {v.tone}"><h2>{escape(v.headline)}</h2><p>{escape(v.meaning)}</p>'
-        f"<p class=cert>{escape(certificate_sentence(result))}</p></div>"
-    )
+    checked = ""
     if result.solved:
         rows = "".join(
             f"<tr><td>{escape(c.what)}</td><td class=n>{c.value:.1e}</td>"
             f"<td>{'holds' if c.holds else 'fails'}</td></tr>"
             for c in checks(result)
         )
-        text += (
+        checked = (
             "<details><summary>The certificate, equation by equation</summary><div class=scroll><table><thead><tr>"
             f"<th>checked</th><th>error</th><th></th></tr></thead><tbody>{rows}</tbody></table></div></details>"
         )
-    return text + f"<h3>What to do next</h3><ul>{steps}</ul>"
+    return verdict_html(v, certificate_sentence(result), checked)
 
 
 def _model(result: Result) -> str:

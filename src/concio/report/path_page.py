@@ -1,0 +1,180 @@
+"""The report of a load path: how it ended and where, the load curve, the events, and every stage of the motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from concio.arguments import strict
+from concio.display import number
+from concio.model.plausibility import implausible
+from concio.plot.path_accessor import PathPlots
+from concio.post.path_curve import most_moving
+from concio.problem.tolerances import CERTIFIED
+from concio.report.html_parts import figure_html, verdict_html
+from concio.report.page import page
+from concio.report.wording import Verdict
+from concio.solvers.path.record import Outcome
+
+if TYPE_CHECKING:
+    from concio.analysis.path_result import NamedEvent, PathResult
+    from concio.model.stages import ControlPoint
+
+MOST_STEPS = 40
+"""Steps the slider of the report shows."""
+
+MOST_EVENTS = 250
+"""Longest table of events."""
+
+
+@strict
+def write_path_report(found: PathResult, path: Path | str, *, point: ControlPoint | None = None) -> Path:
+    """Write the report of a load path.
+
+    Parameters
+    ----------
+    found : PathResult
+    path : Path or str
+    point : ControlPoint, optional
+        Whose motion the load curve shows; by default the point that moved most in the end.
+
+    Returns
+    -------
+    Path
+        ``path``.
+    """
+    path = Path(path)
+    path.write_text(path_html(found, point=point), encoding="utf-8")
+    return path
+
+
+@strict
+def path_html(found: PathResult, *, point: ControlPoint | None = None) -> str:
+    """Return the report of a load path as a text; see :func:`write_path_report`."""
+    chosen = report_steps(found)
+    curves = PathPlots(found).stages(point=most_moving(found) if point is None else point)
+    return page(
+        [found.result(i) for i in chosen],
+        [step_words(found, i) for i in chosen],
+        verdict=verdict_html(path_verdict(found), path_certificate(found)),
+        figures=figure_html(curves[-1], "path", "Load against motion, stage by stage"),
+        more=_stages(found) + _events(found),
+    )
+
+
+def path_verdict(found: PathResult) -> Verdict:
+    """Return the outcome of a load path in words."""
+    outcome = found.outcomes[-1]
+    if found.complete and found.certified:
+        tone, headline = "good", "The loads are carried to the end of the path."
+    elif found.collapsed:
+        tone, headline = "bad", "The structure collapses on this path."
+    elif outcome is Outcome.LOST:
+        tone, headline = "unsure", "The path was lost before its end."
+    else:
+        tone, headline = "unsure", "The path was stopped before its end."
+    meaning = [
+        found.sentence,
+        "" if found.complete else outcome.value,
+        *(f"{_capital(note)}." for note in story(found)),
+    ]
+    steps = [f"{_capital(line)}." for line in implausible(found.assembly.model)]
+    if found.collapsed:
+        steps += [
+            "Look at the last step in the view: it is the state in which the structure begins to move.",
+            "'concio limit' puts the load beside the associated bound, which no history exceeds.",
+        ]
+    elif not found.complete:
+        steps += [
+            "Follow it again in steps ('--method steps'), or under the motion of a point ('--point', '--until').",
+            "'concio limit' gives a bound that needs no path.",
+        ]
+    else:
+        steps += [
+            "This says that the structure stands all along this history, not how far it is from collapse: go on with "
+            "another stage of growing load, or ask 'concio limit'.",
+        ]
+    return Verdict(tone, headline, " ".join(filter(None, meaning)), tuple(steps))
+
+
+def story(found: PathResult) -> tuple[str, ...]:
+    """Return the notes of a path without those that its sentence tells already."""
+    return tuple(note for note in found.notes if "ended at" not in note)
+
+
+def path_certificate(found: PathResult) -> str:
+    """Return what was checked, in one sentence."""
+    worst, count = found.certificate, len(found.steps)
+    kept = f"work, stored energy and dissipation agree to {found.energy_error:.1e}"
+    if found.certified:
+        passed = f"the largest error in any equation of {count:,} states is {worst:.1e} ({CERTIFIED:.0e} is allowed)"
+        return f"Certified: {passed}; {kept}."
+    return f"Not certified: the largest error in any equation of {count:,} states is {worst:.1e}; {kept}."
+
+
+def report_steps(found: PathResult) -> list[int]:
+    """Return the steps the slider of the report shows: all, or some evenly chosen, with the end of every stage."""
+    count = len(found.steps)
+    ends = {max(i for i, s in enumerate(found.steps) if s.stage == k) for k in {s.stage for s in found.steps}}
+    spread = np.linspace(0, count - 1, min(count, MOST_STEPS)).round().astype(int)
+    return sorted(ends | {int(i) for i in spread})
+
+
+def step_words(found: PathResult, step: int) -> str:
+    """Return where a step lies, in words: stage and load."""
+    chosen = found.steps[step]
+    own = [i for i, s in enumerate(found.steps) if s.stage == chosen.stage]
+    name, values = found.load(chosen.stage)
+    value = float(values[len(values) - len(own) + own.index(step)])
+    return f"{found.stages[chosen.stage].name}: {name} at {number(value, 4)}"
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def _stages(found: PathResult) -> str:
+    rows = []
+    for k, stage in enumerate(found.stages):
+        if k >= len(found.outcomes):
+            rows.append((stage.name, "not begun", "", ""))
+            continue
+        name, values = found.load(k)
+        count = sum(e.stage == k for e in found.events)
+        rows.append((stage.name, found.outcomes[k].value, f"{name}: {number(float(values.max()), 6)}", f"{count:,}"))
+    return _table("Stages", ("stage", "how it ended", "most carried", "events"), rows)
+
+
+def _events(found: PathResult) -> str:
+    if not found.events:
+        return ""
+    shown = found.events[:MOST_EVENTS]
+    rows = [_event_row(found, event) for event in shown]
+    left = len(found.events) - len(rows)
+    more = f"<p class=note>The first {MOST_EVENTS}; {left:,} more are in events.csv.</p>" if left else ""
+    return _table("Events", ("stage", "load", "joint", "what happens", "at [m]"), rows) + more
+
+
+def _event_row(found: PathResult, event: NamedEvent) -> tuple[str, ...]:
+    at = "(" + ", ".join(f"{x:.4g}" for x in event.at) + ")"
+    load = number(event_load(found, event), 6)
+    return found.stages[event.stage].name, load, " | ".join(event.bodies), event.kind, at
+
+
+def event_load(found: PathResult, event: NamedEvent) -> float:
+    """Return the load factor (or share of the stage) at which an event happens."""
+    _, values = found.load(event.stage)
+    first = next(i for i, step in enumerate(found.steps) if step.stage == event.stage)
+    skipped = len(values) - sum(step.stage == event.stage for step in found.steps)
+    return float(values[event.step - first + skipped])
+
+
+def _table(title: str, heads: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
+    head = "".join(f"<th>{escape(h)}</th>" for h in heads)
+    body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
+    table = f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    return f"<h2>{escape(title)}</h2><div class=scroll>{table}</div>"
