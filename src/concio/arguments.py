@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ParamSpec, TypeVar
 
+from concio.argument_types import Check, checker, told
 from concio.errors import ArgumentError
 
 P = ParamSpec("P")
@@ -91,10 +92,19 @@ def strict_class(cls: type[T]) -> type[T]:
 def _strict(function: Callable[P, T], expected: _Expected) -> Callable[P, T]:
     @functools.wraps(function)
     def run(*args: P.args, **kwargs: P.kwargs) -> T:
-        expected.check(len(args), kwargs)
+        expected.check(args, kwargs)
         return function(*args, **kwargs)
 
     return run
+
+
+def _hint(wanted: str, value: object) -> str | None:
+    """Return how to write what was probably meant."""
+    if wanted.startswith("a sequence of numbers") and isinstance(value, int | float):
+        return f"write ({value!r},)"
+    if wanted == "a Result":
+        return "solve the model first: concio.solve(model)"
+    return None
 
 
 @dataclass(frozen=True)
@@ -103,6 +113,8 @@ class _Expected:
 
     name: str
     order: tuple[str, ...]
+    types: Mapping[str, tuple[Check, str]]
+    defaults: Mapping[str, object]
     known: tuple[str, ...]
     needed: tuple[tuple[str, float], ...]
     passes_on: bool
@@ -119,12 +131,16 @@ class _Expected:
             (p.name, float(order.index(p.name)) if p.name in order else math.inf) for p in named if p.default is p.empty
         )
         more = any(p.kind is p.VAR_KEYWORD for p in parameters) and not also
-        known = (*(p.name for p in named), *also)
         any_number = any(p.kind is p.VAR_POSITIONAL for p in parameters)
-        return cls(method_of or function.__name__, order, known, needed, more, own, any_number)
+        found = {p.name: checker(p.annotation) for p in named}
+        types = {name: check for name, check in found.items() if check is not None}
+        defaults = {p.name: p.default for p in named}
+        known = (*defaults, *also)
+        return cls(method_of or function.__name__, order, types, defaults, known, needed, more, own, any_number)
 
-    def check(self, given: int, named: Mapping[str, object]) -> None:
-        """Raise where a call with ``given`` arguments by place and others by name is not one the function takes."""
+    def check(self, by_place: Sequence[object], named: Mapping[str, object]) -> None:
+        """Raise where a call with arguments by place and others by name is not one the function takes."""
+        given = len(by_place)
         if not self.passes_on:
             refuse_unknown(named, self.known, f"{self.name}()")
         given -= self.own
@@ -139,3 +155,11 @@ class _Expected:
             if name in named:
                 msg = f"{self.name}() was given '{name}' twice, by place and by name"
                 raise ArgumentError(msg, hint="leave one of them out")
+        for name, value in (*zip(self.order, by_place[self.own :], strict=False), *named.items()):
+            check = self.types.get(name)
+            if check is not None and value is not self.defaults[name] and not check[0](value):
+                what = told(value)
+                msg = f"{self.name}(): {name} = {what} must be {check[1]}"
+                if what.startswith(("a ", "an ")):
+                    msg = f"{self.name}(): {name} must be {check[1]}, not {what}"
+                raise ArgumentError(msg, hint=_hint(check[1], value))

@@ -142,3 +142,36 @@ def test_closest() -> None:
     assert closest("zzz", ["a", "b"], names="groups") == "groups: a, b"
     assert closest("zzz", []) == "known: none"
     assert closest("zzz", ["a"], otherwise="look") == "look"
+
+
+COLUMN = "[column]\nwidth = 0.3\nheight = 1.2\nblocks = 3\nfriction = 0.9\nhorizontal = 1.0\n"
+
+
+def pushed(model: concio.Model) -> concio.Result:
+    return concio.solve(model, factors={"live": 0.1})
+
+
+WRONG_KINDS: dict[str, tuple[Callable[[concio.Model], object], str]] = {
+    "a number for a vector": (lambda _: concio.Load("pressure", 20.0), r"value = 20.0 must be a sequence of numbers "
+                              r"\(write \(20.0,\)\)"),
+    "a text for a vector": (lambda _: concio.Load("pressure", "20 kPa"), "must be a sequence of numbers"),
+    "texts in a vector": (lambda _: concio.Load("weight", ("0", "-1")), "must be a sequence of numbers"),
+    "a file for a model": (lambda _: concio.solve("wall.toml"), "a model is needed, .*'wall.toml' was given"),
+    "a result for a model": (lambda m: concio.limit(pushed(m)), "a model is needed, Result was given"),
+    "a result to write": (lambda m: concio.dumps(pushed(m)), "a model is needed, Result was given"),
+    "a model for a result": (lambda m: concio.thrust_line(m), "must be a Result, not a Model .solve the model first"),
+    "one stage": (lambda m: concio.run_path(m, concio.Stage("a", {})), "must be a sequence of Stage"),
+    "stages as tuples": (lambda m: concio.run_path(m, [("a", {"dead": 1.0})]), "must be a sequence of Stage"),
+    "a factor for factors": (lambda m: concio.solve(m, factors=0.5), "0.5 must be a mapping of names to numbers"),
+    "a text for a factor": (lambda m: concio.solve(m, factors={"live": "x"}), "must be a mapping of names to numbers"),
+    "a number for a method": (lambda m: concio.solve(m, method=3), "method = 3 must be a text"),
+    "a text for an outline": (lambda _: concio.Body("a", "square"), "is no list of points"),
+    "a body that is not there": (lambda m: pushed(m).nodes(99), "there is no body 99"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", WRONG_KINDS)
+def test_arguments_of_the_wrong_kind_are_told_in_words(case: str) -> None:
+    call, said = WRONG_KINDS[case]
+    with pytest.raises(concio.InputError, match=said):
+        call(concio.loads(COLUMN))

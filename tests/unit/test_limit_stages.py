@@ -13,9 +13,9 @@ import concio
 from concio.analysis import limit as limits
 from concio.analysis.limit import dead_and_live, limit_stages
 from concio.analysis.load_steps import load_steps
-from concio.cli.limit_lines import as_given, limit_lines
 from concio.cli.main import app
 from concio.problem.certificate import certify
+from concio.report.limit_wording import as_given, limit_lines
 from concio.solvers.path.event_path import follow
 from concio.solvers.path.ray import homogeneous, ray
 from concio.solvers.path.record import Outcome

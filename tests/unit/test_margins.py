@@ -10,8 +10,8 @@ import pytest
 import concio
 from concio.analysis import limit as limits
 from concio.analysis.margins import friction_by_solving, load_margin
-from concio.cli.limit_lines import limit_lines
 from concio.problem.solution import Mechanism
+from concio.report.limit_wording import limit_lines
 from concio.solvers.statics.limit import LimitLoad
 
 

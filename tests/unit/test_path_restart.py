@@ -9,7 +9,7 @@ import pytest
 
 import concio
 from concio.analysis.limit import limit
-from concio.cli.limit_lines import limit_lines
+from concio.report.limit_wording import limit_lines
 from concio.solvers.path.record import Outcome
 from concio.solvers.path.restart import look_beyond, moves_freely
 from path_helpers import energy_error, least_dissipation, weight_then, worst_certificate

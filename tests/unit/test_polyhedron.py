@@ -142,7 +142,7 @@ def test_a_surface_through_itself_is_told() -> None:
 
 
 def test_faces_that_are_no_lists_and_other_slips() -> None:
-    with pytest.raises(GeometryError, match="not lists of vertex numbers"):
+    with pytest.raises(InputError, match="faces = 5 must be a sequence"):
         Polyhedron("b", CUBE, 5)  # type: ignore[arg-type]
     with pytest.raises(InputError, match="kind 'soft'"):
         Polyhedron("b", CUBE, BOX, kind="soft")  # type: ignore[arg-type]

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 import concio
-from concio.cli.limit_lines import limit_lines
-from concio.cli.path_lines import curve_point, path_facts, path_lines
+from concio.cli.path_lines import path_facts, path_lines
+from concio.post.path_curve import most_moving
 from concio.problem.solution import Status
+from concio.report.limit_wording import limit_lines
 from concio.solvers.path.state import LinearPath, at_rest, energy_of_step, state_of
 from space_problems import wall as blocks
 
@@ -61,7 +62,7 @@ def test_load_path_in_steps() -> None:
 
 def test_a_path_in_space_in_words() -> None:
     found = concio.run_path(concio.extrude(WALL, THICK), (*STAGES[:1], concio.Stage("push", {"live": 2.5}, steps=2)))
-    point = curve_point(found)
+    point = most_moving(found)
     assert len(point.at) == 3
     assert any("moving along" in line for line in path_lines(found, point, every=True))
     assert path_facts(found, point)["point"]["at"] == list(point.at)

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from concio.cli.limit_lines import limit_lines
 
 import concio
 from concio.analysis.lent_compliance import SHEAR_TO_NORMAL, lent_assembly
-from concio.cli.limit_lines import limit_lines
 from concio.errors import InputError
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Body, Load, Support

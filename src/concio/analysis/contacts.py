@@ -8,6 +8,7 @@ import numpy as np
 
 from concio.contact.pairs import Pairs
 from concio.problem.pair_state import PairState, PairStates
+from concio.representation import short_repr
 
 Array = np.ndarray
 
@@ -15,6 +16,7 @@ STATE_NAMES = tuple(state.name.lower() for state in PairState)
 """Name of each pair state code."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Contacts:
     """State of every contact pair, m in all.
@@ -91,6 +93,7 @@ class Contacts:
         return ", ".join(f"{self.count(name)} {name}" for name in words)
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class JointResultants:
     """Resultants of each interface, on side b, about the middle of the interface; j interfaces.

@@ -10,10 +10,12 @@ import numpy as np
 from concio.analysis.contacts import Contacts
 from concio.model.interfaces.patches import Patch
 from concio.problem.pair_state import PairState
+from concio.representation import short_repr
 
 Array = np.ndarray
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class SpaceResultants:
     """Resultants of each interface in space, on side b; j interfaces.

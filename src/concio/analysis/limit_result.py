@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from concio.solvers.path.record import EventPath
 from concio.solvers.statics.collapse_state import CollapseState
 from concio.solvers.statics.friction import FrictionMargin
 from concio.solvers.statics.limit import LimitLoad
+
+if TYPE_CHECKING:
+    from concio.plot.limit_accessor import LimitPlots
 
 Array = np.ndarray
 
@@ -65,6 +68,24 @@ class LimitResult:
     collapse_shown: bool = False
     friction: FrictionMargin | None = None
     lent_compliance: float = 0.0
+
+    def __repr__(self) -> str:
+        from concio.report.limit_wording import limit_lines
+
+        title, *lines = limit_lines(self)
+        return "\n".join([f"LimitResult: {title}", *lines])
+
+    def _repr_html_(self) -> str:
+        from concio.report.notebook import limit_html
+
+        return limit_html(self)
+
+    @property
+    def plot(self) -> LimitPlots:
+        """Figures by name: ``limit.plot.mechanism()``; matplotlib is loaded here."""
+        from concio.plot.limit_accessor import LimitPlots
+
+        return LimitPlots(self)
 
     @property
     def carried(self) -> float:

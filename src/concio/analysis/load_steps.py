@@ -20,6 +20,7 @@ import numpy as np
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution, Status
+from concio.representation import short_repr
 from concio.solvers.interior import cone_run, engine
 from concio.solvers.methods import find
 from concio.solvers.path.near_forces import needed, solve_near
@@ -33,6 +34,7 @@ START = (10.0,)
 """Starting points of the interior point: a step that needs others is halved instead."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class LoadSteps:
     """Certified states under a growing load.

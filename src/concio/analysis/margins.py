@@ -23,6 +23,7 @@ from concio.contact.assembly import Assembly
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Status
+from concio.representation import short_repr
 from concio.solvers.methods import find
 from concio.solvers.statics.friction import smallest_friction
 from concio.solvers.statics.limit import associated_limit
@@ -31,6 +32,7 @@ FAR = 1e6
 """A load that can grow beyond this factor counts as unlimited."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class Margin:
     """Load factor or friction factor at which a structure comes to its limit.

@@ -17,6 +17,7 @@ from concio.model.stages import ControlPoint, Stage
 from concio.problem.certificate import Certificate
 from concio.problem.solution import Status, judge
 from concio.problem.tolerances import CERTIFIED
+from concio.representation import short_repr
 from concio.solvers.path.record import Event, Outcome
 from concio.solvers.path.state import LinearPath, PathState, path_kinematics, weakened
 
@@ -25,10 +26,14 @@ if TYPE_CHECKING:
 
 Array = np.ndarray
 
+MOST_STAGES = 8
+"""More stages than this are counted in a short text."""
+
 DUST = 1e-12
 """Motions below this share of the largest displacement of the path are rounding, and zero."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class PathStep:
     """One point of the path.
@@ -55,6 +60,7 @@ class PathStep:
     stored: float
 
 
+@short_repr
 @dataclass(frozen=True)
 class NamedEvent:
     """A change of state with the joint it happens at.
@@ -112,6 +118,24 @@ class PathResult:
     outcomes: tuple[Outcome, ...]
     notes: tuple[str, ...]
     direction: Array
+
+    def __repr__(self) -> str:
+        size = f"{len(self.steps):,} states, {len(self.events):,} events"
+        lines = [
+            f"PathResult: {self.sentence}",
+            f"  {self.assembly.model.title or 'model without a title'}: {size}, certified to {self.certificate:.1e}",
+        ]
+        for k, outcome in enumerate(self.outcomes[:MOST_STAGES]):
+            name, values = self.load(k)
+            lines.append(f"  stage '{self.stages[k].name}': {outcome.name}, {name} = {values.max():.6g} at most")
+        if len(self.outcomes) > MOST_STAGES:
+            lines.append(f"  ... and {len(self.outcomes) - MOST_STAGES} more stages")
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        from concio.report.notebook import path_html
+
+        return path_html(self)
 
     @property
     def complete(self) -> bool:

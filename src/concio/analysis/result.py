@@ -12,7 +12,7 @@ import numpy as np
 from concio.analysis.contacts import STATE_NAMES, Contacts, JointResultants, joint_resultants
 from concio.analysis.joints_in_space import SpaceResultants, joint_resultants_in_space
 from concio.analysis.stress import Stress
-from concio.analysis.verdict import attention, self_stress, sentence
+from concio.analysis.verdict import attention, result_lines, self_stress, sentence
 from concio.arguments import closest
 from concio.contact.assembly import Assembly
 from concio.contact.outline_gaps import outline_gaps
@@ -23,6 +23,7 @@ from concio.kinematics.rigid import rigid_operator, swept
 from concio.model.model import Model
 from concio.problem.certificate import Certificate
 from concio.problem.solution import Mechanism, Solution, Status, pair_states
+from concio.representation import short_repr
 from concio.solvers.statics.self_stress import SelfStress
 from concio.solvers.statics.sufficient import SufficientCondition, sufficient_condition
 
@@ -40,6 +41,7 @@ LARGE = 0.1
 """Share of a joint's length from which on its motion is called large."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class JointMotion:
     """How far the joint that moves most beside its length has opened or slid.
@@ -97,6 +99,9 @@ class Result:
     solution: Solution
     seconds: Mapping[str, float]
     lent_compliance: float = 0.0
+
+    def __repr__(self) -> str:
+        return "\n".join(result_lines(self))
 
     @property
     def model(self) -> Model:
@@ -182,6 +187,9 @@ class Result:
     @cached_property
     def joints_in_space(self) -> SpaceResultants:
         """Resultants of each interface of a model in space."""
+        if self.model.dim != 3:
+            msg = "the joints of a plane model have no resultants in space"
+            raise InputError(msg, hint="they are in result.joints")
         return joint_resultants_in_space(self.contacts, self.assembly.detection.patches)
 
     @cached_property
@@ -210,6 +218,9 @@ class Result:
             msg = f"there is no body called '{body}'"
             hint = closest(body, (b.name for b in self.model.bodies), otherwise="see the names with 'concio check'")
             raise InputError(msg, hint=hint)
+        if not 0 <= body < len(self.model.bodies):
+            msg = f"there is no body {body}: there are {len(self.model.bodies)}, counted from 0"
+            raise InputError(msg)
         return body
 
     def nodes(self, body: int | str) -> Array:

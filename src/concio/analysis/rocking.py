@@ -18,11 +18,11 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.arguments import strict
-from concio.contact.assembly import require_model
 from concio.errors import InputError, SolverError
 from concio.model.materials import Rigid
-from concio.model.model import Model
+from concio.model.model import Model, require_model
 from concio.problem.contact_problem import ContactProblem, Laws
+from concio.representation import short_repr
 from concio.solvers.statics.limit import associated_limit
 
 Array = np.ndarray
@@ -31,6 +31,7 @@ MOST_STEPS = 2000
 """Steps after which rocking stops."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class RockingResult:
     """A rocking curve.

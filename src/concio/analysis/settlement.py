@@ -14,10 +14,12 @@ from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import InputError
 from concio.model.model import Model
 from concio.problem.solution import ProgressCallback
+from concio.representation import short_repr
 
 Array = np.ndarray
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class SettlementResult:
     """Movement of supports after the dead load.

@@ -7,12 +7,15 @@ from functools import cached_property
 
 import numpy as np
 
+from concio.errors import InputError
 from concio.fem.constitutive import principal, principal_in_space
 from concio.fem.discretisation import Discretisation
+from concio.representation import short_repr
 
 Array = np.ndarray
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Stress:
     """Stresses that follow from the displacements; rigid and fixed bodies have none (nan).
@@ -69,4 +72,7 @@ class Stress:
     @cached_property
     def principal_in_space(self) -> tuple[Array, Array]:
         """Mean principal stresses (B, 3) of each body, s1 >= s2 >= s3 [kN/m2], and directions (B, 3, 3), one a row."""
+        if self.mean.shape[1] != 6:
+            msg = "the stresses of a plane model have no directions in space"
+            raise InputError(msg, hint="they are in stress.principal")
         return principal_in_space(self.mean)

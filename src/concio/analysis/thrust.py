@@ -16,6 +16,7 @@ from concio.analysis.contacts import JointResultants
 from concio.analysis.result import Result
 from concio.arguments import strict
 from concio.errors import InputError
+from concio.representation import short_repr
 
 Array = np.ndarray
 
@@ -23,6 +24,7 @@ AT_EDGE = 0.02
 """A joint is a hinge when its resultant is within this share of its length from an edge."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class Hinge:
     """A joint whose resultant crosses it at an edge.
@@ -48,6 +50,7 @@ class Hinge:
         return f"hinge between {self.bodies[0]} and {self.bodies[1]} at ({self.at[0]:.4g}, {self.at[1]:.4g})"
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class ThrustLine:
     """Line of thrust along a chain of joints; k joints.
@@ -71,6 +74,7 @@ class ThrustLine:
     eccentricity: Array
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class CourseResultants:
     """Resultants of the bed joints at each level; l levels, from below.

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.display import number
 from concio.model.plausibility import implausible
 from concio.problem.solution import Status
 from concio.solvers.statics.self_stress import SelfStress, least_compression
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
 
 MUCH = 1000.0
 """Forces of a joint this many times all loads are pointed out."""
+
+MOST_REACTIONS = 4
+"""More reactions than this are counted in a short text."""
 
 LARGEST = 20_000
 """Largest number of pairs for which the forces that could hold a structure are worked out (a linear programme)."""
@@ -68,3 +72,28 @@ def _heavy(result: Result) -> tuple[str, ...]:
         f"joint {a}|{b} carries {size[k]:.4g} kN at ({at}), {size[k] / load:.3g} times all loads: forces this large "
         "balance themselves, and how large they are rests on details such as corners and the mesh",
     )
+
+
+def result_lines(result: Result) -> list[str]:
+    """Return a result in some ten lines: outcome, certificate, sizes, loads; of a solved one motions and forces."""
+    model, units, assembly = result.model, result.model.report, result.assembly
+    size = f"{len(model.free_bodies):,} bodies, {len(assembly.pairs):,} contact pairs"
+    factors = ", ".join(f"{g} = {number(float(result.factors.get(g, 1.0)))}" for g in assembly.groups) or "none"
+    lines = [
+        f"Result: {result.status.name}. {result.status.value}",
+        f"  {model.title or 'model without a title'}: {size}",
+        f"  by {result.method}, worst error of the certificate {result.certificate.worst:.1e}",
+        f"  load factors {factors}; loads {units.force_vector(result.total_load)}",
+    ]
+    if result.solved:
+        settlement = units.text("motion", result.max_settlement)
+        lines.append(f"  pairs {result.contacts.counted}; largest settlement {settlement}")
+        reactions = list(result.reactions.items())
+        largest = max((float(np.linalg.norm(force)) for _, force in reactions), default=0.0)
+        for name, force in reactions[:MOST_REACTIONS]:
+            lines.append(f"  reaction of {name}: {units.force_vector(force, size=largest)}")
+        if len(reactions) > MOST_REACTIONS:
+            lines.append(f"  ... and {len(reactions) - MOST_REACTIONS} more reactions")
+    elif result.mechanism is not None:
+        lines.append("  its motion: result.mechanism_velocity, result.plot.mechanism()")
+    return lines

@@ -61,7 +61,7 @@ def limit(
     from concio.analysis.limit import limit_stages
     from concio.analysis.margins import friction_by_solving, load_margin
     from concio.cli.limit_files import write_limit
-    from concio.cli.limit_lines import head_lines, short_lines, solving_line, stage_lines
+    from concio.report.limit_wording import head_lines, short_lines, solving_line, stage_lines
 
     groups = list(group or ["live"])
     if out is not None:
@@ -98,7 +98,7 @@ def limit(
             tell([solving_line(word, solved)])
     if out is not None:
         with replaced_directory(out) as fresh:
-            written = write_limit(found, groups, told, fresh)
+            written = write_limit(found, told, fresh)
         tell([f"  written              {out}: {', '.join(written)}"])
     if json:
         print_json(told)

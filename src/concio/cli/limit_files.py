@@ -4,48 +4,35 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from concio.analysis.limit import LimitResult
-from concio.analysis.result import Result
-from concio.problem.solution import Mechanism, Status, failed
 
-Array = np.ndarray
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
-def write_limit(found: LimitResult, groups: list[str], told: dict[str, Any], place: Path) -> list[str]:
+def write_limit(found: LimitResult, told: dict[str, Any], place: Path) -> list[str]:
     """Write ``summary.json`` and the figures there are; return the names of the files."""
     text = json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False)
     (place / "summary.json").write_text(text + "\n", encoding="utf-8")
-    named, written = "' and '".join(groups), ["summary.json"]
-    bound = found.associated
-    if bound.mechanism is not None:
-        title = f"Associated mechanism at {bound.multiplier:.6g} times the load of '{named}'"
-        note = "joints that slide open by the friction coefficient times their slip"
-        written += _draw(found, bound.mechanism.velocity, title, note, place / "associated_mechanism")
+    written, plots = ["summary.json"], found.plot
+    if found.associated.mechanism is not None:
+        written += _save(plots.mechanism(), place / "associated_mechanism")
     if found.collapse_state is not None:
-        title = f"Coulomb collapse state at {found.collapse_state.multiplier:.6g} times the load of '{named}'"
-        written += _draw(found, found.collapse_state.velocity, title, "joints that slide stay closed",
-                         place / "collapse_state")  # fmt: skip
+        written += _save(plots.collapse_state(), place / "collapse_state")
     if found.path is not None and np.abs(found.path.direction).any():
-        end = "end of the Coulomb path" if found.collapse_shown else "point where the Coulomb path was lost"
-        title = f"Motion at the {end}, peak {found.carried:.6g} times the load of '{named}'"
-        written += _draw(found, found.path.direction, title, "joints that slide stay closed", place / "path_mechanism")
+        written += _save(plots.path_mechanism(), place / "path_mechanism")
     return written
 
 
-def _draw(found: LimitResult, velocity: Array, title: str, note: str, place: Path) -> list[str]:
-    """Draw a motion (N,) of the free unknowns as PNG and SVG."""
+def _save(axes: Axes, place: Path) -> list[str]:
+    """Write a figure as PNG and SVG; return the names of the files."""
     from matplotlib.figure import Figure
 
-    from concio.plot.deformed import plot_mechanism
-
-    assembly = found.assembly
-    motion = Mechanism(velocity / float(np.abs(velocity).max()), 0.0, 0.0)
-    solution = failed(assembly.problem(), Status.NO_EQUILIBRIUM, method="limit", mechanism=motion)
-    figure = plot_mechanism(Result(assembly, {}, solution, {}), title=title, note=note).figure
+    figure = axes.figure
     assert isinstance(figure, Figure)
     names = [f"{place.name}.{form}" for form in ("png", "svg")]
     for name in names:

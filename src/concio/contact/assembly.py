@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from os import PathLike, fspath
 
 import numpy as np
 import scipy.sparse as sp
@@ -21,12 +20,14 @@ from concio.contact.ties import add_ties
 from concio.errors import GeometryError, InputError
 from concio.fem.discretisation import Discretisation, discretise
 from concio.model.interfaces.detect import Detection
-from concio.model.model import Model
+from concio.model.model import Model, require_model
 from concio.problem.contact_problem import ContactProblem, Laws
+from concio.representation import short_repr
 
 Array = np.ndarray
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Assembly:
     """A model turned into arrays; load factors give :class:`ContactProblem` objects.
@@ -174,20 +175,6 @@ def detect_without_overlap(model: Model) -> Detection:
         msg = first.sentence + (f", and {others} more overlap{'s' if others > 1 else ''}" if others else "")
         raise GeometryError(msg, hint="raise gap_tolerance only where the overlap is no more than inaccurate drawing")
     return detection
-
-
-def require_model(thing: object) -> None:
-    """Refuse anything that is not a model.
-
-    Raises
-    ------
-    InputError
-        It is something else, the name of a file for example.
-    """
-    if not isinstance(thing, Model):
-        what = f"the name '{fspath(thing)}'" if isinstance(thing, str | PathLike) else type(thing).__name__
-        msg = f"a model is needed, {what} was given"
-        raise InputError(msg, hint="concio.load reads a model from a file")
 
 
 def as_assembly(model: Model | Assembly, *, jointless: bool = False, periodic: bool = False) -> Assembly:

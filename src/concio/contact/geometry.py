@@ -19,8 +19,10 @@ from concio.model.interfaces.detect import Detection, detect_interfaces
 from concio.model.interfaces.patches import detect_patches
 from concio.model.interfaces.periodic import detect_periodic
 from concio.model.model import Model
+from concio.representation import short_repr
 
 
+@short_repr
 @dataclass(frozen=True)
 class Geometry:
     """The steps that depend on the dimension.

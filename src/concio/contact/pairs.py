@@ -22,6 +22,7 @@ from concio.model.interfaces.detect import Interface
 from concio.model.materials import JointLaw
 from concio.model.model import Model
 from concio.problem.contact_problem import Laws
+from concio.representation import short_repr
 
 Array = np.ndarray
 
@@ -33,6 +34,7 @@ CONTACT_MODELS = (
 quadrature points over it, else at pairs of nodes or at the nodes of one side with dual functions."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Pairs:
     """The contact pairs of a model, m in all.

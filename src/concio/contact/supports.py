@@ -15,6 +15,7 @@ from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID, Discretisation
 from concio.kinematics.rigid import rigid_operator, swept
 from concio.model.model import Support
+from concio.representation import short_repr
 
 Array = np.ndarray
 
@@ -42,6 +43,7 @@ class Condition:
     value: float
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Supported:
     """What supports do to the unknowns: u = T q + sum over groups of factor * u0.

@@ -11,10 +11,12 @@ import scipy.sparse as sp
 from concio.fem.elements import Elements
 from concio.kinematics.frames import turned_left
 from concio.kinematics.rigid import rigid_modes
+from concio.representation import short_repr
 
 Array = np.ndarray
 
 
+@short_repr
 @dataclass(frozen=True)
 class EdgeNodes:
     """Nodes along one edge of an outline.
@@ -92,6 +94,7 @@ class Meshed:
         return np.asarray((mean @ self.stress_operator).todense())
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Shape(Meshed):
     """A meshed elastic shape in the plane, placed with its first vertex at the origin.

@@ -19,6 +19,7 @@ from concio.kinematics.rigid import motions, rigid_operator
 from concio.model.limits import LARGEST_REFINEMENT, LARGEST_UNKNOWNS
 from concio.model.model import Body, Model
 from concio.model.polyhedron import Polyhedron
+from concio.representation import short_repr
 
 Array = np.ndarray
 
@@ -26,6 +27,7 @@ RIGID, FIXED = -1, -2
 """Shape numbers of bodies that have no mesh."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Discretisation:
     """Meshed bodies and the numbering of their unknowns.

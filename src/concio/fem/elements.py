@@ -20,6 +20,7 @@ import skfem
 
 from concio.arguments import closest
 from concio.errors import GeometryError, InputError
+from concio.representation import short_repr
 
 Array = np.ndarray
 
@@ -72,6 +73,7 @@ def family(name: str) -> Family:
     return known[name]
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Elements:
     """Operators of one meshed body.

@@ -17,11 +17,13 @@ from concio.fem.mesh import mesh_body
 from concio.model.materials import Elastic
 from concio.model.model import Body, Model
 from concio.model.polyhedron import Polyhedron
+from concio.representation import short_repr
 
 Array = np.ndarray
 S = TypeVar("S")
 
 
+@short_repr
 @dataclass(frozen=True)
 class Plan(Generic[S]):
     """A shape before it is built: bodies of equal ``key`` have equal shapes."""

@@ -19,10 +19,12 @@ from math import factorial
 import numpy as np
 
 from concio.kinematics.frames import cross
+from concio.representation import short_repr
 
 Array = np.ndarray
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Moments:
     """Moments of a polygon or a polyhedron of density one.

@@ -14,6 +14,7 @@ import numpy as np
 import shapely
 
 from concio.kinematics.frames import cross, tangents
+from concio.representation import short_repr
 
 if TYPE_CHECKING:
     from concio.model.polyhedron import Polyhedron
@@ -28,6 +29,7 @@ _SIDES = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (3, 7, 6, 2), (0, 4, 7, 3), 
 _CORNERS = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class ConvexPiece:
     """A convex piece: corners (n, 3) and planes with outward normals (f, 3) and offsets (f,) [m]."""

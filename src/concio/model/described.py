@@ -2,8 +2,22 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+
 from concio.display import Units, number
 from concio.model.materials import Elastic, JointLaw, Rigid
+
+if TYPE_CHECKING:
+    from concio.model.model import Model
+
+T = TypeVar("T")
+
+MOST = 6
+"""More materials and joint laws than this are not told one by one."""
 
 LAW_KINDS: dict[str, str] = {
     "cohesion": "stress",
@@ -32,3 +46,36 @@ def law_words(law: JointLaw, units: Units) -> str:
         if value:
             words.append(f"{name.replace('_', ' ')} {units.text(kind, value)}")
     return ", ".join(words)
+
+
+def model_lines(model: Model) -> list[str]:
+    """Return a model in a few lines: sizes, materials, joint laws, loads."""
+    units = model.report
+    free = len(model.free_bodies)
+    fixed = len(model.bodies) - free
+    plane = model.dim == 2
+    corners = [b.outline for b in model.outlines] if plane else [b.vertices for b in model.polyhedra]
+    box = np.ptp(np.vstack(corners), axis=0)
+    scale, symbol = units.factor("length")
+    size = " x ".join(number(scale * side, 4) for side in box.tolist())
+    kinds = Counter(body.kind for body in model.bodies if body.kind != "fixed")
+    what = ", ".join(f"{count:,} {kind}" for kind, count in kinds.items())
+    lines = [
+        f"Model: {model.title or 'without a title'}",
+        f"  {free:,} bod{'y' if free == 1 else 'ies'} ({what}), {fixed:,} fixed; {size} {symbol}",
+        *(f"  material {name}: {material_words(given, units)}" for name, given in _first(model.materials)),
+        *(f"  joint law {name}: {law_words(law, units)}" for name, law in _first(model.laws)),
+    ]
+    for group in model.load_groups:
+        loads = Counter(load.kind for load in model.loads if load.group == group)
+        words = [f"{count} {kind}" for kind, count in loads.items()]
+        moved = sum(support.group == group for support in model.supports)
+        words += [f"{moved} support{'s' if moved > 1 else ''}"] if moved else []
+        lines.append(f"  load group {group}: {', '.join(words)}")
+    if model.stages:
+        lines.append(f"  stages: {', '.join(stage.name for stage in model.stages)}")
+    return lines
+
+
+def _first(named: Mapping[str, T]) -> list[tuple[str, T]]:
+    return list(named.items())[:MOST]

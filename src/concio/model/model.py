@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from functools import cached_property
+from os import PathLike, fspath
 from typing import ClassVar, Literal, get_args
 
 import numpy as np
@@ -15,11 +16,13 @@ from concio.arguments import closest, strict_class
 from concio.display import DEFAULT, Units
 from concio.errors import InputError
 from concio.kinematics.mass import Moments, polygon_moments
+from concio.model.described import model_lines
 from concio.model.dimensions import WORDS, resolved
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.polyhedron import Polyhedron
 from concio.model.rings import check_holes, checked_ring, following
 from concio.model.stages import Stage
+from concio.representation import short_repr
 
 Array = np.ndarray
 Periods = tuple[tuple[float, float], tuple[float, float]]
@@ -32,6 +35,7 @@ Point = tuple[float, ...]
 
 
 @strict_class
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Body:
     """A block, a mortar film or an obstacle: a polygon, with holes or without.
@@ -194,6 +198,7 @@ def _words(body: Body | Polyhedron) -> tuple[str, str, str, str]:
 
 
 @strict_class
+@short_repr
 @dataclass(frozen=True)
 class Support:
     """Holds unknowns of elastic or rigid bodies, with or without an imposed displacement.
@@ -234,6 +239,7 @@ class Support:
 
 
 @strict_class
+@short_repr
 @dataclass(frozen=True)
 class Load:
     """A load on the bodies it names.
@@ -271,6 +277,7 @@ class Load:
 
 
 @strict_class
+@short_repr
 @dataclass(frozen=True)
 class Tie:
     """A straight bar that takes tension only, with prestress, between two bodies or a body and a fixed point.
@@ -376,6 +383,14 @@ class Model:
     periods: Periods | None = None
     contact_points: str | int = "auto"
     report: Units = DEFAULT
+
+    def __repr__(self) -> str:
+        return "\n".join(model_lines(self))
+
+    def _repr_html_(self) -> str:
+        from concio.report.notebook import model_html
+
+        return model_html(self)
 
     def __post_init__(self) -> None:
         if not self.bodies:
@@ -514,3 +529,17 @@ def check_cell(model: Model) -> None:
     if len(depths) > 1:
         msg = f"the bodies of a periodic cell have {len(depths)} thicknesses"
         raise InputError(msg, hint="macroscopic stress is force over length and thickness: give them all one")
+
+
+def require_model(thing: object) -> None:
+    """Refuse anything that is not a model.
+
+    Raises
+    ------
+    InputError
+        It is something else, the name of a file for example.
+    """
+    if not isinstance(thing, Model):
+        what = f"the name '{fspath(thing)}'" if isinstance(thing, str | PathLike) else type(thing).__name__
+        msg = f"a model is needed, {what} was given"
+        raise InputError(msg, hint="concio.load reads a model from a file")

@@ -15,7 +15,11 @@ Array = np.ndarray
 
 def checked_ring(points: Array, what: str, where: str, *, clockwise: bool = False) -> Array:
     """Return a ring (n, 2) without the closing repetition, counter-clockwise or clockwise, not to be written to."""
-    ring = np.array(points, dtype=float)
+    try:
+        ring = np.array(points, dtype=float)
+    except (TypeError, ValueError):
+        msg = f"{what} is no list of points (x, y)"
+        raise GeometryError(msg, where=where) from None
     if ring.ndim != 2 or ring.shape[1] != 2:
         msg = f"{what} has shape {ring.shape}, expected (n, 2)"
         raise GeometryError(msg, where=where)

@@ -11,12 +11,14 @@ import shapely
 from scipy.spatial import cKDTree
 
 from concio.kinematics.frames import cross, tangents
+from concio.representation import short_repr
 
 Array = np.ndarray
 Loop = tuple[int, ...]
 """Vertices of a face, or of a hole in one, in order."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Topology:
     """Faces without coordinates, s sides in all.

@@ -5,12 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from concio.representation import short_repr
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from concio.analysis.result import Result
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Plots:
     """Figures of one result. Each method takes ``ax=`` and returns the axes it drew on; none shows a window.

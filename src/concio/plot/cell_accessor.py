@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from concio.representation import short_repr
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -13,6 +15,7 @@ if TYPE_CHECKING:
     from concio.analysis.cells.strength import StrengthDomain
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class ModuliPlots:
     """Figures of homogenised moduli. Each method takes ``ax=`` and returns the axes it drew on."""
@@ -26,6 +29,7 @@ class ModuliPlots:
         return plot_moduli(self.moduli, ax)
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class StrengthPlots:
     """Figures of a strength domain. Each method takes ``ax=`` and returns the axes it drew on."""
@@ -63,6 +67,7 @@ class StrengthPlots:
         return plot_cell_mechanism(self.domain, ray, ax)
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class CellPathPlots:
     """Figures of the path of a cell. Each method takes ``ax=`` and returns the axes it drew on."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from concio.plot.path_figure import plot_path
 from concio.post.path_curve import most_moving, path_curve
+from concio.representation import short_repr
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,6 +19,7 @@ MOST_STAGES = 4
 """More stages than this are not drawn beside each other: the last ones are."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class PathPlots:
     """Figures of a load path.

@@ -9,6 +9,7 @@ import numpy as np
 
 from concio.fem.constitutive import principal
 from concio.kinematics.frames import turned_left
+from concio.representation import short_repr
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 Array = np.ndarray
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Crosses:
     """Principal stresses at c points.

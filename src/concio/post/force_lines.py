@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.representation import short_repr
+
 if TYPE_CHECKING:
     from concio.analysis.result import Result
 
@@ -16,6 +18,7 @@ FILM = 4.0
 """A body longer than this times its width is a film: no force is drawn to its centre."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class JointForces:
     """Resultants of the loaded joints, j in all.
@@ -49,6 +52,7 @@ def joint_forces(result: Result, threshold: float = 1e-6) -> JointForces:
     return JointForces(keep, point, force[keep], size[keep])
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Chains:
     """Lines along which forces run from joint to joint, k in all.

@@ -14,6 +14,7 @@ import numpy as np
 from concio.kinematics.frames import cross
 from concio.kinematics.rigid import swept
 from concio.post.solids import body_motions_in_space
+from concio.representation import short_repr
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
@@ -25,6 +26,7 @@ TINY = 1e-9
 """Share of a patch below which a piece of it is left out."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class JointFaces:
     """Triangles on the interfaces, T in all.

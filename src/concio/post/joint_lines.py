@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.post.outlines import Outlines
+from concio.representation import short_repr
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 Array = np.ndarray
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class JointLines:
     """Pieces of joints, k in all; ties are left out.

@@ -14,6 +14,7 @@ from concio.fem.body import Shape
 from concio.fem.discretisation import FIXED
 from concio.kinematics.rigid import swept
 from concio.post.motion import body_motions
+from concio.representation import short_repr
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 Array = np.ndarray
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Outlines:
     """Closed outlines and holes of B bodies: R rings, P points in all; the first point of each is repeated at its end.

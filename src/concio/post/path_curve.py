@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.model.stages import ControlPoint
+from concio.representation import short_repr
 
 if TYPE_CHECKING:
     from concio.analysis.path_result import PathResult
@@ -28,6 +29,7 @@ class CurveEvent:
     where: str
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Curve:
     """A path as :func:`concio.plot.path_figure.plot_path` draws it.

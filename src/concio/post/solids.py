@@ -11,6 +11,7 @@ import numpy as np
 from concio.fem.discretisation import FIXED, RIGID
 from concio.fem.solid import SolidShape
 from concio.kinematics.rigid import rigid_operator, swept
+from concio.representation import short_repr
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 Array = np.ndarray
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Solids:
     """Surfaces of all bodies, P points, T triangles, E edges.

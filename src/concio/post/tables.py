@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.analysis.contacts import STATE_NAMES
+from concio.representation import short_repr
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
@@ -53,6 +54,7 @@ KINDS: dict[str, str] = {
 """Kind of quantity in each column, as :class:`concio.Units` tells it."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Tables:
     """Tables of one result. Each is a dict of arrays of one length.

@@ -13,12 +13,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.representation import short_repr
+
 if TYPE_CHECKING:
     from concio.analysis.result import Result
 
 Array = np.ndarray
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class ThrustLine:
     """One line of thrust.

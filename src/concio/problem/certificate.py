@@ -23,6 +23,7 @@ import numpy as np
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.tolerances import CERTIFIED, GRANTED, ROUNDING
+from concio.representation import short_repr
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,7 @@ class Certificate:
         return {**asdict(self), "worst": self.worst}
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Kinematics:
     """Gap, slip and crushing that follow from displacements and forces.

@@ -39,10 +39,12 @@ from functools import cached_property
 import numpy as np
 
 from concio.problem.tolerances import SMOOTH
+from concio.representation import short_repr
 
 Array = np.ndarray
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Cone:
     """Strength domains of ``m`` pairs.

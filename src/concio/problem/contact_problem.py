@@ -28,10 +28,12 @@ import scipy.sparse as sp
 
 from concio.errors import InputError
 from concio.problem.cone import Cone
+from concio.representation import short_repr
 
 Array = np.ndarray
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Laws:
     """Joint laws of ``m`` pairs, as forces and lengths of each pair (tributary area already multiplied in).
@@ -89,6 +91,7 @@ class Laws:
         return Laws(*(getattr(self, name)[pick] for name in self.__dataclass_fields__))
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class ContactProblem:
     """One load step of elastic or rigid bodies in unilateral frictional contact.

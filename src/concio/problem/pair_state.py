@@ -14,6 +14,8 @@ from enum import IntEnum
 
 import numpy as np
 
+from concio.representation import short_repr
+
 Array = np.ndarray
 
 
@@ -34,6 +36,7 @@ class Normal(IntEnum):
     CRUSHED = 2
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class PairStates:
     """States of ``m`` pairs.

@@ -13,6 +13,7 @@ from concio.problem.certificate import Certificate, Kinematics, certify, kinemat
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.pair_state import Normal, PairStates
 from concio.problem.tolerances import AT_BOUND, CERTIFIED
+from concio.representation import short_repr
 
 
 class Status(Enum):
@@ -41,6 +42,7 @@ PROVEN_FAILURES = (Status.NO_EQUILIBRIUM, Status.COLLAPSES, Status.NO_COULOMB_ST
 """Outcomes that are proofs that the structure does not stand."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class Progress:
     """What a progress callback receives."""
@@ -55,6 +57,7 @@ ProgressCallback = Callable[[Progress], "bool | None"]
 """Called as the solver works; a true return value asks it to stop (status CANCELLED)."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Mechanism:
     """A rigid motion that proves there is no equilibrium (theory page, section 6), or the direction of a departure.
@@ -75,6 +78,7 @@ class Mechanism:
     violation: float
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Departure:
     """A motion that starts from rest and never ends: constant acceleration and constant forces that obey every law.
@@ -111,6 +115,7 @@ class Departure:
         return self.violation <= CERTIFIED and self.power > 10.0 * CERTIFIED
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Solution:
     """Answer of a solver for one load step.

@@ -18,6 +18,7 @@ import numpy as np
 
 from concio.arguments import closest
 from concio.errors import InputError
+from concio.representation import short_repr
 from concio.studies.variables import Variable
 
 Array = np.ndarray
@@ -28,6 +29,7 @@ MOST = 1_000_000
 """More runs than these are no study of one wall."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Sample:
     """The values of all variables in all runs.

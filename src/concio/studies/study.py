@@ -25,6 +25,7 @@ from concio.model.file.reading import read_tables
 from concio.model.file.study_table import StudyTable, study_table
 from concio.model.file.writing import dumps
 from concio.model.model import Model
+from concio.representation import short_repr
 from concio.studies.bridges import variables_of_salib
 from concio.studies.executors import run_rows
 from concio.studies.outputs import Settings, outputs_of
@@ -63,6 +64,7 @@ class StudyProgress:
 
 
 @strict_class
+@short_repr
 @dataclass(frozen=True)
 class Stop:
     """When a study has seen enough: a probability is known to within an interval.

@@ -15,6 +15,8 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.spatial import ConvexHull
 
+from concio.representation import short_repr
+
 Array = np.ndarray
 
 FAR = 1e3
@@ -24,6 +26,7 @@ SAME = 1e-9
 """Half-spaces whose normals and relative distances differ by less are one; an interior smaller than this is none."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class HalfSpaces:
     """An intersection of half-spaces of components xx, yy, xy.

@@ -34,6 +34,7 @@ from concio.model.model import Model
 from concio.problem.certificate import imbalance
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.tolerances import CHECKED
+from concio.representation import short_repr
 from concio.solvers.path.state import CLOSED, OPEN, STICK, LinearPath
 from concio.solvers.path.state_rates import state_rates
 
@@ -46,6 +47,7 @@ CONTRADICTION = 1e-7
 """Residual of the linear equations from which on the states of the joints forbid the strain."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class ModuliCertificate:
     """Residuals of moduli, recomputed from the original equations, relative and dimensionless.
@@ -87,6 +89,7 @@ class ModuliCertificate:
         return self.worst <= CHECKED
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Moduli:
     """Homogenised moduli, with the states of the joints for which they hold.

@@ -17,6 +17,7 @@ from concio.contact.periodic import COMPONENTS, STRAINS
 from concio.model.stages import Stage
 from concio.problem.certificate import Certificate
 from concio.problem.solution import Status, judge
+from concio.representation import short_repr
 from concio.solvers.path.record import Outcome
 from concio.solvers.path.state import CLOSED, OPEN, STICK, LinearPath, PathState, path_kinematics
 
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 Array = np.ndarray
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class CellStep:
     """One point of the path of a cell.
@@ -67,6 +69,7 @@ class CellStep:
         }
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class CellPath:
     """Response of a cell along a path of macroscopic strains and stresses.

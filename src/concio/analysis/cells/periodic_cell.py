@@ -25,6 +25,7 @@ from concio.contact.periodic import COMPONENTS, STRAINS, strain_columns
 from concio.errors import InputError
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
+from concio.representation import short_repr
 
 Array = np.ndarray
 Three = Sequence[float] | np.ndarray
@@ -32,6 +33,7 @@ Three = Sequence[float] | np.ndarray
 ALL = (True, True, True)
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class PeriodicCell:
     """An assembled cell.

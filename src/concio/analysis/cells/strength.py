@@ -29,6 +29,7 @@ from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Progress, ProgressCallback
+from concio.representation import short_repr
 from concio.solvers.statics.collapse_state import CollapseState
 from concio.solvers.statics.existence import find_mechanism
 from concio.solvers.statics.limit import LimitLoad, associated_limit
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
 Array = np.ndarray
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class StrengthRay:
     """Strength in one direction of stress.
@@ -90,6 +92,7 @@ class StrengthRay:
         return low if np.isfinite(low) else float("nan")
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class StrengthDomain:
     """Strength of a cell in some directions, and as a domain.

@@ -28,6 +28,7 @@ from concio.analysis.cells.periodic_cell import PeriodicCell
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Mechanism, Progress, ProgressCallback
 from concio.problem.tolerances import ADMISSIBLE, CHECKED
+from concio.representation import short_repr
 from concio.solvers.statics.limit import LimitLoad, associated_limit
 from concio.solvers.statics.mechanism import absorbed_power
 
@@ -43,6 +44,7 @@ INSIDE = 1e-6
 """Distance from the point inside to the boundary, in sizes of the domain, below which there is no inside."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class StrengthFaces:
     """Half-spaces around the strength domain, and stresses in it.

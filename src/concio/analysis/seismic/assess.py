@@ -19,9 +19,9 @@ from concio.analysis.seismic.mechanism import LARGEST, Found, chosen_bodies, fin
 from concio.analysis.seismic.pushed_curve import pushed_curve
 from concio.analysis.seismic.site import STRONG, Site
 from concio.arguments import closest, strict
-from concio.contact.assembly import Assembly, assemble, require_model
+from concio.contact.assembly import Assembly, assemble
 from concio.errors import InputError, NoEquilibriumError
-from concio.model.model import Model
+from concio.model.model import Model, require_model
 from concio.model.stages import ControlPoint
 
 Array = np.ndarray

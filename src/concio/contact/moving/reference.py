@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from concio.contact.assembly import default_tolerance, detect_without_overlap, require_model
+from concio.contact.assembly import default_tolerance, detect_without_overlap
 from concio.contact.geometry import GEOMETRIES
 from concio.contact.moving.edges import MovingEdges
 from concio.contact.moving.laws import LawTable, RuleBook
@@ -24,7 +24,7 @@ from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID, Discretisation, discretise
 from concio.kinematics.placement import Placement
 from concio.model.interfaces.detect import Detection, Interface, detect_interfaces
-from concio.model.model import Body, Model
+from concio.model.model import Body, Model, require_model
 from concio.units import GRAVITY
 
 Array = np.ndarray

@@ -21,7 +21,7 @@ from concio.errors import InputError
 from concio.files import whole_file
 from concio.model.file.block_table import write_blocks
 from concio.model.materials import Elastic, Rigid
-from concio.model.model import Body, Load, Model, Support
+from concio.model.model import Body, Load, Model, Support, require_model
 from concio.model.polyhedron import Polyhedron
 from concio.model.stages import Stage
 
@@ -36,6 +36,7 @@ def dumps(model: Model, *, blocks_file: str | None = None) -> str:
     blocks_file : str, optional
         Name a table of blocks instead of writing them into the text.
     """
+    require_model(model)
     lines = ["# concio model"]
     lines += _pairs({"title": model.title or None, "blocks_file": blocks_file, "periods": model.periods})
     if not model.rules:

@@ -20,7 +20,7 @@ import numpy as np
 from concio.arguments import strict
 from concio.errors import InputError
 from concio.model.generate.arguments import positive
-from concio.model.model import Body, Load, Model, Point, Support, Tie, called
+from concio.model.model import Body, Load, Model, Point, Support, Tie, called, require_model
 from concio.model.polyhedron import Polyhedron
 from concio.model.stages import Stage
 from concio.model.surfaces import from_grid, prism
@@ -54,6 +54,7 @@ def extrude(model: Model, thickness: float | str | None = None, *, held: bool = 
     InputError
         The model is in space already, or is a periodic cell.
     """
+    require_model(model)
     outlines = model.outlines
     if model.periods is not None:
         msg = "a periodic cell is plane"

@@ -34,6 +34,7 @@ from concio.model.interfaces.facing import Edges, FacingPairs, facing_pairs
 from concio.model.interfaces.near import MissKind, NearMiss, Overlap, find_overlaps, find_point_touches, size_of_bodies
 from concio.model.interfaces.sight import visible_parts
 from concio.model.model import Array, Body
+from concio.representation import short_repr
 
 if TYPE_CHECKING:
     from concio.model.interfaces.patches import Patch
@@ -48,6 +49,7 @@ NEAR_SHARE = 0.05
 """Facing edges within this share of the smaller body's size are reported when they are not joined."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False, slots=True)
 class Interface:
     """The common segment of two edges that face each other.
@@ -93,6 +95,7 @@ class Interface:
         return self.length
 
 
+@short_repr
 @dataclass(frozen=True)
 class Detection:
     """Interfaces found, and a report of everything that came close or is wrong.

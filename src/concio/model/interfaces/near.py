@@ -10,10 +10,12 @@ import numpy as np
 import shapely
 
 from concio.model.model import Array, Body
+from concio.representation import short_repr
 
 MissKind = Literal["gap", "angle", "sliver", "partial", "corner"]
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class NearMiss:
     """Two edges that nearly form an interface, or form one only in part.
@@ -85,6 +87,7 @@ class NearMiss:
         return cls(kind, a.name, b.name, bodies, at, gap, length, angle, text)
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Overlap:
     """An area that two bodies cover.

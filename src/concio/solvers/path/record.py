@@ -7,6 +7,7 @@ from enum import Enum
 from itertools import pairwise
 
 from concio.problem.contact_problem import Array
+from concio.representation import short_repr
 from concio.solvers.path.state import PathState
 
 
@@ -27,6 +28,7 @@ class Outcome(Enum):
     CANCELLED = "Stopped on request."
 
 
+@short_repr
 @dataclass(frozen=True)
 class Event:
     """A change of state of one pair.
@@ -56,6 +58,7 @@ class Event:
     step: int
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class EventPath:
     """An exact path: its corners and its events.

@@ -21,6 +21,7 @@ from concio.errors import InputError
 from concio.problem.certificate import Certificate, Kinematics, certify, scales
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Solution
+from concio.representation import short_repr
 
 OPEN, CLOSED, CRUSHED = 0, 1, 2
 """Normal states of a pair: at its tensile strength and free to open; in contact; at its cap."""
@@ -29,6 +30,7 @@ STICK = 0
 """Tangential state of a pair; +1 and -1 slip in that direction."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class LinearPath:
     """A contact problem whose loads and obstacles move in proportion to a parameter.
@@ -81,6 +83,7 @@ class LinearPath:
         )
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class PathState:
     """State of the structure at one point of a path.

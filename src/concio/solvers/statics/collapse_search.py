@@ -21,6 +21,7 @@ import numpy as np
 from concio.errors import InputError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Progress, ProgressCallback
+from concio.representation import short_repr
 from concio.solvers.statics.collapse_state import CollapseState, Motion, certify_collapse
 from concio.solvers.statics.limit import LimitLoad, associated_limit
 from concio.solvers.statics.programme import StaticProgramme, optimise
@@ -41,6 +42,7 @@ SAME = 1e-9
 """States whose multipliers differ by less, relative, count as one."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class CollapseSearch:
     """What a search for collapse states found, and how far it looked.

@@ -21,6 +21,7 @@ import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.tolerances import CHECKED
+from concio.representation import short_repr
 from concio.solvers.statics.limit import static_residual
 from concio.solvers.statics.mechanism import pair_velocities
 from concio.solvers.statics.programme import LARGE, Method, StaticProgramme, optimise
@@ -29,6 +30,7 @@ MOVES = 1e-8
 """Relative velocities above this share of the largest count as opening or slipping."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class CollapseState:
     """A certified state in which the structure can begin to move under Coulomb friction.
@@ -63,6 +65,7 @@ class CollapseState:
         return max(self.statics, self.flow) <= CHECKED
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Motion:
     """Which pairs open, slip (and which way) and crush in a motion.

@@ -20,6 +20,7 @@ import scipy.sparse as sp
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Mechanism
 from concio.problem.tolerances import BALANCED
+from concio.representation import short_repr
 from concio.solvers.statics.cone_statics import ConeStatics
 from concio.solvers.statics.mechanism import mechanism_from, total_load
 from concio.solvers.statics.programme import Method, StaticProgramme, optimise
@@ -28,6 +29,7 @@ NEARLY = 1e-6
 """Residual below which the forces of the linear programme are balanced once more, to tell rounding from collapse."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class StaticState:
     """Outcome of the search for forces within the cones that balance the loads.

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.problem.contact_problem import ContactProblem
+from concio.representation import short_repr
 from concio.solvers.statics.existence import StaticState, statically_admissible
 from concio.solvers.statics.mechanism import absorbed_power
 
@@ -23,6 +24,7 @@ MOST = 200
 """Largest number of linear programmes."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class FrictionMargin:
     """Smallest common factor of the friction coefficients at which admissible forces still exist, as two proofs.

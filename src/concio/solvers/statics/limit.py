@@ -24,12 +24,14 @@ from concio.errors import SolverError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Mechanism
 from concio.problem.tolerances import CHECKED
+from concio.representation import short_repr
 from concio.solvers.statics.cone_statics import ConeStatics
 from concio.solvers.statics.existence import statically_admissible
 from concio.solvers.statics.mechanism import absorbed_power, polish, total_load, verify_mechanism
 from concio.solvers.statics.programme import Method, StaticProgramme, optimise
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class LimitLoad:
     """Associated limit multiplier with its two proofs.

@@ -17,11 +17,13 @@ import numpy as np
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.tolerances import ADMISSIBLE
+from concio.representation import short_repr
 from concio.solvers.statics.limit import static_residual
 from concio.solvers.statics.mechanism import total_load
 from concio.solvers.statics.programme import StaticProgramme, optimise
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class SelfStress:
     """Admissible forces of least compression, for loads that do not bring them about.

@@ -9,10 +9,12 @@ import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.tolerances import ADMISSIBLE, CLEARLY
+from concio.representation import short_repr
 from concio.solvers.statics.mechanism import total_load
 from concio.solvers.statics.programme import StaticProgramme, optimise
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class SufficientCondition:
     """The paper's sufficient condition for the existence of an equilibrium.

@@ -1,4 +1,4 @@
-"""What ``concio limit`` prints: each number as it is found, with what it is and how it was checked."""
+"""What a limit load is told as: each number with what it is and how it was checked."""
 
 from __future__ import annotations
 
