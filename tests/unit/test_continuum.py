@@ -167,6 +167,44 @@ def test_the_cell_of_the_bond_is_found_or_asked_for():
     assert concio.compare_with_continuum(arch, cell, elastic=False).strength is not None
 
 
+def test_what_is_carried_without_end_and_what_is_not_carried_at_all():
+    """Pressure on a dry wall; a dry wall with a door, whose continuum has no lintel: proofs of both."""
+    wall = concio.wall(length=2.0, height=1.5, block="rigid", friction=0.6, top_pressure=10.0)
+    found = concio.compare_with_continuum(wall, live="top", elastic=False)
+    assert found.strength.bracket == (np.inf, np.inf)
+    assert found.strength.proven == (True, True)
+    assert found.checked
+    with pytest.raises(concio.InputError, match="any multiple"):
+        found.plot.mechanism()
+    door = pushed(openings=[{"x": 1.2, "y": 0.0, "width": 0.8, "height": 1.4}], lintel=concio.Rigid(25.0))
+    found = concio.compare_with_continuum(door, elastic=False, mesh_size=0.7)
+    assert found.cell.model.materials["block"] == STONE
+    assert found.strength.blocks.associated.multiplier > 0.1
+    assert found.strength.kinematic.multiplier == -np.inf
+    assert found.strength.kinematic.residual < 1e-8
+    assert found.strength.proven == (True, True)
+    over = found.strength.kinematic.wall.points
+    falls = found.strength.kinematic.velocity[:, 1] < -0.1
+    assert ((over[falls, 0] > 0.6) & (over[falls, 0] < 2.6)).all(), "what falls is over the door"
+
+
+def test_ground_that_tears_apart_leaves_no_bonded_answer():
+    halves = [
+        concio.Body(n, [[x, -0.3], [x + 1.0, -0.3], [x + 1.0, 0], [x, 0]], kind="fixed")
+        for n, x in (("west", 0.0), ("east", 1.0))
+    ]
+    wall = concio.wall(length=2.0, height=1.0, block_size=(0.5, 0.25), block=concio.Elastic(1e7, 0.2, unit_weight=20.0),
+                       friction=0.6, side_walls=True, ground=False)
+    sinks = concio.Support("sinks", "east", displacement=(0.0, -1e-3))
+    found = concio.compare_with_continuum(replace(wall, bodies=(*wall.bodies, *halves), supports=(sinks,))).elastic
+    assert found.bonded is None
+    blocks, bonded, smooth = found.settlements
+    assert np.isnan(bonded)
+    assert 0.9e-3 < blocks < 1.2e-3
+    assert 0.5e-3 < smooth < 1.1e-3
+    assert np.isnan(found.differences[1])
+
+
 ARCH = concio.arch(span=2.0, ring=0.2, voussoirs=9, friction=0.6, horizontal=0.1)
 BOND = concio.cell(block_size=(0.8, 0.35), friction=0.65, block=STONE)
 

@@ -29,7 +29,7 @@ def write_continuum(found: ContinuumComparison, halving: BlockHalving | None, pl
                 written += _draw(found.plot.stress(component=name), place / f"stress_{name}")
     if found.strength is not None:
         strength = found.strength
-        if strength.blocks.associated.mechanism is not None and np.isfinite(strength.kinematic.multiplier):
+        if strength.blocks.associated.mechanism is not None and strength.kinematic.multiplier < np.inf:
             written += _draw(found.plot.mechanism(), place / "mechanism")
     if halving is not None:
         write_csv(halving.table(), place / "halving.csv")

@@ -41,17 +41,23 @@ def elastic_lines(found: ElasticComparison) -> list[str]:
     """Return the elastic answers."""
     blocks, bonded, smooth = (f"{1e3 * v:.5g} mm" for v in found.settlements)
     far, near = found.differences
+    if found.bonded is None:
+        bonded = "have no answer, the supports tear blocks apart"
     head = f"  elastic      settlement: continuum {smooth}; blocks bonded {bonded}"
-    apart = f"               apart by (root mean square): bonded {100 * near:.3g} %"
+    apart = "               apart by (root mean square): "
+    apart += f"bonded {100 * near:.3g} %, " if near == near else ""
     if found.blocks.solved:
-        head, apart = f"{head}; blocks {blocks}", f"{apart}, blocks with joints that open and slip {100 * far:.3g} %"
+        head, apart = f"{head}; blocks {blocks}", f"{apart}blocks with joints that open and slip {100 * far:.3g} %"
         pushed = found.blocks.reactions
         lines = [
             f"  force on wall from {name}: blocks ({_force(pushed.get(name))}), continuum ({_force(own)}) kN"
             for name, own in found.continuum.reactions.items()
         ]
+        if found.bonded is None:
+            lines.append("  note         supports move apart: stresses of the continuum there grow with its mesh")
         return [head, apart, *lines]
-    return [f"{head}; blocks: {found.blocks.status.name.lower()}", apart]
+    lines = [f"{head}; blocks: {found.blocks.status.name.lower()}"]
+    return [*lines, apart.rstrip(", ")] if near == near else lines
 
 
 def _force(value: Any) -> str:
@@ -67,12 +73,20 @@ def strength_lines(found: StrengthComparison) -> list[str]:
     own = found.blocks.associated.multiplier
     lower, upper = found.proven
     words = "any multiple" if np.isinf(own) else f"{own:.6g}"
-    carries = "not even the dead load, on these meshes" if np.isnan(low) else f"{low:.6g}"
-    return [
-        f"  limit load   of '{named}' (associated): blocks {words}",
-        f"               continuum: carries {carries} ({'proven' if lower else 'NOT proven'}); no equilibrium beyond "
-        f"{high:.6g} ({'proven' if upper else 'NOT proven'})",
-    ]
+    lines = [f"  limit load   of '{named}' (associated): blocks {words}"]
+    if high == -np.inf:
+        said = "a mechanism proves it" if upper else "NOT proven"
+        lines.append(f"               continuum: does not even carry the dead load ({said}); it has no lintels")
+        return lines
+    carries = "not even the dead load, on these meshes" if np.isnan(low) else "any multiple"
+    carries = f"{low:.6g}" if np.isfinite(low) else carries
+    bound = "no mechanism found" if np.isinf(high) else f"no equilibrium beyond {high:.6g} ({_proven(upper)})"
+    lines.append(f"               continuum: carries {carries} ({_proven(lower)}); {bound}")
+    return lines
+
+
+def _proven(yes: bool) -> str:
+    return "proven" if yes else "NOT proven"
 
 
 def halving_lines(halving: BlockHalving) -> list[str]:

@@ -50,7 +50,8 @@ def plot_displacements(
         There are no elastic answers.
     """
     found = elastic_of(comparison)
-    bonded = outlines(found.blocks, found.bonded)
+    model, at_rest = found.blocks.model, np.zeros(found.blocks.assembly.disc.unknowns)
+    bonded = outlines(found.blocks, at_rest if found.bonded is None else found.bonded)
     moves = [np.abs(bonded.displacement).max(), np.abs(found.continuum.motion).max()]
     own = outlines(found.blocks).displacement if found.blocks.solved else bonded.displacement
     moves.append(np.abs(own).max())
@@ -65,8 +66,9 @@ def plot_displacements(
     else:
         style.dress(left, box, "Blocks: joints open and slip", f"no answer: {found.blocks.status.name.lower()}")
     style.ghost(middle, bonded)
-    style.draw_bodies(middle, found.blocks.model, bonded, scale)
-    style.dress(middle, box, "Blocks bonded: no joint opens or slips", f"settle by {tied}")
+    style.draw_bodies(middle, model, bonded, scale)
+    note = f"settle by {tied}" if found.bonded is not None else "no answer: the supports tear blocks apart"
+    style.dress(middle, box, "Blocks bonded: no joint opens or slips", note)
     _obstacles(right, comparison, scale)
     _filled(right, comparison.wall, scale * found.continuum.displacement)
     style.dress(right, box, "Homogenised continuum", f"moduli of the cell; settles by {smooth}")
@@ -107,15 +109,15 @@ def plot_stresses(
         msg = f"the blocks have no answer: {found.blocks.status.name.lower()}"
         raise InputError(msg, hint="draw displacement() or mechanism()")
     disc = found.blocks.assembly.disc
-    values = [found.blocks.stress.mean[:, part], Stress(disc, found.bonded).mean[:, part]]
-    values.append(found.continuum.stress[:, part])
+    tied = np.zeros(disc.unknowns) if found.bonded is None else found.bonded
+    values = [found.blocks.stress.mean[:, part], Stress(disc, tied).mean[:, part], found.continuum.stress[:, part]]
     if np.isnan(values[0][found.free]).any():
         msg = "rigid blocks have no stresses"
         raise InputError(msg, hint="make the blocks elastic")
     everything = np.abs(np.concatenate([values[0][found.free], values[1][found.free], values[2]]))
     most = float(np.percentile(everything, 99)) or 1.0
     shade = ScalarMappable(Normalize(-most, most), _signed())
-    shown = outlines(found.blocks, np.zeros_like(found.bonded))
+    shown = outlines(found.blocks, np.zeros(disc.unknowns))
     box = style.box_of(shown.points)
     own = axes is None
     panels = _panels(box, 3, axes)
@@ -124,6 +126,8 @@ def plot_stresses(
         face = [shade.to_rgba(v) if np.isfinite(v) else style.OBSTACLE for v in value]
         style.draw_bodies(ax, found.blocks.model, shown, face=face)
         note = f"mean of each block, from {value[found.free].min():.4g} to {value[found.free].max():.4g} kN/m2"
+        if found.bonded is None and ax is panels[1]:
+            note = "no answer: the supports tear blocks apart"
         style.dress(ax, box, f"{word}: stress {component}", note)
     _obstacles(panels[2], comparison, 0.0)
     _filled(panels[2], comparison.wall, 0.0 * found.continuum.displacement, shade.to_rgba(values[2]))
@@ -159,7 +163,7 @@ def plot_mechanisms(comparison: ContinuumComparison, axes: Sequence[Axes] | None
 
     found = strength_of(comparison)
     bound = found.blocks.associated
-    if bound.mechanism is None or not np.isfinite(found.kinematic.multiplier):
+    if bound.mechanism is None or found.kinematic.multiplier == np.inf:
         msg = "no mechanism bounds the load: it is carried in any multiple"
         raise InputError(msg, hint="let another load group grow")
     assembly = found.blocks.assembly
@@ -184,6 +188,8 @@ def plot_mechanisms(comparison: ContinuumComparison, axes: Sequence[Axes] | None
     _filled(right, found.kinematic.wall, smooth, (1 - depth) * low + depth * high)
     low_word = f"{found.static.multiplier:.5g}" if np.isfinite(found.static.multiplier) else "nothing known"
     note = f"carries {low_word}, no equilibrium beyond {found.kinematic.multiplier:.5g}; dark: where it strains"
+    if found.kinematic.multiplier == -np.inf:
+        note = "does not even carry the dead load; dark: where it strains"
     style.dress(right, box, "Homogenised continuum", note)
     return [left, right]
 

@@ -21,7 +21,7 @@ def cell_of(assembly: Assembly) -> Model:
     Raises
     ------
     InputError
-        The model was made in another way, or its blocks or joints are not all alike.
+        The model was made in another way, or its blocks or joints are not all alike; lintels may be.
     """
     model = assembly.model
     record = model.generator
@@ -30,7 +30,7 @@ def cell_of(assembly: Assembly) -> Model:
         msg = "the cell that this wall repeats is not known"
         raise InputError(msg, hint=GIVE)
     free = model.free_bodies
-    stones = {b.material for b in free if b.role != "mortar"}
+    stones = {b.material for b in free if b.role not in ("mortar", "lintel")}
     films = {b.material for b in free if b.role == "mortar"}
     pairs = [(model.bodies[f.a], model.bodies[f.b]) for f in assembly.detection.segments]
     laws = {model.rule_between(a, b).law for a, b in pairs if "fixed" not in (a.kind, b.kind)}

@@ -32,7 +32,7 @@ from concio.analysis.result import Result
 from concio.analysis.step import solve
 from concio.arguments import closest, strict
 from concio.contact.assembly import Assembly, as_assembly
-from concio.errors import InputError, SolverError
+from concio.errors import InputError
 from concio.fem.discretisation import Discretisation
 from concio.model.model import Model
 from concio.problem.solution import Progress, ProgressCallback
@@ -61,14 +61,14 @@ class ElasticComparison:
         Of the cell.
     blocks : Result
         The blocks with their unilateral joints; it may say that they do not stand.
-    bonded : (N_all,) array
-        Displacements of the blocks with all joints closed and stuck [m].
+    bonded : (N_all,) array or None
+        Displacements of the blocks with all joints closed and stuck [m]; None where supports move them apart.
     continuum : ElasticContinuum
     """
 
     moduli: Moduli
     blocks: Result
-    bonded: Array
+    bonded: Array | None
     continuum: ElasticContinuum
 
     @cached_property
@@ -86,19 +86,20 @@ class ElasticComparison:
 
     @cached_property
     def displacements(self) -> tuple[Array, Array, Array]:
-        """Displacements (k, 2) at the centroids [m]: blocks (nan where there is no answer), bonded, continuum."""
+        """Displacements (k, 2) at the centroids [m]: blocks, bonded (nan where there is no answer), continuum."""
         disc = self.blocks.assembly.disc
-        bonded = _moved(disc, self.bonded, self.free, self.centres)
-        blocks = np.full_like(bonded, np.nan)
-        if self.blocks.solved:
-            blocks = _moved(disc, self.blocks.displacement, self.free, self.centres)
+        own = self.blocks.displacement if self.blocks.solved else None
+        blocks, bonded = (
+            np.full_like(self.centres, np.nan) if u is None else _moved(disc, u, self.free, self.centres)
+            for u in (own, self.bonded)
+        )
         return blocks, bonded, self.continuum.at(self.centres)[0]
 
     @property
     def settlements(self) -> tuple[float, float, float]:
         """Largest downward displacement of a centroid [m]: blocks, bonded, continuum."""
-        blocks, bonded, smooth = (max(0.0, -float(u[:, 1].min())) for u in self.displacements)
-        return (blocks if self.blocks.solved else float("nan")), bonded, smooth
+        blocks, bonded, smooth = (float(np.maximum(-u[:, 1], 0.0).max()) for u in self.displacements)
+        return blocks, bonded, smooth
 
     @property
     def differences(self) -> tuple[float, float]:
@@ -153,10 +154,14 @@ class StrengthComparison:
     def proven(self) -> tuple[bool, bool]:
         """Whether the lower and the upper bound stand: small residuals, and half-spaces that are the domain.
 
-        Half-spaces that were not found exactly lie around the domain: then only the upper bound is one.
+        Half-spaces that were not found exactly lie around the domain: then only the upper bound is one. A mechanism
+        under the dead load alone leaves nothing for a lower bound to prove.
         """
+        if self.kinematic.multiplier == -np.inf:
+            return (self.kinematic.residual <= CHECKED,) * 2
         exact = self.domain.domain is not None and self.domain.domain.exact
-        return exact and self.static.residual <= CHECKED, self.kinematic.residual <= CHECKED
+        lower = exact and self.static.residual <= CHECKED
+        return lower, self.kinematic.residual <= CHECKED or (lower and self.static.multiplier == np.inf)
 
 
 @dataclass(frozen=True, eq=False)
@@ -215,10 +220,10 @@ class ContinuumComparison:
             found["elastic"] = {
                 "outcome": self.elastic.blocks.status.name.lower(),
                 "settlement_blocks": _number(blocks),
-                "settlement_bonded": bonded,
+                "settlement_bonded": _number(bonded),
                 "settlement_continuum": smooth,
                 "difference_blocks": _number(far),
-                "difference_bonded": near,
+                "difference_bonded": _number(near),
                 "reactions_blocks": self.elastic.blocks.reactions if self.elastic.blocks.solved else None,
                 "reactions_continuum": {k: v.tolist() for k, v in self.elastic.continuum.reactions.items()},
                 "continuum_residual": self.elastic.continuum.residual,
@@ -350,10 +355,7 @@ def _elastic(
         return None, error.what
     _told(progress, 1, "elastic continuum")
     smooth = solve_elastic(wall, moduli.matrix, factors)
-    try:
-        bonded = bonded_displacement(assembly, factors)
-    except SolverError as error:
-        return None, error.what
+    bonded = bonded_displacement(assembly, factors)
     blocks = solve(assembly, factors=factors, on_failure="return", progress=progress)
     return ElasticComparison(moduli, blocks, bonded, smooth), ""
 

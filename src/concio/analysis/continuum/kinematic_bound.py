@@ -28,6 +28,9 @@ from concio.solvers.statics.programme import optimise
 
 Array = np.ndarray
 
+POWER = 1e-6
+"""Share of its own power by which the dead load has to exceed what is absorbed to be proven not to be carried."""
+
 
 @dataclass(frozen=True, eq=False)
 class KinematicBound:
@@ -36,7 +39,7 @@ class KinematicBound:
     Parameters
     ----------
     multiplier : float
-        ``inf`` where no mechanism bounds the load, ``-inf`` where one needs no live load at all.
+        ``inf`` where no mechanism bounds the load; ``-inf`` where one moves under the dead load, whatever the live one.
     wall : Continuum
         Mesh.
     velocity : (n, 2) array
@@ -93,8 +96,10 @@ def kinematic_bound(
     result = optimise(cost, (sp.csc_array(A), b), bounds, method="highs")
     if result.status == 2:
         return nothing
-    if result.status == 3:
-        return KinematicBound(-np.inf, wall, nothing.velocity, nothing.strain_rate, np.inf)
+    worthless = result.status == 3  # no live load is needed: find a mechanism on which the live load does no work
+    if worthless:
+        b, bounds = 0.0 * b, np.vstack([np.tile([-1.0, 1.0], (2 * n, 1)), bounds[2 * n :]])
+        result = optimise(cost, (sp.csc_array(A), b), bounds, method="highs")
     if result.status != 0:
         msg = f"the linear programme of the continuum's upper bound stopped: {result.message}"
         raise SolverError(msg, hint="use a coarser mesh")
@@ -104,8 +109,12 @@ def kinematic_bound(
     size = float(max(np.abs(rate).max(initial=0.0), np.abs(motion).max(initial=0.0))) or 1.0
     parts = (rate - normals @ mu, motion - joint_normals @ nu, straight @ u)
     left = max(float(np.abs(part).max(initial=0.0)) for part in parts)
-    live_power = float(power[1] @ u)
-    multiplier = (float(cost_mu @ mu + joint_cost @ nu) - float(power[0] @ u)) / live_power
+    needed = float(cost_mu @ mu + joint_cost @ nu) - float(power[0] @ u)
+    if worthless:
+        left = max(left, abs(float(power[1] @ u)) / (float(np.abs(power[1]).sum()) or 1.0))
+        multiplier = -np.inf if needed < -POWER * float(np.abs(power[0]) @ np.abs(u)) else np.nan
+    else:
+        multiplier = needed / float(power[1] @ u)
     top = float(np.abs(u).max()) or 1.0
     velocity = u.reshape(-1, 2)[: len(wall.points)] / top
     mean = (rate / length).reshape(e, 3, 3).mean(axis=1) / top

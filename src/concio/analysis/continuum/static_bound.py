@@ -77,7 +77,7 @@ def static_bound(
     if result.status == 2:
         return StaticBound(np.nan, wall, nothing, np.inf)
     if result.status == 3:
-        return StaticBound(np.inf, wall, nothing, 0.0)
+        return _without_end(wall, (A, b_dead, b_live), (G, h), unit)
     if result.status != 0:
         msg = f"the linear programme of the continuum's lower bound stopped: {result.message}"
         raise SolverError(msg, hint="use a coarser mesh")
@@ -86,6 +86,24 @@ def static_bound(
     left = np.abs(A @ x - b_dead - multiplier * b_live).max(initial=0.0)
     excess = np.maximum(G @ x - h, 0.0).max(initial=0.0)
     return StaticBound(multiplier, wall, (x * unit).reshape(e, 3, 3), float(max(left, excess)) / size)
+
+
+def _without_end(
+    wall: Continuum, equations: tuple[sp.csc_array, Array, Array], strength: tuple[sp.csc_array, Array], unit: float
+) -> StaticBound:
+    """Return the bound that stresses for the dead load and others, in any multiple, for the live load prove."""
+    (A, b_dead, b_live), (G, h) = equations, strength
+    free = np.tile([-np.inf, np.inf], (A.shape[1], 1))
+    residual, stress = 0.0, np.zeros(A.shape[1])
+    for right, room in ((b_live, 0.0 * h), (b_dead, h)):
+        result = optimise(np.zeros(A.shape[1]), (A, right), free, (G, room), method="highs")
+        if result.status != 0:
+            return StaticBound(np.nan, wall, np.zeros((len(wall.triangles), 3, 3)), np.inf)
+        stress = result.x
+        size = float(np.abs(stress).max()) or 1.0
+        excess = max(np.abs(A @ stress - right).max(initial=0.0), np.maximum(G @ stress - room, 0.0).max(initial=0.0))
+        residual = max(residual, float(excess) / size)
+    return StaticBound(np.inf, wall, (stress * unit).reshape(len(wall.triangles), 3, 3), residual)
 
 
 def _equations(
