@@ -247,6 +247,32 @@ def wall(
     return build(grids, at_a_side if sides else on_floor, mu, **options)
 
 
+def corner_bricks(courses: int, facade: int, returns: int, *, legs: int = 2) -> list[tuple[Side, Side, Side]]:
+    """Sides of bricks 2 x 1 x 1 of a facade along y with one or two returns along x, bonded round the corners."""
+    bricks = []
+    for c in range(courses):
+        even = c % 2 == 0
+        ends = (0 if even else 1, facade - (0 if even or legs < 2 else 1))
+        runs = [(ends, 1, 0)] + [((1 if even else 0, returns), 0, y) for y in (0, facade - 1)[:legs]]
+        for (start, end), axis, across in runs:
+            for at in range(start, end, 2):
+                along, width = (float(at), float(min(at + 2, end))), (float(across), across + 1.0)
+                x, y = (width, along) if axis else (along, width)
+                bricks.append((x, y, (float(c), c + 1.0)))
+    return bricks
+
+
+def corner_wall(
+    courses: int, facade: int, returns: int, *, legs: int = 2, mu: float = 0.6, mesh: int = 1, **options: Any
+) -> Built:
+    """Wall with corners on the ground, of :func:`corner_bricks`; ``mesh`` cells for each unit of length."""
+    grids = []
+    for x, y, z in corner_bricks(courses, facade, returns, legs=legs):
+        cells = (int(x[1] - x[0]) * mesh, int(y[1] - y[0]) * mesh, mesh)
+        grids.append(box(x, y, z, cells))
+    return build(grids, on_floor, mu, **options)
+
+
 def barrel(
     voussoirs: int,
     rings: int,

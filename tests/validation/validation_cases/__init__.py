@@ -24,6 +24,9 @@ CASES: dict[str, str] = {
     "granite_walls": "Dry granite walls in shear and compression",
     "homogenised_cells": "Homogenised running bond",
     "wall_and_continuum": "Walls beside their homogenised continuum",
+    "blocks_in_space": "Blocks in space, pushed in any direction",
+    "corner_walls": "Walls with corners",
+    "dome_thickness": "Least thickness of a dome",
     "mesh_orders": "Orders of convergence",
 }
 """Name of each module and the title of its section in the validation book, in the book's order."""

@@ -1,0 +1,10 @@
+"""Least thickness of hemispherical domes, against an independent program and the literature."""
+
+from __future__ import annotations
+
+from validation_cases import dome_thickness
+from validation_cases.row import check
+
+
+def test_rows() -> None:
+    check(dome_thickness.rows())
