@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from concio.cli.limit_lines import limit_lines
 
 import concio
 from concio.analysis.lent_compliance import SHEAR_TO_NORMAL, lent_assembly
@@ -15,6 +14,7 @@ from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Body, Load, Support
 from concio.problem.certificate import certify
 from concio.problem.solution import Status
+from concio.report.limit_wording import limit_lines
 from models import box, model_of, on_ground, weight
 from rigid_walls import BLOCK, FERRIS_TIN_LOI, MU
 
