@@ -185,6 +185,11 @@ def test_a_joint_that_slides_is_checked_with_coulombs_flow() -> None:
     assert worst.multiplier == pytest.approx(0.05)
     assert worst.followed.end != worst.followed.end  # friction does not fall: the multiplier never vanishes
     assert [c.kind for c in worst.checks] == ["linear"]
+    slow = concio.assess(overturning(friction=0.05), site=site(hazard={"SLV": {"a_g": 0.01}, "SLC": {"a_g": 0.01}}),
+                         direction="left")  # fmt: skip
+    assert slow.worst.unchecked == ("SLC",)  # type: ignore[union-attr]
+    assert slow.zeta > 1
+    assert not slow.holds
 
 
 def test_mechanisms_above_the_ground_meet_the_floor_spectrum() -> None:
@@ -281,3 +286,34 @@ def test_a_stout_wall_has_no_mechanism_below_two_g() -> None:
     assert found.worst is None
     assert "no mechanism below 2 g" in found.locked[0].sentence
     assert found.summary()["zeta_E"] is None
+
+
+def test_where_the_wall_stands_and_which_way_it_faces_changes_nothing() -> None:
+    model = overturning(3, strength=3000.0, ties=(TIE,))
+    left = concio.assess(model, site=site(), direction="left").worst
+
+    def mirrored(p: Any) -> Any:
+        return tuple(v * s + o for v, s, o in zip(p, (-1.0, 1.0), (7.0, 0.0), strict=True))
+
+    turned = replace(
+        model,
+        bodies=tuple(replace(b, outline=b.outline[::-1] * [-1.0, 1.0] + [7.0, 0.0]) for b in model.outlines),
+        loads=tuple(load if load.at is None else replace(load, at=mirrored(load.at)) for load in model.loads),
+        ties=tuple(replace(t, at_a=mirrored(t.at_a), at_b=mirrored(t.at_b)) for t in model.ties),
+    )
+    right = concio.assess(turned, site=site(), direction="right").worst
+    assert left is not None
+    assert right is not None
+    for name in ("multiplier", "e_star", "onset", "d0", "zeta"):
+        assert getattr(right, name) == pytest.approx(getattr(left, name), rel=1e-9)
+
+
+def test_the_spectrum_of_another_code() -> None:
+    found = worked(site=concio.Site(hazard={"SLV": {"a_g": 0.20}}, soil="B", code="en1998"))
+    linear = check(found, "SLV", "linear")
+    assert linear.demand == pytest.approx(0.20 * 9.81 * 1.20 / 2)
+    assert found.worst.multiplier == pytest.approx(0.101106, abs=5e-7)  # type: ignore[union-attr]
+    T = found.worst.limits["SLV"].T  # type: ignore[union-attr]
+    eta = (10 / 13) ** 0.5
+    demand = 0.20 * 9.81 * 1.2 * eta * 2.5 * 0.5 * 2.0 / T**2 * (T / (2 * math.pi)) ** 2
+    assert check(found, "SLV", "displacement").demand == pytest.approx(demand)

@@ -67,6 +67,11 @@ def test_report_holds_what_was_computed_and_never_verified_without_a_ratio(langu
     assert "http" not in re.sub(r"data:[^\"]*", "", text)
 
 
+def test_a_result_writes_its_own_report(tmp_path: Path) -> None:
+    found = concio.assess(overturning(), site=site(), direction="left", levels=["SLD"])
+    assert "zeta_E" in found.report(tmp_path / "r.html", language="it").read_text(encoding="utf-8")
+
+
 def test_command_writes_report_numbers_and_curves(tmp_path: Path) -> None:
     size = 'size_tie = "roof tie"                 # find the force that brings zeta_E to one\n'
     path = edited(tmp_path, (size, ""), ("[assessment]\n", '[assessment]\nlevels = ["SLV"]\n'))

@@ -35,6 +35,7 @@ DOORS = {
     ("analysis/limit_result.py", "concio.report.notebook"),
     ("analysis/path_result.py", "concio.plot.path_accessor"),
     ("analysis/path_result.py", "concio.report.notebook"),
+    ("analysis/seismic/assessment.py", "concio.report.assessment_page"),
     ("analysis/cells/moduli.py", "concio.plot.cell_accessor"),
     ("analysis/cells/strength.py", "concio.plot.cell_accessor"),
     ("analysis/cells/path_result.py", "concio.plot.cell_accessor"),

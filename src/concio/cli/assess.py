@@ -92,9 +92,12 @@ def assess_lines(found: Assessment, tie: TieForce | None = None) -> list[str]:
         for o in m.outcomes:
             period = f", return period {number(o.T_R)} years" if o.T_R == o.T_R else ""
             lines.append(f"    {o.level:18s} a_g of capacity {number(o.a_g, 4)} g, zeta_E {number(o.zeta, 4)}{period}")
+        lines += [f"    {level:18s} not checked" for level in m.unchecked]
+        if m.found.flow == "associated":
+            lines.append("    upper bound        a joint slides, and no Coulomb state was found: alpha_0 may be less")
     lines += [f"  {n.name}, push to the {n.direction}: {n.sentence}" for n in found.locked]
     if found.worst is not None:
-        word = "verified" if found.holds else "not verified"
+        word = "verified" if found.holds else "not verified" if found.zeta < 1 else "not settled"
         lines.append(f"  in short             {word}: zeta_E {number(found.zeta, 4)} of '{found.worst.name}'")
     if tie is not None:
         if tie.force == 0:

@@ -111,6 +111,7 @@ def _checks(t: Texts, m: LocalMechanism) -> str:
     rows = [_line(t, c, m) for c in m.checks]
     head = [w[k] for k in ("level", "check", "where", "clause", "demand", "capacity", "ratio")]
     found = [[o.level, t.n(o.a_g), t.n(o.zeta), t.n(o.T_R), t.verdict(o.zeta, o.holds)] for o in m.outcomes]
+    found += [[level, *[t.words["unknown"]] * 3, t.say("unchecked")] for level in m.unchecked]
     names = [w[k] for k in ("level", "a_cap", "zeta", "T_cap", "outcome")]
     return (
         f"<h3>{t.say('checks')}</h3>{t.table(head, rows, 4)}<h3>{t.say('outcomes')}</h3>"

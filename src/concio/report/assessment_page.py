@@ -100,8 +100,10 @@ class AssessmentReport(Texts):
         if worst is None:
             text, tone = self.say("verdict_none"), "unsure"
         else:
-            text = self.say("verdict_holds" if found.holds else "verdict_fails", zeta=self.n(found.zeta))
-            tone = "good" if found.holds else "bad"
+            key, tone = ("verdict_holds", "good") if found.holds else ("verdict_fails", "bad")
+            if found.zeta >= 1 and not found.complete:
+                key, tone = "verdict_open", "unsure"
+            text = self.say(key, zeta=self.n(found.zeta))
         more = ""
         if worst is not None:
             way = self.words[worst.direction]
@@ -196,9 +198,11 @@ class AssessmentReport(Texts):
         gap = max((m.found.associated.worst for m in found.mechanisms), default=0.0)
         rows = []
         for k, m in enumerate(found.mechanisms, 1):
+            settled = m.complete or m.zeta < 1
+            verdict = self.verdict(m.zeta, m.zeta >= 1) if settled else self.say("unchecked")
             rows.append([f'<a href="#m{k}">{escape(self.name(m))}</a>', escape(w[m.direction]), self.n(m.multiplier, 6),
                          self.n(m.e_star), self.n(m.onset), self.n(m.d0), self.n(m.zeta),
-                         self.verdict(m.zeta, m.zeta >= 1)])  # fmt: skip
+                         verdict])  # fmt: skip
         for none in found.locked:
             said = "no_locked" if math.isinf(none.multiplier) else "no_large"
             text = self.say(said, alpha=self.n(none.multiplier))

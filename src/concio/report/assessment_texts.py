@@ -53,7 +53,7 @@ class Texts:
     def n(self, value: float, digits: int = 4) -> str:
         """Return a number as the language writes it."""
         if not math.isfinite(value):
-            return self.words["unknown"]
+            return self.words["beyond" if value > 0 else "unknown"]
         text = number(value, digits)
         if self.language != "it":
             return text
@@ -85,6 +85,8 @@ class Texts:
 
     def verdict(self, ratio: float, holds: bool) -> str:
         """Return "verified" with its ratio."""
+        if not math.isfinite(ratio):
+            return escape(self.n(ratio))
         tone = "good" if holds else "bad"
         return f'<b class="{tone}">{self.say("verified" if holds else "not_verified", ratio=self.n(ratio))}</b>'
 

@@ -12,7 +12,7 @@ from concio.analysis.seismic.applied import EARTHQUAKE, pushed, pushes_sideways
 from concio.analysis.seismic.assessment import Assessment, LocalMechanism, NoMechanism
 from concio.analysis.seismic.chain import Chain, Participant, gathered
 from concio.analysis.seismic.checks import Displacement, checks_of, limit_of
-from concio.analysis.seismic.curve import follow, straight
+from concio.analysis.seismic.curve import follow, not_followed, straight
 from concio.analysis.seismic.linkage import Force, Linkage
 from concio.analysis.seismic.macro_blocks import GROUND
 from concio.analysis.seismic.mechanism import LARGEST, Found, chosen_bodies, find
@@ -31,6 +31,12 @@ Control = tuple[str, tuple[float, float]]
 LIVE = "live"
 EVERY = "weakest of all"
 """Name of the mechanism that is sought among all motions."""
+
+SAME = 1e-6
+"""Relative difference below which the multipliers of the limit programme and of its linkage are the same."""
+
+BARELY = 1e-3
+"""Curves that end before this share of the size of the mechanism are no curves: other joints take over at once."""
 
 SIGNS = {"right": (1.0,), "left": (-1.0,), "both": (1.0, -1.0)}
 
@@ -241,11 +247,17 @@ def _examined(
     linkage = linkage.set_back()
     still = np.zeros((len(mechanics.blocks), 3))
     alpha, velocity = found.multiplier, np.concatenate([b.motion for b in mechanics.blocks])
-    if linkage.freedom == 1:
+    onset = linkage.balance(still, plastic=True) if linkage.freedom == 1 else None
+    crushes = any(j.inward is not None for j in mechanics.joints)
+    if onset is not None and crushes:
+        alpha = onset.multiplier
+    if onset is None:
+        followed = not_followed("several motions" if linkage.freedom != 1 else "no forces")
+    elif abs(onset.multiplier - alpha) > SAME * abs(alpha):
+        followed = not_followed("no forces")  # of a dilatant motion: the joints that slide do not stay closed in it
+    else:
         velocity = linkage.velocity(still)
-        onset = linkage.balance(still, plastic=True)
-        if onset is not None and any(j.inward is not None for j in mechanics.joints):
-            alpha = onset.multiplier
+        followed = follow(linkage)
     velocity = velocity / float(linkage.row(still, block, at, along) @ velocity)
     chain = Chain(
         tuple(
@@ -254,11 +266,9 @@ def _examined(
             for kind, f in push
         )
     )  # fmt: skip
-    followed = follow(linkage)
-    if followed.reason in ("several motions", "no forces"):
-        moving = (
-            found.moving if found.moving is not None else [i for i, b in enumerate(model.bodies) if b.kind != "fixed"]
-        )
+    if not followed.points or followed.end < BARELY * linkage.size:
+        free = tuple(i for i, b in enumerate(model.bodies) if b.kind != "fixed")
+        moving = free if found.moving is None else found.moving
         point = ControlPoint(chosen[0], (float(at[0]), float(at[1])), (float(along[0]), float(along[1])))
         followed = pushed_curve(model, groups, sign, moving, point) or followed
     line = straight(alpha, followed.end) if followed.ends else None

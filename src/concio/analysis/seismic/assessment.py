@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -158,6 +160,16 @@ class LocalMechanism:
         return tuple(self.outcome(level) for level in self.periods if any(c.level == level for c in self.checks))
 
     @property
+    def unchecked(self) -> tuple[str, ...]:
+        """Limit states that could not be checked: without a curve that ends there is no check in displacements."""
+        return tuple(level for level in self.periods if not any(c.level == level for c in self.checks))
+
+    @property
+    def complete(self) -> bool:
+        """Whether every limit state was checked, with a multiplier that is no mere upper bound."""
+        return not self.unchecked and self.found.flow != "associated"
+
+    @property
     def zeta(self) -> float:
         """The least zeta_E of all limit states."""
         return min((o.zeta for o in self.outcomes), default=math.inf)
@@ -171,6 +183,7 @@ class LocalMechanism:
             "alpha0": self.multiplier,
             "associated_multiplier": self.found.associated.multiplier,
             "flow": self.found.flow,
+            "unchecked": list(self.unchecked),
             "e_star": self.e_star,
             "a0_star": self.onset,
             "control_body": self.control[0],
@@ -270,9 +283,33 @@ class Assessment:
         return self.worst.zeta if self.worst is not None else math.inf
 
     @property
+    def complete(self) -> bool:
+        """Whether every limit state of every mechanism was checked, with multipliers that are no mere upper bounds."""
+        return all(m.complete for m in self.mechanisms)
+
+    @property
     def holds(self) -> bool:
-        """Whether every mechanism can take every limit state."""
-        return self.zeta >= 1.0
+        """Whether every mechanism can take every limit state; false where one could not be checked."""
+        return self.zeta >= 1.0 and self.complete
+
+    def report(self, path: str | os.PathLike[str], *, language: str = "en", **options: Any) -> Path:
+        """Write the report, one HTML file that prints to a clean PDF.
+
+        Parameters
+        ----------
+        path : str or Path
+        language : {"en", "it"}
+        **options
+            ``head``, ``tie``, ``anchors``, ``varied`` of :class:`concio.report.assessment_page.AssessmentReport`.
+
+        Returns
+        -------
+        Path
+            ``path``.
+        """
+        from concio.report.assessment_page import write_assessment_report
+
+        return write_assessment_report(self, Path(path), language=language, **options)
 
     def summary(self) -> dict[str, Any]:
         """Return the numbers of ``--json``."""
@@ -285,6 +322,7 @@ class Assessment:
             "curve": self.curve,
             "zeta_E": _number(self.zeta),
             "holds": self.holds,
+            "complete": self.complete,
             "mechanisms": [m.summary() for m in self.mechanisms],
             "no_mechanism": [{"name": n.name, "direction": n.direction, "why": n.sentence} for n in self.locked],
             "attention": list(self.notes),

@@ -94,6 +94,11 @@ def straight(multiplier: float, end: float) -> CapacityCurve:
     return CapacityCurve("straight", np.array([0.0, end]), np.array([multiplier, 0.0]), end)
 
 
+def not_followed(reason: str) -> CapacityCurve:
+    """Return the curve of a mechanism that cannot be followed, for one of ``REASONS``."""
+    return CapacityCurve("followed", np.zeros(1), np.zeros(1), float("nan"), reason)
+
+
 def follow(linkage: Linkage) -> CapacityCurve:
     """Follow a mechanism with one degree of freedom until its multiplier vanishes.
 
@@ -110,8 +115,7 @@ def follow(linkage: Linkage) -> CapacityCurve:
     first = linkage.balance(rest)
     if linkage.freedom != 1 or first is None:
         n = linkage.freedom
-        why = "several motions" if n != 1 else "no forces"
-        return CapacityCurve("followed", np.zeros(1), np.zeros(1), float("nan"), why)
+        return not_followed("several motions" if n != 1 else "no forces")
     points, d = [first], [0.0]
     step = _first_step(linkage, first)
     reason = "far"

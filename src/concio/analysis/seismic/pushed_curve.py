@@ -1,7 +1,8 @@
 """The capacity curve of a mechanism that is no linkage of one degree of freedom: the structure is pushed over.
 
 :func:`concio.push` keeps no mechanism: it finds equilibria of the displaced structure, whatever moves then. It costs
-seconds for a few blocks where a linkage costs milliseconds, so it is asked only where the linkage cannot answer.
+half a minute for twenty blocks where a linkage costs a tenth of a second: it is asked only where the linkage cannot
+answer, and of few blocks.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from concio.errors import ConcioError
 from concio.model.model import Model
 from concio.model.stages import ControlPoint
 
-LARGEST = 40
+LARGEST = 24
 """Moving blocks of a model that is pushed over, at most."""
 
 
