@@ -123,7 +123,7 @@ class AssessmentReport(Texts):
         for level in self.found.levels:
             hazard = site.at(level)
             s = site.spectrum(hazard)
-            corners = ", ".join(self.n(v) for v in (s.T_B, s.T_C, s.T_D))
+            corners = "; ".join(self.n(v) for v in (s.T_B, s.T_C, s.T_D))
             rows.append([level, self.n(hazard.T_R), self.n(hazard.a_g), self.n(hazard.F0), self.n(hazard.T_star),
                          self.n(s.S), corners])  # fmt: skip
         head = [w[k] for k in ("level", "T_R", "a_g", "F0", "Tc", "S", "corners")]
@@ -156,11 +156,11 @@ class AssessmentReport(Texts):
         """Return the model: a drawing, and its loads."""
         model, w = self.found.model, self.words
         used = {rule.law for rule in model.rules}
-        frictions = ", ".join(sorted({self.n(model.laws[k].friction) for k in used}))
+        frictions = "; ".join(sorted({self.n(model.laws[k].friction) for k in used}))
         given = (model.laws[k].compressive_strength for k in used)
         strength = "".join(w["strength_text"].format(f=self.n(v)) for v in sorted({v for v in given if v is not None}))
         joints = len(self.found.mechanisms[0].assembly.detection.interfaces) if self.found.mechanisms else 0
-        deep = ", ".join(sorted({self.n(b.thickness) for b in model.outlines}))
+        deep = "; ".join(sorted({self.n(b.thickness) for b in model.outlines}))
         free = len(model.free_bodies)
         text = self.say(
             "model_text", title=model.title or w["model"], free=str(free), fixed=str(len(model.bodies) - free),
@@ -172,7 +172,7 @@ class AssessmentReport(Texts):
             total = np.sum([f.force for f in forces], axis=0) if forces else np.zeros(2)
             size = np.array([float(np.hypot(*f.force)) for f in forces])
             point = size @ np.array([f.point for f in forces]) / size.sum() if size.sum() > 0 else np.zeros(2)
-            value = ", ".join(self.n(v) for v in load.value)
+            value = "; ".join(self.n(v) for v in load.value)
             rows.append([escape(load.group), escape(w[f"load_{load.kind}"]), value, UNITS[load.kind],
                          self.pair(total), self.pair(point)])  # fmt: skip
         head = [w[k] for k in ("group", "kind", "value", "unit", "resultant", "point")]
