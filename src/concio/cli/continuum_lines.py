@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from concio.analysis.continuum.comparison import ContinuumComparison, ElasticComparison, StrengthComparison
+from concio.analysis.continuum.answers import ElasticComparison, StrengthComparison
+from concio.analysis.continuum.comparison import ContinuumComparison
 from concio.analysis.continuum.halving import BlockHalving
 
 

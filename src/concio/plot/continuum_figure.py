@@ -20,7 +20,8 @@ from concio.problem.solution import Mechanism, Status, failed
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from concio.analysis.continuum.comparison import ContinuumComparison, ElasticComparison, StrengthComparison
+    from concio.analysis.continuum.answers import ElasticComparison, StrengthComparison
+    from concio.analysis.continuum.comparison import ContinuumComparison
     from concio.analysis.continuum.continuum import Continuum
 
 Array = np.ndarray
