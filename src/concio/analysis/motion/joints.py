@@ -39,6 +39,9 @@ MOST_SAG = 20.0
 SOFT = 2e-3
 """Compliance of a hard joint in one step over what its bodies give way under a force: impacts are so much softer."""
 
+RETURN = 0.1
+"""Share of what is sunk in more or less than the force wants that comes back in a step, at most."""
+
 SWEEPS = 3
 """Times in a step that what has sunk in is moved apart."""
 
@@ -110,10 +113,21 @@ class Joints:
         Compliant pairs further apart than this are left out [m].
     lent : float
         Compliance lent to hard joints of rigid bodies [m/kN].
+    yielding : (B,) array
+        That lent on behalf of each elastic body, zero for others [m/kN].
     """
 
-    def __init__(self, laws: LawTable, scheme: Scheme, size: float, width: float, reach: float, lent: float) -> None:
-        self.laws, self.scheme, self.lent = laws, scheme, lent
+    def __init__(
+        self,
+        laws: LawTable,
+        scheme: Scheme,
+        size: float,
+        width: float,
+        reach: float,
+        lent: float,
+        yielding: Array,
+    ) -> None:
+        self.laws, self.scheme, self.lent, self.yielding = laws, scheme, lent, yielding
         self.touching, self.sag, self.reach = TOUCHING * size, SAG * width, reach
         self.least_area = 1e-9 * width
         self.any_stiffness = bool(laws.normal.any() or laws.tangential.any())
@@ -123,11 +137,9 @@ class Joints:
     def compliances(self, slots: Slots, area: Array) -> tuple[Array, Array, Array]:
         """Return compliances (m,) along normal and tangent [m/kN], lent ones too, and which are the joint's own."""
         m, law = len(slots), slots.law
-        rigid = np.ones(m, dtype=bool)
-        for side in (slots.side_a, slots.side_b):
-            if side is not None:
-                rigid &= ~side.meshed
-        a_n, a_t = np.where(rigid, self.lent, 0.0), np.where(rigid, SHEAR_TO_NORMAL * self.lent, 0.0)
+        a_n = self.yielding[slots.body_a] + self.yielding[slots.body_b]
+        a_n = np.where(a_n > 0, a_n, self.lent)
+        a_t = SHEAR_TO_NORMAL * a_n
         if not self.any_stiffness:
             return a_n, a_t, np.zeros(m, dtype=bool)
         own_n, own_t = self.laws.normal[law] / area, self.laws.tangential[law] / area
@@ -171,7 +183,7 @@ class Joints:
         shift = rows.imposed + turning
         if s.restitution:
             shift[:, 0] += s.restitution * np.minimum(y0[:, 0], 0.0)
-        settle = SOFT * give / np.where(a_n > 0, a_n, np.inf)
+        settle = np.minimum(SOFT * give / np.where(a_n > 0, a_n, np.inf), RETURN / h)
         shift[:, 0] += settle * np.clip(gap, -MOST_SAG * self.sag, self.sag)
         shift[:, 1] += settle * memory.stretch
         soft_n, soft_t = settle * a_n, settle * a_t

@@ -21,6 +21,12 @@ from concio.solvers.stepping.problem import StepProblem
 
 Array = np.ndarray
 
+YIELDING = 1e-3
+"""Compliance lent to a hard pair of an elastic body, over that of its nodes.
+
+Where blocks meet at corners their contacts hold each other several times over. In small displacements that does no
+harm; where they have moved, the gaps agree to second order only, and what is left would become self-stress."""
+
 
 class PairMaker:
     """Finds the pairs of moving bodies.
@@ -37,7 +43,7 @@ class PairMaker:
         self.width = float(np.median(reference.edges.width[reference.free]))
         weight = float(reference.body_mass[reference.free].mean()) * reference.gravity
         lent = SAG * self.width / weight if weight > 0 else 0.0
-        self.joints = Joints(reference.laws, scheme, reference.disc.size, self.width, self.search.skin, lent)
+        self.joints = Joints(reference.laws, scheme, reference.disc.size, self.width, self.search.skin, lent, yielding(reference))
         self.held, self.ties = Held.of(reference), Ties.of(reference)
 
     @property
@@ -87,6 +93,15 @@ class PairMaker:
             1.0 / ties.stiffness, zero, zero, np.ones(k, dtype=bool),
         )  # fmt: skip
         return data, gap
+
+
+def yielding(reference: Reference) -> Array:
+    """Return the compliance that elastic bodies lend their hard joints (B,) [m/kN]."""
+    disc = reference.disc
+    found = np.zeros(len(disc.shape_of))
+    for b in reference.meshed.tolist():
+        found[b] = YIELDING / float(np.median(disc.shapes[disc.shape_of[b]].K.diagonal()))
+    return found
 
 
 def relative(columns: Array, values: Array, x: Array) -> Array:

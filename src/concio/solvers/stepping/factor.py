@@ -6,7 +6,40 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array
-from concio.solvers.algebra.sparse_factor import Engine, OrderedFactor, Pattern
+from concio.solvers.algebra.sparse_factor import Engine, OrderedFactor, Pattern, SingularMatrixError
+
+SMALL = 40
+"""Unknowns up to which a dense inverse is cheaper than everything around a sparse factor."""
+
+
+class SmallInverse:
+    """Factors of matrices of a pattern with few unknowns, as dense inverses."""
+
+    def __init__(self, pattern: Pattern) -> None:
+        self.count = 0
+        major = pattern.order[np.repeat(np.arange(pattern.size), np.diff(pattern.indptr))]
+        minor = pattern.order[pattern.minor]
+        self._at = (minor, major) if pattern.engine == "superlu" else (major, minor)
+        self._inverse: Array = np.zeros((pattern.size, pattern.size))
+
+    def factorise(self, data: Array) -> None:
+        """Invert the matrix with these entries; raises SingularMatrixError where that is not possible."""
+        dense = np.zeros(self._inverse.shape)
+        dense[self._at] = data
+        try:
+            inverse = np.linalg.inv(dense)
+        except np.linalg.LinAlgError:
+            inverse = np.full_like(dense, np.nan)
+        if not np.isfinite(inverse.sum()):
+            msg = "the matrix of a step is singular"
+            raise SingularMatrixError(msg)
+        self._inverse = inverse
+        self.count += 1
+
+    def solve(self, b: Array) -> Array:
+        """Return the solution for the last matrix."""
+        solution: Array = self._inverse @ b
+        return solution
 
 
 class StepFactor:
@@ -40,7 +73,7 @@ class StepFactor:
         slot = np.full(m * w * w, pattern.nnz, dtype=np.int64)
         slot[inside] = pattern.slot[coo.nnz + n :]
         self._slot = slot
-        self.numeric = OrderedFactor(pattern)
+        self.numeric: SmallInverse | OrderedFactor = SmallInverse(pattern) if n <= SMALL else OrderedFactor(pattern)
 
     @property
     def count(self) -> int:
@@ -58,7 +91,7 @@ class StepFactor:
         nnz = self.pattern.nnz
         local = np.matmul(values.transpose(0, 2, 1), np.matmul(D, values))
         data = np.bincount(self._slot, weights=local.ravel(), minlength=nnz + 1)[:nnz].astype(float)
-        data += np.bincount(self._matrix_slot, weights=matrix.tocoo().data, minlength=nnz)
+        data += np.bincount(self._matrix_slot, weights=matrix.data, minlength=nnz)
         self.numeric.factorise(data)
 
     def solve(self, b: Array) -> Array:

@@ -76,7 +76,7 @@ class Linear:
         crushed = (states.contact == 2) & p.active
         held = np.where(crushed, np.where(np.isfinite(cone.cap), cone.cap, 0.0), -tension)
         delta = DELTA * p.flexibility
-        least = np.maximum(delta, 1e-3 * np.median(delta, axis=0)) if len(delta) else delta
+        least = np.maximum(delta, 1e-3 * delta.mean(axis=0)) if len(delta) else delta
         return cls(
             closed,
             stick,
