@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from concio.contact.assembly import Assembly, assemble
     from concio.display import Units
     from concio.errors import ConcioError, GeometryError, InputError, MethodError, NoEquilibriumError, SolverError
+    from concio.io.motion_file import load_motion, save_motion
     from concio.model.compose import merge, place
     from concio.model.drawing.drawing import model_from_dxf
     from concio.model.file.reading import load, loads
@@ -83,6 +84,7 @@ _HOMES = {
     "concio.analysis.seismic.assess": ("assess",),
     "concio.analysis.seismic.assessment": ("Assessment",),
     "concio.analysis.seismic.site": ("Site",),
+    "concio.io.motion_file": ("load_motion", "save_motion"),
     "concio.model.motion.records": ("read_record",),
     "concio.model.motion.signals": ("Pulse", "Record"),
     "concio.analysis.settlement": ("settle",),
@@ -182,6 +184,7 @@ __all__ = [
     "limit",
     "load",
     "load_margin",
+    "load_motion",
     "load_study",
     "loads",
     "merge",
@@ -194,6 +197,7 @@ __all__ = [
     "run_path",
     "running_bond_panel",
     "save",
+    "save_motion",
     "settle",
     "solve",
     "strain_path",

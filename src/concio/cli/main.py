@@ -18,8 +18,10 @@ from concio.cli import (
     new,
     outcome,
     path,
+    push,
     run,
     schema,
+    shake,
     study,
     view,
 )
@@ -62,6 +64,8 @@ app.command("check")(check.check)
 app.command("run")(run.run)
 app.command("path")(path.path)
 app.command("limit")(limit.limit)
+app.command("push")(push.push)
+app.command("shake")(shake.shake)
 app.command("cell")(cell.cell)
 app.command("continuum")(continuum.continuum)
 app.command("assess")(assess.assess)

@@ -65,7 +65,7 @@ def path(
     if out is not None:
         check_directory(out)
     assembly = concio.assemble(in_units(concio.load(file), units))
-    control = None if point is None else _control(point, along, assembly.model.dim)
+    control = None if point is None else control_of(point, along, assembly.model.dim)
     if control is None and until is not None:
         msg = "--until is the motion of a control point, and there is none"
         raise InputError(msg, where="--until", hint="add --point BODY,X,Y")
@@ -104,7 +104,8 @@ def _words(factors: dict[str, float]) -> str:
     return ", ".join(f"{group} = {value:g}" for group, value in factors.items())
 
 
-def _control(text: str, along: str, dim: int) -> ControlPoint:
+def control_of(text: str, along: str, dim: int = 2) -> ControlPoint:
+    """Return the control point that a text BODY,X,Y names, with the direction of its motion."""
     from concio.analysis.path import ControlPoint
     from concio.errors import InputError
     from concio.units import quantity

@@ -37,7 +37,10 @@ def progress_bar(*, shown: bool) -> Iterator[ProgressCallback | None]:
         def move(state: Progress) -> None:
             nonlocal first, best
             text = f"{state.method}: iteration {state.iteration}"
-            if math.isfinite(state.residual) and state.residual > 0:
+            if state.method in ("dynamics", "push"):  # what is left to do, not a residual
+                best = max(best, 1.0 - state.residual)
+                text = state.method
+            elif math.isfinite(state.residual) and state.residual > 0:
                 first = first or max(state.residual, 10 * TARGET)
                 share = math.log(first / state.residual) / math.log(first / TARGET)
                 best = max(best, min(share, 1.0))

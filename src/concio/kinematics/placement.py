@@ -41,7 +41,10 @@ class Placement:
     @cached_property
     def matrix(self) -> Array:
         """Rotation matrices (B, d, d)."""
-        return rotation_matrix(self.rotation) if self.dim == 2 else self.rotation
+        if self.dim == 3:
+            return self.rotation
+        c, s = np.cos(self.rotation), np.sin(self.rotation)
+        return np.stack([np.stack([c, -s], axis=-1), np.stack([s, c], axis=-1)], axis=-2)
 
     def moved(self, translation: Array, turn: Array) -> Placement:
         """Return the placement after a displacement of the centroids and a finite rotation about them.

@@ -27,6 +27,8 @@ CASES: dict[str, str] = {
     "blocks_in_space": "Blocks in space, pushed in any direction",
     "corner_walls": "Walls with corners",
     "dome_thickness": "Least thickness of a dome",
+    "rocking_block": "Free-standing blocks that rock",
+    "moving_blocks": "Blocks that fly, slide, bounce and are pushed over",
     "mesh_orders": "Orders of convergence",
 }
 """Name of each module and the title of its section in the validation book, in the book's order."""

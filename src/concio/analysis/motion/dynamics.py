@@ -12,6 +12,7 @@ import numpy as np
 from concio.analysis.motion.dynamics_result import DynamicsResult, Ending
 from concio.analysis.motion.ground import Ground, Motion
 from concio.analysis.motion.history import Recorder
+from concio.analysis.motion.joints import SAG
 from concio.analysis.motion.observer import Observer
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import MotionState
@@ -193,7 +194,7 @@ def _begin(
     elif start in ("equilibrium", "as described"):
         state = at_rest(reference)
         if start == "equilibrium":
-            balanced = Statics(reference, scheme, factors, engine=engine).balance(state, 0.0)
+            balanced = Statics(reference, scheme, factors, engine=engine, sag=SAG).balance(state, 0.0)
             if balanced.found:
                 state = balanced.state
             else:

@@ -35,15 +35,19 @@ class PairMaker:
     ----------
     reference : Reference
     scheme : Scheme
+    sag : float
+        Depth over the median width of the bodies to which a body of mean weight sinks into a hard joint.
     """
 
-    def __init__(self, reference: Reference, scheme: Scheme) -> None:
+    def __init__(self, reference: Reference, scheme: Scheme, sag: float = SAG) -> None:
         self.reference, self.scheme, self.n = reference, scheme, reference.disc.unknowns
         self.search = ContactSearch(reference)
         self.width = float(np.median(reference.edges.width[reference.free]))
         weight = float(reference.body_mass[reference.free].mean()) * reference.gravity
-        lent = SAG * self.width / weight if weight > 0 else 0.0
-        self.joints = Joints(reference.laws, scheme, reference.disc.size, self.width, self.search.skin, lent, yielding(reference))
+        lent = sag * self.width / weight if weight > 0 else 0.0
+        self.joints = Joints(
+            reference.laws, scheme, reference.disc.size, self.width, self.search.skin, lent, yielding(reference)
+        )  # fmt: skip
         self.held, self.ties = Held.of(reference), Ties.of(reference)
 
     @property

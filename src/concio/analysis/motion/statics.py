@@ -37,6 +37,11 @@ Array = np.ndarray
 RESISTANCE = 2.0
 """epsilon over gravity by the width of a body."""
 
+SAG = 1e-6
+"""Depth over the median width of the bodies to which a body of mean weight sinks into a hard joint.
+
+Joints of an arch add up: ten times as much costs its peak one or two hundredths."""
+
 MOST = 80
 """Iterations after which no equilibrium was found."""
 
@@ -120,6 +125,8 @@ class Statics:
     control : ControlPoint, optional
         Whose displacement controls the load; otherwise the mean displacement on which the load works.
     engine : {"superlu", "pardiso"}
+    sag : float
+        Depth over the width of the bodies to which hard joints are sunk in.
     """
 
     def __init__(
@@ -131,10 +138,11 @@ class Statics:
         push: Array | None = None,
         control: ControlPoint | None = None,
         engine: Engine = "superlu",
+        sag: float = SAG,
     ) -> None:
         self.reference, self.scheme, self.factors, self.live, self.push = reference, scheme, dict(factors), live, push
         self.frames = Frames(reference, scheme)
-        self.maker = PairMaker(reference, scheme)
+        self.maker = PairMaker(reference, scheme, sag)
         self.solver = StepSolver(engine)
         self.control = None if control is None else Followed.of(reference, control)
         self.width = self.maker.width

@@ -217,13 +217,31 @@ class Configuration:
 
     def outline(self, b: int) -> Array:
         """Return the outline (n, 2) of a body, without its strains [m]."""
-        arm = self.reference.model.outlines[b].outline - self.reference.disc.centroids[b]
+        return self._placed(b, self.reference.model.outlines[b].outline)
+
+    def _placed(self, b: int, ring: Array) -> Array:
+        arm = ring - self.reference.disc.centroids[b]
         return self.placement.points(np.full(len(arm), b), arm)
+
+    def rings(self, b: int) -> tuple[Array, ...]:
+        """Return outline and holes (n, 2) of a body where it stands, strains included [m]."""
+        reference = self.reference
+        rings = reference.model.outlines[b].rings
+        if reference.disc.shape_of[b] < 0:
+            return tuple(self._placed(b, ring) for ring in rings)
+        nodes = self.nodes(b)
+        sides = iter(reference.disc.shapes[reference.disc.shape_of[b]].edges)
+        return tuple(nodes[np.concatenate([next(sides).nodes[:-1] for _ in ring])] for ring in rings)
 
     def bodies(self) -> tuple[Body, ...]:
         """Return the bodies where they stand, without their strains."""
         bodies = self.reference.model.outlines
-        return tuple(replace(body, outline=self.outline(b), grid=None) for b, body in enumerate(bodies))
+        return tuple(
+            replace(
+                body, outline=self.outline(b), holes=tuple(self._placed(b, hole) for hole in body.holes), grid=None
+            )
+            for b, body in enumerate(bodies)
+        )  # fmt: skip
 
     def detect(self) -> Detection:
         """Return the interfaces of the bodies where they stand."""

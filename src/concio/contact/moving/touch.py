@@ -21,6 +21,10 @@ from concio.contact.moving.edges import MovingEdges, PlacedEdges, dot
 
 Array = np.ndarray
 
+SAME = 1e-6
+"""Corners closer than this share of an edge, along it, coincide."""
+
+
 
 @dataclass(frozen=True, eq=False)
 class Touch:
@@ -67,6 +71,9 @@ class Toucher:
         Common lengths shorter than this are none [m].
     slack : float
         How far beyond the end of an edge a single corner still stands over it [m].
+    inner : (2, f) boolean array
+        Whether lower and upper ends were corners of b when last looked at: where corners of both bodies nearly coincide
+        the choice stays what it was, for the two contact points differ by what the edges have sunk in.
     """
 
     a: Array
@@ -79,6 +86,7 @@ class Toucher:
     length_edge: Array
     shortest: Array
     slack: float
+    inner: Array
 
     @classmethod
     def of(cls, edges: MovingEdges, found: Candidates, sliver: float, slack: float) -> Toucher:
@@ -86,10 +94,11 @@ class Toucher:
         a, b, corner, edge = found.edge_a, found.edge_b, found.corner, found.edge
         body_a, body_b = edges.body[a], edges.body[b]
         shortest = sliver * np.minimum(edges.width[body_a], edges.width[body_b])
+        inner = np.zeros((2, len(a)), dtype=bool)
         return cls(
             a, b, corner, edge,
             np.concatenate([body_a, body_a, edges.body[edge]]), np.concatenate([body_b, body_b, edges.body[corner]]),
-            edges.length[a], edges.length[edge], shortest, slack,
+            edges.length[a], edges.length[edge], shortest, slack, inner,
         )  # fmt: skip
 
     def touch(self, placed: PlacedEdges) -> Touch:
@@ -106,7 +115,10 @@ class Toucher:
             n_a, n_b = -1j * t_a, 1j * t_b  # both from a to b
             a_end = self.length_a * dot(t, t_a)
             b_start, b_end = dot(t, q_near - p), dot(t, q_far - p)
-            low, high = b_start > 0.0, b_end < a_end  # ends that are corners of b
+            same = SAME * self.length_a
+            low = np.where(np.abs(b_start) > same, b_start > 0.0, self.inner[0])  # ends that are corners of b
+            high = np.where(np.abs(a_end - b_end) > same, b_end < a_end, self.inner[1])
+            self.inner[0], self.inner[1] = low, high
             on_a[:f], on_a[f : 2 * f] = low, high
             point[:f] = np.where(low, q_near, p)
             point[f : 2 * f] = np.where(high, q_far, placed.end[self.a])

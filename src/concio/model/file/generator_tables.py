@@ -16,6 +16,7 @@ from typing import Annotated, Any, Literal, Union, Unpack, get_args, get_origin,
 from pydantic import Discriminator, Field, StrictBool, StrictInt, StrictStr, Tag, create_model
 
 from concio.model.file.assessment_table import AssessmentEntry, SiteEntry
+from concio.model.file.motion_table import Motion
 from concio.model.file.study_table import Study
 from concio.model.file.tables import Bond, Element, FileTable, Friction, Material, PartTable, Table
 from concio.model.file.values import TYPES, Length, Number, Size
@@ -151,6 +152,7 @@ def file_table() -> type[FileTable]:
     members["site"] = (SiteEntry, None)
     members["assessment"] = (AssessmentEntry, None)
     members["parts"] = (GenericAlias(list, (part,)), Field(default_factory=list))
+    members["motion"] = (Motion, None)
     return create_model("concio model", __base__=FileTable, __doc__=FileTable.__doc__, **members)
 
 

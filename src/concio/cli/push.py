@@ -1,0 +1,107 @@
+"""``concio push FILE``: push a structure over, past its peak, until its strength is lost."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from concio.cli.outcome import guarded, print_json, say
+from concio.cli.output import check_directory, replaced_directory
+from concio.cli.path import control_of
+from concio.cli.progress import progress_bar
+from concio.cli.run import Factors, File, Json, UnitsOf, factors_of, in_units
+
+Film = Annotated[
+    list[str] | None,
+    typer.Option("--film", help="Write a film into --out: gif, or mp4 where FFmpeg is installed (repeatable)."),
+]
+Series = Annotated[bool, typer.Option("--vtu", help="Write a series of VTU files for ParaView into --out.")]
+
+
+def check_out(out: Path | None, film: list[str] | None, series: bool) -> None:
+    """Raise where what is to be written cannot be."""
+    from concio.errors import InputError
+
+    if out is not None:
+        check_directory(out)
+    elif film or series:
+        msg = "a film or a series needs a directory"
+        raise InputError(msg, where="--film, --vtu", hint="add --out DIRECTORY")
+    for form in film or ():
+        if form not in ("gif", "mp4"):
+            msg = f"'{form}' is no film"
+            raise InputError(msg, where="--film", hint="gif or mp4")
+
+
+@guarded
+def push(
+    file: File,
+    group: Annotated[
+        list[str] | None,
+        typer.Option("--group", "-g", help="Load group that grows (repeatable); by default live, or else the weights."),
+    ] = None,
+    weights: Annotated[
+        bool, typer.Option("--weights", help="Multiply a horizontal share of the weights, whatever groups there are.")
+    ] = False,
+    direction: Annotated[
+        Literal["x", "-x", "y", "-y"], typer.Option("--direction", "-d", help="Direction of a share of the weights.")
+    ] = "x",
+    point: Annotated[str | None, typer.Option("--point", "-p", help="Control point: BODY,X,Y.")] = None,
+    along: Annotated[Literal["x", "y", "-x", "-y"], typer.Option("--along", help="Direction of its motion.")] = "x",
+    load: Annotated[bool, typer.Option("--load", help="Let the load grow instead of a displacement.")] = False,
+    step: Annotated[str | None, typer.Option("--step", help="Largest step: '5 mm', or a multiplier.")] = None,
+    until: Annotated[str | None, typer.Option("--until", help="Displacement (or multiplier) that ends it.")] = None,
+    smallest: Annotated[float, typer.Option("--smallest", help="Multiplier at which the strength is lost.")] = 0.0,
+    factor: Factors = None,
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for curve, report and film.")] = None,
+    film: Film = None,
+    series: Series = False,
+    every: Annotated[bool, typer.Option("--all", help="List every event.")] = False,
+    units: UnitsOf = None,
+    json: Json = False,
+) -> int:
+    """Push a structure over: equilibria where the bodies stand, past the peak, until nothing is carried any more.
+
+    What is multiplied is the load group "live", other groups by --group, or a horizontal share of all weights.
+
+    The exit code is 0 where the curve was followed to its end, 3 where the structure does not stand to begin with, 4
+    where the curve was lost.
+
+    Example: concio push pillar.toml --out pushed --film gif
+    """
+    import concio
+    from concio.analysis.motion.push_result import PushEnding
+    from concio.cli.motion_lines import push_lines, write_motion
+    from concio.errors import InputError
+    from concio.units import quantity
+
+    check_out(out, film, series)
+    if load and point is not None:
+        msg = "either the load grows or a point moves"
+        raise InputError(msg, where="--load, --point", hint="leave one of them out")
+    model = in_units(concio.load(file), units)
+    kind = "number" if load else "length"
+    sizes = [None if t is None else quantity(t, kind, where=w) for t, w in ((step, "--step"), (until, "--until"))]
+    towards = {"x": (1.0, 0.0), "-x": (-1.0, 0.0), "y": (0.0, 1.0), "-y": (0.0, -1.0)}[direction]
+    with progress_bar(shown=not json) as progress:
+        found = concio.push(
+            model, control="load" if load else None if point is None else control_of(point, along),
+            live=() if weights else group or None, direction=towards, step=sizes[0], until=sizes[1], smallest=smallest,
+            factors=factors_of(factor), progress=progress,
+        )  # fmt: skip
+    written: list[str] = []
+    if out is not None:
+        with replaced_directory(out) as fresh:
+            written = write_motion(found, fresh, tuple(film or ()), series)
+    if json:
+        print_json(found.summary())
+    else:
+        for line in push_lines(found, every=every):
+            say(line)
+        if out is not None:
+            say(f"  written      {out}: {', '.join(written)}")
+    if found.ending is PushEnding.STOPPED:
+        return 130
+    return 4 if found.ending is PushEnding.NO_EQUILIBRIUM else 0

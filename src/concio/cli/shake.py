@@ -1,0 +1,139 @@
+"""``concio shake FILE``: the motion of a structure under a motion of the ground."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from concio.cli.outcome import guarded, print_json, say
+from concio.cli.output import replaced_directory
+from concio.cli.path import control_of
+from concio.cli.progress import progress_bar
+from concio.cli.push import Film, Series, check_out
+from concio.cli.run import Factors, File, Json, UnitsOf, factors_of, in_units
+
+
+@guarded
+def shake(
+    file: File,
+    motion: Annotated[
+        Path | None, typer.Option("--motion", "-m", help="Record: AT2, VT2, DT2, or a text of one or two columns.")
+    ] = None,
+    vertical: Annotated[Path | None, typer.Option("--vertical", help="Record of the vertical motion.")] = None,
+    pulse: Annotated[
+        str | None,
+        typer.Option("--pulse", help="SHAPE,AMPLITUDE,LENGTH: 'half sine,0.4 g,0.5 s' (rectangular, sine, ricker)."),
+    ] = None,
+    scale: Annotated[float | None, typer.Option("--scale", "-s", help="Factor of the ground motion.")] = None,
+    record_unit: Annotated[str | None, typer.Option("--record-unit", help="g, m/s2, cm/s2, m/s, m...")] = None,
+    record_step: Annotated[str | None, typer.Option("--record-step", help="Time between samples: '10 ms'.")] = None,
+    duration: Annotated[str | None, typer.Option("--duration", help="Time to compute: '10 s'.")] = None,
+    step: Annotated[str | None, typer.Option("--step", help="Largest step of time: '2 ms'.")] = None,
+    restitution: Annotated[
+        float | None, typer.Option("--restitution", help="Share of a velocity that comes back from an impact.")
+    ] = None,
+    point: Annotated[
+        list[str] | None, typer.Option("--point", "-p", help="Point to follow along x: BODY,X,Y (repeatable).")
+    ] = None,
+    start: Annotated[Path | None, typer.Option("--from", help="Go on from where an earlier motion.npz ended.")] = None,
+    factor: Factors = None,
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for histories, report and film.")] = None,
+    film: Film = None,
+    series: Series = False,
+    units: UnitsOf = None,
+    json: Json = False,
+) -> int:
+    """Shake a structure: rocking, sliding and impacts under a record or a pulse, every step certified.
+
+    What the table [motion] of the file says holds where no option says otherwise. Ctrl-C stops the motion, and what was
+    computed is kept.
+
+    The exit code is 0 where the motion was computed to its end, 3 where a block overturned, 4 where a step could not be
+    solved.
+
+    Example: concio shake pillar.toml --motion record.at2 --scale 0.3 --out shaken --film gif
+    """
+    import concio
+    from concio.analysis.motion.dynamics_result import DynamicsResult, Ending
+    from concio.cli.motion_lines import shake_lines, write_motion
+    from concio.errors import InputError
+    from concio.io.motion_file import load_motion
+    from concio.model.file.motion_table import motion_table
+    from concio.model.file.reading import read_tables
+    from concio.model.motion.records import read_record
+
+    check_out(out, film, series)
+    model = in_units(concio.load(file), units)
+    table = motion_table(read_tables(file), str(file))
+    options: dict[str, Any] = table.arguments()
+    if motion is None and pulse is None:
+        ground = table.ground(file.parent)
+    else:
+        if motion is not None and pulse is not None:
+            msg = "there is a record and a pulse along x"
+            raise InputError(msg, where="--motion, --pulse", hint="keep one of them")
+        ground = {}
+    apart = None if record_step is None else _time(record_step, "--record-step")
+    for axis, record in (("x", motion), ("y", vertical)):
+        if record is not None:
+            ground[axis] = read_record(record, unit=record_unit, step=apart)
+    if pulse is not None:
+        ground["x"] = _pulse(pulse)
+    for name, text in (("duration", duration), ("step", step)):
+        if text is not None:
+            options[name] = _time(text, f"--{name}")
+    if restitution is not None:
+        options["restitution"] = restitution
+    if point:
+        options["points"] = tuple(control_of(text, "x") for text in point)
+    if start is not None:
+        earlier = load_motion(start)
+        if not isinstance(earlier, DynamicsResult):
+            msg = "this is a push, no motion in time"
+            raise InputError(msg, where=str(start), hint="give the motion.npz that shake wrote")
+        options["start"] = earlier.end
+    with progress_bar(shown=not json) as progress:
+        found = concio.dynamics(
+            model, ground, scale=table.scale if scale is None else scale, factors=factors_of(factor), progress=progress,
+            **options,
+        )  # fmt: skip
+    written: list[str] = []
+    if out is not None:
+        with replaced_directory(out) as fresh:
+            written = write_motion(found, fresh, tuple(film or ()), series)
+    if json:
+        print_json(found.summary())
+    else:
+        for line in shake_lines(found):
+            say(line)
+        if out is not None:
+            say(f"  written      {out}: {', '.join(written)}")
+    return {Ending.STOPPED: 130, Ending.UNSOLVED: 4, Ending.OVERTURNED: 3}.get(found.ending, 0)
+
+
+def _time(text: str, where: str) -> float:
+    from concio.errors import InputError
+    from concio.model.file.motion_table import seconds
+
+    try:
+        return float(seconds(text))
+    except ValueError as error:
+        raise InputError(str(error), where=where, hint="for example '10 ms'") from None
+
+
+def _pulse(text: str) -> Any:
+    from concio.errors import InputError
+    from concio.model.file.motion_table import acceleration, seconds
+    from concio.model.motion.signals import Pulse
+
+    parts = [p.strip() for p in text.split(",")]
+    if len(parts) not in (3, 4):
+        msg = f"'{text}' is no pulse"
+        raise InputError(msg, where="--pulse", hint="write for example 'half sine,0.4 g,0.5 s'")
+    try:
+        cycles = float(parts[3]) if len(parts) == 4 else 1.0
+        return Pulse(parts[0], float(acceleration(parts[1])), float(seconds(parts[2])), cycles)
+    except ValueError as error:
+        raise InputError(str(error), where="--pulse", hint="write for example 'half sine,0.4 g,0.5 s'") from None

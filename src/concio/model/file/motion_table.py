@@ -1,0 +1,149 @@
+"""The table ``[motion]`` of a model file: how the ground moves, and how the motion is to be computed.
+
+It says nothing of the structure: ``concio.load`` checks it and leaves it at that; ``concio shake`` reads it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, StrictBool, StrictStr, ValidationError
+
+from concio.errors import InputError
+from concio.model.file.errors import first_fault
+from concio.model.file.tables import Name, Table
+from concio.model.motion.records import STANDARD_GRAVITY, read_record
+from concio.model.motion.signals import Pulse, Signal
+from concio.model.stages import ControlPoint
+
+TIMES = {"s": 1.0, "ms": 1e-3, "min": 60.0}
+ACCELERATIONS = {"m/s2": 1.0, "cm/s2": 0.01, "gal": 0.01, "g": STANDARD_GRAVITY}
+_QUANTITY = re.compile(r"\s*([-+0-9.eE]+)\s*([a-zA-Z/0-9]*)\s*")
+
+
+def with_unit(value: Any, units: Mapping[str, float], what: str) -> Any:
+    """Return a number, given plainly or with one of the units, in s or m/s2; anything else as it is.
+
+    Raises
+    ------
+    ValueError
+        A text that is no number with such a unit.
+    """
+    if not isinstance(value, str):
+        return value
+    found = _QUANTITY.fullmatch(value)
+    try:
+        size = float(found.group(1)) if found else None
+    except ValueError:
+        size = None
+    if found is None or size is None or (found.group(2) and found.group(2) not in units):
+        msg = f"'{value}' is no {what}: write a number with one of " + ", ".join(units)
+        raise ValueError(msg)
+    return size * units.get(found.group(2), 1.0)
+
+
+def seconds(value: Any) -> Any:
+    """Return a time in s."""
+    return with_unit(value, TIMES, "time")
+
+
+def acceleration(value: Any) -> Any:
+    """Return an acceleration in m/s2."""
+    return with_unit(value, ACCELERATIONS, "acceleration")
+
+
+Time = Annotated[float, BeforeValidator(seconds)]
+Acceleration = Annotated[float, BeforeValidator(acceleration)]
+
+
+class PulseTable(Table):
+    """A pulse by name; see :class:`concio.Pulse`."""
+
+    shape: Literal["rectangular", "half sine", "sine", "ricker"]
+    amplitude: Acceleration
+    length: Time
+    cycles: float = 1.0
+
+
+class MotionPoint(Table):
+    """A point whose displacement is kept at every step."""
+
+    body: Name
+    at: tuple[float, float]
+    direction: tuple[float, float] = (1.0, 0.0)
+
+
+class MotionTable(Table):
+    """The arguments of :func:`concio.dynamics`."""
+
+    record: StrictStr | None = None
+    vertical: StrictStr | None = None
+    unit: StrictStr | None = None
+    record_step: Time | None = None
+    pulse: PulseTable | None = None
+    scale: float = 1.0
+    duration: Time | None = None
+    step: Time | None = None
+    restitution: float | None = None
+    theta: float | None = None
+    mass_damping: float | None = None
+    stiffness_damping: float | None = None
+    gravity: Acceleration | None = None
+    base: Literal["inertia", "moving"] | None = None
+    start: Literal["equilibrium", "as described"] | None = None
+    adaptive: StrictBool | None = None
+    velocities: dict[str, list[float]] = Field(default_factory=dict)
+    points: list[MotionPoint] = Field(default_factory=list)
+
+    def ground(self, folder: Path) -> dict[str, Signal]:
+        """Return the ground motion by component.
+
+        Raises
+        ------
+        InputError
+            A record cannot be read, or there is a record and a pulse.
+        """
+        if self.record is not None and self.pulse is not None:
+            msg = "there is a record and a pulse along x"
+            raise InputError(msg, where="[motion]", hint="keep one of them")
+        found: dict[str, Signal] = {}
+        for axis, name in (("x", self.record), ("y", self.vertical)):
+            if name is not None:
+                found[axis] = read_record(folder / name, unit=self.unit, step=self.record_step)
+        if self.pulse is not None:
+            p = self.pulse
+            found["x"] = Pulse(p.shape, p.amplitude, p.length, p.cycles)
+        return found
+
+    def arguments(self) -> dict[str, Any]:
+        """Return the arguments of :func:`concio.dynamics` that the file states, without the ground motion."""
+        names = (
+            "duration", "step", "restitution", "theta", "mass_damping", "stiffness_damping", "gravity", "base", "start",
+            "adaptive",
+        )  # fmt: skip
+        found: dict[str, Any] = {n: getattr(self, n) for n in names if getattr(self, n) is not None}
+        if self.velocities:
+            found["velocities"] = self.velocities
+        if self.points:
+            found["points"] = tuple(ControlPoint(p.body, p.at, p.direction) for p in self.points)
+        return found
+
+
+Motion = Annotated[MotionTable | None, Field(description="ground motion and time stepping; see concio shake")]
+
+
+def motion_table(data: Mapping[str, Any], where: str) -> MotionTable:
+    """Return the table ``[motion]`` of the tables of a file, checked; an empty one where there is none.
+
+    Raises
+    ------
+    InputError
+        It holds a key that is not known, or a value that does not fit.
+    """
+    try:
+        return MotionTable.model_validate(data.get("motion", {}))
+    except ValidationError as error:
+        raise first_fault(error, data["motion"], MotionTable, f"{where}, [motion]") from None

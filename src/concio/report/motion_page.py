@@ -1,0 +1,154 @@
+"""The report of a motion: one HTML file with verdict, a film with slider and play, curves or histories, and tables."""
+
+from __future__ import annotations
+
+import json
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import concio
+from concio.analysis.motion.dynamics_result import DynamicsResult, Ending
+from concio.analysis.motion.push_result import PushEnding, PushResult
+from concio.arguments import strict
+from concio.display import number
+from concio.plot.motion_figure import plot_capacity, plot_energy, plot_ground, plot_history
+from concio.post.frames import box_of, frames
+from concio.report.html_parts import figure_html
+
+SECONDS = 12.0
+"""How long the film of a push takes; a motion plays at its own speed."""
+
+LARGEST = 4_000_000
+"""Coordinates in the page at most: with more blocks there are fewer frames."""
+
+SHOWN = 300
+"""Events listed."""
+
+
+@strict
+def write_motion_report(result: PushResult | DynamicsResult, path: Path | str) -> Path:
+    """Write the report of a push or a time history.
+
+    Parameters
+    ----------
+    result : PushResult or DynamicsResult
+    path : Path or str
+
+    Returns
+    -------
+    Path
+        ``path``.
+    """
+    path = Path(path)
+    path.write_text(motion_html(result), encoding="utf-8")
+    return path
+
+
+def motion_html(result: PushResult | DynamicsResult) -> str:
+    """Return the report as a text; see :func:`write_motion_report`."""
+    room = files("concio.report")
+    style, script = ((room / name).read_text(encoding="utf-8") for name in ("report.css", "motion.js"))
+    title = result.model.title or ("Pushed over" if isinstance(result, PushResult) else "Motion")
+    if isinstance(result, PushResult):
+        figures = figure_html(plot_capacity(result), "capacity", "Multiplier over the controlled displacement.")
+        tables = _events(result)
+    else:
+        figures = figure_html(plot_history(result), "rotations", "Blocks that turn most.")
+        if result.ground.any():
+            figures += figure_html(plot_ground(result), "ground", "Acceleration of the ground.")
+        figures += figure_html(plot_energy(result), "energy", "Energy stored, dissipated and put in.")
+        tables = _shares(result)
+    film = (
+        '<canvas id="film" style="width:100%;display:block" role="img" aria-label="the structure as it moves"></canvas>'
+        '<p><button id="play" type="button" aria-pressed="false">Play</button> '
+        '<input id="frame" type="range" min="0" value="0" style="width:60%;vertical-align:middle" '
+        'aria-label="frame"> <span id="word"></span></p>'
+    )
+    data = json.dumps(_film(result), separators=(",", ":")).replace("<", "\\u003c")
+    return (
+        '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f'<title>{escape(title)} &middot; concio</title><link rel="icon" href="data:,"><style>{style}</style></head>'
+        f'<body><main><header><p class="brand">concio</p><h1>{escape(title)}</h1></header>'
+        f"<section id=verdict>{_verdict(result)}</section>"
+        f"<section><h2>The structure as it moves, true to scale</h2>{film}</section>"
+        f"<section id=figures><h2>Figures</h2>{figures}</section>"
+        f"<section id=tables>{tables}</section>"
+        f"<footer>Written by concio {escape(concio.__version__)}. Forces in kN, lengths in m, time in s.</footer>"
+        "</main>"
+        f'<script type="application/json" id="data">{data}</script><script>{script}</script></body></html>\n'
+    )
+
+
+def _film(result: PushResult | DynamicsResult) -> dict[str, Any]:
+    """Return what the script plays."""
+    size = 2 * sum(len(r) for b in range(len(result.model.bodies)) for r in result.configuration(0).rings(b))
+    pictures = frames(result, int(np.clip(LARGEST // max(size, 1), 2, 400)))
+    box = box_of(pictures, result.model)
+    digits = max(0, 4 - int(np.floor(np.log10(float((box[1] - box[0]).max())))))
+    span = pictures[-1].at - pictures[0].at
+    rate = 1.0 if isinstance(result, DynamicsResult) else span / SECONDS
+    return {
+        "kinds": [body.kind for body in result.model.bodies],
+        "box": box.tolist(),
+        "at": [p.at for p in pictures],
+        "words": [p.word for p in pictures],
+        "rate": rate,
+        "frames": [[[np.round(r, digits).ravel().tolist() for r in rings] for rings in p.rings] for p in pictures],
+    }
+
+
+def _verdict(result: PushResult | DynamicsResult) -> str:
+    if isinstance(result, PushResult):
+        tone = "good" if result.ending in (PushEnding.LOST, PushEnding.REACHED) else "unsure"
+        at = 1e3 * float(result.displacement[result.peak_step])
+        told = [
+            f"Largest multiplier {number(result.peak, 5)} at {number(at, 4)} mm",
+            f"{len(result)} points, each in equilibrium where the bodies stand",
+        ]
+        if np.isfinite(result.capacity):
+            told.append(f"strength lost at {number(1e3 * result.capacity, 5)} mm")
+    else:
+        good = result.ending in (Ending.COMPLETE, Ending.AT_REST)
+        tone = "good" if good else "bad" if result.ending is Ending.OVERTURNED else "unsure"
+        name, turned = result.largest_rotation
+        told = [
+            f"{number(float(result.end.time), 5)} s in {len(result.steps):,} steps",
+            f"largest rotation {number(float(np.rad2deg(turned)), 4)} degrees ('{name}')",
+            f"energy balance closes to {result.energy.error:.0e} of what was turned over",
+        ]
+    told.append(f"worst residual of any equation {result.certificate:.0e}")
+    notes = "".join(f"<p>Note: {escape(n)}.</p>" for n in result.notes)
+    said = escape("; ".join(told))
+    return f'<div class="verdict {tone}"><h2>{escape(result.ending.value)}</h2><p>{said}.</p>{notes}</div>'
+
+
+def _events(result: PushResult) -> str:
+    rows = "".join(
+        f"<tr><td class=n>{number(1e3 * float(result.displacement[e.step]), 4)}</td><td class=n>"
+        f"{number(float(result.multiplier[e.step]), 4)}</td><td>{escape(e.bodies[0])}</td>"
+        f"<td>{escape(e.bodies[1])}</td>"
+        f"<td>{escape(e.kind)}</td><td class=n>{number(e.at[0], 4)}</td><td class=n>{number(e.at[1], 4)}</td></tr>"
+        for e in result.events[:SHOWN]
+    )
+    more = f"<p>{len(result.events) - SHOWN:,} more.</p>" if len(result.events) > SHOWN else ""
+    words = ("at [mm]", "multiplier", "between", "and", "happens", "x [m]", "y [m]")
+    head = "".join(f"<th>{w}</th>" for w in words)
+    table = f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+    return f"<h2>Events</h2><div class=scroll>{table}</div>{more}"
+
+
+def _shares(result: DynamicsResult) -> str:
+    rows = "".join(
+        f"<tr><td>{escape(name)}</td><td class=n>{100 * share:.1f} %</td></tr>"
+        for name, share in result.steps.shares().items()
+    )
+    mean = float(result.steps.factorisations.mean()) if len(result.steps) else 0.0
+    return (
+        "<h2>What solved the steps</h2><div class=scroll><table><thead><tr><th>by</th><th>share</th></tr></thead>"
+        f"<tbody>{rows}</tbody></table></div><p>{mean:.2f} factorisations a step, {result.seconds:.1f} s in all.</p>"
+    )

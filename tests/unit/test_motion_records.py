@@ -1,0 +1,97 @@
+"""Records of ground motion: what is read, and what is said of those that cannot be used."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import concio
+from concio.model.motion.records import attention
+
+AT2 = """PEER STRONG MOTION DATABASE RECORD
+SOME EVENT, SOME PLACE
+ACCELERATION TIME HISTORY IN UNITS OF G
+NPTS=    7, DT=   0.0100 SEC
+ 0.0 0.1 0.2 0.1
+ 0.0 -.1E+00 0.0
+"""
+
+
+def test_at2_is_read_in_g(tmp_path):
+    path = tmp_path / "record.at2"
+    path.write_text(AT2)
+    record = concio.read_record(path)
+    assert record.step == 0.01
+    assert record.values == pytest.approx(9.80665 * np.array([0, 0.1, 0.2, 0.1, 0, -0.1, 0]))
+    assert record.duration == pytest.approx(0.06)
+
+
+def test_text_of_two_columns_and_of_one(tmp_path):
+    two = tmp_path / "two.csv"
+    two.write_text("time;acceleration\n0.00;1.0\n0.02;2.0\n0.04;-1.0\n")
+    assert concio.read_record(two).values.tolist() == [1.0, 2.0, -1.0]
+    one = tmp_path / "one.txt"
+    one.write_text("# cm/s2\n100\n200\n-100\n")
+    record = concio.read_record(one, unit="cm/s2", step=0.02)
+    assert record.values.tolist() == [1.0, 2.0, -1.0]
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("0.0 1\n0.1 2\n0.3 1\n0.4 1\n", "the record has a gap: 0.2 s between 0.1 s and 0.3 s"),
+        ("0.0 1\n0.1 2\nlost\n0.2 1\n", "line 3 is no number: the record has a gap"),
+        ("1.0 0.0\n2.0 0.1\n1.5 0.2\n", "the two columns are swapped"),
+        ("0.0 1\n0.2 2\n0.1 1\n", "time does not rise: after 0.2 s comes 0.1 s"),
+        ("1\n2\n3\n", "the time between samples is not known"),
+        ("nothing\n", "holds no numbers"),
+        ("1 2 3\n4 5 6\n", "one or two columns are read"),
+    ],
+)
+def test_what_cannot_be_used_is_said(tmp_path, text, words):
+    path = tmp_path / "record.txt"
+    path.write_text(text)
+    with pytest.raises(concio.InputError, match=words):
+        concio.read_record(path)
+
+
+def test_a_cut_at2_file(tmp_path):
+    path = tmp_path / "record.at2"
+    path.write_text(AT2.replace("NPTS=    7", "NPTS=    9"))
+    with pytest.raises(concio.InputError, match="promises 9 samples, the file holds 7"):
+        concio.read_record(path)
+
+
+def test_a_peak_above_five_g_gets_an_attention():
+    record = concio.Record(np.array([0.0, 60.0, 0.0]), 0.01, name="el_centro")
+    said = attention(record)
+    assert said is not None
+    assert "'el_centro' has a peak of 6.12 g" in said
+    assert attention(concio.Record(np.array([0.0, 6.0, 0.0]), 0.01)) is None
+
+
+@pytest.mark.parametrize("shape", ["rectangular", "half sine", "sine", "ricker"])
+def test_pulses_integrate_exactly(shape):
+    """Velocity and displacement against quadrature of the acceleration."""
+    pulse = concio.Pulse(shape, 3.0, 0.4, 1.5 if shape == "sine" else 1.0)
+    t = np.linspace(0.0, pulse.duration, 20001)
+    a = pulse.acceleration(t)
+    v = np.concatenate([[0.0], np.cumsum(0.5 * (a[1:] + a[:-1]) * np.diff(t))])
+    d = np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(t))])
+    assert pulse.velocity(t) == pytest.approx(v, abs=2e-4)
+    assert pulse.displacement(t) == pytest.approx(d, abs=2e-4)
+    assert np.abs(a).max() == pytest.approx(3.0, rel=1e-3)
+
+
+def test_a_record_given_as_velocity_or_displacement_is_the_same_motion():
+    t = np.linspace(0.0, 2.0, 401)
+    a, v, d = -np.sin(3 * t) * 9, np.cos(3 * t) * 3 - 3, np.sin(3 * t) - 3 * t
+    by_a, by_v, by_d = (
+        concio.Record(values, 0.005, quantity)
+        for values, quantity in ((a, "acceleration"), (v, "velocity"), (d, "displacement"))
+    )
+    at = np.linspace(0.1, 1.9, 50)
+    for record in (by_a, by_v, by_d):
+        assert record.velocity(at) - record.velocity(np.array([0.1])) == pytest.approx(
+            by_a.velocity(at) - by_a.velocity(np.array([0.1])), abs=1e-3
+        )
