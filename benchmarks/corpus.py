@@ -1,10 +1,11 @@
 """A corpus of random problems: every verdict must be a proof, and almost every problem must get one.
 
-    python benchmarks/corpus.py [--count 500] [--seed 0] [--first 0] [--list]
+    python benchmarks/corpus.py [--count 504] [--seed 0] [--first 0] [--list]
 
 Walls and panels of random bond, shape, friction, load share (0 to 1.3 times the associated limit), gaps, materials,
-supports. For each: the verdict of ``auto``, its proof recomputed here from the original arrays, and the reason where
-there is none. Prints a table by family and the undecided ones with what was tried.
+supports; rigid blocks are lent the compliance that ``concio.solve`` lends them. For each: the verdict of ``auto``, its
+proof recomputed here from the original arrays, and the reason where there is none. Prints a table by family, one by
+strategy (how often it was tried and decided, its processor time) and the undecided problems with what was tried.
 """
 
 from __future__ import annotations
@@ -17,10 +18,11 @@ from dataclasses import replace
 import numpy as np
 
 import concio
-import concio.solvers.auto.chain
+from concio.analysis.lent_compliance import lend
 from concio.contact.assembly import Assembly
 from concio.problem.certificate import certify
 from concio.problem.solution import Solution, Status
+from concio.solvers.auto.chain import STRATEGIES
 from concio.solvers.methods import find
 from concio.solvers.motion.departure import verify_departure
 from concio.solvers.statics.limit import associated_limit
@@ -119,25 +121,31 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=504)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--pivoting", action="store_true", help="let auto try Lemke last")
     parser.add_argument("--list", action="store_true", help="print every problem")
     arguments = parser.parse_args()
     table: dict[str, Counter[str]] = {family: Counter() for family in FAMILIES}
     left, seconds, wrong = [], 0.0, 0
+    tried: Counter[str] = Counter()
+    decided_by: dict[str, Counter[str]] = {}
+    spent_by: Counter[str] = Counter()
     for k in range(arguments.first, arguments.first + arguments.count):
         family = FAMILIES[k % len(FAMILIES)]
         assembly, f, note = draw(np.random.default_rng([arguments.seed, k]), family)
-        problem = assembly.problem().with_loads(f)
-        begin = time.perf_counter()
-        solution = find("auto")(problem, pivoting=arguments.pivoting)
-        spent = time.perf_counter() - begin
+        problem = lend(assembly).problem().with_loads(f)
+        begin = time.process_time()
+        solution = find("auto")(problem)
+        spent = time.process_time() - begin
         seconds += spent
         verdict = solution.status.name
+        for name, cost in solution.info.get("cost", ()):
+            tried[name] += 1
+            spent_by[name] += cost
+        decided_by.setdefault(str(solution.info.get("strategy", "at rest")), Counter())[verdict] += 1
         if verdict in DECIDED and not proven(problem, solution):
             verdict, wrong = "WRONG", wrong + 1
         table[family][verdict] += 1
         if arguments.list or verdict not in DECIDED:
-            line = f"#{k} {note} pairs {problem.pairs} {verdict} {spent:.2f} s"
+            line = f"#{k} {note} pairs {problem.pairs} {verdict} {spent:.2f} s by {solution.info.get('strategy')}"
             print(line, flush=True)
             if verdict not in DECIDED:
                 left.append((line, solution.trace))
@@ -151,6 +159,11 @@ def main() -> None:
     decided = sum(total[n] for n in DECIDED)
     print(f"{'all':18s}" + "".join(f"{total[n]:18d}" for n in names))
     print(f"\n{decided} of {count} decided ({100 * decided / count:.2f} %), {wrong} wrong, {seconds:.0f} s in all")
+    print(f"\n{'strategy':30s}{'tried':>8s}{'decided':>9s}{'CPU s':>9s}   verdicts")
+    for name in dict.fromkeys((*(s.name for s in STRATEGIES), *decided_by)):
+        verdicts = decided_by.get(name, Counter())
+        words = ", ".join(f"{n} {v.lower()}" for v, n in verdicts.most_common())
+        print(f"{name:30s}{tried[name]:8d}{sum(verdicts.values()):9d}{spent_by[name]:9.1f}   {words}")
     for line, trace in left:
         print(line + "\n    " + "\n    ".join(trace))
 

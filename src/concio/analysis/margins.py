@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from concio.analysis.lent_compliance import lent_assembly
 from concio.analysis.limit import dead_and_live, factored_problem
@@ -129,15 +128,14 @@ def friction_by_solving(
 
 def _bisect(problem: Callable[[float], ContactProblem], safe: float, limit: float, width: float) -> Margin:
     """Bisect between ``safe``, which ought to hold, and ``limit``, beyond which nothing does."""
-    auto, start = find("auto"), problem(safe)
-    options: dict[str, Any] = {"pivoting": False} if start.dim == 2 else {}
-    first = auto(start, **options)
+    auto = find("auto")
+    first = auto(problem(safe))
     if not first.solved:
         return Margin(float("nan"), safe, first.status, limit, 1)
     holds, fails, outcome, count = safe, limit, None, 1
     while abs(fails - holds) > width:
         middle = 0.5 * (holds + fails)
-        found = auto(problem(middle), **options)
+        found = auto(problem(middle))
         count += 1
         if found.solved:
             holds = middle

@@ -86,10 +86,11 @@ class UpdatedBlocks:
         self._delta = sl.block_diag(*delta) if self.pairs.size else np.zeros((0, 0))
         if self._delta.any():
             system = np.eye(len(self.W)) + self._delta @ self.W
-            try:
-                self._inverse = sl.lu_factor(system, check_finite=False)
-            except (sl.LinAlgError, ValueError) as error:
-                raise SingularMatrixError(str(error)) from error
+            lu, pivots, zero = sl.lapack.dgetrf(system)
+            if zero or not np.isfinite(lu).all():
+                msg = "the update makes the matrix singular"
+                raise SingularMatrixError(msg)
+            self._inverse = lu, pivots
 
     def solve(self, b: Array) -> Array:
         """Return the solution for the blocks as they are now; ``b`` is (N,)."""

@@ -18,10 +18,10 @@ from concio.solvers.algebra.scaled import scale
 from concio.solvers.interior.engine import Cancelled, Run
 from concio.solvers.pivoting import sparse_lemke
 
-FACTORS = (0.98, 1.02, 0.95, 1.05, 0.9, 1.1)
+FACTORS = (0.98, 1.02, 0.95, 1.05)
 """Multiples of the friction coefficients that are tried, in this order."""
 
-STARTS = (10.0, 100.0, 3.0)
+STARTS = (10.0, 100.0)
 """Sizes of the starting points tried for each neighbour."""
 
 HALVINGS = 6

@@ -7,8 +7,9 @@
 4. release: the structure is let go and followed in slow motion, from rest and from the state in which associated flow
    jams; it comes to rest, which is an equilibrium, or settles into a motion without end, which is the answer.
 
-What was tried is the solution's trace. Words are those of the plane (:mod:`concio.solvers.auto.chain`). Pivoting and
-the exhaustive search, which prove that no Coulomb state exists, know two ways of slipping only and have no place here.
+What was tried is the solution's trace. Words are those of the plane (:mod:`concio.solvers.auto.strategies`). Pivoting
+and the exhaustive search, which prove that no Coulomb state exists, know two ways of slipping only and have no place
+here.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Departure, ProgressCallback, Solution, Status
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.algebra.sparse_factor import Engine
-from concio.solvers.auto.chain import moves_away, statics
+from concio.solvers.auto.strategies import moves_away, statics
 from concio.solvers.interior.cone_run import STARTS, ConeRun
 from concio.solvers.interior.engine import Cancelled, at_rest
 from concio.solvers.motion.cone_release import associated_state, release

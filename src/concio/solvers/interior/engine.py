@@ -101,7 +101,6 @@ class Run:
         self.trace: list[str] = []
         self.history: list[float] = []
         self.best: Finished | None = None
-        self.crossed: Finished | None = None
 
     @cached_property
     def engine(self) -> InteriorPoint:

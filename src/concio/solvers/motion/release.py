@@ -8,8 +8,7 @@ in proportion to the masses M, by implicit steps
 each of them a contact problem of its own, solved by interior point (or pivoting) and exact finish. K + e M holds every
 body, so that a step has a solution whatever the friction, and small steps (large e) have it close by. Steps grow while
 they succeed. What stands still is an equilibrium, made exact with the states it has; what settles into a steady
-motion is a :class:`concio.problem.solution.Departure`. Two beginnings are tried: from rest undeformed, and from the
-deformed state that associated flow would jam in, as if formwork were lowered.
+motion is a :class:`concio.problem.solution.Departure`.
 """
 
 from __future__ import annotations
@@ -112,14 +111,6 @@ def _cross(run: Run, s: Scaled, now: Finished) -> Finished | None:
     found = pivot_from(s, read_states(s, now.u, now.t), now, limit=_most(s), progress=run.progress)
     run.iterations += found[1]
     return found[0]
-
-
-def associated_state(run: Run) -> Array:
-    """Return the displacements (N,), scaled, at which associated flow holds the structure, or nearly so."""
-    z = run.engine.start(STARTS[0])
-    z, outcome = run.engine.run(z, theta=1.0, target=1e-6, watch=run.watch("associated flow"))
-    run.iterations += outcome.iterations
-    return z.u
 
 
 def _steady(s: Scaled, a: Array, now: Finished) -> Departure | None:

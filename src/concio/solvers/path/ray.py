@@ -61,7 +61,7 @@ def solve_from_rest(problem: ContactProblem, progress: ProgressCallback | None) 
     if solution.solved or problem.pairs > SMALL or solution.status is Status.CANCELLED:
         return solution
     if problem.dim == 2:
-        return auto.solve(problem, pivoting=False, progress=progress)
+        return auto.solve(problem, progress=progress)
     return space.solve(problem, progress=progress)
 
 

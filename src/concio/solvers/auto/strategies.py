@@ -1,0 +1,106 @@
+"""What ``auto`` knows to do: a function for each strategy, which returns an answer or None where it decides nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.problem.contact_problem import Array
+from concio.problem.solution import Departure, Mechanism, Solution, Status, failed, judge
+from concio.solvers.auto.friction_neighbours import from_neighbours
+from concio.solvers.interior.engine import STARTS, Run
+from concio.solvers.motion.release import release
+from concio.solvers.statics.existence import statically_admissible
+
+
+@dataclass(frozen=True)
+class Strategy:
+    """One entry of the table of :mod:`concio.solvers.auto.chain`.
+
+    Parameters
+    ----------
+    name : str
+        What ``info["strategy"]`` says of an answer of its.
+    decide : callable
+        Takes the run, returns an answer or None; raises :class:`.Cancelled` where the callback asks to stop.
+    """
+
+    name: str
+    decide: Callable[[Run], Solution | None]
+
+
+def usual_starts(run: Run) -> Solution | None:
+    """Interior point from the usual start and from one ten times further out."""
+    for start in STARTS[:2]:
+        found = run.plain(start)
+        if found is not None:
+            return run.solution(found)
+    return None
+
+
+def neighbours(run: Run) -> Solution | None:
+    """Solve with a little more or less friction and carry the state over."""
+    answer = from_neighbours(run, run.progress)
+    return None if answer is None else merged(run, answer, "interior-point + pivoting")
+
+
+def statics(run: Run) -> Solution | None:
+    """Decide by a linear programme: collapse with its mechanism, or equilibrium without motion; None for neither."""
+    problem = run.scaled.problem
+    state = statically_admissible(problem)
+    if state.exists:
+        run.trace.append("statically admissible forces exist")
+        rest = judge(
+            problem, np.zeros(problem.unknowns), state.normal_force, state.friction_force, method="linear-programme"
+        )
+        return merged(run, rest, "linear-programme") if rest.solved else None
+    mechanism = state.mechanism
+    if mechanism is None:
+        run.trace.append("no statically admissible forces found, but no mechanism could be verified either")
+        return None
+    run.trace.append("no statically admissible forces: mechanism found and rechecked")
+    return merged(run, failed(problem, Status.NO_EQUILIBRIUM, method="", mechanism=mechanism), "mechanism")
+
+
+def let_go_at_rest(run: Run) -> Solution | None:
+    """Let the structure go, undeformed: it comes to rest, or a motion without end is the answer."""
+    return released(run, None)
+
+
+def released(run: Run, u: Array | None) -> Solution | None:
+    """Follow the slow motion from displacements (N,), scaled; return where it ends, None where no end is found."""
+    ended = release(run, u)
+    if isinstance(ended, Departure):
+        return moves_away(run, ended)
+    return None if ended is None else run.solution(ended)
+
+
+def moves_away(run: Run, motion: Departure) -> Solution:
+    """Return the verdict of a certified motion."""
+    problem = run.scaled.problem
+    top = float(np.abs(motion.acceleration).max())
+    direction = motion.acceleration / top
+    mechanism = Mechanism(direction, float(problem.f @ direction), motion.violation)
+    answer = failed(problem, Status.COLLAPSES, method="", mechanism=mechanism, departure=motion)
+    return merged(run, answer, "release")
+
+
+def merged(run: Run, answer: Solution, method: str) -> Solution:
+    """Return an answer of another method with this run's work and trace."""
+    return Solution(
+        answer.status,
+        answer.displacement,
+        answer.normal_force,
+        answer.friction_force,
+        answer.kinematics,
+        answer.certificate,
+        method,
+        iterations=run.iterations + answer.iterations,
+        factorisations=run.scaled.factor.count + answer.factorisations,
+        mechanism=answer.mechanism,
+        departure=answer.departure,
+        trace=tuple(run.trace),
+        info={"history": tuple(run.history), **answer.info},
+    )
