@@ -4,7 +4,7 @@ Two questions, each answered twice. *How much more load?* *How much less frictio
 associated friction: beyond that load, or below that friction, no equilibrium exists, and a mechanism proves it
 (:mod:`concio.solvers.statics.limit`). What Coulomb friction carries may be less. So the same question is put to the
 solver of a
-load step (without its pivoting and exhaustive stages), bisecting between what was found to hold and the proven limit:
+load step, bisecting between what was found to hold and the proven limit:
 at one end a certified equilibrium, at the other a load step for which none was found. The set of loads that Coulomb
 friction carries need not be an interval, and a solver that finds nothing proves nothing: the pair of numbers is what
 was found, no more.
