@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from concio.analysis.settlement import settle
     from concio.analysis.step import solve
     from concio.analysis.thrust import thrust_line
+    from concio.analysis.thrust_surface import thrust_surface
     from concio.contact.assembly import Assembly, assemble
     from concio.display import Units
     from concio.errors import ConcioError, GeometryError, InputError, MethodError, NoEquilibriumError, SolverError
@@ -90,6 +91,7 @@ _HOMES = {
     "concio.analysis.settlement": ("settle",),
     "concio.analysis.step": ("solve",),
     "concio.analysis.thrust": ("thrust_line",),
+    "concio.analysis.thrust_surface": ("thrust_surface",),
     "concio.contact.assembly": ("Assembly", "assemble"),
     "concio.display": ("Units",),
     "concio.errors": (
@@ -204,6 +206,7 @@ __all__ = [
     "strength",
     "study",
     "thrust_line",
+    "thrust_surface",
     "tower",
     "variable",
     "wall",
