@@ -121,7 +121,7 @@ def by_clarabel(name: str, problem: ContactProblem, live: np.ndarray) -> None:
     x, z = np.array(found.x), np.array(found.z)
     t_n, t_t = x[:m], x[m:-1].reshape(m, 2)
     left = static_residual(problem, problem.f + x[-1] * live, t_n, t_t)
-    upper, mechanism = kinematic_bound(problem, live, float(x[-1]), problem.R @ -z[:r])
+    upper, mechanism = kinematic_bound(problem, live, float(x[-1]), problem.R @ z[:r])
     print(
         f"{name:26s}{len(problem.bodies) - 1:7d}{m:9d}  clarabel  {x[-1]:.9f}  forces {left:.0e}, mechanism"
         f" {mechanism.violation:.0e}, gap {abs(upper - x[-1]):.0e}, {seconds:.2f} s, '{found.status}'",
