@@ -270,6 +270,12 @@ def test_a_wall_that_does_not_stand_is_told_so() -> None:
         concio.assess(leaning, site=site(), direction="left")
 
 
+def test_an_assessment_prints_in_a_few_lines() -> None:
+    shown = repr(worked(levels=["SLV"]))
+    assert "zeta_E 1.004" in shown
+    assert len(shown) < 300
+
+
 def test_a_very_strong_site_asks_for_attention() -> None:
     found = worked(site=site(hazard={"SLV": {"a_g": 0.62}}))
     assert "check that g was meant" in found.notes[0]

@@ -53,7 +53,7 @@ class LevelOutcome:
         return self.zeta >= 1.0
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class LocalMechanism:
     """One mechanism, examined.
 
@@ -174,6 +174,10 @@ class LocalMechanism:
         """The least zeta_E of all limit states."""
         return min((o.zeta for o in self.outcomes), default=math.inf)
 
+    def __repr__(self) -> str:
+        zeta = f"zeta_E {self.zeta:.4g}" if math.isfinite(self.zeta) else "no check"
+        return f"<LocalMechanism '{self.name}' to the {self.direction}: alpha_0 {self.multiplier:.6g}, {zeta}>"
+
     def summary(self) -> dict[str, Any]:
         """Return its numbers."""
         return {
@@ -234,7 +238,7 @@ class NoMechanism:
         return f"no mechanism below {LARGEST:g} g: the least multiplier is {self.multiplier:.4g}"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Assessment:
     """What :func:`concio.assess` found.
 
@@ -310,6 +314,11 @@ class Assessment:
         from concio.report.assessment_page import write_assessment_report
 
         return write_assessment_report(self, Path(path), language=language, **options)
+
+    def __repr__(self) -> str:
+        word = "every limit state is met" if self.holds else "not every limit state is met, or could be checked"
+        lines = [f"<Assessment: {len(self.mechanisms)} mechanisms, {word}"]
+        return "\n  ".join([*lines, *(repr(m) for m in self.mechanisms)]) + ">"
 
     def summary(self) -> dict[str, Any]:
         """Return the numbers of ``--json``."""
