@@ -140,7 +140,7 @@ def test_stages_come_with_a_file():
         (({"strain zz": 1e-3},), "neither a strain nor a stress"),
         (({"strain xx": 1e-3, "stress xx": 1.0},), "both strain xx and stress xx"),
         (({"strain xx": float("nan")},), "not finite"),
-        ((3.0,), "no table"),
+        ((3.0,), "mapping"),
         ((concio.Stage("s", {"strain xx": 1e-3}, concio.ControlPoint("c01-b01", (0, 0)), 0.1),), "control point"),
     ],
 )
