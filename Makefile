@@ -52,6 +52,19 @@ mutants: $(VENV)/.installed-dev
 	OMP_NUM_THREADS=1 $(BIN)/python tests/mutants.py --named
 	-OMP_NUM_THREADS=1 $(BIN)/python tests/mutants.py --count $(or $(COUNT),60)
 
+# The tests with the lowest versions that pyproject.toml allows, and with the newest Python there is (NEWEST=python3.14).
+NEWEST ?= $(shell for v in 15 14 13 12; do command -v python3.$$v && break; done)
+.PHONY: lowest newest
+lowest:
+	$(PYTHON) -m venv $(VENV)-lowest
+	$(PYTHON) tests/lowest.py > $(VENV)-lowest/requirements.txt
+	$(VENV)-lowest/bin/python -m pip install --quiet --requirement $(VENV)-lowest/requirements.txt --editable .
+	OMP_NUM_THREADS=1 $(VENV)-lowest/bin/python -m pytest -n 2 --dist loadfile
+
+newest:
+	@test -n "$(NEWEST)" || { echo "no other Python was found: make newest NEWEST=/path/to/python"; exit 1; }
+	$(MAKE) test PYTHON=$(NEWEST) VENV=$(VENV)-newest
+
 docs: $(VENV)/.installed-docs
 	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html
 
@@ -60,6 +73,7 @@ docs: $(VENV)/.installed-docs
 book: $(VENV)/.installed-docs
 	OMP_NUM_THREADS=1 $(BIN)/python docs/make_validation.py
 	OMP_NUM_THREADS=1 $(BIN)/python docs/make_gallery.py
+	OMP_NUM_THREADS=1 $(BIN)/python docs/make_pictures.py
 
 clean:
-	rm -rf $(VENV) build dist demo docs/_build .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(VENV)-lowest $(VENV)-newest build dist demo docs/_build .pytest_cache .mypy_cache .ruff_cache .hypothesis

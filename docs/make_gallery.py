@@ -5,9 +5,11 @@ python docs/make_gallery.py
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import importlib.util
 import io
+import textwrap
 from pathlib import Path
 
 import matplotlib as mpl
@@ -26,6 +28,33 @@ Written by `docs/make_gallery.py`. Each example is a script in `examples/`, and 
 """
 
 
+def as_typed(path: Path) -> str:
+    """Return the code of an example as one would type it: the body of its ``main``, without what serves the tests.
+
+    What only tests need is its last statement, the numbers returned; figures are drawn, not saved into a name given.
+    """
+    source = path.read_text(encoding="utf-8")
+    tree = ast.parse(source)
+    main = next(node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == "main")
+    lines = source.splitlines()
+    heads = [node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom | ast.Assign | ast.FunctionDef)]
+    kept = [
+        ast.get_source_segment(source, node) or "" for node in heads
+        if node is not main and "__future__" not in ast.dump(node) and "pathlib" not in ast.dump(node)
+    ]  # fmt: skip
+    body: list[str] = []
+    for node in main.body:
+        if isinstance(node, ast.Return) or (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)):
+            continue
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "figure":
+            for inner in node.body:
+                body += textwrap.dedent("\n".join(lines[inner.lineno - 1 : inner.end_lineno])).splitlines()
+            continue
+        body += textwrap.dedent("\n".join(lines[node.lineno - 1 : node.end_lineno])).splitlines()
+    text = "\n".join([*kept, "", *body])
+    return text.replace("savefig(figure", f'savefig("{path.stem[3:]}.png"')
+
+
 def page(path: Path) -> str:
     """Run one example; return its section."""
     spec = importlib.util.spec_from_file_location(path.stem, path)
@@ -40,7 +69,7 @@ def page(path: Path) -> str:
     title, _, text = (module.__doc__ or "").strip().partition("\n\n")
     return (
         f"## {title.rstrip('.')}\n\n{text}\n\n![{title}](gallery/{path.stem}.png)\n\n"
-        f"```{{literalinclude}} ../examples/{path.name}\n:language: python\n:pyobject: main\n```\n\n"
+        f"```py\n{as_typed(path)}\n```\n\n"
         f"It prints:\n\n```text\n{printed.getvalue().strip()}\n```\n"
     )
 

@@ -92,6 +92,8 @@ class Result:
         Normal compliance with which hard joints between rigid bodies were solved, a pair of mean area [m/kN]; 0 where
         there are none. The answer of a solved step is its limit for stiff joints; where there is none, ``assembly``
         holds the compliance.
+    engine : str
+        What factorised the linear systems ("superlu", "pardiso"), where the method leaves the choice; else empty.
     """
 
     assembly: Assembly
@@ -99,6 +101,7 @@ class Result:
     solution: Solution
     seconds: Mapping[str, float]
     lent_compliance: float = 0.0
+    engine: str = ""
 
     def __repr__(self) -> str:
         return "\n".join(result_lines(self))
@@ -127,6 +130,11 @@ class Result:
     def method(self) -> str:
         """Name of the method that produced the answer."""
         return self.solution.method
+
+    @property
+    def solved_by(self) -> str:
+        """The method, and the engine of its linear systems where that is not the usual one."""
+        return f"{self.method} with {self.engine}" if self.engine not in ("", "superlu") else self.method
 
     @property
     def mechanism(self) -> Mechanism | None:
@@ -338,6 +346,7 @@ class Result:
             "status": self.status.name.lower(),
             "sentence": self.sentence,
             "method": self.method,
+            "engine": self.engine,
             "title": self.model.title,
             "bodies": len(self.model.free_bodies),
             "contacts": len(self.assembly.pairs),

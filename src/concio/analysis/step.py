@@ -43,7 +43,8 @@ def solve(
     progress : callable, optional
         Called with :class:`concio.problem.solution.Progress` as the solver works; true stops it.
     **options
-        Options of the method, see the ``solve`` of its module; others are refused.
+        Options of the method, see the ``solve`` of its module; others are refused. Where the method has the option
+        ``engine``, that of the model is taken unless another is given.
 
     Returns
     -------
@@ -62,6 +63,8 @@ def solve(
     check_options(method, options, function="solve()", others=("method", *options_of(solve)))
     begin = time.perf_counter()
     assembly = as_assembly(model, jointless=True, periodic=bool(factors))
+    if "engine" in find(method).options:
+        options.setdefault("engine", assembly.model.engine)
     lent = lend(assembly)
     problem = lent.problem(factors)
     if not problem.pairs:  # K u = f: there are no states to find, whatever the method
@@ -74,7 +77,8 @@ def solve(
     end = time.perf_counter()
     seconds = {"total": end - begin, "assemble": assembled - begin, "solve": end - assembled}
     judged = (lent, solution) if stiff is None else (assembly, stiff)
-    result = Result(judged[0], dict(factors or {}), judged[1], seconds, lent.lent_compliance)
+    engine = str(options.get("engine", ""))
+    result = Result(judged[0], dict(factors or {}), judged[1], seconds, lent.lent_compliance, engine)
     if solution.solved or on_failure == "return":
         return result
     detail = "; ".join(solution.trace)

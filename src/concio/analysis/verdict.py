@@ -82,7 +82,7 @@ def result_lines(result: Result) -> list[str]:
     lines = [
         f"Result: {result.status.name}. {result.status.value}",
         f"  {model.title or 'model without a title'}: {size}",
-        f"  by {result.method}, worst error of the certificate {result.certificate.worst:.1e}",
+        f"  by {result.solved_by}, worst error of the certificate {result.certificate.worst:.1e}",
         f"  load factors {factors}; loads {units.force_vector(result.total_load)}",
     ]
     if result.solved:

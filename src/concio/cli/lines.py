@@ -29,7 +29,8 @@ def result_lines(result: Result) -> list[str]:
         f"{counted(len(assembly.detection.interfaces), 'joint')}, "
         f"{counted(len(assembly.pairs), 'contact pair')}, {counted(assembly.disc.unknowns, 'displacement')}",
         result.sentence,
-        f"  {s.method}: {s.iterations} iterations, {seconds['solve']:.2f} s; assembled in {seconds['assemble']:.2f} s",
+        f"  {result.solved_by}: {s.iterations} iterations, {seconds['solve']:.2f} s; "
+        f"assembled in {seconds['assemble']:.2f} s",
     ]
     certificate = result.certificate.as_dict()
     if result.solved:

@@ -32,6 +32,10 @@ def run(
     file: File,
     out: Out = None,
     method: Annotated[str, typer.Option("--method", "-m", help="Solver by name.")] = "auto",
+    engine: Annotated[
+        str | None,
+        typer.Option("--engine", help="Engine of linear systems: superlu or pardiso; by default that of the file."),
+    ] = None,
     factor: Factors = None,
     json: Json = False,
     quiet: Quiet = False,
@@ -48,8 +52,11 @@ def run(
     if out is not None:
         check_directory(out)
     model = in_units(concio.load(file), units)
+    chosen = {} if engine is None else {"engine": engine}
     with progress_bar(shown=not (json or quiet)) as progress:
-        result = concio.solve(model, method=method, factors=factors_of(factor), on_failure="return", progress=progress)
+        result = concio.solve(
+            model, method=method, factors=factors_of(factor), on_failure="return", progress=progress, **chosen
+        )
     written: list[Path] = []
     if out is not None:
         from concio.io.result_dir import write_result

@@ -197,6 +197,10 @@ def _words(body: Body | Polyhedron) -> tuple[str, str, str, str]:
     return body.role, body.layer, "" if body.kind == "fixed" else body.material, body.name
 
 
+ENGINES = ("superlu", "pardiso")
+"""What factorises linear systems."""
+
+
 @strict_class
 @short_repr
 @dataclass(frozen=True)
@@ -362,6 +366,8 @@ class Model:
         with stiffness, 6 x 6 for joints that crush.
     report : Units
         Units in which texts, figures and reports tell what was found; arrays and files are in kN and m.
+    engine : {"superlu", "pardiso"}
+        What factorises linear systems, in the methods that leave the choice; "pardiso" comes with ``concio[fast]``.
     """
 
     bodies: tuple[Body | Polyhedron, ...]
@@ -383,6 +389,7 @@ class Model:
     periods: Periods | None = None
     contact_points: str | int = "auto"
     report: Units = DEFAULT
+    engine: Literal["superlu", "pardiso"] = "superlu"
 
     def __repr__(self) -> str:
         return "\n".join(model_lines(self))
@@ -398,6 +405,9 @@ class Model:
             raise InputError(msg, hint="describe at least one block")
         for name, value in resolved(self).items():
             object.__setattr__(self, name, value)
+        if self.engine not in ENGINES:
+            msg = f"unknown factorisation engine '{self.engine}'"
+            raise InputError(msg, hint=closest(str(self.engine), ENGINES))
         points = self.contact_points
         if points not in ("auto", "corners") and not (isinstance(points, int) and 2 <= points <= 20):
             msg = f"contact_points = {points!r} is not 'auto', 'corners' or a whole number from 2 to 20"

@@ -31,7 +31,7 @@ LARGEST = 2000
 def notebook_html(result: Result) -> str:
     """Return the result as a piece of HTML."""
     v = verdict(result)
-    rows = [("model", result.model.title or "untitled"), ("method", result.method)]
+    rows = [("model", result.model.title or "untitled"), ("method", result.solved_by)]
     rows.append(("size", f"{len(result.model.free_bodies)} bodies, {len(result.assembly.pairs)} contact pairs"))
     if result.solved:
         contacts, units = result.contacts, result.model.report

@@ -161,7 +161,7 @@ def _model(result: Result) -> str:
         rows.append(("largest settlement", units.text("motion", result.max_settlement)))
         rows.append(("contact pairs", contacts.counted))
     seconds = result.seconds.get("total", float("nan"))
-    rows.append(("solved by", f"{result.method}, {result.solution.iterations} iterations, {seconds:.2g} s"))
+    rows.append(("solved by", f"{result.solved_by}, {result.solution.iterations} iterations, {seconds:.2g} s"))
     cells = "".join(f"<tr><th>{escape(k)}</th><td>{escape(v)}</td></tr>" for k, v in rows)
     return f'<div class=scroll><table class="facts"><tbody>{cells}</tbody></table></div>'
 

@@ -122,6 +122,8 @@ def _parts(
         given["periods"] = data.periods
     if data.report is not None:
         given["report"] = Units(**data.report.model_dump())
+    if data.solver is not None:
+        given["engine"] = data.solver.engine
     if data.title or not start:
         given["title"] = data.title
     if data.record or not start:

@@ -311,6 +311,12 @@ class AnalysisTable(Table):
     contact_points: StrictInt | Literal["auto", "corners"] = "auto"
 
 
+class SolverTable(Table):
+    """What solves the linear systems; "pardiso" comes with ``pip install 'concio[fast]'``."""
+
+    engine: Literal["superlu", "pardiso"] = "superlu"
+
+
 class ExtrusionTable(Table):
     """Sweeps the plane structure of the file into space; see :func:`concio.extrude`."""
 
@@ -388,4 +394,5 @@ class FileTable(Table):
     ties: list[TieTable] = Field(default_factory=list)
     stages: list[StageTable] = Field(default_factory=list)
     analysis: AnalysisTable = Field(default_factory=AnalysisTable)
+    solver: SolverTable | None = None
     record: dict[str, Any] = Field(default_factory=dict, description="how the model was made; not read by concio")

@@ -44,6 +44,8 @@ def dumps(model: Model, *, blocks_file: str | None = None) -> str:
     lines += ["", "[units]", 'force = "kN"', 'length = "m"']
     if model.report != Units():
         lines += _table("report", asdict(model.report))
+    if model.engine != "superlu":
+        lines += _table("solver", {"engine": model.engine})
     own = _ANALYSIS if model.dim == 2 else _IN_SPACE
     lines += _table("analysis", {key: getattr(model, key) for key in own if getattr(model, key) is not None})
     for name, material in model.materials.items():
