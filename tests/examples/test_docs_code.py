@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 from concio.cli.main import app
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-SKIPPED = {"decisions", "validation", "_build"}
+SKIPPED = {"decisions", "research", "validation", "_build"}
 """Records and generated pages, which hold no code of their own."""
 
 FENCE = re.compile(r"^```(python|console)\n(.*?)^```$", re.DOTALL | re.MULTILINE)

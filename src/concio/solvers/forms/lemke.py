@@ -8,7 +8,8 @@ split
 form
 first, which has fewer unknowns, then in the copositive 4m form (:mod:`concio.solvers.forms.forms`), each under a cover
 that lets
-friction do no work along a ray: the cover matters more than the form (``docs/decisions/0011``). The states of the pairs
+friction do no work along a ray: the cover matters more than the form
+(``docs/research/covers-under-which-friction-does-no-work.md``). The states of the pairs
 are read off and solved for once more on the original matrices, so that the answer does not carry the errors of the
 elimination.
 

@@ -4,7 +4,8 @@ r"""The basis of Lemke's method: columns of ``[I, -M, -d]``, and two ways to kee
 * :class:`ProductForm`: a factorisation (SuperLU, or LAPACK where more than a fifth of the entries are not zero), and
   one eta vector a pivot.
 
-Both are refactorised every ``refresh`` pivots; ``docs/decisions/0010`` says what was measured.
+Both are refactorised every ``refresh`` pivots; what was measured is in
+``docs/research/the-basis-is-kept-in-product-form.md``.
 """
 
 from __future__ import annotations
