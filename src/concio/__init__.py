@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from concio.display import Units
     from concio.errors import ConcioError, GeometryError, InputError, MethodError, NoEquilibriumError, SolverError
     from concio.io.motion_file import load_motion, save_motion
+    from concio.io.solids_out import write_solids
     from concio.model.compose import merge, place
     from concio.model.drawing.drawing import model_from_dxf
     from concio.model.file.reading import load, loads
@@ -60,6 +61,7 @@ if TYPE_CHECKING:
     from concio.model.motion.records import read_record
     from concio.model.motion.signals import Pulse, Record
     from concio.model.polyhedron import Polyhedron
+    from concio.model.solids.importing import model_from_solids
     from concio.problem.solution import Status
     from concio.studies.study import Stop, study
     from concio.studies.study_result import StudyResult, load_study
@@ -118,6 +120,8 @@ _HOMES = {
     "concio.model.generate.extrusion": ("extrude",),
     "concio.model.compose": ("merge", "place"),
     "concio.model.drawing.drawing": ("model_from_dxf",),
+    "concio.model.solids.importing": ("model_from_solids",),
+    "concio.io.solids_out": ("write_solids",),
     "concio.model.file.reading": ("load", "loads"),
     "concio.model.file.writing": ("dumps", "save"),
     "concio.model.materials": ("Elastic", "JointLaw", "Rigid"),
@@ -191,6 +195,7 @@ __all__ = [
     "loads",
     "merge",
     "model_from_dxf",
+    "model_from_solids",
     "place",
     "push",
     "read_record",
@@ -212,6 +217,7 @@ __all__ = [
     "wall",
     "wall_of_courses",
     "walls",
+    "write_solids",
 ]
 
 

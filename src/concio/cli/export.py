@@ -16,12 +16,19 @@ if TYPE_CHECKING:
     from concio.model.model import Array
 
 
+NAMES = {"vtu": "vtu", "csv": "csv", "toml": "model.toml"}
+"""What is written where no name is given; everything else is a displaced shape."""
+
+
 @guarded
 def export(
     directory: Annotated[Path, typer.Argument(help="Directory that 'concio run --out' wrote.", show_default=False)],
-    to: Annotated[Literal["vtu", "csv", "dxf", "toml"], typer.Option("--to", "-t", help="Format.")],
+    to: Annotated[
+        Literal["vtu", "csv", "dxf", "toml", "obj", "stl", "glb", "json", "3dm"],
+        typer.Option("--to", "-t", help="Format."),
+    ],
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="Directory (vtu, csv) or file (dxf, toml) to write.")
+        Path | None, typer.Option("--out", "-o", help="Directory (vtu, csv) or file (all others) to write.")
     ] = None,
     scale: Annotated[
         float, typer.Option("--scale", help="Scale of the displacements of a drawing; 0 draws the model as it was.")
@@ -33,12 +40,14 @@ def export(
 ) -> int:
     """Write a result for ParaView (vtu), spreadsheets (csv), drawing programs (dxf), or its model (toml).
 
+    In space also obj, stl, glb (glTF), json (COMPAS) and 3dm: the displaced blocks.
+
     Example: concio export result --to vtu
     """
     from concio.io.owned_dir import CONTENTS, add_own
     from concio.io.result_file import load_result
 
-    target = out if out is not None else directory / {"dxf": "deformed.dxf", "toml": "model.toml"}.get(to, to)
+    target = out if out is not None else directory / NAMES.get(to, f"deformed.{to}")
     result = load_result(directory)
     if to in ("vtu", "csv"):
         check_directory(target)
@@ -72,6 +81,11 @@ def _write_file(result: Result, to: str, fresh: Path, scale: float, unit: str | 
         from concio.model.file.writing import dumps
 
         fresh.write_text(dumps(result.model), encoding="utf-8")
+        return
+    if to != "dxf" or result.model.dim == 3:
+        from concio.io.solids_out import write_solids
+
+        write_solids(fresh, result, scale=scale)
         return
     from concio.io.dxf_out import layer_of, unit_of, write_dxf
     from concio.post.outlines import outlines

@@ -17,6 +17,7 @@ from concio.errors import InputError
 from concio.fem.constitutive import principal
 from concio.fem.triangulate import bare_triangles
 from concio.io.vtu import POLYGON, QUAD, TRIANGLE, VERTEX, Grid, write_pvd, write_vtu
+from concio.post.solids import solids
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
@@ -25,12 +26,14 @@ Array = np.ndarray
 
 
 def bodies_grid(result: Result) -> Grid:
-    """Return all bodies as elements; rigid and fixed ones are one polygon each.
+    """Return all bodies as elements; rigid and fixed ones are one polygon each. In space their surfaces, as triangles.
 
     Point data: ``displacement`` [m], ``stress`` (s_x, s_y, t_xy) at nodes [kN/m2], ``velocity`` of a mechanism. Cell
     data: ``body`` (number), ``kind`` (0 elastic, 1 rigid, 2 fixed), mean ``element_stress``, ``s_1``, ``s_2`` of each
     element, ``body_s_1``, ``body_s_2`` of each body; nan where a body has no stress.
     """
+    if result.model.dim == 3:
+        return _surfaces(result)
     disc, model = result.assembly.disc, result.model
     solved, velocity = result.solved, result.mechanism_velocity
     points, moved, stress, speed = [], [], [], []
@@ -81,6 +84,19 @@ def bodies_grid(result: Result) -> Grid:
         np.vstack(points), np.concatenate(cells), np.cumsum(np.concatenate(sizes)), np.concatenate(types), point_data,
         cell_data,
     )  # fmt: skip
+
+
+def _surfaces(result: Result) -> Grid:
+    shown = solids(result)
+    count = len(shown.triangles)
+    data: dict[str, Array] = {"displacement": shown.displacement}
+    if result.mechanism_velocity is not None:
+        data["velocity"] = solids(result, result.mechanism_velocity).displacement
+    kinds = {"elastic": 0, "rigid": 1, "fixed": 2}
+    kind = np.array([kinds[b.kind] for b in result.model.bodies], dtype=np.int32)
+    cells = {"body": shown.body.astype(np.int32), "face": shown.face.astype(np.int32), "kind": kind[shown.body]}
+    ends = 3 * np.arange(1, count + 1)
+    return Grid(shown.points, shown.triangles.ravel(), ends, np.full(count, TRIANGLE), data, cells)
 
 
 def outline_cells(rings: Sequence[Array]) -> Array:

@@ -41,6 +41,7 @@ from concio.model.interfaces.polygon_check import check_polygon
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Body, JointRule, Load, Model, Support, Tie, check_rules
 from concio.model.polyhedron import Polyhedron
+from concio.model.solids.importing import model_from_solids
 from concio.model.stages import ControlPoint, Stage
 
 Materials = dict[str, Elastic | Rigid]
@@ -157,13 +158,20 @@ def _start(
     named = [name for name in GENERATORS if getattr(data, name, None) is not None]
     drawing = data.blocks_file is not None and data.blocks_file.lower().endswith(".dxf")
     parts = getattr(data, "parts", [])
-    if len(named) + drawing + bool(parts) > 1:
+    solids = getattr(data, "solids_file", None) is not None
+    if len(named) + drawing + bool(parts) + solids > 1:
         words = [f"[{n}]" for n in named] + ["a drawing"] * drawing + ["[[parts]]"] * bool(parts)
+        words += ["solids_file"] * solids
         msg = "more than one of " + ", ".join(words)
         raise InputError(msg, hint="one file describes one structure; several generators go into [[parts]]")
     if data.drawing is not None and not drawing:
         msg = "[drawing] is given, but blocks_file is not a .dxf file"
         raise InputError(msg, hint="add blocks_file = 'wall.dxf' at the top, or leave [drawing] out")
+    if data.solids is not None and not solids:
+        msg = "[solids] is given, but solids_file is not"
+        raise InputError(msg, hint="add solids_file = 'vault.obj' at the top, or leave [solids] out")
+    if solids:
+        return _from_solids(data, materials, laws, folder)
     if drawing:
         return _from_drawing(data, materials, laws, folder)
     if parts:
@@ -214,6 +222,18 @@ def _named(word: str, place: str, table: Mapping[str, Any], what: str) -> Any:
         msg = f"{what} '{word}' is not defined"
         raise InputError(msg, where=place, hint=closest(word, list(table)) if table else None)
     return table[word]
+
+
+def _from_solids(data: FileTable, materials: Materials, laws: Laws, folder: Path) -> Model:
+    table = data.solids
+    options: dict[str, Any] = {} if table is None else {key: getattr(table, key) for key in table.model_fields_set}
+    if materials:
+        options["block"] = materials.get("block", next(iter(materials.values())))
+    if laws:
+        options["friction"] = next(iter(laws.values()))
+    others = {name: material for name, material in materials.items() if name != "block"}
+    model = model_from_solids(folder / str(data.solids_file), materials=others, **options)
+    return replace(model, laws={}, rules=()) if laws else model
 
 
 def _from_drawing(data: FileTable, materials: Materials, laws: Laws, folder: Path) -> Model:

@@ -375,6 +375,16 @@ class DrawingTable(Table):
     chord_tolerance: Length | None = None
 
 
+class SolidsTable(Table):
+    """How a file of solids is read; see :func:`concio.model_from_solids`."""
+
+    layers: dict[str, StrictStr] = Field(default_factory=dict)
+    unit: StrictStr | None = None
+    mend: Length = 0.0
+    on_fault: Literal["raise", "skip"] = "raise"
+    ground: StrictBool = False
+
+
 class FileTable(Table):
     """A whole model file, without the tables of generators."""
 
@@ -388,6 +398,8 @@ class FileTable(Table):
     blocks_file: Name | None = None
     periods: tuple[Point, Point] | None = Field(None, description="the blocks are a cell that these vectors repeat")
     drawing: DrawingTable | None = None
+    solids_file: Name | None = Field(None, description="blocks in space: OBJ, STL, 3dm, DXF, COMPAS JSON")
+    solids: SolidsTable | None = None
     extrusion: ExtrusionTable | None = None
     supports: list[SupportTable] = Field(default_factory=list)
     loads: list[LoadTable] = Field(default_factory=list)

@@ -1,0 +1,183 @@
+"""Blocks in space to OBJ, STL, COMPAS JSON, glTF, DXF and 3dm: as they are described, or displaced."""
+
+from __future__ import annotations
+
+import importlib
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from concio.arguments import strict
+from concio.errors import InputError
+from concio.files import whole_file
+from concio.io.gltf import glb_bytes
+from concio.model.model import Model
+from concio.post.solids import solids
+
+if TYPE_CHECKING:
+    from concio.analysis.result import Result
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A block as it is written: ``faces`` of ``points`` (n, 3) [m], counter-clockwise from outside, and triangles."""
+
+    name: str
+    layer: str
+    fixed: bool
+    points: Array
+    faces: Sequence[Sequence[int]]
+    cells: Array
+
+    @property
+    def triangles(self) -> Array:
+        """Corners (t, 3, 3) of the triangles [m]."""
+        return np.asarray(self.points[self.cells])
+
+
+@strict
+def write_solids(path: str | Path, what: Model | Result, *, scale: float = 1.0) -> None:
+    """Write the blocks of a model in space, or those of a result displaced, for another program.
+
+    Parameters
+    ----------
+    path : str or Path
+        Its end gives the format: ``.obj`` (an object for each block), ``.stl`` (a named solid for each), ``.json``
+        (a COMPAS assembly), ``.glb`` (glTF, a node for each), ``.dxf`` (a MESH for each, ``dxf`` extra) or ``.3dm``
+        (a mesh for each, ``rhino`` extra). An existing file is replaced only when the new one is complete.
+    what : Model or Result
+    scale : float
+        By which displacements of a result, or the velocities of its mechanism, are multiplied.
+
+    Raises
+    ------
+    InputError
+        The model is in the plane, the format is not known, or a package is missing.
+    """
+    path = Path(path)
+    writer = WRITERS.get(path.suffix.lower())
+    if writer is None:
+        msg = f"'{path.suffix}' is no format of solids"
+        raise InputError(msg, where=str(path), hint="one of " + ", ".join(WRITERS))
+    blocks = _blocks(what) if isinstance(what, Model) else _displaced(what, scale)
+    with whole_file(path) as fresh:
+        writer(fresh, blocks)
+
+
+def _blocks(model: Model) -> list[Drawn]:
+    found = []
+    for body in model.polyhedra:
+        plain = not body.holes and body.convex
+        cells = body.triangles[0]
+        faces = body.faces if plain else tuple(map(tuple, cells.tolist()))
+        found.append(Drawn(body.name, body.layer or body.material, body.kind == "fixed", body.vertices, faces, cells))
+    return found
+
+
+def _displaced(result: Result, scale: float) -> list[Drawn]:
+    shown = solids(result, None if result.solved else result.mechanism_velocity)
+    points = shown.moved(scale)
+    found = []
+    for b, body in enumerate(result.model.polyhedra):
+        first, last = shown.starts[b : b + 2].tolist()
+        cells, layer = shown.triangles[shown.body == b] - first, body.layer or body.material
+        found.append(Drawn(body.name, layer, body.kind == "fixed", points[first:last], cells.tolist(), cells))
+    return found
+
+
+def _obj(path: Path, blocks: Sequence[Drawn]) -> None:
+    lines, start = ["# concio, metres"], 1
+    for block in blocks:
+        lines += [f"o {block.name}", f"usemtl {'fixed' if block.fixed else block.layer or 'block'}"]
+        lines += [f"v {x!r} {y!r} {z!r}" for x, y, z in block.points.tolist()]
+        lines += ["f " + " ".join(str(start + v) for v in face) for face in block.faces]
+        start += len(block.points)
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _stl(path: Path, blocks: Sequence[Drawn]) -> None:
+    lines = []
+    for block in blocks:
+        lines.append(f"solid {block.name}")
+        for triangle in block.triangles:
+            normal = np.cross(triangle[1] - triangle[0], triangle[2] - triangle[0])
+            x, y, z = (normal / max(float(np.linalg.norm(normal)), 1e-300)).tolist()
+            lines += [f"facet normal {x:.9g} {y:.9g} {z:.9g}", "outer loop"]
+            lines += [f"vertex {a!r} {b!r} {c!r}" for a, b, c in triangle.tolist()]
+            lines += ["endloop", "endfacet"]
+        lines.append(f"endsolid {block.name}")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _compas(path: Path, blocks: Sequence[Drawn]) -> None:
+    nodes = {}
+    for k, block in enumerate(blocks):
+        mesh = {
+            "attributes": {"name": block.name},
+            "vertex": {str(v): dict(zip("xyz", p, strict=True)) for v, p in enumerate(block.points.tolist())},
+            "face": {str(f): list(map(int, face)) for f, face in enumerate(block.faces)},
+        }
+        nodes[str(k)] = {
+            "block": {"dtype": "compas_assembly.datastructures/Block", "data": mesh}, "is_support": block.fixed
+        }  # fmt: skip
+    graph = {"dtype": "compas.datastructures/Graph", "data": {"node": nodes, "edge": {}}}
+    whole = {"dtype": "compas_assembly.datastructures/Assembly", "data": {"graph": graph}}
+    path.write_text(json.dumps(whole), encoding="utf-8")
+
+
+def _glb(path: Path, blocks: Sequence[Drawn]) -> None:
+    path.write_bytes(glb_bytes([(b.name, b.triangles, b.fixed) for b in blocks]))
+
+
+def _dxf(path: Path, blocks: Sequence[Drawn]) -> None:
+    try:
+        import ezdxf
+        from ezdxf.render import MeshBuilder
+    except ImportError:
+        msg = "writing DXF needs the package ezdxf, which is not installed"
+        raise InputError(msg, where=str(path), hint="pip install ezdxf") from None
+    from concio.io.dxf_out import FORBIDDEN
+
+    document = ezdxf.new("R2010", units=6)
+    for block in blocks:
+        mesh = MeshBuilder()
+        mesh.add_mesh(vertices=block.points.tolist(), faces=[list(map(int, f)) for f in block.faces])
+        layer = "CONCIO_FIXED" if block.fixed else FORBIDDEN.sub("_", block.layer) or "BLOCKS"
+        mesh.render_mesh(document.modelspace(), dxfattribs={"layer": layer})
+    document.saveas(path)
+
+
+def _rhino(path: Path, blocks: Sequence[Drawn]) -> None:
+    try:
+        rhino3dm: Any = importlib.import_module("rhino3dm")
+    except ImportError:
+        msg = "writing 3dm needs the package rhino3dm, which is not installed"
+        raise InputError(msg, where=str(path), hint="pip install rhino3dm") from None
+    document = rhino3dm.File3dm()
+    document.Settings.ModelUnitSystem = rhino3dm.UnitSystem.Meters
+    numbers: dict[str, int] = {}
+    for block in blocks:
+        layer = "fixed" if block.fixed else block.layer or "blocks"
+        if layer not in numbers:
+            numbers[layer] = document.Layers.AddLayer(layer, (150, 140, 120, 255))
+        mesh = rhino3dm.Mesh()
+        for x, y, z in block.points.tolist():
+            mesh.Vertices.Add(x, y, z)
+        for triangle in block.cells.tolist():
+            mesh.Faces.AddFace(*triangle)
+        about = rhino3dm.ObjectAttributes()
+        about.Name, about.LayerIndex = block.name, numbers[layer]
+        document.Objects.AddMesh(mesh, about)
+    document.Write(str(path), 7)
+
+
+WRITERS: dict[str, Callable[[Path, Sequence[Drawn]], None]] = {
+    ".obj": _obj, ".stl": _stl, ".json": _compas, ".glb": _glb, ".dxf": _dxf, ".3dm": _rhino,
+}  # fmt: skip
+"""Writers by the end of the name."""

@@ -1,0 +1,266 @@
+"""From files of solids to a :class:`concio.Model`: surfaces welded, parted and turned outwards, then judged."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any, Literal, Unpack
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
+
+from concio.arguments import closest, strict_with
+from concio.errors import GeometryError, InputError
+from concio.model.generate.arguments import not_negative
+from concio.model.generate.solid_masonry import CommonSpace, SolidPiece, assemble_space, box_piece, checked_space
+from concio.model.materials import Elastic, Rigid
+from concio.model.model import Model
+from concio.model.polyhedron_check import MOST_VERTICES, polyhedron_faults
+from concio.model.solids.compas import read_compas
+from concio.model.solids.dxf3d import read_dxf_solids
+from concio.model.solids.obj import read_obj
+from concio.model.solids.rhino import read_rhino
+from concio.model.solids.shapes import Scene, Shape
+from concio.model.solids.stl import read_stl
+from concio.model.surfaces import merged_faces, welded
+from concio.model.topology import Loop, topology
+from concio.units import quantity
+
+Array = np.ndarray
+
+READERS: Mapping[str, Callable[[Path], Scene]] = {
+    ".obj": read_obj, ".stl": read_stl, ".json": read_compas, ".dxf": read_dxf_solids, ".3dm": read_rhino,
+}  # fmt: skip
+"""Formats by the end of a name; a folder is read as one block for each of its STL or OBJ files."""
+FIXED = ("fixed", "ground", "support", "supports", "abutment", "abutments", "obstacle", "concio_fixed")
+"""Layers and names that mean fixed bodies, in small letters."""
+LARGE, SMALL = 50.0, 1e-3
+"""Blocks larger or smaller than this are in another unit than the one assumed [m]."""
+SHOWN = 5
+"""So many faults are written out."""
+
+
+@strict_with(CommonSpace.__annotations__)
+def model_from_solids(
+    path: str | Path,
+    *,
+    materials: Mapping[str, Elastic | Rigid] | None = None,
+    layers: Mapping[str, str] | None = None,
+    unit: str | None = None,
+    mend: float | str = 0.0,
+    on_fault: Literal["raise", "skip"] = "raise",
+    ground: bool = False,
+    **common: Unpack[CommonSpace],
+) -> Model:
+    """Return the model of the blocks in a file of solids.
+
+    Parameters
+    ----------
+    path : str or Path
+        ``.obj``, ``.stl``, ``.3dm``, ``.dxf``, COMPAS ``.json``, or a folder of OBJ or STL files.
+    materials : mapping of name to material, optional
+        A block takes the one that ``layers`` gives, else the one of its layer's own name, else ``block``.
+    layers : mapping of str to str, optional
+        What layers, or blocks by name or pattern (``"pier-*"``), are: "fixed", "ignore", or a material. Layers called
+        "fixed", "ground", "support", "abutment" or "obstacle" are fixed without being named.
+    unit : str, optional
+        Unit of length; None takes that of the file, metres where it has none.
+    mend : float or str
+        Vertices closer than this are put together, and faces that look inwards are turned outwards [m]. 0 mends
+        nothing.
+    on_fault : {"raise", "skip"}
+        Skip leaves out the blocks that cannot be used.
+    ground : bool
+        Put a fixed slab below the lowest point.
+    **common
+        See :class:`concio.model.generate.solid_masonry.CommonSpace`.
+
+    Raises
+    ------
+    InputError
+        The file or an option is not usable, or the unit of length cannot be right.
+    GeometryError
+        Blocks have faults; the message tells block, face, place and deviation of each.
+
+    Notes
+    -----
+    A surface that falls into several closed parts gives a block for each. Triangles in one plane become one face.
+    ``model.generator`` keeps the ``faults`` that were skipped, what was ``left_out`` and ``moved``.
+    """
+    path = Path(path)
+    where = str(path)
+    options = checked_space(where, common)
+    within = not_negative(where, "mend", mend)
+    if on_fault not in ("raise", "skip"):
+        msg = f"on_fault = {on_fault!r} is not 'raise' or 'skip'"
+        raise InputError(msg, where=where)
+    scene = read_scene(path)
+    metres = scene.metres or 1.0 if unit is None else quantity(f"1 {unit}", "length", where=f"{where}, unit")
+    meanings, table = dict(layers or {}), {"block": options.base.block, **(materials or {})}
+    words = [w for s in scene.shapes for w in (s.layer, s.name) if w]
+    for word, meaning in meanings.items():
+        if not any(fnmatchcase(w, word) for w in words):
+            msg = f"there is no layer or block '{word}'"
+            raise InputError(msg, where=where, hint=closest(word, dict.fromkeys(words)))
+        if meaning not in ("fixed", "ignore") and meaning not in table:
+            msg = f"layer '{word}' is to be '{meaning}', which is no material"
+            raise InputError(msg, where=where, hint=closest(meaning, ("fixed", "ignore", *table)))
+    pieces, obstacles, faults, notes, ignored = [], [], [], [], []
+    names: dict[str, int] = {}
+    parts = [part for shape in scene.shapes for part in _parted(shape, metres, within)]
+    _check_unit([p for _, p, _ in parts], scene, unit, metres, where)
+    for shape, points, faces in parts:
+        name = _unique(shape.name or shape.layer or "b", names)
+        meaning = _meaning(shape, meanings, table)
+        if meaning == "ignore":
+            ignored.append(f"'{name}' was left out")
+            continue
+        points, faces, turned = _outward(points, faces) if within else (points, faces, False)
+        notes += [f"'{name}': its faces were turned outwards"] * turned
+        sound = len(points) <= MOST_VERTICES and np.isfinite(points).all() and len(faces) > 3
+        surface = merged_faces(points, faces) if sound else (points, faces, ())
+        found = polyhedron_faults(*surface)
+        faults += [(f"block '{name}': {fault.sentence}", fault.hint) for fault in found]
+        if found:
+            continue
+        piece = SolidPiece(name, surface, layer=shape.layer, material=meaning)
+        if meaning == "fixed":
+            obstacles.append(replace(piece, role="ground", material="block"))
+        else:
+            pieces.append(piece)
+    if faults and on_fault == "raise":
+        more = f"; {len(faults) - SHOWN} more" if len(faults) > SHOWN else ""
+        raise GeometryError("; ".join(text for text, _ in faults[:SHOWN]) + more, where=where, hint=faults[0][1])
+    if not pieces:
+        msg = "the file holds no blocks" + (": all of them are fixed" if obstacles else "")
+        raise InputError(msg, where=where, hint="surfaces must be closed, one for each block")
+    if ground:
+        obstacles.append(_slab(pieces, names))
+    record = {
+        "kind": "solids", "metres": metres, "faults": tuple(text for text, _ in faults), "left_out": tuple(ignored),
+        "moved": tuple(notes),
+    }  # fmt: skip
+    others = {name: material for name, material in table.items() if name != "block"}
+    return assemble_space(options, pieces, obstacles, materials=others, title=path.stem, generator=record)
+
+
+def read_scene(path: Path) -> Scene:
+    """Return what a file, or a folder of OBJ or STL files, holds.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, or its format is not known.
+    """
+    if path.is_dir():
+        files = sorted(p for p in path.iterdir() if p.suffix.lower() in (".stl", ".obj"))
+        scenes = [(p, READERS[p.suffix.lower()](p)) for p in files]
+        return Scene(tuple(
+            replace(s, name=p.stem if len(scene.shapes) == 1 else f"{p.stem}-{s.name}") for p, scene in scenes
+            for s in scene.shapes
+        ))  # fmt: skip
+    reader = READERS.get(path.suffix.lower())
+    if reader is None:
+        msg = f"'{path.suffix}' is no format of solids"
+        raise InputError(msg, where=str(path), hint="one of " + ", ".join(READERS) + ", or a folder of .stl or .obj")
+    return reader(path)
+
+
+def _parted(shape: Shape, metres: float, within: float) -> list[tuple[Shape, Array, tuple[Loop, ...]]]:
+    """Return the connected parts of a surface, welded, in metres."""
+    points = metres * shape.points
+    if not len(points) or not np.isfinite(points).all():
+        return [(shape, points, tuple(map(tuple, shape.faces)))]
+    own = tuple(map(tuple, shape.faces))
+    parts = _connected(points, own)
+    if not within and all(topology(faces, ()).fault is None for _, faces in parts if len(faces) > 3):
+        return [(shape, *part) for part in parts]
+    size = float(np.ptp(points, axis=0).max())
+    return [(shape, *part) for part in _connected(*welded(points, own, max(within, 1e-9 * size)))]
+
+
+def _connected(points: Array, faces: tuple[Loop, ...]) -> list[tuple[Array, tuple[Loop, ...]]]:
+    """Return the parts of a surface that share no vertex."""
+    if not faces:
+        return [(points, faces)]
+    rows = np.repeat(np.arange(len(faces)), [len(f) for f in faces])
+    columns = np.concatenate([np.array(f) for f in faces])
+    meets = sp.coo_array((np.ones(len(rows)), (rows, columns)), shape=(len(faces), len(points))).tocsr()
+    count, part = connected_components(meets @ meets.T, directed=False)
+    found = []
+    for k in range(count):
+        own = [faces[f] for f in np.flatnonzero(part == k)]
+        used = np.unique(np.concatenate([np.array(f) for f in own]))
+        number = dict(zip(used.tolist(), range(len(used)), strict=True))
+        found.append((points[used], tuple(tuple(number[v] for v in f) for f in own)))
+    return found
+
+
+def _outward(points: Array, faces: tuple[Loop, ...]) -> tuple[Array, tuple[Loop, ...], bool]:
+    """Return a closed surface with all faces turned outwards, and whether any was turned."""
+    beside: dict[tuple[int, int], list[tuple[int, bool]]] = {}
+    for k, loop in enumerate(faces):
+        for p, q in zip(loop, (*loop[1:], loop[0]), strict=True):
+            beside.setdefault((min(p, q), max(p, q)), []).append((k, p < q))
+    if any(len(own) != 2 for own in beside.values()):
+        return points, faces, False  # not closed: told by the check
+    across: list[list[tuple[int, bool]]] = [[] for _ in faces]
+    for (a, way_a), (b, way_b) in beside.values():
+        across[a].append((b, way_a == way_b))
+        across[b].append((a, way_a == way_b))
+    flip: dict[int, bool] = {0: False}
+    waiting = [0]
+    while waiting:
+        at = waiting.pop()
+        for other, against in across[at]:
+            if other not in flip:
+                flip[other] = flip[at] ^ against
+                waiting.append(other)
+    turned = tuple(f[::-1] if flip.get(k, False) else f for k, f in enumerate(faces))
+    top = topology(turned, ())
+    if top.fault is None and float(((points[top.corners[0]] - points.mean(0)) * top.spanned(points)).sum()) < 0:
+        turned = tuple(f[::-1] for f in turned)
+    return points, turned, turned != faces
+
+
+def _check_unit(blocks: Sequence[Array], scene: Scene, unit: str | None, metres: float, where: str) -> None:
+    """Refuse blocks that are no blocks in the unit assumed, where nobody stated it."""
+    sizes = [float(np.ptp(p, axis=0).max()) for p in blocks if len(p) and np.isfinite(p).all()]
+    if not sizes or unit is not None:
+        return
+    usual = float(np.median(sizes))
+    if SMALL <= usual <= LARGE:
+        return
+    stated = "the file says so" if scene.metres else "the file does not say its unit, metres were assumed"
+    guess = next((name for name, m in (("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254), ("m", 1.0), ("km", 1e3))
+                  if 0.05 <= usual / metres * m <= 5), "mm")  # fmt: skip
+    msg = f"half of the blocks are longer than {usual:,.4g} m ({stated})"
+    raise InputError(msg, where=where, hint=f"give the unit of length: unit = '{guess}'?")
+
+
+def _meaning(shape: Shape, meanings: Mapping[str, str], table: Mapping[str, Any]) -> str:
+    own = [m for word, m in meanings.items() if fnmatchcase(shape.layer, word) or fnmatchcase(shape.name, word)]
+    if own:
+        return own[-1]
+    if shape.fixed or any(w.lower().rsplit("::", 1)[-1] in FIXED for w in (shape.layer, shape.name)):
+        return "fixed"
+    return shape.layer if shape.layer in table else "block"
+
+
+def _unique(name: str, names: dict[str, int]) -> str:
+    names[name] = names.get(name, 0) + 1
+    return name if names[name] == 1 else _unique(f"{name}-{names[name]}", names)
+
+
+def _slab(pieces: Sequence[SolidPiece], names: dict[str, int]) -> SolidPiece:
+    every = np.concatenate([p.surface[0] for p in pieces])
+    low, high = every.min(0), every.max(0)
+    size = float((high - low).max())
+    margin = np.array([0.1, 0.1, 0.0]) * size
+    return box_piece(
+        _unique("ground", names), (low - margin - [0, 0, 0.05 * size]).tolist(),
+        [*(high + margin)[:2].tolist(), float(low[2])], role="ground",
+    )  # fmt: skip

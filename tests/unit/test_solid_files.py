@@ -1,0 +1,199 @@
+"""Blocks in space from and to files of other programs."""
+
+from __future__ import annotations
+
+import json
+import re
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+import concio
+from commands import run
+from concio import GeometryError, InputError, Model, Polyhedron
+from concio.contact.assembly import detect
+from concio.model.polyhedron import BOX
+
+CUBE = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)
+
+
+def arch() -> Model:
+    """Return an arch whose blocks have faces of four and more vertices."""
+    plane = concio.arch_on_piers(
+        span=3, ring=0.4, voussoirs=7, pier_width=1, pier_height=2, pier_courses=3, block="rigid"
+    )
+    return concio.extrude(plane, 0.5)
+
+
+def obj_of(points: np.ndarray, faces: object = BOX, name: str = "c") -> str:
+    lines = [f"o {name}"] + [f"v {x} {y} {z}" for x, y, z in points]
+    return "\n".join(lines + ["f " + " ".join(str(v + 1) for v in face) for face in faces])  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".stl", ".json", ".dxf", ".3dm"])
+def test_what_is_written_is_read_back(tmp_path: Path, suffix: str) -> None:
+    model = arch()
+    path = tmp_path / f"arch{suffix}"
+    concio.write_solids(path, model)
+    again = concio.model_from_solids(path, block="rigid", layers={} if suffix != ".stl" else {"*ground": "fixed"})
+    volume = {b.name: b.volume for b in model.bodies}
+    assert len(again.bodies) == len(model.bodies)
+    assert sum(b.kind == "fixed" for b in again.bodies) == 2
+    if suffix != ".dxf":  # a drawing keeps no names
+        assert {b.name: pytest.approx(b.volume, rel=1e-6) for b in again.bodies} == volume
+    kept = {b.name: b for b in again.polyhedra}
+    assert sum(b.volume for b in again.bodies) == pytest.approx(sum(volume.values()), rel=1e-6)
+    joints, before = detect(again).patches, detect(model).patches
+    assert sum(p.area for p in joints) == pytest.approx(sum(p.area for p in before), rel=1e-5)
+    if suffix == ".stl":  # triangles in one plane are one face again
+        assert len(kept["v04"].faces) == len(model.polyhedra[[b.name for b in model.bodies].index("v04")].faces)
+
+
+def test_gltf_is_what_another_reader_sees(tmp_path: Path) -> None:
+    model = arch()
+    concio.write_solids(tmp_path / "arch.glb", model)
+    scene = trimesh.load(tmp_path / "arch.glb")
+    assert set(scene.geometry) == {b.name for b in model.bodies}
+    low, high = scene.bounds  # y is up there
+    every = np.concatenate([b.vertices for b in model.bodies])
+    assert np.allclose([low[1], high[1]], [every[:, 2].min(), every[:, 2].max()], atol=1e-6)
+    assert np.allclose([-high[2], -low[2]], [every[:, 1].min(), every[:, 1].max()], atol=1e-6)
+    volume = sum(abs(m.volume) for m in scene.geometry.values())
+    for mesh in scene.geometry.values():
+        mesh.merge_vertices(merge_norm=True)
+        assert mesh.is_volume
+    assert volume == pytest.approx(sum(b.volume for b in model.bodies), rel=1e-5)
+
+
+def test_binary_stl_and_a_folder_of_them(tmp_path: Path) -> None:
+    folder = tmp_path / "blocks"
+    folder.mkdir()
+    for name, at in (("low", 0.0), ("high", 1.0)):
+        block = Polyhedron("b", CUBE + np.array([0, 0, at]), BOX)
+        corners = block.vertices[block.triangles[0]].astype("<f4")
+        raw = b"x" * 80 + struct.pack("<I", len(corners))
+        raw += b"".join(b"\0" * 12 + c.tobytes() + b"\0\0" for c in corners)
+        (folder / f"{name}.stl").write_bytes(raw)
+    model = concio.model_from_solids(folder, block="rigid", ground=True)
+    assert [b.name for b in model.bodies] == ["ground", "high", "low"]
+    assert sorted(p.area for p in detect(model).patches) == [pytest.approx(1.0)] * 2
+    (folder / "low.stl").write_bytes(raw[:-7])
+    with pytest.raises(InputError, match=r"low\.stl.*was it cut off|was it cut off"):
+        concio.model_from_solids(folder, block="rigid")
+
+
+def test_blocks_in_one_surface_are_parted(tmp_path: Path) -> None:
+    text = obj_of(np.vstack([CUBE, CUBE + np.array([0, 0, 1])]), [*BOX, *(tuple(v + 8 for v in f) for f in BOX)])
+    (tmp_path / "two.obj").write_text(text)
+    model = concio.model_from_solids(tmp_path / "two.obj", block="rigid")
+    assert [b.name for b in model.bodies] == ["c", "c-2"]
+    assert len(detect(model).patches) == 1
+
+
+def test_layers_units_and_mending(tmp_path: Path) -> None:
+    path = tmp_path / "wall.obj"
+    inside_out = [f[::-1] for f in BOX]
+    text = obj_of(CUBE * 250, BOX, "base-1") + "\nusemtl stone\n"
+    text += obj_of(CUBE * 250 + np.array([0, 0, 250]), inside_out, "b2")
+    lines = text.split("\n")
+    start = lines.index("o b2")
+    for k in range(start, len(lines)):
+        if lines[k][:2] == "f ":
+            lines[k] = "f " + " ".join(str(int(v) + 8) for v in lines[k].split()[1:])
+    path.write_text("\n".join(lines))
+    with pytest.raises(InputError) as found:
+        concio.model_from_solids(path)
+    assert "250 m" in str(found.value)
+    assert "unit = 'mm'" in str(found.value.hint)
+    with pytest.raises(GeometryError, match="block 'b2': the faces point inwards"):
+        concio.model_from_solids(path, unit="mm")
+    rigid = concio.Rigid(22.0)
+    meant = {"materials": {"stone": rigid}, "layers": {"base-*": "fixed"}}
+    model = concio.model_from_solids(path, unit="mm", mend="1 mm", **meant)
+    assert [(b.name, b.kind, b.material) for b in model.bodies] == [("base-1", "fixed", ""), ("b2", "rigid", "stone")]
+    assert model.generator["moved"] == ("'b2': its faces were turned outwards",)
+    assert model.bodies[1].volume == pytest.approx(0.25**3)
+    with pytest.raises(InputError, match="no layer or block 'bsae-"):
+        concio.model_from_solids(path, unit="mm", layers={"bsae-*": "fixed"})
+
+
+def bad(tmp_path: Path, text: str, name: str = "bad.obj") -> Path:
+    (tmp_path / name).write_text(text)
+    (tmp_path / "m.toml").write_text(f'solids_file = "{name}"\n[materials.block]\nkind = "rigid"\nunit_weight = 20\n')
+    return tmp_path / "m.toml"
+
+
+PUSHED = CUBE.copy()
+PUSHED[7, 2] += 0.2
+CROSSED = [(0, 3, 2, 1), *BOX[1:]]
+HOSTILE = {
+    "open": (obj_of(CUBE, BOX[:5]), "block 'c': .*(open|no face)"),
+    "inside out": (obj_of(CUBE, [f[::-1] for f in BOX]), "the faces point inwards"),
+    "crossing": (obj_of(CUBE, CROSSED), "block 'c': "),
+    "out of plane": (obj_of(PUSHED), "block 'c': face .* (mm|m)"),
+    "millimetres": (obj_of(CUBE * 300), "longer than 300 m"),
+    "vertices": ("\n".join(["o big", *["v 0 0 0"] * 30_000, "f 1 2 3"]), "bad.obj"),
+    "no such vertex": ("o a\nv 0 0 0\nf 1 2 3", "line 3: a face uses a vertex that is not there"),
+    "no number": ("o a\nv 0 0 zero", "line 2 cannot be read"),
+    "nothing": ("# empty", "holds no blocks"),
+    "nan": (obj_of(CUBE).replace("v 1.0 1.0 1.0", "v nan 1.0 1.0"), "not finite"),
+    "flat": (obj_of(CUBE * [1, 1, 0]), "block 'c': "),
+}
+
+
+@pytest.mark.parametrize("fault", HOSTILE)
+def test_what_is_wrong_is_said_in_a_sentence(tmp_path: Path, fault: str) -> None:
+    text, said = HOSTILE[fault]
+    code, out, err = run("check", bad(tmp_path, text))
+    assert code == 2
+    assert re.search(said, " ".join((out + err).split())), out + err
+    assert "Traceback" not in out + err
+    assert len(err.strip().split("\n")) <= 6
+
+
+def test_a_block_inside_another_is_an_overlap(tmp_path: Path) -> None:
+    text = obj_of(CUBE) + "\n" + obj_of(0.5 * CUBE + 0.25, [tuple(v + 8 for v in f) for f in BOX], "inner")
+    code, out, err = run("check", bad(tmp_path, text))
+    assert code == 2
+    assert "'c'" in out + err
+    assert "'inner'" in out + err
+    assert "overlap" in out + err
+
+
+def test_a_million_vertices_are_refused_in_a_sentence(tmp_path: Path) -> None:
+    n = 120_000  # triangles of a tube: closed parts would be judged, too many vertices are said first
+    points = np.random.default_rng(1).normal(size=(n, 3))
+    text = "o scan\n" + "\n".join(f"v {x:.4f} {y:.4f} {z:.4f}" for x, y, z in points)
+    text += "\n" + "\n".join(f"f {k} {k + 1} {k + 2}" for k in range(1, n - 2))
+    code, out, err = run("check", bad(tmp_path, text))
+    assert code == 2
+    assert "vertices are more than the 20,000 a block may have" in " ".join((out + err).split())
+
+
+def test_compas_and_json_that_is_none(tmp_path: Path) -> None:
+    block = {"vertex": {str(k): dict(zip("xyz", p, strict=True)) for k, p in enumerate(CUBE.tolist())}}
+    block["face"] = {str(k): [str(v) for v in f] for k, f in enumerate(BOX)}  # type: ignore[assignment]
+    whole = {"dtype": "a/Assembly", "data": {"graph": {"node": {"4": {"block": {"data": block}, "is_support": True}}}}}
+    whole["meshes"] = [{"vertices": (CUBE + np.array([0, 0, 1])).tolist(), "faces": [list(f) for f in BOX]}]  # type: ignore[assignment]
+    path = tmp_path / "a.json"
+    path.write_text(json.dumps(whole))
+    model = concio.model_from_solids(path, block="rigid")
+    assert {(b.name, b.kind) for b in model.bodies} == {("b4", "fixed"), ("b1", "rigid")}
+    del whole["data"]["graph"]["node"]["4"]["block"]["data"]["vertex"]["3"]  # type: ignore[index]
+    path.write_text(json.dumps(whole))
+    with pytest.raises(InputError, match="a face or a vertex lacks '3'"):
+        concio.model_from_solids(path, block="rigid")
+
+
+def test_files_with_solids(tmp_path: Path) -> None:
+    concio.write_solids(tmp_path / "arch.obj", arch())
+    text = 'solids_file = "arch.obj"\n[joints.dry]\nfriction = 0.7\n[materials.block]\nkind = "rigid"\nunit_weight = 20'
+    model = concio.loads(text, folder=tmp_path)
+    assert len(model.bodies) == len(arch().bodies)
+    assert model.laws["dry"].friction == 0.7
+    assert [load.kind for load in model.loads] == ["weight"]
+    with pytest.raises(InputError, match="solids_file is not"):
+        concio.loads("[solids]\nunit = 'mm'\n[column]\nwidth = 1\nheight = 1\nblocks = 1")
