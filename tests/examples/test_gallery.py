@@ -138,6 +138,32 @@ def check_what_matters_for_an_arch(found):
     assert found["friction"] > found["ring"] > 0.05
 
 
+def check_wall_falling_outward(found):
+    assert found["falls"]
+    assert found["alone"] == pytest.approx(0.1, rel=0.01)  # thickness over height
+    assert 0.2 < found["bonded"] < 0.4  # at 0.4 a mechanism is proven
+
+
+def check_dome_on_spreading_springers(found):
+    assert found["worst"] <= 1e-9
+    assert found["low"] == 1.0
+    assert found["high"] == 0.0
+
+
+def check_cross_vault_on_a_settling_pier(found):
+    assert found["worst"] <= 1e-9
+    assert found["before"] == pytest.approx(found["weight"], rel=1e-9)
+    assert found["after"] == pytest.approx(found["weight"], rel=1e-9)
+    assert found["sinking"] < 0.6 * found["rest"]
+    assert 0 < found["opening"] < 5e-3
+
+
+def check_tower_under_lateral_load(found):
+    assert found["worst"] <= 1e-9
+    assert found["falls"]
+    assert 0.22 < found["bound"] < 0.4
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_example(name, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)

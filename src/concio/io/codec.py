@@ -120,7 +120,7 @@ class Encoder:
             return {"$each": "float", "of": self._array(np.array(values), path)}
         elif all(type(v) is int for v in values):
             return {"$each": "int", "of": self._array(np.array(values, dtype=np.int64), path)}
-        elif all(v == first and isinstance(v, str | None) for v in values):
+        elif all(isinstance(v, str | None) and v == first for v in values):
             return {"$same": first}
         return [self.encode(v, f"{path}.{i}") for i, v in enumerate(values)]
 
