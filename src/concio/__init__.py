@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from concio.analysis.motion.dynamics_result import DynamicsResult
     from concio.analysis.motion.push import push
     from concio.analysis.motion.push_result import PushResult
+    from concio.analysis.motion.rocking import rock
     from concio.analysis.path import ControlPoint, PathResult, Stage, run_path
     from concio.analysis.result import Result
-    from concio.analysis.rocking import rock
     from concio.analysis.seismic.assess import assess
     from concio.analysis.seismic.assessment import Assessment
     from concio.analysis.seismic.site import Site
@@ -83,7 +83,7 @@ _HOMES = {
     "concio.analysis.motion.dynamics_result": ("DynamicsResult",),
     "concio.analysis.motion.push": ("push",),
     "concio.analysis.motion.push_result": ("PushResult",),
-    "concio.analysis.rocking": ("rock",),
+    "concio.analysis.motion.rocking": ("rock",),
     "concio.analysis.seismic.assess": ("assess",),
     "concio.analysis.seismic.assessment": ("Assessment",),
     "concio.analysis.seismic.site": ("Site",),

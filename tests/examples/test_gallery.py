@@ -164,6 +164,11 @@ def check_tower_under_lateral_load(found):
     assert 0.22 < found["bound"] < 0.4
 
 
+def check_overturning_spectrum(found):
+    assert found["wrong"] == 0  # no pulse further than 2 % from the closed form is on its wrong side
+    assert 0.2 * found["runs"] < found["overturned"] < 0.8 * found["runs"]
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_example(name, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)

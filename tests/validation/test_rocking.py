@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from concio.analysis.rocking import rock
-from concio.errors import InputError
+from concio import rock
+from concio.errors import InputError, NoEquilibriumError
 from concio.model.materials import Elastic, JointLaw, Rigid
-from concio.model.model import Body, Model
+from concio.model.model import Body, Load, Model
 
 
 def block(width=0.2, height=1.0, friction=0.6, tilt=0.0):
@@ -31,26 +33,30 @@ def block(width=0.2, height=1.0, friction=0.6, tilt=0.0):
 @pytest.mark.parametrize("direction", [1.0, -1.0])
 def test_pillar_falls_from_a_fifth_to_zero(direction):
     found = rock(block(), direction=direction, step=0.004)
-    assert found.multiplier[0] == pytest.approx(0.2, abs=1e-12)
-    assert found.multiplier[-1] <= 0.0
+    assert found.multiplier[0] == pytest.approx(0.2, rel=2e-4)
+    assert found.multiplier[-1] == pytest.approx(0.0, abs=1e-9)
     assert "fell to 0" in found.reason
     theta = -direction * found.rotation[:, 0]
-    assert theta[0] == 0.0
+    assert theta[0] == pytest.approx(0.0, abs=1e-4)
     assert (np.diff(theta) > 0).all()
-    assert found.multiplier == pytest.approx(np.tan(np.arctan(0.2) - theta), abs=1e-9)
+    assert found.multiplier == pytest.approx(np.tan(np.arctan(0.2) - theta), abs=1e-8)
     toe = 0.2 if direction > 0 else 0.0
-    last = found.centroid[-1, 0, 0]
-    before = found.centroid[-2, 0, 0]
-    assert direction * before < direction * toe <= direction * last + 1e-12  # the centroid passes the toe at zero
+    assert found.centroid[-1, 0, 0] == pytest.approx(toe, abs=1e-5)  # the centroid is above the toe at zero
 
 
 def test_step_size_does_not_matter_for_one_hinge():
     coarse, fine = (rock(block(), step=s) for s in (0.02, 0.005))
-    at = coarse.rotation[:, 0]
-    for i in range(len(at) - 1):
-        expected = np.tan(np.arctan(0.2) + at[i])
-        assert coarse.multiplier[i] == pytest.approx(expected, abs=1e-9)
-    assert len(fine.multiplier) > 3 * len(coarse.multiplier)
+    for found in (coarse, fine):
+        assert found.multiplier == pytest.approx(np.tan(np.arctan(0.2) + found.rotation[:, 0]), abs=1e-8)
+    assert len(fine.multiplier) > 1.5 * len(coarse.multiplier)
+
+
+def test_point_loads_count():
+    """A load W on top of a pillar of weight W = 4 kN, 0.05 m from its axis towards its toe."""
+    plain = block()
+    own, extra = Load("weight", (0.0, -1.0)), Load("point", (0.0, -4.0), bodies=("pillar",), at=(0.15, 1.0))
+    loaded = rock(replace(plain, loads=(own, extra)))
+    assert loaded.multiplier[0] == pytest.approx((4 * 0.1 + 4 * 0.05) / (4 * 0.5), rel=2e-3)
 
 
 def test_elastic_blocks_are_refused():
@@ -58,3 +64,8 @@ def test_elastic_blocks_are_refused():
     bodies = (model.bodies[0], Body("soft", model.bodies[1].outline))
     with pytest.raises(InputError, match="rigid"):
         rock(Model(bodies=bodies, materials={"block": Elastic(1e6)}, laws=model.laws))
+
+
+def test_what_does_not_stand_is_refused():
+    with pytest.raises(NoEquilibriumError, match="does not stand"):
+        rock(block(tilt=0.3))
