@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from typing import Any
 
 import numpy as np
 
@@ -30,10 +31,10 @@ def block() -> concio.Model:
     return concio.Model(bodies, {"block": RIGID}, {"joint": concio.JointLaw(1.0)}, loads=loads)
 
 
-def report(name: str, model: concio.Model, **options: object) -> None:
+def report(name: str, model: concio.Model, **options: Any) -> None:
     """Run a motion and print what it cost."""
     begun = time.process_time()
-    found = concio.dynamics(model, **options)  # type: ignore[arg-type]
+    found = concio.dynamics(model, **options)
     spent = time.process_time() - begun
     steps = len(found.steps)
     shares = ", ".join(f"{word} {100 * share:.1f} %" for word, share in found.steps.shares().items())

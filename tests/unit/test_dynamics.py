@@ -82,6 +82,21 @@ def test_a_motion_goes_on_from_where_it_ended():
     assert second.end.rotation == pytest.approx(whole.end.rotation, abs=1e-9)
 
 
+def test_energy_balance_of_blocks_on_springs_and_of_elastic_ones():
+    """Energy stored in joints counts from the beginning; what their common lengths change by as they slide does not."""
+    law = concio.JointLaw(0.6, normal_stiffness=1e6, tangential_stiffness=4e5)
+    sine = concio.Pulse("sine", 0.3 * G, 0.5)
+    soft = concio.Elastic(E=1e6, nu=0.15, unit_weight=20.0)
+    for friction, block, allowed in ((law, concio.Rigid(20.0), 1e-4), (0.6, soft, 1e-6)):
+        wall = concio.running_bond_panel(
+            courses=2, blocks=2, block_size=(1.0, 0.5), thickness=1.0, friction=friction, side_walls=False, block=block,
+            elements_per_block=(2, 2),
+        )  # fmt: skip
+        found = concio.dynamics(wall, sine, 0.1, 2e-3, every=0.02)
+        assert found.certified
+        assert found.energy.error < allowed
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

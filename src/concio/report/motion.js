@@ -14,7 +14,7 @@
     const ratio = window.devicePixelRatio || 1;
     const width = canvas.clientWidth;
     const scale = width / (high[0] - low[0]);
-    const height = Math.max(120, Math.min((high[1] - low[1]) * scale, 0.8 * window.innerHeight));
+    const height = Math.max(120, Math.min((high[1] - low[1]) * scale, 0.6 * window.innerHeight));
     const size = Math.min(scale, height / (high[1] - low[1]));
     canvas.style.height = `${height}px`;
     if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {

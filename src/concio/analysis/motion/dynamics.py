@@ -262,7 +262,7 @@ class _Run:
 
     def follow(self, state: MotionState, every: float, stop_overturned: bool, stop_at_rest: bool) -> Ending:
         """Compute the motion and record it; return how it ended."""
-        self.state = state
+        self.state = state = self.stepper.located(state)
         start, rotation0 = state.time, state.rotation.copy()
         end, shot = start + self.duration, start
         h, calm = self.step, 0

@@ -14,9 +14,8 @@ import numpy as np
 from concio.analysis.motion.push import push
 from concio.analysis.motion.push_result import PushEnding
 from concio.arguments import strict
-from concio.contact.assembly import require_model
 from concio.errors import InputError
-from concio.model.model import Load, Model
+from concio.model.model import Load, Model, require_model
 
 Array = np.ndarray
 

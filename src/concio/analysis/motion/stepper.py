@@ -105,6 +105,17 @@ class Stepper:
             self._matrices[h] = A
         return self._matrices[h]
 
+    def located(self, state: MotionState) -> MotionState:
+        """Return a state whose joints are those found where its bodies stand."""
+        still = np.zeros(len(state.spin))
+        memory, _, new = self.maker.contacts(
+            state.memory, as_complex(state.centre), np.exp(1j * state.rotation), still.astype(complex), still,
+            as_complex(state.strain),
+        )  # fmt: skip
+        if new:
+            self.solver.new_layout()
+        return replace(state, memory=memory)
+
     def step(self, state: MotionState, h: float, drive: Drive) -> tuple[MotionState, StepReport]:
         """Return the state after a step of length h, and what the step did."""
         f = self.frames
