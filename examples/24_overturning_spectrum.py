@@ -33,7 +33,7 @@ def shaken(row: dict[str, float]) -> dict[str, float]:
     length = np.pi / (row["frequency"] * P)
     pulse = concio.Pulse("half sine", row["amplitude"] * G * ALPHA, length)
     found = concio.dynamics(model, pulse, length + 1.5, length / 60, gravity=G, every=0.01)
-    return {"rotation": found.largest_rotation[1] / ALPHA}
+    return dict(rotation=found.largest_rotation[1] / ALPHA)
 
 
 def threshold(frequency: float) -> float:
