@@ -34,7 +34,8 @@ def test_stages_are_read_written_and_followed():
     point = concio.ControlPoint("c04-b01", (0.0, 0.5))
     weight, push = model.stages
     assert weight == concio.Stage("weight", {"dead": 1.0}, steps=1)
-    assert push == concio.Stage("push", {"live": 0.5}, point, pytest.approx(1e-5))
+    assert push.until == pytest.approx(1e-5)
+    assert push == concio.Stage("push", {"live": 0.5}, point, push.until)
     again = concio.loads(concio.dumps(model))
     assert again.stages == model.stages
     found = concio.run_path(model)

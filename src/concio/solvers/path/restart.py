@@ -97,12 +97,13 @@ def look_beyond(
     free : bool
         Whether the structure is known to move freely at the point: then only quick tries are made.
     least : float
-        Smallest share of the present load worth trying, where restarts have followed one another closely.
+        Share of the present load below which increments are tried last, where restarts have followed one another
+        closely.
     progress : callable, optional
     """
     unit = load_unit(path, point)
-    shares = [share for share in SHARES if share >= least] or [SHARES[-1]]
-    tries = [(share, False) for share in shares] + [(shares[0], True)]
+    shares = sorted(SHARES, key=lambda share: (share < min(least, SHARES[-1]), share))
+    tries = [(share, False) for share in shares] + [(SHARES[0], True)]
     if free:
         tries.pop()
     proof: Solution | None = None
