@@ -24,8 +24,8 @@ FILES = sorted(p.name for p in FOLDER.glob("*.toml") if p.name not in DRAWINGS)
 COLLAPSE = {"pushed_too_hard.toml"}
 
 LARGEST = {"facade.toml": 1e-9}
-"""Certificates above 1e-10: corners of the drawing are moved together to 1e-10 of its size, and joints that close in the
-same motion contradict each other by as much; what is left is below what a certificate allows (1e-9)."""
+"""Certificates above 1e-10: corners of the drawing are moved together to 1e-10 of its size, and joints that close in
+one motion contradict each other by as much; what is left is below what a certificate allows (1e-9)."""
 
 
 @cache
