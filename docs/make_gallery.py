@@ -9,6 +9,7 @@ import ast
 import contextlib
 import importlib.util
 import io
+import re
 import textwrap
 from pathlib import Path
 
@@ -31,7 +32,8 @@ Written by `docs/make_gallery.py`. Each example is a script in `examples/`, and 
 def as_typed(path: Path) -> str:
     """Return the code of an example as one would type it: the body of its ``main``, without what serves the tests.
 
-    What only tests need is its last statement, the numbers returned; figures are drawn, not saved into a name given.
+    What only tests need is its last statement, the numbers returned; figures are drawn, not saved into a name given,
+    and the other arguments of ``main`` are what they are unless told otherwise.
     """
     source = path.read_text(encoding="utf-8")
     tree = ast.parse(source)
@@ -51,7 +53,13 @@ def as_typed(path: Path) -> str:
                 body += textwrap.dedent("\n".join(lines[inner.lineno - 1 : inner.end_lineno])).splitlines()
             continue
         body += textwrap.dedent("\n".join(lines[node.lineno - 1 : node.end_lineno])).splitlines()
-    text = "\n".join([*kept, "", *body])
+    given = dict(zip([a.arg for a in reversed(main.args.args)], reversed(main.args.defaults), strict=False))
+    typed = "\n".join(body)
+    typed = re.sub(r'Path\(__file__\)\.with_name\(("[^"]*")\)', r"\1", typed)
+    for name, default in given.items():
+        if name != "figure":
+            typed = re.sub(rf"(?<![.\w]){name}\b(?!=)", ast.unparse(default), typed)
+    text = "\n".join([*kept, "", typed])
     return text.replace("savefig(figure", f'savefig("{path.stem[3:]}.png"')
 
 

@@ -102,8 +102,8 @@ def check_panel_and_its_continuum(found):
 
 
 def check_smaller_and_smaller_blocks(found):
-    assert found["1"] > found["2"] > found["4"] > found["8"] > found["high"] > found["low"]
-    assert found["low"] < 2 * found["8"] - found["4"] < found["high"]
+    assert found["1"] > found["2"] > found["4"] > found["high"] > found["low"]
+    assert found["low"] < 2 * found["4"] - found["2"] < found["high"]
     assert found["high"] < 1.1 * found["low"]
 
 
@@ -125,6 +125,8 @@ def check_facade_strip(found):
 
 
 NAMES = sorted(p.stem for p in EXAMPLES.glob("[0-9]*.py"))
+SMALLER = {"16_smaller_and_smaller_blocks": {"sizes": (1, 2, 4)}, "24_overturning_spectrum": {"size": 12}}
+"""Examples whose statements hold of fewer runs, too; the gallery shows them whole."""
 
 
 def check_scatter_of_a_wall(found):
@@ -181,7 +183,7 @@ def test_example(name, monkeypatch, tmp_path):
     spec = importlib.util.spec_from_file_location(f"example_{name}", EXAMPLES / f"{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    globals()[f"check_{name[3:]}"](module.main())
+    globals()[f"check_{name[3:]}"](module.main(**SMALLER.get(name, {})))
     assert not list(tmp_path.iterdir())
 
 

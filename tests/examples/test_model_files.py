@@ -47,10 +47,10 @@ def test_every_example_is_decided(name: str) -> None:
     assert result.assembly.detection.report() == ()
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_every_example_obeys_the_schema(name: str) -> None:
-    jsonschema = pytest.importorskip("jsonschema")
-    jsonschema.validate(tomllib.loads((FOLDER / name).read_text(encoding="utf-8")), json_schema())
+def test_every_example_obeys_the_schema() -> None:
+    published = pytest.importorskip("jsonschema").Draft202012Validator(json_schema())
+    for name in FILES:
+        published.validate(tomllib.loads((FOLDER / name).read_text(encoding="utf-8")))
 
 
 def test_the_arch_carries_the_demo_panel() -> None:

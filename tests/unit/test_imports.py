@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -60,9 +61,19 @@ def room_of(path: str) -> str:
     return str(Path(path).parent) if "/" in path and path.endswith(".py") else path.removesuffix(".py")
 
 
-def imports(path: Path, *, lazy: bool) -> Iterator[str]:
-    """Yield the modules of concio that a file imports; with ``lazy`` also those inside functions."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+@cache
+def tree_of(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+@cache
+def imports(path: Path, *, lazy: bool) -> tuple[str, ...]:
+    """Return the modules of concio that a file imports; with ``lazy`` also those inside functions."""
+    return tuple(_imports(path, lazy))
+
+
+def _imports(path: Path, lazy: bool) -> Iterator[str]:
+    tree = tree_of(path)
     parents = {child: node for node in ast.walk(tree) for child in ast.iter_child_nodes(node)}
 
     def inside(node: ast.AST) -> tuple[bool, bool]:
@@ -145,8 +156,9 @@ def test_what_is_imported_is_declared() -> None:
         names = [re.split(r"[^A-Za-z0-9_.-]", requirement)[0] for requirement in requirements]
         return {packages.get(name, name.replace("-", "_")) for name in names}
 
+    always, at_times = modules(declared), modules(declared + optional)
     for path in MODULES:
-        tree = ast.parse(path.read_text(encoding="utf-8"))
+        tree = tree_of(path)
         inner = {id(n) for f in ast.walk(tree) if isinstance(f, ast.FunctionDef) for n in ast.walk(f)}
         for node in ast.walk(tree):
             if isinstance(node, ast.Import):
@@ -157,7 +169,7 @@ def test_what_is_imported_is_declared() -> None:
                 continue
             for word in {name.partition(".")[0] for name in names} - others:
                 # a package of an extra may be imported only where it is used
-                known = modules(declared) | (modules(optional) if id(node) in inner else set())
+                known = at_times if id(node) in inner else always
                 assert word in known, f"{path.relative_to(ROOT)} imports {word}, which pyproject.toml does not declare"
 
 

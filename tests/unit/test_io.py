@@ -229,7 +229,7 @@ def test_nothing_is_half_written(
     write_result(panel, target, figures=False, report=False)
     before = {p.name: p.read_bytes() for p in target.iterdir()}
 
-    def fail(*_: object) -> None:
+    def fail(*_: object, **__: object) -> None:
         raise error
 
     monkeypatch.setattr("concio.plot.figures.write_figures", fail)

@@ -28,6 +28,8 @@ from concio.io.result_file import save_result
 from concio.model.file.writing import dumps
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from concio.analysis.result import Result
 
 
@@ -69,14 +71,22 @@ def _write_all(result: Result, place: Path, figures: bool, report: bool) -> list
     written = [summary, model, *save_result(result, place)]
     tables = result.tables.all() if result.solved else {"bodies": result.tables.bodies()}
     written += [write_csv(table, place / f"{name}.csv") for name, table in tables.items()]
+    drawn: list[str] = []
     if figures:
         from concio.plot.figures import write_figures
+        from concio.report.page import captioned
 
         folder = place / "figures"
         folder.mkdir()
-        written += write_figures(result, folder)
-    if report:
-        from concio.report.page import write_report
 
-        written.append(write_report(result, place / "report.html"))
+        def into_the_report(name: str, axes: Axes) -> None:
+            drawn.append(captioned(name, axes))
+
+        written += write_figures(result, folder, then=into_the_report if report else None)
+    if report:
+        from concio.report.page import report_of
+
+        page = place / "report.html"
+        page.write_text(report_of(result, drawn if figures else None), encoding="utf-8")
+        written.append(page)
     return written

@@ -60,7 +60,13 @@ def suitable_figures(result: Result) -> dict[str, Callable[[], Axes]]:
     return found
 
 
-def write_figures(result: Result, directory: Path, formats: tuple[str, ...] = FORMATS, dpi: int = 150) -> list[Path]:
+def write_figures(
+    result: Result,
+    directory: Path,
+    formats: tuple[str, ...] = FORMATS,
+    dpi: int = 150,
+    then: Callable[[str, Axes], object] | None = None,
+) -> list[Path]:
     """Write the figures of a result into an existing directory.
 
     Parameters
@@ -71,6 +77,9 @@ def write_figures(result: Result, directory: Path, formats: tuple[str, ...] = FO
         Endings matplotlib knows: "png", "svg", "pdf".
     dpi : int
         Dots per inch of images.
+    then : callable, optional
+        Takes the name and the axes of each figure once it is written, before the next is drawn: a figure in space
+        takes longer to draw than to write.
 
     Returns
     -------
@@ -81,10 +90,13 @@ def write_figures(result: Result, directory: Path, formats: tuple[str, ...] = FO
     written = []
     with mpl.rc_context({"svg.hashsalt": "concio", "svg.fonttype": "none"}):
         for name, draw in suitable_figures(result).items():
-            figure = draw().get_figure(root=True)
+            axes = draw()
+            figure = axes.get_figure(root=True)
             assert figure is not None
             for ending in formats:
                 path = directory / f"{name}.{ending}"
                 figure.savefig(path, dpi=dpi, metadata={"Date": None} if ending == "svg" else None)
                 written.append(path)
+            if then is not None:
+                then(name, axes)
     return written

@@ -86,7 +86,7 @@ class Picture:
                 self.colour[y[seen], x[seen]] = colour
 
     def image(self) -> Array:
-        """Return the picture (h, w, 4), rows from above, clear where there is nothing."""
-        alpha = (np.isfinite(self.depth) | (self.colour < 1).any(axis=2)).astype(float)
-        image: Array = np.concatenate([self.colour, alpha[:, :, None]], axis=2)[::-1]
-        return image
+        """Return the picture (h, w, 4) in bytes, rows from above, clear where there is nothing."""
+        alpha = np.isfinite(self.depth) | (self.colour < 1).any(axis=2)
+        image = np.concatenate([self.colour, alpha[:, :, None]], axis=2)[::-1]
+        return np.asarray(np.rint(255 * image).astype(np.uint8))

@@ -24,6 +24,8 @@ from concio.report.view_data import view_data
 from concio.report.wording import certificate_sentence, checks, verdict
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from concio.analysis.result import Result
 
 ROWS = 250
@@ -76,6 +78,17 @@ def report_html(
         raise InputError(msg, hint="write one report for each model")
     labels = [_label(s, i) for i, s in enumerate(steps)] if labels is None else list(labels)
     return page(steps, labels, verdict=_verdict(steps[-1]), figures=_figures(steps[-1]) if figures else "")
+
+
+def report_of(result: Result, drawn: Sequence[str] | None = None) -> str:
+    """Return the report of one result with figures that are drawn already, as :func:`captioned` gives them."""
+    figures = _figures(result) if drawn is None else "".join(drawn)
+    return page([result], [_label(result, 0)], verdict=_verdict(result), figures=figures)
+
+
+def captioned(name: str, axes: Axes) -> str:
+    """Return a figure of a result for its report, under its title."""
+    return figure_html(axes, name, TITLES[name])
 
 
 def page(steps: Sequence[Result], labels: Sequence[str], *, verdict: str, figures: str, more: str = "") -> str:
@@ -167,8 +180,7 @@ def _model(result: Result) -> str:
 
 
 def _figures(result: Result) -> str:
-    drawn = [figure_html(draw(), name, TITLES[name]) for name, draw in suitable_figures(result).items()]
-    return "".join(drawn)
+    return "".join(captioned(name, draw()) for name, draw in suitable_figures(result).items())
 
 
 def _tables(result: Result) -> str:

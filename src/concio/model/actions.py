@@ -1,0 +1,142 @@
+"""What holds and loads the bodies: supports with their settlements, loads in groups, ties."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+
+from concio.arguments import strict_class
+from concio.representation import short_repr
+
+Face = Literal["lower", "upper", "left", "right", "both"]
+FACES: tuple[str, ...] = get_args(Face)
+"""Faces of a joint that a load along it may act on."""
+Point = tuple[float, ...]
+"""A point or a vector with as many coordinates as the model has dimensions."""
+
+
+@strict_class
+@short_repr
+@dataclass(frozen=True)
+class Support:
+    """Holds unknowns of elastic or rigid bodies, with or without an imposed displacement.
+
+    Parameters
+    ----------
+    name : str
+    body : str
+        Body by name; a fixed body may be moved, which pushes or drags what touches it.
+    edge : (point, point) or None
+        Segment of the outline that is held, in space a line; a point is a segment of length zero. Without edge and
+        polygon the whole body is held.
+    directions : str
+        Any of "x", "y" and, in space, "z"; or "all".
+    displacement : (ux, uy) or (ux, uy, uz)
+        Imposed displacement [m]; empty is none.
+    rotation : float, or (rx, ry, rz) in space
+        Imposed rotation about the body's centroid, fixed and rigid bodies only [rad].
+    group : str
+        Load group that scales the imposed displacement.
+    polygon : tuple of points, or None
+        In space: the part of the body's faces that is held, as a planar polygon [m].
+    """
+
+    name: str
+    body: str
+    edge: tuple[Point, Point] | None = None
+    directions: str = "all"
+    displacement: Point = ()
+    rotation: float | Point = 0.0
+    group: str = "settlement"
+    polygon: tuple[Point, ...] | None = None
+
+    @property
+    def moves(self) -> bool:
+        """Whether a displacement or a rotation is imposed."""
+        return bool(np.any(self.displacement) or np.any(self.rotation))
+
+
+@strict_class
+@short_repr
+@dataclass(frozen=True)
+class Load:
+    """A load on the bodies it names.
+
+    Parameters
+    ----------
+    kind : {"weight", "pressure", "traction", "point", "body"}
+        weight: unit weight times volume, times the vector ``value``: (0, -1) is gravity, in space (0, 0, -1);
+        (0.1, 0) a horizontal share of a tenth. pressure: ``value[0]`` [kN/m2], positive pushes against the face.
+        traction: vector [kN/m2] on an edge or polygon. point: vector [kN] at ``at``. body: vector per volume [kN/m3].
+    value : tuple of float
+    bodies : tuple of str
+        Names, roles, layers, or patterns of names such as ``"tower-*"``; empty means every body that is not fixed.
+    edge : (point, point) or None
+        Segment for pressure and traction in the plane; only outline parts that lie on it are loaded.
+    at : point or None
+        Point of a point load [m].
+    group : str
+        Load group; groups are scaled by load factors.
+    face : {"lower", "upper", "left", "right", "both"} or None
+        Which of the two faces of a joint a pressure or traction acts on that lies in a joint between two of the
+        bodies; None is the lower one, the top of the body below. Where the edge lies on one face only, it is that one.
+    polygon : tuple of points, or None
+        Planar polygon for pressure and traction in space; only parts of faces that lie in it are loaded [m].
+    """
+
+    kind: Literal["weight", "pressure", "traction", "point", "body"]
+    value: tuple[float, ...]
+    bodies: tuple[str, ...] = ()
+    edge: tuple[Point, Point] | None = None
+    at: Point | None = None
+    group: str = "dead"
+    face: Face | None = None
+    polygon: tuple[Point, ...] | None = None
+
+
+@strict_class
+@short_repr
+@dataclass(frozen=True)
+class Tie:
+    """A straight bar that takes tension only, with prestress, between two bodies or a body and a fixed point.
+
+    Parameters
+    ----------
+    name : str
+    body_a, body_b : str
+        Body names; ``body_b`` may be "" for a fixed point in space.
+    at_a, at_b : points
+        Ends [m].
+    stiffness : float
+        E A / L > 0 [kN/m].
+    prestress : float
+        Tension at zero elongation >= 0 [kN].
+    yield_force : float or None
+        Largest tension, of the bar or of its anchors [kN]; None is unlimited.
+    break_elongation : float or None
+        Elongation at which it breaks [m], which counts where a mechanism is followed far; None is never.
+    """
+
+    name: str
+    body_a: str
+    at_a: Point
+    body_b: str
+    at_b: Point
+    stiffness: float
+    prestress: float = 0.0
+    yield_force: float | None = None
+    break_elongation: float | None = None
+
+    @property
+    def most(self) -> float:
+        """Largest tension [kN]; ``inf`` where it is unlimited."""
+        return math.inf if self.yield_force is None else self.yield_force
+
+    def force(self, elongation: float) -> float:
+        """Return the tension [kN] at an elongation [m] that was never larger: elastic, then plastic, then broken."""
+        if self.break_elongation is not None and elongation >= self.break_elongation:
+            return 0.0
+        return min(max(self.prestress + self.stiffness * elongation, 0.0), self.most)
