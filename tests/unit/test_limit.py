@@ -6,10 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
 
-from concio.errors import InputError
-from concio.problem.contact_problem import ContactProblem, Laws
 from concio.solvers.statics import collapse_state
 from concio.solvers.statics import programme as statics
 from concio.solvers.statics.collapse_search import find_collapse_state
@@ -178,12 +175,3 @@ def test_collapse_state_with_a_cap(monkeypatch, large, mu, cap, cohesion, wanted
     assert found.certified
     assert found.multiplier == pytest.approx(wanted, rel=1e-9)
     assert found.velocity == pytest.approx(motion, abs=1e-9)
-
-
-def test_collapse_states_are_plane():
-    space = ContactProblem(
-        sp.csr_array((3, 3)), np.array([0.0, 0.0, -1.0]), sp.csr_array([[0.0, 0.0, 1.0]]), sp.csr_array(np.eye(3)[:2]),
-        np.zeros(1), Laws.coulomb(0.5, 1), sp.csc_array(sp.eye_array(3)), np.array([0, 3]),
-    )  # fmt: skip
-    with pytest.raises(InputError, match="plane"):
-        find_collapse_state(space, np.array([1.0, 0.0, 0.0]))

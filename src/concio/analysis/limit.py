@@ -188,8 +188,6 @@ def search_collapse(
     dead: ContactProblem, live: Array, *, work: int = WORK_OF_ALL, progress: ProgressCallback | None = None
 ) -> tuple[CollapseState | None, str]:
     """Search collapse states where the problem is not too large; return the least one, and what was done in words."""
-    if dead.dim != 2:
-        return None, "not tried: the search handles plane problems"
     if dead.pairs > LARGEST_SEARCH:
         return None, f"not tried: {dead.pairs:,} contact pairs are more than {LARGEST_SEARCH:,}"
     found = find_collapse_state(dead, live, work=work, progress=progress)

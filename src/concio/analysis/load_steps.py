@@ -6,9 +6,8 @@ the associated bound. What was reached is carried, by forces that obey every law
 The exact path (:mod:`concio.solvers.path.event_path`) follows every event and can show collapse, at a price that grows
 with the square of the number of pairs; these are some fifteen load steps, whatever the size.
 
-In space there are neither exact paths nor a search for collapse states. There the structure is released at the least
-multiplier that found no certified state: where it moves away, a motion proves that, and the two multipliers bracket
-collapse under Coulomb friction.
+In space there are no exact paths. There the structure is released at the least multiplier that found no certified
+state: where it moves away, a motion proves that, and the two multipliers bracket collapse under Coulomb friction.
 """
 
 from __future__ import annotations

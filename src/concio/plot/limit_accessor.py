@@ -72,4 +72,9 @@ class LimitPlots:
         assembly = self.found.assembly
         motion = Mechanism(velocity / float(np.abs(velocity).max()), 0.0, 0.0)
         solution = failed(assembly.problem(), Status.NO_EQUILIBRIUM, method="limit", mechanism=motion)
-        return plot_mechanism(Result(assembly, {}, solution, {}), ax, title=title, note=note)
+        result = Result(assembly, {}, solution, {})
+        if assembly.model.dim == 3:
+            from concio.plot.space_figures import plot_space
+
+            return plot_space(result, ax)
+        return plot_mechanism(result, ax, title=title, note=note)

@@ -3,10 +3,11 @@ r"""Search for the collapse state of least multiplier, from several starts.
 The least multiplier among the collapse states of a structure (:mod:`concio.solvers.statics.collapse_state`) is a
 mathematical programme with complementarity constraints (Ferris and Tin-Loi, Int. J. Mech. Sci. 43, 2001); nobody finds
 it for sure. The search is the simple iteration on the sliding strength: with the strength frozen at c + mu t_n of the
-forces found last, flow is associated and dilatancy zero, a linear programme; its forces, averaged with the old ones,
-give the next strength (in the spirit of Gilbert, Casapulla and Ahmed, Comput. Struct. 84, 2006). Where it ends depends
-on where it begins. So it begins from the forces of the associated limit, and again from admissible forces drawn at
-random: those that minimise a random cost under a random share of the associated load.
+forces found last, flow is associated and dilatancy zero, a linear programme in the plane and one over second-order
+cones in space; its forces, averaged with the old ones, give the next strength (in the spirit of Gilbert, Casapulla and
+Ahmed, Comput. Struct. 84, 2006). Where it ends depends on where it begins. So it begins from the forces of the
+associated limit, and again from admissible forces drawn at random: those that minimise a random cost under a random
+share of the associated load (in space, those that the largest random load leaves beside such a share).
 
 The motion of every iteration is tried, not only that at which it comes to stand: many lead to a state of their own.
 What comes out is the least of the states found, each certified for itself; that there is none below is not shown.
@@ -18,16 +19,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from concio.errors import InputError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Progress, ProgressCallback
+from concio.problem.tolerances import CHECKED
 from concio.representation import short_repr
 from concio.solvers.statics.collapse_state import CollapseState, Motion, certify_collapse
 from concio.solvers.statics.limit import LimitLoad, associated_limit
 from concio.solvers.statics.programme import StaticProgramme, optimise
 
-STARTS = 12
-"""Starts at most: the least known state of a published wall is found by one in five of them."""
+STARTS = {2: 12, 3: 2}
+"""Starts at most: the least known state of a published wall is found by one in five of them. In space other starts end
+within a thousandth, and cost more."""
 
 MOST, WORK = 25, 350_000
 """Linear programmes from one start at most, and their number times the pairs."""
@@ -35,10 +37,11 @@ MOST, WORK = 25, 350_000
 WORK_OF_ALL = 100_000
 """No further start is made once linear programmes times pairs have come to this."""
 
-STILL, PATIENCE = 1e-9, 3
-"""A start is done where the multiplier changes by less than ``STILL`` in ``PATIENCE`` iterations in a row."""
+STILL, PATIENCE = {2: 1e-9, 3: 1e-5}, 3
+"""A start is done where the multiplier changes by less than ``STILL`` in ``PATIENCE`` iterations in a row; in space,
+where slips turn as they please, it never quite comes to stand."""
 
-SAME = 1e-9
+SAME = {2: 1e-9, 3: 1e-3}
 """States whose multipliers differ by less, relative, count as one."""
 
 
@@ -68,7 +71,7 @@ class CollapseSearch:
     @property
     def words(self) -> str:
         """What was done, in words."""
-        looked = f"{self.starts} start{'s' if self.starts > 1 else ''}, {self.programmes} linear programmes"
+        looked = f"{self.starts} start{'s' if self.starts > 1 else ''}, {self.programmes} programmes"
         looked += ", stopped on request" if self.cancelled else ""
         if self.state is None:
             return f"none found from {looked}; that proves nothing"
@@ -80,7 +83,7 @@ def find_collapse_state(
     problem: ContactProblem,
     live: Array,
     *,
-    starts: int = STARTS,
+    starts: int | None = None,
     iterations: int | None = None,
     average: float = 0.5,
     seed: int = 0,
@@ -92,10 +95,10 @@ def find_collapse_state(
     Parameters
     ----------
     problem : ContactProblem
-        With its dead load; two-dimensional.
+        With its dead load.
     live : (N,) array
-    starts : int
-        Starts at most; fewer on large problems.
+    starts : int, optional
+        Starts at most, by default :data:`STARTS`; fewer on large problems.
     iterations : int, optional
         Linear programmes with frozen strength from one start, at most; by default 25, fewer on large problems.
     average : float
@@ -106,15 +109,7 @@ def find_collapse_state(
         Linear programmes times pairs after which no further start is made; one start alone takes no more either where
         this is less than its own share.
     progress : callable, optional
-
-    Raises
-    ------
-    InputError
-        The problem is not plane.
     """
-    if problem.dim != 2:
-        msg = "the search for collapse states handles plane problems"
-        raise InputError(msg, hint="follow the load path instead")
     top = associated_limit(problem, live)
     search = _Search(problem, live, average, progress)
     if not np.isfinite(top.multiplier):
@@ -122,7 +117,7 @@ def find_collapse_state(
     share = WORK if work >= WORK_OF_ALL else work
     most = max(1, min(MOST, share // max(problem.pairs, 1))) if iterations is None else iterations
     rng = np.random.default_rng(seed)
-    made = 0
+    made, starts = 0, STARTS[problem.dim] if starts is None else starts
     while made < starts and (made == 0 or search.programmes * problem.pairs < work):
         forces = top.normal_force if made == 0 else _drawn(problem, live, top, rng)
         made += 1
@@ -144,7 +139,7 @@ class _Search:
         """Return what was found so far."""
         multipliers: list[float] = []
         for found in sorted(state.multiplier for state in self.states):
-            if not multipliers or found > multipliers[-1] + SAME * max(1.0, abs(found)):
+            if not multipliers or found > multipliers[-1] + SAME[self.problem.dim] * max(1.0, abs(found)):
                 multipliers.append(found)
         best = min(self.states, key=lambda state: state.multiplier, default=None)
         return CollapseSearch(best, starts, self.programmes, tuple(multipliers), cancelled)
@@ -164,7 +159,7 @@ class _Search:
                 return True
             change = abs(found.multiplier - last) / max(1.0, abs(last))
             self.certify(found.mechanism.velocity)
-            still = still + 1 if change <= STILL else 0
+            still = still + 1 if change <= STILL[problem.dim] else 0
             if still >= PATIENCE:
                 return True
             last = found.multiplier
@@ -186,6 +181,8 @@ class _Search:
 def _drawn(problem: ContactProblem, live: Array, top: LimitLoad, rng: np.random.Generator) -> Array | None:
     """Return normal forces (m,) drawn from those that are admissible under a random share of the associated load."""
     load = problem.f + rng.uniform(0.0, 1.0) * top.multiplier * live
+    if problem.dim == 3:
+        return _drawn_in_space(problem, load, live, top, rng)
     programme = StaticProgramme(problem)
     A, e0 = programme.equilibrium
     force = float(np.abs(load).sum()) or 1.0
@@ -196,3 +193,13 @@ def _drawn(problem: ContactProblem, live: Array, top: LimitLoad, rng: np.random.
     cost[~np.isfinite(bounds[:, 0])] = 0.0
     result = optimise(cost, (A, -(programme.project(load) + e0) / force), bounds, limits)
     return programme.forces(result.x * force)[0] if result.status == 0 else None
+
+
+def _drawn_in_space(
+    problem: ContactProblem, load: Array, live: Array, top: LimitLoad, rng: np.random.Generator
+) -> Array | None:
+    """Return normal forces (m,) among the admissible ones under ``load``: those that a random push would end with."""
+    away = rng.normal(size=problem.unknowns) * float(np.abs(live).max())
+    found = associated_limit(problem.with_loads(load), problem.R @ (problem.R.T @ away))
+    forces: Array = found.normal_force
+    return forces if np.isfinite(found.multiplier) and found.residual <= CHECKED else None

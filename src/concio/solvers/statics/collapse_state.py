@@ -9,12 +9,14 @@ with w = C v: the structure can begin to move at lambda with the friction that i
 many; :mod:`concio.solvers.statics.collapse_search` looks for the least.
 
 Here a motion becomes a state: forces of the *true* cones, with every pair in the state that the motion asks for, are
-found by a linear programme, and the state is rechecked by plain matrix products.
+found by a linear programme, in space by one over second-order cones
+(:mod:`concio.solvers.statics.collapse_cones`), and the state is rechecked by plain matrix products.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -22,12 +24,16 @@ import scipy.sparse as sp
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.tolerances import CHECKED
 from concio.representation import short_repr
+from concio.solvers.statics.collapse_cones import forces_in_space
 from concio.solvers.statics.limit import static_residual
 from concio.solvers.statics.mechanism import pair_velocities
 from concio.solvers.statics.programme import LARGE, Method, StaticProgramme, optimise
 
 MOVES = 1e-8
 """Relative velocities above this share of the largest count as opening or slipping."""
+
+NEAR = 1e9
+"""Slip directions that differ by less than one over this are asked for as one."""
 
 
 @short_repr
@@ -38,7 +44,7 @@ class CollapseState:
     Parameters
     ----------
     multiplier : float
-    normal_force, friction_force : arrays (m,), (m, 1)
+    normal_force, friction_force : arrays (m,), (m, d-1)
         [kN].
     velocity : (N,) array
         Rigid motion, largest entry 1.
@@ -74,7 +80,7 @@ class Motion:
     ----------
     velocity : (N,) array
         Largest entry 1.
-    w_n, w_t : (m,) arrays
+    w_n, w_t : arrays (m,), (m, d-1)
         Its relative velocities.
     opens, slips, crushes : (m,) boolean arrays
     """
@@ -90,25 +96,32 @@ class Motion:
     def of(cls, problem: ContactProblem, velocity: Array) -> Motion:
         """Return what a motion (N,) of any size asks of the pairs."""
         v = velocity / float(np.abs(velocity).max())
-        w_n, _ = pair_velocities(problem, v)
-        w_t = problem.C_t @ v
+        w_n, speed = pair_velocities(problem, v)
+        w_t = (problem.C_t @ v).reshape(problem.pairs, problem.dim - 1)
         crushes = problem.cone.capped & (w_n < -MOVES)
-        return cls(v, w_n, w_t, w_n > MOVES, np.abs(w_t) > MOVES, crushes)
+        return cls(v, w_n, w_t, w_n > MOVES, speed > MOVES, crushes)
+
+    @cached_property
+    def direction(self) -> Array:
+        """Unit directions (m, d-1) of the slips; zero where a pair does not slip."""
+        speed = np.linalg.norm(self.w_t, axis=1)
+        unit: Array = np.where(self.slips[:, None], self.w_t / np.where(speed > 0, speed, 1.0)[:, None], 0.0)
+        return unit
 
     @property
     def key(self) -> bytes:
-        """The states of all pairs: equal keys ask for the same forces."""
-        return np.concatenate([self.opens, self.crushes, np.where(self.slips, np.sign(self.w_t), 0)]).tobytes()
+        """The states of all pairs: equal keys ask for the same forces (in space, for nearly the same)."""
+        return np.concatenate([self.opens, self.crushes, np.rint(NEAR * self.direction).ravel()]).tobytes()
 
     def flow_error(self, problem: ContactProblem, t_n: Array, t_t: Array) -> Array:
-        """Return the power that should not be there at each pair, (m,), for forces t_n, t_t (m,) [kN]."""
+        """Return the power that should not be there at each pair, (m,), for forces t_n (m,), t_t (m, d-1) [kN]."""
         cone = problem.cone
         cap = np.where(cone.capped, cone.cap, 0.0)
-        opposed = cone.strength(t_n) * np.sign(self.w_t) + t_t
+        opposed = np.linalg.norm(t_t - cone.opposing(t_n, self.direction), axis=1)
         wrong: Array = np.maximum.reduce(
             [
                 np.abs(np.where(self.opens, self.w_n, 0.0) * (t_n + cone.tension)),
-                np.abs(np.where(self.slips, self.w_t, 0.0) * opposed),
+                np.where(self.slips, np.linalg.norm(self.w_t, axis=1), 0.0) * opposed,
                 np.abs(np.where(self.crushes, self.w_n, 0.0) * (cap - t_n)),
             ]
         )
@@ -121,22 +134,30 @@ class Motion:
 
 def certify_collapse(problem: ContactProblem, live: Array, velocity: Array, iterations: int) -> CollapseState | None:
     """Find forces of the true cones that go with a motion (N,), and return the certified state or None."""
-    programme = StaticProgramme(problem)
     motion = Motion.of(problem, velocity)
+    found = _programmed(problem, motion, live) if problem.dim == 2 else forces_in_space(problem, motion, live)
+    if found is None:
+        return None
+    multiplier, t_n, t_t = found
+    load = problem.f + multiplier * live
+    force = max(float(np.abs(problem.f).sum()), float(np.abs(live).sum()))
+    size = float(np.abs(load).sum()) or force  # a live load may undo the dead one
+    wrong = float(motion.flow_error(problem, t_n, t_t).max(initial=0.0)) / size
+    flow = max(wrong, motion.penetration())
+    statics = static_residual(problem, load, t_n, t_t)
+    state = CollapseState(multiplier, t_n, t_t, motion.velocity, statics, flow, iterations)
+    return state if state.certified and float(live @ motion.velocity) > 0 else None
+
+
+def _programmed(problem: ContactProblem, motion: Motion, live: Array) -> tuple[float, Array, Array] | None:
+    """Return least multiplier and forces that go with a motion, by a linear programme; None where there are none."""
+    programme = StaticProgramme(problem)
     equations, bounds, caps, force = forces_asked_for(programme, motion, live)
     alone: Method | None = "interior" if len(bounds) >= LARGE else None  # "there are none" is not worth minutes
     result = optimise(np.r_[np.zeros(len(bounds) - 1), 1.0], equations, bounds, caps, method=alone)
     if result.status != 0:
         return None
-    multiplier = float(result.x[-1])
-    t_n, t_t = programme.forces(result.x[:-1] * force)
-    load = problem.f + multiplier * live
-    size = float(np.abs(load).sum()) or force  # a live load may undo the dead one
-    wrong = float(motion.flow_error(problem, t_n, t_t[:, 0]).max(initial=0.0)) / size
-    flow = max(wrong, motion.penetration())
-    statics = static_residual(problem, load, t_n, t_t)
-    state = CollapseState(multiplier, t_n, t_t, motion.velocity, statics, flow, iterations)
-    return state if state.certified and float(live @ motion.velocity) > 0 else None
+    return float(result.x[-1]), *programme.forces(result.x[:-1] * force)
 
 
 def forces_asked_for(
@@ -151,7 +172,7 @@ def forces_asked_for(
     rough = law.friction > 0
     bounds = programme.bounds.copy()
     pair, direction = programme.rays
-    sign = np.sign(motion.w_t)
+    sign = np.sign(motion.w_t[:, 0])
     wrong_way = motion.slips[pair] & (sign[pair] * direction[:, 0] > 0) & rough[pair]
     bounds[: pair.size][motion.opens[pair] | wrong_way, 1] = 0.0
     full = np.flatnonzero(motion.crushes[pair] & ~rough[pair])
