@@ -15,6 +15,7 @@ from concio.fem.constitutive import principal_in_space, solid_matrix
 from concio.fem.elements import SOLID_FAMILIES
 from concio.kinematics.frames import tangents
 from concio.model.interfaces.patches import Patch
+from concio.model.surfaces import from_grid
 from solids import TURN, box, frame_block, l_block, turned
 
 STONE = Elastic(1e6, 0.25, 22.0)
@@ -317,3 +318,12 @@ def test_principal_stresses_and_their_directions() -> None:
     for s, n in zip(values[0], directions[0], strict=True):
         assert np.allclose(tensor @ n, s * n)
     assert np.isnan(values[1]).all()
+
+
+def test_a_fine_grid_is_meshed_as_it_is() -> None:
+    """The size of the mesh is judged by the nodes of the grid, and its faces find their marks."""
+    x = np.linspace(0.0, 1.0, 11)
+    block = from_grid("a", np.stack(np.meshgrid(x, x, x, indexing="ij"), -1))
+    assembly = concio.assemble(model(GROUND, block, mesh_size=1.0))
+    assert assembly.disc.unknowns == 3 * 11**3
+    assert len(assembly.pairs) == 11**2

@@ -74,6 +74,15 @@ def test_self_stress_alone_holds_nothing(kind):
         concio.solve(between_walls(0.5, 0.5, **HELD[kind]))
 
 
+def test_self_stress_in_space_is_that_of_the_plane():
+    """The same block a metre thick: least compression over second-order cones, and the same sentence."""
+    result = concio.solve(concio.extrude(between_walls(0.5, 0.5, **STONE), 1.0), on_failure="return")
+    assert result.status is Status.COLLAPSES
+    assert result.self_stress.compression == pytest.approx(20.0, rel=1e-7)
+    assert result.self_stress.residual <= 1e-9
+    assert "only as self-stress" in result.sentence
+
+
 @pytest.mark.parametrize(("friction", "stands"), [(0.5, True), (0.1, False)])
 def test_pressed_by_a_load_the_block_is_held(friction, stands):
     """A second block, free to slide on its floor, presses the first with 40 kN against the wall: 10 kN hang on that."""

@@ -208,10 +208,13 @@ def _check_size(unknowns: float, where: str | None = None) -> None:
 def _unknowns(model: Model, body: Body | Polyhedron, size: float) -> float:
     """Return about how many unknowns the mesh of a body has, found without making it."""
     split = float(model.refinement)
-    if body.grid is not None:
+    if isinstance(body, Body) and body.grid is not None:
         return float(model.dim * np.prod([float(len(lines)) * split for lines in body.grid]))
     count = body.volume / body.thickness * (split / size) ** model.dim
-    if isinstance(body, Body):  # a film thinner than its elements has them all along it
+    if isinstance(body, Polyhedron):
+        if body.grid is not None:
+            count = max(count, float(np.prod(body.grid.shape[:3])) * split**3)
+    else:  # a film thinner than its elements has them all along it
         around = float(np.hypot(*(body.vertices[body.following] - body.vertices).T).sum())
         count = max(count, around * split / size)
     return model.dim * count

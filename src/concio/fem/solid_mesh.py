@@ -137,7 +137,10 @@ def _grid_coordinates(grid: Array, points: Array) -> Array | None:
     first = np.stack(np.meshgrid(*(np.arange(n) for n in shape), indexing="ij"), -1).reshape(-1, 3)
     corners = grid.reshape(-1, 3)
     found = np.full(points.shape, np.nan)
-    for cell, base in zip(cells, first, strict=True):
+    low, high = corners[cells].min(1), corners[cells].max(1)
+    room = 1e-5 * float((high - low).max())
+    near = (low <= points.max(0) + room).all(1) & (high >= points.min(0) - room).all(1)
+    for cell, base in zip(cells[near], first[near], strict=True):
         local = _inverse(corners[cell], points)
         inside = (np.abs(local - 0.5) <= 0.5 + 1e-6).all(1) & np.isnan(found[:, 0])
         found[inside] = base + local[inside]

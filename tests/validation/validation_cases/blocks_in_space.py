@@ -10,7 +10,11 @@ A tilted plane holds a box while the steepest slope, :math:`\sqrt{\tan^2\alpha +
 mu. A stack of n books overhangs by half the harmonic sum; at the share s of that, books h thick, a force
 along the overhang topples all five at (1 - s)/(n h). A square joint under central load carries the torsion
 0.382598 mu N a with points over the whole face, as under uniform pressure, and 0.707107 mu N a with its corners alone:
-the choice of contact points matters there, and every result names it.
+the choice of contact points matters there, and every result names it. A rectangle a x b has the mean distance from its
+centre in the place of 0.382598 a.
+
+Walls of the plane made 0.3 m thick have its multiplier along their plane; out of it they topple at t / H whatever the
+bond. Barrel vaults of any length and bond, pushed across, have the multiplier of the arch.
 """
 
 from __future__ import annotations
@@ -24,6 +28,7 @@ import concio
 from concio.model.surfaces import prism
 from concio.problem.contact_problem import ContactProblem
 from concio.solvers.statics.limit import associated_limit
+from validation_cases import ferris_tin_loi
 from validation_cases.row import Row
 
 SOURCE = "closed forms; uniform pressure under a square: mean distance from its centre."
@@ -80,9 +85,15 @@ def books(share: float, count: int = 5) -> float:
     return pushed(tuple(bodies), (1.0, 0.0, 0.0), 0.9)
 
 
-def torsion(points: int | str) -> float:
-    """Torsion of a unit cube pressed on the ground over mu N a, points by a choice of the model."""
-    cube = concio.Polyhedron.box("cube", (-0.5, -0.5, 0.0), (0.5, 0.5, 1.0), **BLOCK)
+def mean_radius(a: float, b: float) -> float:
+    """Mean distance of the points of a rectangle from its centre [m]."""
+    d = float(np.hypot(a, b))
+    return d / 6 + a**2 / (12 * b) * np.log((b + d) / a) + b**2 / (12 * a) * np.log((a + d) / b)
+
+
+def torsion(points: int | str, length: float = 1.0) -> float:
+    """Torsion of a block ``length`` x 1 pressed on the ground over mu N, points by a choice of the model."""
+    cube = concio.Polyhedron.box("cube", (-0.5 * length, -0.5, 0.0), (0.5 * length, 0.5, 1.0), **BLOCK)
     loads = (concio.Load("weight", (0.0, 0.0, -1.0)),)
     laws = {"joint": concio.JointLaw(friction=0.5)}
     assembly = concio.assemble(concio.Model((ground(), cube), STONE, laws, loads=loads, contact_points=points))
@@ -90,7 +101,7 @@ def torsion(points: int | str) -> float:
     twist = np.zeros(problem.unknowns)
     twist[5] = 1.0 / assembly.disc.reach[1]  # a moment of one about the vertical axis
     found = associated_limit(pressed_by_weight(problem), twist)
-    return found.multiplier / 0.5 if found.checked else np.nan
+    return found.multiplier / 0.5 if found.checked else np.nan  # friction 0.5, N = 1 of the law held
 
 
 def pressed_by_weight(problem: ContactProblem) -> ContactProblem:
@@ -103,18 +114,34 @@ def pressed_by_weight(problem: ContactProblem) -> ContactProblem:
 
 @cache
 def wall_limit(direction: tuple[float, ...]) -> float:
-    """Running-bond wall 4 x 2 m of blocks 0.5 x 0.25 m, 0.3 m thick, friction 0.65."""
-    plane = concio.wall(length=4.0, height=2.0, block_size=(0.5, 0.25), block="rigid", friction=0.65)
-    space = concio.extrude(plane, 0.3)
-    loads = (*space.loads, concio.Load("weight", direction, group="live"))
+    """Wall 1 of Ferris and Tin-Loi, 0.3 m thick: multiplier of a share of the weight in a direction."""
+    space = concio.extrude(plane_wall(), 0.3)
+    dead = tuple(load for load in space.loads if load.group == "dead")
+    loads = (*dead, concio.Load("weight", direction, group="live"))
     found = concio.limit(replace(space, loads=loads), path=False, steps=False, search=False).associated
     return found.multiplier if found.checked else np.nan
 
 
 @cache
+def plane_wall() -> concio.Model:
+    return ferris_tin_loi.model("wall 1")
+
+
+@cache
 def plane_limit() -> float:
-    plane = concio.wall(length=4.0, height=2.0, block_size=(0.5, 0.25), block="rigid", friction=0.65, horizontal=1.0)
-    return concio.limit(plane, path=False, steps=False, search=False).associated.multiplier
+    return concio.limit(plane_wall(), path=False, steps=False, search=False).associated.multiplier
+
+
+def barrel_and_arch(blocks: int, length: float, bond: str) -> tuple[float, float]:
+    """Multiplier of a horizontal share of the weight of a barrel vault, and of the arch it is made of."""
+    common = {"span": 4.0, "ring": 0.5, "voussoirs": 11, "block": "rigid", "friction": 0.6}
+    solid = concio.barrel(length=length, blocks=blocks, bond=bond, horizontal=1.0, **common)
+    plane = concio.arch(edges="straight", horizontal=1.0, **common)
+    multipliers = []
+    for model in (solid, plane):
+        found = concio.limit(model, path=False, steps=False, search=False).associated
+        multipliers.append(found.multiplier if found.checked else np.nan)
+    return multipliers[0], multipliers[1]
 
 
 @cache
@@ -160,12 +187,20 @@ def rows() -> list[Row]:
     found += [
         Row("torsion of a square joint, corner points", np.sqrt(0.5), torsion("corners"), 1e-9, ROUNDING),
         Row("torsion of a square joint, 12 x 12 points", 0.382598, torsion(12), 2e-3, "12 x 12 points for the square"),
+        Row("torsion of a joint 2 x 1, 12 x 12 points", mean_radius(2, 1), torsion(12, 2.0), 3e-3, "12 x 12 points"),
     ]
     found += [
         Row("wall extruded, pushed along: as in the plane", plane_limit(), wall_limit((1.0, 0.0, 0.0)), 1e-9, ROUNDING,
             check="second method"),
-        Row("wall extruded, pushed out of its plane: t / H", 0.15, wall_limit((0.0, 1.0, 0.0)), 1e-9, ROUNDING),
+        Row("wall extruded, pushed out of its plane: t / H", 0.3 / 1.05, wall_limit((0.0, 1.0, 0.0)), 1e-9, ROUNDING),
+        Row("wall extruded, pushed at 45 degrees in plan", 0.404061, wall_limit((0.5**0.5, 0.5**0.5, 0.0)), 2e-6,
+            "six digits were kept", check="second method"),
     ]  # fmt: skip
+    for blocks, length, bond in ((1, 1.0, "stack"), (3, 4.5, "stack"), (2, 3.0, "running")):
+        solid, plane = barrel_and_arch(blocks, length, bond)
+        found.append(
+            Row(f"barrel {length:g} long, {bond} bond: the arch", plane, solid, 1e-9, ROUNDING, check="second method")
+        )
     worst, slips = plane_strain(0.25)
     found += [
         Row("elastic wall in plane strain: displacements as in the plane", 0.0, worst, 1e-8, "rounding",

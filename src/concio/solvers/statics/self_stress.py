@@ -6,18 +6,22 @@ hold a block by friction, had anything pressed them against it. Such forces diff
 
 .. math:: \min \sum_k t_{n,k} \quad\text{subject to}\quad R^T (f + C^T t) = 0,\ t_k \in S_k,
 
-tell how much of it would be needed.
+tell how much of it would be needed: a linear programme in the plane. In space it is the limit programme of one more
+motion, which every pair closes at the rate one and a load B presses shut: the largest load that pulls it open is B less
+the least compression.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
+import scipy.sparse as sp
 
-from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.contact_problem import Array, ContactProblem, Laws
 from concio.problem.tolerances import ADMISSIBLE
 from concio.representation import short_repr
+from concio.solvers.statics.cone_statics import ConeStatics
 from concio.solvers.statics.limit import static_residual
 from concio.solvers.statics.mechanism import total_load
 from concio.solvers.statics.programme import StaticProgramme, optimise
@@ -58,6 +62,8 @@ def least_compression(problem: ContactProblem) -> SelfStress | None:
     """
     if not problem.pairs or not problem.rigid_motions:
         return None
+    if problem.dim == 3:
+        return _by_cones(problem)
     force = total_load(problem)
     programme = StaticProgramme(problem)
     A, e0 = programme.equilibrium
@@ -72,3 +78,34 @@ def least_compression(problem: ContactProblem) -> SelfStress | None:
     t_n, t_t = programme.forces(x)
     residual = static_residual(problem, problem.f, t_n, t_t)
     return SelfStress(t_n, t_t, residual, force) if residual <= ADMISSIBLE else None
+
+
+def _by_cones(problem: ContactProblem) -> SelfStress | None:
+    """Return the admissible forces of least compression of a problem in space."""
+    force = total_load(problem)
+    some = ConeStatics(problem).forces()
+    if some.residual > ADMISSIBLE:
+        return None
+    budget = 2.0 * float(np.maximum(some.t[:, 0], 0.0).sum()) + force
+    found = ConeStatics(*_closing(problem, budget)).largest(np.r_[np.zeros(problem.unknowns), 1.0]).t[:-1]
+    candidates = [(t, static_residual(problem, problem.f, t[:, 0], t[:, 1:])) for t in (found, some.t)]
+    t, residual = next(((t, r) for t, r in candidates if r <= ADMISSIBLE), candidates[1])
+    return SelfStress(t[:, 0], t[:, 1:], residual, force)
+
+
+def _closing(problem: ContactProblem, budget: float) -> tuple[ContactProblem, Array]:
+    """Return the problem with a motion that every pair closes and a smooth pair of its own, and its load (N + 1,)."""
+    m, n, s = problem.pairs, problem.unknowns, problem.dim - 1
+    f = np.r_[problem.f, -budget]
+    free = Laws.coulomb(0.0, 1)
+    laws = Laws(*(np.concatenate([getattr(problem.laws, x.name), getattr(free, x.name)]) for x in fields(Laws)))
+    R = sp.block_diag([problem.R, sp.eye_array(1)], format="csc")
+    closing = sp.csr_array(np.ones((m + 1, 1)))
+    closed = replace(
+        problem, K=sp.csr_array((n + 1, n + 1)), f=f,
+        C_n=sp.csr_array(sp.hstack([sp.vstack([problem.C_n, sp.csr_array((1, n))]), closing])),
+        C_t=sp.csr_array(sp.block_diag([problem.C_t, sp.csr_array((s, 1))])), gap=np.zeros(m + 1), laws=laws,
+        R=sp.csc_array(R), bodies=np.r_[problem.bodies, n + 1], slip_origin=np.zeros((m + 1, s)),
+        area=np.zeros(0), inertia=np.zeros(0),
+    )  # fmt: skip
+    return closed, f
