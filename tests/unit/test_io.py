@@ -342,6 +342,54 @@ def test_vtk_reads_bodies(name: str, request: pytest.FixtureRequest, tmp_path: P
         assert areas[b] == pytest.approx(result.model.bodies[b].area, rel=1e-12)
 
 
+def under_pressure(element: str) -> Result:
+    """A rigid block on an elastic one on the ground, in space."""
+    blocks = (
+        concio.Polyhedron.box("ground", (-1, -1, -1), (3, 3, 0), kind="fixed"),
+        concio.Polyhedron.box("low", (0, 0, 0), (1, 0.8, 0.5), mesh_size=0.5),
+        concio.Polyhedron.box("high", (0, 0, 0.5), (1, 0.8, 1.2), kind="rigid", material="rock"),
+    )
+    materials = {"block": concio.Elastic(1e5, 0.2, 20.0), "rock": concio.Rigid(20.0)}
+    loads = (concio.Load("weight", (0.1, 0.05, -1.0)),)
+    laws = {"joint": concio.JointLaw(0.5)}
+    return concio.solve(concio.Model(blocks, materials, laws, loads=loads, element=element))
+
+
+@pytest.mark.parametrize("element", ["H8I", "H27", "T4", "T10"])
+def test_vtk_reads_volumes(element: str, tmp_path: Path) -> None:
+    """Cells are connected as VTK expects, so that they fill the block; stresses and principal values agree."""
+    from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
+
+    result = under_pressure(element)
+    write_paraview(result, tmp_path)
+    grid, points, point_data, cells = _read(tmp_path / "bodies_0000.vtu")
+    size = vtkCellSizeFilter()
+    size.SetInputData(grid)
+    size.Update()
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    volume = vtk_to_numpy(size.GetOutput().GetCellData().GetArray("Volume"))
+    elastic = cells["kind"] == 0
+    assert volume[elastic].sum() == pytest.approx(0.4, rel=1e-9)
+    assert (volume[elastic] > 0).all()
+    assert sorted(set(cells["body"])) == [0, 1, 2]
+    first = len(result.model.polyhedra[0].vertices)
+    here = slice(first, first + len(result.nodes(1)))
+    np.testing.assert_allclose(points[here], result.nodes(1), atol=1e-12)
+    np.testing.assert_allclose(point_data["displacement"][here], result.node_displacement(1), rtol=1e-12)
+    np.testing.assert_allclose(point_data["stress"][here], result.stress.at_nodes(1), rtol=1e-12)
+    assert np.isnan(point_data["stress"][:first]).all()
+    s = cells["element_stress"][elastic]
+    tensor = np.stack([s[:, [0, 3, 5]], s[:, [3, 1, 4]], s[:, [5, 4, 2]]], 1)
+    values = np.column_stack([cells[f"s_{k}"][elastic] for k in (1, 2, 3)])
+    np.testing.assert_allclose(values, np.linalg.eigvalsh(tensor)[:, ::-1], atol=1e-9)
+    least = cells["s_3_direction"][elastic]
+    np.testing.assert_allclose(np.einsum("eij,ej->ei", tensor, least), values[:, 2:] * least, atol=1e-9)
+    mean = (volume[elastic] @ s) / 0.4
+    np.testing.assert_allclose(mean, result.stress.mean[1], rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(cells["body_s_3"][elastic], result.stress.principal_in_space[0][1, 2], rtol=1e-12)
+
+
 @pytest.mark.parametrize("name", ["panel", "mixed"])
 def test_vtk_reads_contacts(name: str, request: pytest.FixtureRequest, tmp_path: Path) -> None:
     result: Result = request.getfixturevalue(name)

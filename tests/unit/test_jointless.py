@@ -135,3 +135,34 @@ def test_paths_limits_and_comparisons_say_that_there_is_nothing_to_follow(tmp_pa
         assert "no joint and no tie" in err
     assert run("check", tmp_path / "block.toml")[0] == 0
     assert run("run", tmp_path / "block.toml")[0] == 0
+
+
+def standing(*supports: Support, kind: str = "elastic") -> Model:
+    """One box of 2 x 1 x 3 m under its weight and a push, in space."""
+    material = {"kind": "rigid", "material": "stone"} if kind == "rigid" else {"mesh_size": 1.0}
+    return Model(
+        (concio.Polyhedron.box("block", (0, 0, 0), (2, 1, 3), **material),),
+        {"block": Elastic(1e5, 0.2, 20.0), "stone": concio.Rigid(20.0)}, {"joint": concio.JointLaw(0.5)},
+        supports=supports, loads=(Load("weight", (0.1, 0.0, -1.0)),),
+    )  # fmt: skip
+
+
+FLOOR = ((0, 0, 0), (2, 0, 0), (2, 1, 0), (0, 1, 0))
+
+
+@pytest.mark.parametrize("kind", ["elastic", "rigid"])
+def test_a_block_in_space_held_by_its_support(kind: str) -> None:
+    result = concio.solve(standing(Support("base", "block", polygon=FLOOR), kind=kind))
+    assert result.solved
+    assert result.reactions["base"] == pytest.approx([-12.0, 0.0, 120.0], abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["elastic", "rigid"])
+def test_a_block_in_space_that_nothing_holds(kind: str) -> None:
+    """Rollers below let it slide away: proven by a motion."""
+    model = standing(Support("base", "block", polygon=FLOOR, directions="z"), kind=kind)
+    result = concio.solve(model, on_failure="return")
+    assert result.status is Status.NO_EQUILIBRIUM
+    assert result.mechanism is not None
+    with pytest.raises(concio.NoEquilibriumError):
+        concio.solve(model)

@@ -35,7 +35,7 @@ def solve(
         An assembly saves meshing again.
     method : str
         Name of a method, see :data:`concio.solvers.methods.METHODS`. A model without joints and ties is solved directly
-        (by "sparse-lemke", with nothing to pivot on), whichever is named.
+        (by "sparse-lemke", with nothing to pivot on, in space by "auto"), whichever is named.
     factors : mapping of str to float, optional
         Factors of load groups; groups not named have 1.
     on_failure : {"raise", "return"}
@@ -68,7 +68,7 @@ def solve(
     lent = lend(assembly)
     problem = lent.problem(factors)
     if not problem.pairs:  # K u = f: there are no states to find, whatever the method
-        solver, options = find("sparse-lemke"), {}
+        solver, options = find("sparse-lemke" if problem.dim == 2 else "auto"), {}
     assembled = time.perf_counter()
     solution = solver(problem, progress=progress, **options)
     stiff = None

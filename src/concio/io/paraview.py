@@ -16,8 +16,8 @@ from concio.arguments import strict
 from concio.errors import InputError
 from concio.fem.constitutive import principal
 from concio.fem.triangulate import bare_triangles
+from concio.io.volume_grid import KINDS, element_means, volume_grid
 from concio.io.vtu import POLYGON, QUAD, TRIANGLE, VERTEX, Grid, write_pvd, write_vtu
-from concio.post.solids import solids
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
@@ -26,14 +26,14 @@ Array = np.ndarray
 
 
 def bodies_grid(result: Result) -> Grid:
-    """Return all bodies as elements; rigid and fixed ones are one polygon each. In space their surfaces, as triangles.
+    """Return all bodies as elements; rigid and fixed ones are one polygon each. In space see :func:`volume_grid`.
 
     Point data: ``displacement`` [m], ``stress`` (s_x, s_y, t_xy) at nodes [kN/m2], ``velocity`` of a mechanism. Cell
     data: ``body`` (number), ``kind`` (0 elastic, 1 rigid, 2 fixed), mean ``element_stress``, ``s_1``, ``s_2`` of each
     element, ``body_s_1``, ``body_s_2`` of each body; nan where a body has no stress.
     """
     if result.model.dim == 3:
-        return _surfaces(result)
+        return volume_grid(result)
     disc, model = result.assembly.disc, result.model
     solved, velocity = result.solved, result.mechanism_velocity
     points, moved, stress, speed = [], [], [], []
@@ -54,7 +54,7 @@ def bodies_grid(result: Result) -> Grid:
             types.append(np.full(len(el.cells), QUAD if k == 4 else TRIANGLE))
             nodal, mean = np.full((len(nodes), 3), np.nan), np.full((len(el.cells), 3), np.nan)
             if solved:
-                nodal, mean = result.stress.at_nodes(b), _element_means(result, b)
+                nodal, mean = result.stress.at_nodes(b), element_means(result, b)
             stress.append(nodal)
             means.append(mean)
         else:
@@ -69,8 +69,7 @@ def bodies_grid(result: Result) -> Grid:
     body = np.concatenate(owner)
     element = np.vstack(means)
     s1, s2, _ = principal(element)
-    kinds = {"elastic": 0, "rigid": 1, "fixed": 2}
-    kind = np.array([kinds[b.kind] for b in model.bodies], dtype=np.int32)
+    kind = np.array([KINDS[b.kind] for b in model.bodies], dtype=np.int32)
     cell_data: dict[str, Array] = {
         "body": body.astype(np.int32), "kind": kind[body], "element_stress": element, "s_1": s1, "s_2": s2
     }  # fmt: skip
@@ -84,19 +83,6 @@ def bodies_grid(result: Result) -> Grid:
         np.vstack(points), np.concatenate(cells), np.cumsum(np.concatenate(sizes)), np.concatenate(types), point_data,
         cell_data,
     )  # fmt: skip
-
-
-def _surfaces(result: Result) -> Grid:
-    shown = solids(result)
-    count = len(shown.triangles)
-    data: dict[str, Array] = {"displacement": shown.displacement}
-    if result.mechanism_velocity is not None:
-        data["velocity"] = solids(result, result.mechanism_velocity).displacement
-    kinds = {"elastic": 0, "rigid": 1, "fixed": 2}
-    kind = np.array([kinds[b.kind] for b in result.model.bodies], dtype=np.int32)
-    cells = {"body": shown.body.astype(np.int32), "face": shown.face.astype(np.int32), "kind": kind[shown.body]}
-    ends = 3 * np.arange(1, count + 1)
-    return Grid(shown.points, shown.triangles.ravel(), ends, np.full(count, TRIANGLE), data, cells)
 
 
 def outline_cells(rings: Sequence[Array]) -> Array:
@@ -166,12 +152,3 @@ def write_paraview(
         write_pvd(contacts, stamps, directory / "contacts.pvd"),
     ]
     return [*series, *bodies, *contacts]
-
-
-def _element_means(result: Result, b: int) -> Array:
-    el = result.assembly.disc.shapes[result.assembly.disc.shape_of[b]].elements
-    _, values = result.stress.at_points(b)
-    count = len(el.cells)
-    area = np.bincount(el.cell_of_point, el.weights, count)
-    weighted = el.weights[:, None] * values
-    return np.column_stack([np.bincount(el.cell_of_point, weighted[:, i], count) / area for i in range(3)])

@@ -18,6 +18,7 @@ import numpy as np
 Array = np.ndarray
 
 VERTEX, LINE, TRIANGLE, POLYGON, QUAD = 1, 3, 5, 7, 9
+TETRAHEDRON, HEXAHEDRON, QUADRATIC_TETRAHEDRON, TRIQUADRATIC_HEXAHEDRON = 10, 12, 24, 29
 """Cell types of VTK."""
 
 _NAMES = {"f8": "Float64", "f4": "Float32", "i8": "Int64", "i4": "Int32", "i1": "Int8", "u1": "UInt8"}

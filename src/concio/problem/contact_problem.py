@@ -189,7 +189,7 @@ class ContactProblem:
     def dim(self) -> int:
         """Space dimension d, 2 or 3."""
         m = self.C_n.shape[0]
-        return int(self.C_t.shape[0] // m) + 1 if m else 2
+        return int(self.C_t.shape[0] // m) + 1 if m else max(self.slip_origin.shape[1] + 1, 2)
 
     @property
     def rigid_motions(self) -> int:

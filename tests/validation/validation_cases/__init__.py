@@ -28,6 +28,7 @@ CASES: dict[str, str] = {
     "held_by_friction": "Ladders, wedges and hung blocks",
     "corner_walls": "Walls with corners",
     "dome_thickness": "Least thickness of a dome",
+    "solid_elements": "Elastic blocks in space: patch tests and bending",
     "sphere_on_base": "Sphere and cube on a plane, pressed and pushed",
     "rocking_block": "Free-standing blocks that rock",
     "moving_blocks": "Blocks that fly, slide, bounce and are pushed over",

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution, Status
 from concio.problem.tolerances import EXACT
@@ -95,7 +97,9 @@ class ConeRun(Run):
         self.cones = ConeIteration(scaled)
 
     def from_start(self, start: Start, most: int = 100) -> Finished | None:
-        """Iterate from a start; return the exact answer or None."""
+        """Iterate from a start; return the exact answer or None. Without pairs there is nothing to iterate."""
+        if not self.scaled.problem.pairs:
+            return self.settle(self.scaled.glued, np.zeros((0, self.scaled.problem.dim)))
         z = self.cones.start(start.force, start.length)
         return self.approach(z, f"interior point from {start}", start.share, most)
 
