@@ -170,3 +170,35 @@ def test_stopping_keeps_what_was_computed():
     assert found.ending is PushEnding.STOPPED
     assert len(found) == 5
     assert found.multiplier[-1] > 0.19
+
+
+def tied(stiffness, **options):
+    model = standing(0.2, 1.0)
+    tie = concio.Tie("tie", "block", (-0.1, 1.0), "", (-2.1, 1.0), stiffness=stiffness, **options)
+    return replace(model, ties=(tie,))
+
+
+def test_a_tie_yields_and_the_strength_ends_where_weight_and_tie_balance():
+    """Peak: weight 4 and tie 1 about the toe; at the end the force of the tie holds what the weight overturns."""
+    found = concio.push(tied(1e5, yield_force=1.0))
+    assert found.peak == pytest.approx((4.0 * 0.1 + 1.0 * 1.0) / (4.0 * 0.5), rel=1e-3)
+    theta = -found.rotation_of("block")[-1]
+    toe, turn = np.array([0.1, 0.0]), np.array([[np.cos(theta), np.sin(theta)], [-np.sin(theta), np.cos(theta)]])
+    end, centroid = turn @ (-0.2, 1.0), turn @ (-0.1, 0.5)
+    pull = np.array([-2.1, 1.0]) - toe - end
+    pull /= np.linalg.norm(pull)
+    assert end[0] * pull[1] - end[1] * pull[0] == pytest.approx(4.0 * centroid[0], rel=1e-3)
+
+
+def test_a_tie_that_breaks_leaves_the_block_alone():
+    found = concio.push(tied(1e5, yield_force=1.0, break_elongation=0.02))
+    assert found.capacity == pytest.approx(0.1, rel=1e-6)
+    assert found.end.ties.broken.all()
+
+
+@pytest.mark.parametrize(("cap", "most"), [(50.0, 0.1195), (200.0, 0.180)])
+def test_a_crushing_toe_moves_the_hinge_inwards(cap, most):
+    """At most 2 (b - a / 2) with the crushed length a = W / cap, were it resolved without error."""
+    found = concio.push(standing(0.2, 1.0, friction=concio.JointLaw(1.0, compressive_strength=cap)))
+    assert 0.9 * most < found.peak < 1.001 * most
+    assert found.certified

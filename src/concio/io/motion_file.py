@@ -20,7 +20,7 @@ from concio.analysis.motion.history import Shots, Steps
 from concio.analysis.motion.joint_events import JointEvent
 from concio.analysis.motion.push_result import PushEnding, PushResult
 from concio.analysis.motion.scheme import Scheme
-from concio.analysis.motion.state import Memory, MotionState
+from concio.analysis.motion.state import Memory, MotionState, TieMemory
 from concio.arguments import strict
 from concio.errors import InputError
 from concio.files import whole_file
@@ -28,10 +28,13 @@ from concio.model.file.reading import loads
 from concio.model.file.writing import dumps
 from concio.model.stages import ControlPoint
 
-FORMAT, VERSION = "concio motion", 1
+FORMAT, VERSION = "concio motion", 2
 _PARTS = {
     c.__name__: c
-    for c in (Shots, Steps, EnergyBalance, Scheme, Memory, MotionState, ControlPoint, JointEvent, Ending, PushEnding)
+    for c in (
+        Shots, Steps, EnergyBalance, Scheme, Memory, TieMemory, MotionState, ControlPoint, JointEvent, Ending,
+        PushEnding,
+    )
 }
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from concio.analysis.motion.dynamics_result import DynamicsResult
+from concio.analysis.motion.energy import NAMES
 from concio.analysis.motion.push_result import PushResult
 from concio.arguments import strict
 from concio.display import number
@@ -138,7 +139,7 @@ def plot_energy(result: DynamicsResult, ax: Axes | None = None, *, title: str = 
     """
     ax = _axes(ax)
     energy, time = result.energy, result.shots.time
-    for name in ("kinetic", "strain", "potential", "friction", "impact", "damping", "crushing", "input"):
+    for name in NAMES:
         values = energy[name] - (energy[name][0] if name == "potential" else 0.0)
         if np.abs(values).max(initial=0.0) > 1e-3 * energy.turned_over:
             ax.plot(time, values, lw=1.2, ls="--" if name == "input" else "-", label=name)

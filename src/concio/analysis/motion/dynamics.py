@@ -249,7 +249,7 @@ class _Run:
         maker = self.stepper.maker
         self.observer = Observer(self.reference, maker, self.stepper.frames, self.factors, self.points)
         self.recorder = Recorder()
-        self.sums = dict.fromkeys(("friction", "impact", "damping", "crushing", "input", "drift"), 0.0)
+        self.sums = dict.fromkeys(("friction", "impact", "damping", "crushing", "input", "overlap", "drift"), 0.0)
         self.seconds = 0.0
         self.begun = clock.perf_counter()
         self.state: MotionState | None = None

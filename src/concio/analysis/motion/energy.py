@@ -8,10 +8,11 @@ import numpy as np
 
 Array = np.ndarray
 
-NAMES = ("kinetic", "strain", "potential", "friction", "impact", "damping", "crushing", "input", "drift")
+NAMES = ("kinetic", "strain", "potential", "friction", "impact", "damping", "crushing", "input", "overlap", "drift")
 """Columns: energies now (kinetic, strain of bodies, joints and ties, potential of the loads), and sums since the start:
-dissipated by friction, in impacts and openings, by damping, by crushing; put in by the ground and moved supports; and
-work done in pushing back what had sunk into each other."""
+dissipated by friction, in impacts and openings, by damping, by crushing; put in by the ground and moved supports; what
+springs of joints gained as the areas changed that faces have in common; and work done in pushing back what had sunk
+into each other, or what springs had come to differ from the gaps of turning bodies."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +35,7 @@ class EnergyBalance:
         v = self.values
         stored = v["kinetic"] + v["strain"] + v["potential"]
         lost = v["friction"] + v["impact"] + v["damping"] + v["crushing"]
-        balance: Array = stored + lost - v["input"] - v["drift"]
+        balance: Array = stored + lost - v["input"] - v["overlap"] - v["drift"]
         return balance
 
     @property

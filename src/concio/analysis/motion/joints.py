@@ -17,6 +17,7 @@ import numpy as np
 
 from concio.analysis.lent_compliance import SHEAR_TO_NORMAL
 from concio.analysis.motion.scheme import Scheme
+from concio.analysis.motion.springs import Springs, pressed, standing
 from concio.analysis.motion.state import Memory
 from concio.contact.moving.laws import LawTable
 from concio.contact.moving.rows import Rows
@@ -90,6 +91,15 @@ class JointStep:
     y0 : (m, d) array
         Relative velocities at the beginning [m/s].
     bonded : (m,) boolean array
+    springs : Springs or None
+        Those of compliant joints.
+    area : (m,) array
+        On which they stand [m2].
+    sunk, stored : (m,) arrays
+        Their deformation and energy at the beginning [m], [kN m].
+    overlap, drift : float
+        What their energy grew by since the end of the last step: because common areas have changed, and because the
+        gaps of turned bodies are not what straight motion makes them [kN m].
     """
 
     springy: Array
@@ -98,6 +108,12 @@ class JointStep:
     gap: Array
     y0: Array
     bonded: Array
+    springs: Springs | None
+    area: Array
+    sunk: Array
+    stored: Array
+    overlap: float = 0.0
+    drift: float = 0.0
 
 
 class Joints:
@@ -134,17 +150,27 @@ class Joints:
         self.any_bond = bool(laws.cohesion.any())
         self.any_cap = bool(np.isfinite(laws.cap).any())
 
-    def compliances(self, slots: Slots, area: Array) -> tuple[Array, Array, Array]:
-        """Return compliances (m,) along normal and tangent [m/kN], lent ones too, and which are the joint's own."""
-        m, law = len(slots), slots.law
+    def compliances(self, slots: Slots, area: Array, tension: Array) -> tuple[Array, Array, Springs | None]:
+        """Return compliances (m,) along normal and tangent [m/kN], lent ones too, and the springs of joints.
+
+        Parameters
+        ----------
+        slots : Slots
+        area : (m,) array
+            On which springs stand [m2].
+        tension : (m,) array
+            Tensile strength [kN].
+        """
+        law = slots.law
         a_n = self.yielding[slots.body_a] + self.yielding[slots.body_b]
         a_n = np.where(a_n > 0, a_n, self.lent)
         a_t = SHEAR_TO_NORMAL * a_n
         if not self.any_stiffness:
-            return a_n, a_t, np.zeros(m, dtype=bool)
+            return a_n, a_t, None
         own_n, own_t = self.laws.normal[law] / area, self.laws.tangential[law] / area
-        springy = own_n > 0
-        return np.where(springy, own_n, a_n), np.where(own_t > 0, own_t, a_t), springy
+        normal = own_n > 0
+        a_n, a_t = np.where(normal, own_n, a_n), np.where(own_t > 0, own_t, a_t)
+        return a_n, a_t, Springs(normal, normal | (own_t > 0), a_n, a_t, a_n * tension)
 
     def gaps(self, rows: Rows, memory: Memory) -> Array:
         """Return the gaps (m,) after what was crushed and what dilated [m]."""
@@ -176,7 +202,11 @@ class Joints:
         gap = self.gaps(rows, memory)
         area = np.maximum(rows.area, self.least_area)
         zero = np.zeros(m)
-        a_n, a_t, springy = self.compliances(slots, area)
+        bonded = slots.bonded & ~memory.broken
+        cohesion = np.where(bonded, laws.cohesion[law] * area, 0.0) if self.any_bond else zero
+        tension = np.where(bonded, laws.tension[law] * area, 0.0) if self.any_bond else zero
+        ground = standing(memory, area) if self.any_stiffness else zero
+        a_n, a_t, springs = self.compliances(slots, ground, tension)
         lasting = memory.force[:, 0] > 0
         turning = 0.5 * h * rows.turning
         turning[~(lasting & (np.abs(turning) > NOTHING * speed).any(axis=1))] = 0.0
@@ -188,23 +218,31 @@ class Joints:
         shift[:, 1] += settle * memory.stretch
         soft_n, soft_t = settle * a_n, settle * a_t
         near = gap <= np.where(lasting, FALL * speed * h, self.touching)
-        if self.any_stiffness:
+        sunk = stored = zero
+        overlap = drift = 0.0
+        if springs is not None:
+            kept = springs.stored(memory.sunk, memory.stretch)
+            gap, sunk = pressed(springs, memory, gap, 0.5 * h * y0[:, 0])
+            near = np.where(springs.normal, gap <= self.reach, near)
+            overlap = float(kept[rows.valid & near].sum())
+            stored = np.where(rows.valid & near, springs.stored(sunk, memory.stretch), 0.0)
+            drift = float(stored.sum()) - overlap
             implicit = h * theta**2 + beta * theta
             at_theta = (gap + (h * (theta * (1 - theta) - 0.5) + beta * (1 - theta)) * y0[:, 0]) / implicit
             drawn = (memory.stretch + (h * theta + beta) * (1 - theta) * y0[:, 1]) / implicit
-            shift[:, 0] = np.where(springy, rows.imposed[:, 0] + at_theta, shift[:, 0])
-            shift[:, 1] = np.where(springy, rows.imposed[:, 1] + drawn, shift[:, 1])
-            soft_n, soft_t = np.where(springy, a_n / implicit, soft_n), np.where(springy, a_t / implicit, soft_t)
-            near = np.where(springy, gap <= self.reach, near)
-        bonded = slots.bonded & ~memory.broken
-        cohesion = np.where(bonded, laws.cohesion[law] * area, 0.0) if self.any_bond else zero
-        tension = np.where(bonded, laws.tension[law] * area, 0.0) if self.any_bond else zero
+            shift[:, 0] = np.where(springs.normal, rows.imposed[:, 0] + at_theta, shift[:, 0])
+            shift[:, 1] = np.where(springs.shear, rows.imposed[:, 1] + drawn, shift[:, 1])
+            soft_n = np.where(springs.normal, a_n / implicit, soft_n)
+            soft_t = np.where(springs.shear, a_t / implicit, soft_t)
         data = PairData(
             rows.columns, rows.values, shift, laws.friction[law], cohesion, tension,
             laws.cap[law] * area if self.any_cap else np.full(m, np.inf), soft_n, soft_t, laws.dilatancy[law],
             rows.valid & near,
         )  # fmt: skip
-        return data, JointStep(springy, a_n, a_t, gap, y0, bonded)
+        springy = np.zeros(m, dtype=bool) if springs is None else springs.normal
+        return data, JointStep(
+            springy, a_n, a_t, gap, y0, bonded, springs, ground, sunk, stored, overlap, drift
+        )  # fmt: skip
 
     def resting(
         self, rows: Rows, slots: Slots, memory: Memory, moved: Array, speed: float
@@ -225,14 +263,17 @@ class Joints:
         laws, law, m = self.laws, slots.law, len(slots)
         gap = self.gaps(rows, memory)
         area = np.maximum(rows.area, self.least_area)
-        a_n, a_t, springy = self.compliances(slots, area)
         bonded = slots.bonded & ~memory.broken
+        tension = np.where(bonded, laws.tension[law] * area, 0.0)
+        a_n, a_t, springs = self.compliances(slots, area, tension)
         data = PairData(
             rows.columns, rows.values, np.stack([gap, memory.stretch + moved], axis=1), laws.friction[law],
-            np.where(bonded, laws.cohesion[law] * area, 0.0), np.where(bonded, laws.tension[law] * area, 0.0),
+            np.where(bonded, laws.cohesion[law] * area, 0.0), tension,
             laws.cap[law] * area, a_n, a_t, laws.dilatancy[law], rows.valid & (gap <= speed),
         )  # fmt: skip
-        return data, JointStep(springy, a_n, a_t, gap, np.zeros((m, 2)), bonded)
+        springy = np.zeros(m, dtype=bool) if springs is None else springs.normal
+        zero = np.zeros(m)
+        return data, JointStep(springy, a_n, a_t, gap, np.zeros((m, 2)), bonded, springs, area, zero, zero)
 
     def settled(
         self, memory: Memory, step: JointStep, data: PairData, y: Array, t: Array, contact: Array, slip: Array
@@ -249,7 +290,8 @@ class Joints:
         t : (m, d) array
         contact, slip : (m,) integer arrays
         """
-        touches = data.active & (contact > 0)
+        contact = np.where(data.active, contact, 0)
+        touches = contact > 0
         stretch = np.where(touches, -step.a_t * t[:, 1], 0.0)
         slid = np.where(touches & (slip != 0), y[:, 1] - stretch, 0.0)
         crushing = memory.crushing
@@ -259,9 +301,14 @@ class Joints:
         broken = memory.broken
         if self.any_bond and self.scheme.brittle:
             broken = broken | (step.bonded & ((contact == 0) | (slip != 0)))
+        sunk = stored = np.zeros(len(t))
+        if step.springs is not None:
+            sunk = np.where(touches, -step.a_n * t[:, 0], np.maximum(y[:, 0], step.springs.longest))
+            stored = np.where(touches, step.springs.stored(sunk, stretch), 0.0)
         return replace(
             memory, contact=contact, slip=slip, force=t, stretch=stretch, crushing=crushing,
             raised=memory.raised + data.dilatancy * np.abs(slid), broken=broken, slid=memory.slid + slid,
+            area=step.area, sunk=sunk, stored=stored,
         )  # fmt: skip
 
     def remember(
@@ -283,43 +330,53 @@ class Joints:
         h : float
             [s].
         """
+        contact = np.where(data.active, contact, 0)
         lost_n, lost_t = -h * t[:, 0] * y[:, 0], -h * t[:, 1] * y[:, 1]
         slid, stretch, damped = h * y[:, 1], memory.stretch, 0.0
         soft = step.a_t > 0
         hit = (contact > 0) & ~(memory.force[:, 0] > 0) & ~step.springy
         stuck = soft & (slip == 0) & (contact > 0) & ~hit
         grown = np.where(stuck, stretch + slid, np.where(soft & ~hit, -step.a_t * t[:, 1], 0.0))
-        own = step.springy & soft
-        lost_t = lost_t - np.where(own, (grown**2 - stretch**2) / np.where(own, 2 * step.a_t, 1.0), 0.0)
         slid, stretch = slid - np.where(soft, grown - stretch, 0.0), grown
-        if self.any_stiffness:
-            before = step.gap - 0.5 * h * step.y0[:, 0]
-            after = np.minimum(before + h * y[:, 0], 0.0)
-            twice = np.where(step.springy, 2 * step.a_n, 1.0)
-            lost_n = lost_n - np.where(step.springy, (after**2 - np.minimum(before, 0.0) ** 2) / twice, 0.0)
-            if self.scheme.stiffness_damping:
-                stuck &= step.springy
-                damped = float(lost_n[step.springy].sum() + lost_t[stuck].sum())
-                lost_n, lost_t = np.where(step.springy, 0.0, lost_n), np.where(stuck, 0.0, lost_t)
-        slid = np.where(data.active & (contact > 0) & (slip != 0), slid, 0.0)
-        crushing, raised, crushed = memory.crushing, memory.raised, 0.0
-        if self.any_cap:
-            grown = np.where(contact == 2, np.maximum(-h * y[:, 0], 0.0), 0.0)
-            crushing, crushed = crushing + grown, float((t[:, 0] * grown).sum())
+        slid = np.where((contact > 0) & (slip != 0), slid, 0.0)
+        crushing, raised, crushed, squeezed = memory.crushing, memory.raised, 0.0, np.zeros(len(t))
         if data.dilatancy.any():
-            raised = raised + data.dilatancy * np.abs(slid)
+            lifted = data.dilatancy * np.abs(slid)
+            raised, lost_n, lost_t = raised + lifted, lost_n + t[:, 0] * lifted, lost_t - t[:, 0] * lifted
+        sunk = step.sunk + h * y[:, 0] - (raised - memory.raised)
+        if self.any_cap:
+            yields = np.where(step.springy, -step.a_n * data.cap - sunk, -h * y[:, 0])
+            squeezed = np.where(contact == 2, np.maximum(yields, 0.0), 0.0)
+            crushing, crushed = crushing + squeezed, float((t[:, 0] * squeezed).sum())
         broken = memory.broken
         if self.any_bond and self.scheme.brittle:
             broken = broken | (step.bonded & ((contact == 0) | (slip != 0)))
+        stored = step.stored
+        if step.springs is not None:
+            springs, active = step.springs.broken(broken), data.active
+            away = np.maximum(sunk, self.reach)  # what touches nothing is not pressed
+            sunk = np.where(active, sunk + squeezed, away)
+            after, before = springs.parts(sunk, stretch), step.springs.parts(step.sunk, memory.stretch)
+            stored = np.where(active, after[0] + after[1], 0.0)
+            lost_n, lost_t = (
+                lost - np.where(active, now - then, 0.0)
+                for lost, now, then in zip((lost_n, lost_t), after, before, strict=True)
+            )
+            if self.scheme.stiffness_damping:
+                stuck &= springs.shear
+                damped = float(lost_n[springs.normal].sum() + lost_t[stuck].sum())
+                lost_n, lost_t = np.where(springs.normal, 0.0, lost_n), np.where(stuck, 0.0, lost_t)
         new = replace(
             memory, contact=contact, slip=slip, force=t, stretch=stretch, crushing=crushing, raised=raised,
-            broken=broken, slid=memory.slid + slid,
+            broken=broken, slid=memory.slid + slid, area=step.area, sunk=sunk, stored=stored,
         )  # fmt: skip
         works = {
             "friction": float(lost_t.sum()),
             "impact": float(lost_n.sum()) - crushed,
             "damping": damped,
             "crushing": crushed,
+            "overlap": step.overlap - float(memory.stored.sum()),
+            "drift": step.drift,
         }
         return new, works
 
@@ -353,13 +410,3 @@ class Joints:
             added = np.bincount(columns.ravel(), (rows * push[:, None]).ravel(), n + 1)
             moved += inverse * added
         return moved[:n]
-
-    def stored(self, rows: Rows, slots: Slots, memory: Memory) -> float:
-        """Return the energy of joints of finite stiffness [kN m]."""
-        area = np.maximum(rows.area, self.least_area)
-        a_n, a_t, springy = self.compliances(slots, area)
-        gap = np.minimum(self.gaps(rows, memory), 0.0)
-        energy = gap**2 / np.where(springy, a_n, np.inf) + memory.stretch**2 / np.where(
-            springy & (a_t > 0), a_t, np.inf
-        )
-        return 0.5 * float(energy[rows.valid].sum())

@@ -148,11 +148,4 @@ class Observer:
 
     def _springs(self, state: MotionState) -> float:
         """Return the energy of joints of finite stiffness and of ties [kN m]."""
-        maker, stored = self.maker, 0.0
-        if len(maker.ties):
-            strain = np.append(as_complex(state.strain), 0.0)
-            _, gap, _ = maker.ties.rows(as_complex(state.centre), np.exp(1j * state.rotation), strain)
-            stored += 0.5 * float((maker.ties.stiffness * np.minimum(gap, 0.0) ** 2).sum())
-        if maker.joints.any_stiffness and maker.search.layout is not None and state.memory.key is maker.slots.key:
-            stored += maker.joints.stored(self.rows(state), maker.slots, state.memory)
-        return stored
+        return state.ties.stored(self.maker.ties) + float(state.memory.stored.sum())

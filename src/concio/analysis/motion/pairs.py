@@ -9,7 +9,7 @@ import scipy.sparse as sp
 
 from concio.analysis.motion.joints import SAG, Joints, PairData
 from concio.analysis.motion.scheme import Scheme
-from concio.analysis.motion.state import Memory
+from concio.analysis.motion.state import Memory, TieMemory
 from concio.contact.moving.attachments import Held, Ties
 from concio.contact.moving.edges import dot
 from concio.contact.moving.reference import Reference
@@ -85,18 +85,29 @@ class PairMaker:
         here = self.held.points.positions(centre, turn, np.append(strain, 0.0))
         return np.asarray(here - self.held.target(factors))
 
-    def tie_pairs(self, centre: Array, turn: Array, strain: Array) -> tuple[PairData, Array]:
-        """Return the pairs of ties in terms of displacements, and their gaps (k,) [m]."""
-        ties, k = self.ties, len(self.ties)
+    def tie_pairs(self, centre: Array, turn: Array, strain: Array, tied: TieMemory) -> tuple[PairData, Array, PairData]:
+        """Return the pairs of ties in terms of displacements, their gaps (k,) [m], and the pairs of their swinging.
+
+        A tight tie resists being swung by its tension over its length: nothing where the bodies stand, but without it
+        iterations to an equilibrium would not converge.
+        """
+        ties, k, none = self.ties, len(self.ties), no_pairs(self.n)
         if not k:
-            return no_pairs(self.n), np.zeros(0)
-        values, gap, _ = ties.rows(centre, turn, np.append(strain, 0.0))
-        zero = np.zeros(k)
+            return none, np.zeros(0), none
+        values, across, gap, length = ties.rows(centre, turn, np.append(strain, 0.0))
+        gap = gap + tied.plastic
+        zero, every, inf = np.zeros(k), np.ones(k, dtype=bool), np.full(k, np.inf)
         data = PairData(
-            ties.columns, values, np.stack([gap, zero], axis=1), zero, zero, zero, np.full(k, np.inf),
-            1.0 / ties.stiffness, zero, zero, np.ones(k, dtype=bool),
+            ties.columns, values, np.stack([gap, zero], axis=1), zero, zero, zero, ties.most,
+            1.0 / ties.stiffness, zero, zero, ~tied.broken,
         )  # fmt: skip
-        return data, gap
+        tension = np.where(tied.broken, 0.0, np.minimum(np.maximum(-gap, 0.0) * ties.stiffness, ties.most))
+        swings = (tension > 0) & (length > 0)
+        swing = PairData(
+            ties.columns, across * swings[:, None, None], np.zeros((k, 2)), zero, zero, inf, inf,
+            np.where(swings, length / np.where(swings, tension, 1.0), 1.0), zero, zero, every,
+        )  # fmt: skip
+        return data, gap, swing
 
 
 def yielding(reference: Reference) -> Array:

@@ -49,6 +49,11 @@ LOAD_STEP = 0.05
 LOCKED = 1e4
 """Multiplier above which a structure locks."""
 
+CREEPING = 1e-2
+"""Steps over that asked for which, one after the other, lead nowhere; :data:`MOST_CREEPING` of them are enough."""
+
+MOST_CREEPING = 25
+
 MOST_POINTS = 5000
 """Points of a curve at most."""
 
@@ -255,7 +260,7 @@ class _Push:
 
     def by_displacement(self) -> PushEnding:
         """Let the controlled displacement grow."""
-        step = FIRST * self.step
+        step, creeping = FIRST * self.step, 0
         while len(self.states) < MOST_POINTS:
             here, d, load = self.states[-1], self.displacement[-1], self.multiplier[-1]
             if d >= self.until * (1 - 1e-12):
@@ -274,6 +279,9 @@ class _Push:
             self.keep(found, d + wanted)
             if self.told(min(d / self.until, 1 - max(found.multiplier, 0.0) / max(self.multiplier[1:]))):
                 return PushEnding.STOPPED
+            creeping = creeping + 1 if wanted < CREEPING * min(self.step, self.until - d) else 0
+            if creeping > MOST_CREEPING:
+                return PushEnding.NO_EQUILIBRIUM
             step = min(GROWTH * step, self.step)
         self.notes.append(f"{MOST_POINTS:,} points were computed")
         return PushEnding.STOPPED

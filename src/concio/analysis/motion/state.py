@@ -1,4 +1,4 @@
-"""The state of a motion at one time: placements, strains, velocities, and what the joints remember."""
+"""The state of a motion at one time: placements, strains, velocities, and what joints and ties remember."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from concio.contact.moving.attachments import Ties
 from concio.contact.moving.reference import Configuration, Reference
 from concio.kinematics.placement import Placement
 
@@ -32,6 +33,12 @@ class Memory:
         Joints that have lost cohesion and tensile strength.
     slid : (m,) array
         Total plastic slip so far, signed [m].
+    area : (m,) array
+        On which the springs of compliant joints stand, zero before they were first looked at [m2].
+    sunk : (m,) array
+        Normal deformation of these springs, negative where they are pressed [m].
+    stored : (m,) array
+        Their energy [kN m].
     """
 
     key: Array
@@ -43,6 +50,9 @@ class Memory:
     raised: Array
     broken: Array
     slid: Array
+    area: Array
+    sunk: Array
+    stored: Array
 
     @classmethod
     def blank(cls, key: Array, dim: int = 2) -> Memory:
@@ -51,7 +61,7 @@ class Memory:
         zero = np.zeros(m)
         return cls(
             key, np.ones(m, dtype=np.int8), np.zeros(m, dtype=np.int8), np.zeros((m, dim)), zero, zero.copy(),
-            zero.copy(), np.zeros(m, dtype=bool), zero.copy(),
+            zero.copy(), np.zeros(m, dtype=bool), zero.copy(), zero.copy(), zero.copy(), zero.copy(),
         )  # fmt: skip
 
     def carried_to(self, key: Array) -> Memory:
@@ -71,6 +81,40 @@ class Memory:
             value[known] = getattr(self, f.name)[at[known]]
             values[f.name] = value
         return replace(fresh, **values)
+
+
+@dataclass(frozen=True, eq=False)
+class TieMemory:
+    """What ties remember.
+
+    Parameters
+    ----------
+    sunk : (k,) array
+        Minus the elastic elongation, that of the prestress included; positive where a tie is slack [m].
+    plastic : (k,) array
+        Elongation by yielding [m].
+    broken : (k,) boolean array
+    """
+
+    sunk: Array
+    plastic: Array
+    broken: Array
+
+    @classmethod
+    def described(cls, ties: Ties) -> TieMemory:
+        """Return the memory of ties as they were described."""
+        return cls(-ties.prestress / ties.stiffness, np.zeros(len(ties)), np.zeros(len(ties), dtype=bool))
+
+    def stored(self, ties: Ties) -> float:
+        """Return the energy of the ties [kN m]."""
+        held = np.where(self.broken, 0.0, np.minimum(self.sunk, 0.0))
+        return 0.5 * float((ties.stiffness * held**2).sum())
+
+    def grown(self, ties: Ties, sunk: Array, squeezed: Array) -> TieMemory:
+        """Return the memory of ties stretched by -sunk (k,), ``squeezed`` (k,) of it by yielding [m]."""
+        sunk, plastic = sunk + squeezed, self.plastic + squeezed
+        elongation = plastic - sunk - ties.prestress / ties.stiffness
+        return TieMemory(sunk, plastic, self.broken | (elongation >= ties.breaks))
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +138,7 @@ class MotionState:
     nodal : (nodes, d) array
         Velocities of nodes [m/s].
     memory : Memory
+    ties : TieMemory
     """
 
     time: float
@@ -104,6 +149,7 @@ class MotionState:
     strain: Array
     nodal: Array
     memory: Memory
+    ties: TieMemory
 
     def configuration(self, reference: Reference) -> Configuration:
         """Return where the bodies stand."""

@@ -23,6 +23,7 @@ from concio.analysis.motion.joints import JointStep, PairData
 from concio.analysis.motion.pairs import PairMaker, assembled, relative
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import Memory, MotionState
+from concio.analysis.motion.tie_bars import settled_ties
 from concio.contact.moving.edges import as_complex, as_vectors, dot
 from concio.contact.moving.points import Followed
 from concio.contact.moving.reference import Reference
@@ -34,8 +35,14 @@ from concio.solvers.stepping.solver import StepSolver
 
 Array = np.ndarray
 
-RESISTANCE = 2.0
-"""epsilon over gravity by the width of a body."""
+RESISTANCE = (2.0, 6.0, 20.0, 60.0, 200.0, 600.0)
+"""epsilon over gravity by the width of a body: the first, and larger ones where iterations swing to and fro.
+
+What hangs by a tie and turns with the load is stiffer than the rows of the first order know: with the first alone the
+iterations swing about the equilibrium and lose two to fifteen hundredths of their size each time."""
+
+SWINGING = 0.6
+"""Share of the last iteration, turned back, from which on the resistance is made larger."""
 
 SAG = 1e-6
 """Depth over the median width of the bodies to which a body of mean weight sinks into a hard joint.
@@ -104,7 +111,7 @@ class _Look:
     live: Array
     measure: Array
     internal: Array
-    parts: tuple[PairData, PairData, PairData]
+    parts: tuple[PairData, PairData, PairData, PairData]
     point: Array
     normal: Array
 
@@ -149,7 +156,7 @@ class Statics:
         self.gravity = reference.gravity
         self.no_spin = np.zeros(len(reference.model.bodies))
         self.no_velocity = self.no_spin.astype(complex)
-        self._matrix = self._stiffness(RESISTANCE * self.gravity / self.width)
+        self._matrices = [self._stiffness(share * self.gravity / self.width) for share in RESISTANCE]
         self._bare = self._stiffness(0.0)
 
     def _stiffness(self, resistance: float) -> sp.csr_array:
@@ -177,7 +184,7 @@ class Statics:
         if f.elastic:
             internal = -f.stiffness(strain) - f.turned(f.stiffness(strain), strain)
         supports = maker.supports(turn, off)
-        ties, _ = maker.tie_pairs(centre, turn, strain)
+        ties, _, swings = maker.tie_pairs(centre, turn, strain, state.ties)
         measure = self._mean(unit) if self.control is None else self.control.rate(f.n, turn)
         return _Look(
             turn,
@@ -189,7 +196,7 @@ class Statics:
             unit,
             measure,
             internal,
-            (data, supports, ties),
+            (data, supports, ties, swings),
             rows.point,
             rows.normal,
         )
@@ -220,11 +227,11 @@ class Statics:
             return np.zeros(f.n)
         return f.ground(Drive(-self.gravity * self.push, np.zeros(2), {}), turn)
 
-    def problem(self, look: _Look, multiplier: float, bare: bool = False) -> StepProblem:
-        """Return the problem of the displacements to equilibrium at a multiplier."""
+    def problem(self, look: _Look, multiplier: float, level: int = 0, bare: bool = False) -> StepProblem:
+        """Return the problem of the displacements to equilibrium at a multiplier, with a level of resistance."""
         b = look.dead + multiplier * look.live + look.internal
         force = float(np.abs(look.dead + multiplier * look.live).sum()) or 1.0
-        matrix = self._bare if bare else self._matrix
+        matrix = self._bare if bare else self._matrices[level]
         return assembled(matrix, b, look.parts, force, 1e-3 * self.width)
 
     def balance(
@@ -248,11 +255,12 @@ class Statics:
         contact = slip = None
         t_last: Array | None = None
         done, found, iterations, first = 0.0, None, 0, self._at(state)
+        level, last = 0, np.zeros(f.n)
         for iteration in range(1, most + 1):
             look = self.look(here, begun, slid, multiplier)
             begun, m = look.memory, len(look.memory.key)
             slid = slid if len(slid) == m else np.zeros(m)
-            p = self.problem(look, multiplier)
+            p = self.problem(look, multiplier, level)
             count = p.pairs
             states = StepStates(np.ones(count, dtype=np.int8), np.zeros(count, dtype=np.int8))
             if contact is not None and slip is not None and len(contact) == count:
@@ -262,7 +270,7 @@ class Statics:
             t = t_last if t_last is not None and len(t_last) == count else np.zeros((count, 2))
             found = self.solver.solve(p, states, np.zeros(f.n), t)
             if target is not None:
-                multiplier, found = self._controlled(look, multiplier, found, target - done)
+                multiplier, found = self._controlled(look, multiplier, found, target - done, level)
             x = found.x
             contact, slip, t_last = found.states.contact, found.states.slip, found.t
             before, here = here, self._moved(here, x, look)
@@ -273,19 +281,22 @@ class Statics:
             iterations = iteration
             if size < STILL * self.width:
                 break
+            if iteration > 2 and float(x @ last) < -SWINGING * float(last @ last):
+                level = min(level + 1, len(RESISTANCE) - 1)
+            last = x
             if float(np.abs(moved).max()) > FAR * self.width + abs(target or 0.0):
                 break
         assert found is not None
         return self._judged(here, begun, slid, multiplier, found, moved, iterations)
 
     def _controlled(
-        self, look: _Look, multiplier: float, found: StepSolution, wanted: float
+        self, look: _Look, multiplier: float, found: StepSolution, wanted: float, level: int
     ) -> tuple[float, StepSolution]:
         """Return multiplier and solution at which the controlled displacement is the one wanted."""
         live, measure = look.live, look.measure
         size = ROUNDING * self.width * float(np.abs(measure).sum())
         low, high = -np.inf, np.inf
-        p = self.problem(look, multiplier)
+        p = self.problem(look, multiplier, level)
         for _ in range(40):
             error = wanted - float(measure @ found.x)
             if abs(error) <= CONTROLLED * abs(wanted) + size:
@@ -301,7 +312,7 @@ class Statics:
             if not np.isfinite(trial) or trial in (low, high):
                 break
             multiplier = trial
-            p = self.problem(look, multiplier)
+            p = self.problem(look, multiplier, level)
             found = self.solver.solve(p, found.states, found.x, found.t)
         return multiplier, found
 
@@ -354,13 +365,17 @@ class Statics:
         m = len(look.memory.key)
         if len(found.t) == sum(len(part.columns) for part in look.parts) and m == len(begun.key):
             p = self.problem(look, multiplier, bare=True)
-            residual, _ = p.residual(np.zeros(self.frames.n), found.t)
+            k = len(found.t) - 2 * len(self.maker.ties)
+            t = found.t.copy()
+            t[k + len(self.maker.ties) :] = 0.0  # ties at rest do not swing
+            residual, _ = p.residual(np.zeros(self.frames.n), t)
             contact, slip = found.states.contact[:m], found.states.slip[:m]
             memory = self.maker.joints.settled(
                 look.memory, look.joint, look.data, look.data.shift, found.t[:m], contact, slip
             )
+            own = slice(k, k + len(self.maker.ties))
+            tied = settled_ties(self.maker.ties, state.ties, look.parts[2], t[own, 0], found.states.contact[own])
         else:
-            residual, memory = np.inf, look.memory
-        return Balanced(
-            replace(state, memory=memory), multiplier, residual, residual <= CERTIFIED, moved, found.t, m, count
-        )
+            residual, memory, tied = np.inf, look.memory, state.ties
+        placed = replace(state, memory=memory, ties=tied)
+        return Balanced(placed, multiplier, residual, residual <= CERTIFIED, moved, found.t, m, count)

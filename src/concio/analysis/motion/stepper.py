@@ -23,7 +23,9 @@ from concio.analysis.motion.frames import Frames
 from concio.analysis.motion.joints import PairData
 from concio.analysis.motion.pairs import PairMaker, assembled, relative
 from concio.analysis.motion.scheme import Drive, Scheme
-from concio.analysis.motion.state import Memory, MotionState
+from concio.analysis.motion.state import Memory, MotionState, TieMemory
+from concio.analysis.motion.tie_bars import TieStep
+from concio.contact.moving.attachments import Ties
 from concio.contact.moving.edges import as_complex, as_vectors, dot
 from concio.contact.moving.reference import Reference
 from concio.contact.moving.rows import Rows
@@ -143,11 +145,12 @@ class Stepper:
         y0 = relative(rows.columns, rows.values, x0) + rows.imposed
         data, joint = maker.joints.pairs(rows, slots, memory, y0, h, speed, self._give(rows, h))
         held = self._held(state, turn, h, drive)
-        ties = self._ties(middle, turn, strain, x0, h)
-        problem = assembled(self.matrix(h), b, [data, held[0], ties[0]], force, speed)
+        ties = self._ties(state, middle, turn, strain, x0, h)
+        problem = assembled(self.matrix(h), b, [data, held[0], ties.data], force, speed)
         m, count = len(memory.key), problem.pairs
         states = StepStates(np.ones(count, dtype=np.int8), np.zeros(count, dtype=np.int8))
-        states.contact[:m], states.slip[:m] = memory.contact, memory.slip
+        k = m + len(maker.held)
+        states.contact[:m], states.slip[:m], states.contact[k:] = memory.contact, memory.slip, ties.states()
         t0 = np.zeros((count, 2))
         t0[:m] = memory.force
         found = self.solver.solve(problem, states, x0, t0)
@@ -158,15 +161,19 @@ class Stepper:
         memory, works = maker.joints.remember(
             memory, joint, data, y, found.t[:m], found.states.contact[:m], found.states.slip[:m], h
         )
-        k = m + len(maker.held)
         works["input"] = h * float(ground @ x) - h * float((found.t[:m] * rows.imposed).sum())
         works["input"] -= h * float((found.t[m:k] * held[1]).sum())
-        works["damping"] += self._damping(x, turn, strain, h) if f.elastic else 0.0
-        works["impact"] += self._tie_losses(ties, found.t[k:], x, h)
-        end = joint.gap + h * y[:, 0] - 0.5 * h * joint.y0[:, 0]
+        works["damping"] += self._damping(x, found.x - x0, turn, strain, h)
+        tied, lost, yielded = ties.remember(
+            relative(ties.data.columns, ties.data.values, x)[:, 0], found.t[k:, 0], found.states.contact[k:], h
+        )
+        works["damping" if self.scheme.stiffness_damping else "impact"] += lost
+        works["crushing"] += yielded
+        end = joint.gap + h * y[:, 0] - 0.5 * h * joint.y0[:, 0] + memory.crushing - memory_before.crushing
         apart = maker.joints.apart(data, joint, end, self._movable, slots.body_a, slots.body_b)
-        works["drift"] = -float(loads @ apart)
-        new = self._moved(state, found.x, x, apart, turn, strain, h, velocity, memory)
+        works["drift"] += ties.drift - float(loads @ apart)
+        works["overlap"] += float(memory_before.stored.sum()) - float(state.memory.stored.sum())
+        new = self._moved(state, found.x, x, apart, turn, strain, h, velocity, memory, tied)
         hard = rows.valid & ~joint.springy
         depth = float(np.maximum(-end[hard & data.active], 0.0).max(initial=0.0))
         hit = hard & ~(memory_before.force[:, 0] > 0) & (joint.gap > 0.5 * h * joint.y0[:, 0] - maker.joints.sag)
@@ -197,32 +204,21 @@ class Stepper:
         normal = maker.held.normal
         return data, -np.stack([dot(wanted, normal), dot(wanted, 1j * normal)], axis=1)
 
-    def _ties(self, centre: Array, turn: Array, strain: Array, x0: Array, h: float) -> tuple[PairData, Array, Array]:
-        """Return the pairs of ties, their gaps in the middle of the step and relative velocities at its beginning."""
-        data, gap = self.maker.tie_pairs(centre, turn, strain)
-        if not len(gap):
-            return data, gap, gap
-        s = self.scheme
-        theta, beta = s.theta, s.stiffness_damping
-        y0 = relative(data.columns, data.values, x0)[:, 0]
-        implicit = h * theta**2 + beta * theta
-        shift = (gap + (h * (theta * (1 - theta) - 0.5) + beta * (1 - theta)) * y0) / implicit
-        shifts = np.stack([shift, np.zeros_like(shift)], axis=1)
-        return replace(data, shift=shifts, a_n=data.a_n / implicit), gap, y0
+    def _ties(self, state: MotionState, centre: Array, turn: Array, strain: Array, x0: Array, h: float) -> TieStep:
+        """Return the ties of a step whose bodies stand so in its middle."""
+        data, gap, _ = self.maker.tie_pairs(centre, turn, strain, state.ties)
+        y0 = relative(data.columns, data.values, x0)[:, 0] if len(gap) else gap
+        return TieStep.of(self.maker.ties, state.ties, data, gap, y0, h, self.scheme)
 
-    def _tie_losses(self, ties: tuple[PairData, Array, Array], t: Array, x: Array, h: float) -> float:
-        data, gap, y0 = ties
-        if not len(gap):
-            return 0.0
-        y = relative(data.columns, data.values, x)[:, 0]
-        before = gap - 0.5 * h * y0
-        after = np.minimum(before + h * y, 0.0)
-        change = 0.5 * self.maker.ties.stiffness * (after**2 - np.minimum(before, 0.0) ** 2)
-        return float((-h * t[:, 0] * y - change).sum())
-
-    def _damping(self, x: Array, turn: Array, strain: Array, h: float) -> float:
+    def _damping(self, x: Array, jump: Array, turn: Array, strain: Array, h: float) -> float:
+        """Return what Rayleigh's damping took, and what theta above one half did of kinetic energy [kN m]."""
         f, s = self.frames, self.scheme
-        lost = 0.0
+        lost = (2 * s.theta - 1) * f.kinetic_energy(jump)
+        if not f.elastic:
+            return lost
+        if s.theta > 0.5:
+            rate, _, _ = f.rate(f.nodal(x, turn), turn[f.body] * (f.arm + strain), turn)
+            lost += (2 * s.theta - 1) * f.strain_energy(h * rate)
         if s.stiffness_damping:
             rate, _, _ = f.rate(f.nodal(x, turn), turn[f.body] * (f.arm + strain), turn)
             lost += 2.0 * h * s.stiffness_damping * f.strain_energy(rate)
@@ -233,7 +229,7 @@ class Stepper:
 
     def _moved(
         self, state: MotionState, x1: Array, x: Array, apart: Array, turn: Array, strain: Array, h: float,
-        velocity: Array, memory: Memory,
+        velocity: Array, memory: Memory, ties: TieMemory,
     ) -> MotionState:  # fmt: skip
         """Return the state that velocities x in the step and x1 at its end, and displacements ``apart``, lead to."""
         f = self.frames
@@ -252,7 +248,7 @@ class Stepper:
         w_mean[self.fixed] = 0.0
         return MotionState(
             state.time + h, as_vectors(centre), state.rotation + h * w_mean, as_vectors(v_end), w_end,
-            as_vectors(new_strain), as_vectors(nodal), memory,
+            as_vectors(new_strain), as_vectors(nodal), memory, ties,
         )  # fmt: skip
 
 
@@ -264,7 +260,7 @@ def at_rest(reference: Reference) -> MotionState:
     memory = Memory.blank(np.zeros(0, dtype=np.int64))
     return MotionState(
         0.0, configuration.placement.centre, configuration.placement.rotation, np.zeros((count, 2)), np.zeros(count),
-        np.zeros((nodes, 2)), np.zeros((nodes, 2)), memory,
+        np.zeros((nodes, 2)), np.zeros((nodes, 2)), memory, TieMemory.described(Ties.of(reference)),
     )  # fmt: skip
 
 

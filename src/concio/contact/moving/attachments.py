@@ -103,6 +103,10 @@ class Ties:
         As described [m].
     stiffness, prestress : (k,) arrays
         [kN/m], [kN].
+    most : (k,) array
+        Tension at which they yield, inf where they do not [kN].
+    breaks : (k,) array
+        Elongation at which they break, inf where they do not [m].
     """
 
     a: MaterialPoints
@@ -110,6 +114,8 @@ class Ties:
     length: Array
     stiffness: Array
     prestress: Array
+    most: Array
+    breaks: Array
 
     def __len__(self) -> int:
         return len(self.length)
@@ -131,6 +137,8 @@ class Ties:
         return cls(
             ends([t.body_a for t in ties], at_a), ends([t.body_b for t in ties], at_b), length,
             np.array([t.stiffness for t in ties]), np.array([t.prestress for t in ties]),
+            np.array([t.most for t in ties]),
+            np.array([np.inf if t.break_elongation is None else t.break_elongation for t in ties]),
         )  # fmt: skip
 
     @property
@@ -138,11 +146,14 @@ class Ties:
         """Unknowns of the rows (k, w)."""
         return np.concatenate([self.a.columns, self.b.columns], axis=1)
 
-    def rows(self, centre: Array, turn: Array, strain: Array) -> tuple[Array, Array, Array]:
-        """Return the rows (k, 2, w) of -elongation, the gaps (k,) [m] and the directions from a to b, complex (k,)."""
+    def rows(self, centre: Array, turn: Array, strain: Array) -> tuple[Array, Array, Array, Array]:
+        """Return the rows (k, 2, w) of -elongation, those of swinging, the gaps (k,) and the lengths (k,) [m]."""
         span = self.b.positions(centre, turn, strain) - self.a.positions(centre, turn, strain)
         length = np.abs(span)
         direction = span / np.where(length > 0, length, 1.0)
-        row = np.concatenate([self.a.rows(direction, turn), -self.b.rows(direction, turn)], axis=1)
+        row, across = (
+            np.concatenate([self.a.rows(v, turn), -self.b.rows(v, turn)], axis=1) for v in (direction, 1j * direction)
+        )
         gap = -self.prestress / self.stiffness - (length - self.length)
-        return np.stack([row, np.zeros_like(row)], axis=1), gap, direction
+        nothing = np.zeros_like(row)
+        return np.stack([row, nothing], axis=1), np.stack([across, nothing], axis=1), gap, length

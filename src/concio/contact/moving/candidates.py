@@ -26,6 +26,9 @@ FACING = np.deg2rad(45.0)
 THROUGH = 0.1
 """Edges that have entered another body by more than this share of the narrower body's width stand behind it."""
 
+CRUSHED = 0.5
+"""The same where joints crush."""
+
 
 @dataclass(frozen=True, eq=False)
 class Candidates:
@@ -45,7 +48,7 @@ class Candidates:
     edge: Array
 
 
-def find_candidates(edges: MovingEdges, placed: PlacedEdges, skin: float) -> Candidates:
+def find_candidates(edges: MovingEdges, placed: PlacedEdges, skin: float, through: float = THROUGH) -> Candidates:
     """Return the candidates of placed edges.
 
     Parameters
@@ -54,11 +57,13 @@ def find_candidates(edges: MovingEdges, placed: PlacedEdges, skin: float) -> Can
     placed : PlacedEdges
     skin : float
         Distance within which edges are candidates [m].
+    through : float
+        Depth over the narrower body's width beyond which edges stand behind each other.
     """
     near = np.full(len(edges.width), skin)
     facing = facing_pairs(edges.as_edges(placed), near, -skin, FACING)
     narrow = edges.width[facing.bodies].min(1)
-    keep = (facing.g_min <= 2 * skin) & (facing.g_max >= -THROUGH * narrow)
+    keep = (facing.g_min <= 2 * skin) & (facing.g_max >= -through * narrow)
     a, b = facing.edges[keep].T
     corner, edge = _corners(edges, placed, skin, a, b)
     return Candidates(a, b, corner, edge)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from concio.contact.moving.candidates import find_candidates
+from concio.contact.moving.candidates import CRUSHED, THROUGH, find_candidates
 from concio.contact.moving.edges import PlacedEdges, as_complex
 from concio.contact.moving.rows import RowMaker, Rows
 from concio.contact.moving.slots import SlotMaker, Slots
@@ -65,6 +65,7 @@ class ContactSearch:
         width = float(np.median(self.edges.width[reference.free]))
         self.skin = SKIN * width if skin is None else skin
         self.slack = 1e-9 * disc.size
+        self.through = CRUSHED if np.isfinite(reference.laws.cap).any() else THROUGH
         self.maker = SlotMaker(
             disc, self.edges, reference.laws, reference.rules, dict(reference.drawn), reference.first_node,
             len(reference.body_of_node),
@@ -77,7 +78,7 @@ class ContactSearch:
         """Look for candidates anew where that is due; return whether the layout has changed."""
         if self.layout is not None and not self._due(self.layout, placed):
             return False
-        found = find_candidates(self.edges, placed, self.skin)
+        found = find_candidates(self.edges, placed, self.skin, self.through)
         toucher = Toucher.of(self.edges, found, SLIVER_SHARE, self.slack)
         touch = toucher.touch(placed)
         slots = self.maker.make(found, toucher, touch, placed)

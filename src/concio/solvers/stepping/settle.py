@@ -106,7 +106,7 @@ def settle(
         x = x0 + dx
         moved = p.opening(dx)
         dt_n = -D[:, 0, 0] * (moved[:, 0] - linear.open_wide * moved[:, 1])
-        dt_t = np.where(linear.stick, -moved[:, 1] / (p.a_t + linear.delta_t), linear.drag * dt_n)
+        dt_t = np.where(linear.stick, -moved[:, 1] / linear.soft_t, linear.drag * dt_n)
         t = t0 + np.column_stack([dt_n, dt_t])
         t[chosen] = tau.reshape(-1, d)
         _, laws = p.residual(x, t)

@@ -48,8 +48,10 @@ class Linear:
         Normal force of pairs that are open or crushed.
     open_wide : (m,) array
         Opening for each unit of slip.
-    delta_n, delta_t : (m,) arrays
-        Compliances added.
+    delta_n : (m,) array
+        Compliance added along the normal.
+    soft_t : (m,) array
+        Compliance along the tangent with what is added; one where a pair does not stick.
     """
 
     closed: Array
@@ -59,7 +61,7 @@ class Linear:
     held_n: Array
     open_wide: Array
     delta_n: Array
-    delta_t: Array
+    soft_t: Array
 
     @classmethod
     def of(cls, p: StepProblem, states: StepStates) -> Linear:
@@ -69,7 +71,7 @@ class Linear:
         tension = np.where(p.glued | ~p.active, 0.0, cone.tension)
         cohesion = np.where(p.pinned, 0.0, cone.cohesion)
         holds = p.active & cone.rough & ((states.contact != 0) | (cohesion - cone.friction * tension > 0))
-        stick = (holds & (states.slip == 0)) | p.pinned
+        stick = ((holds & (states.slip == 0)) | p.pinned) & (p.flexibility[:, 1] + p.a_t > 0)
         slips = holds & ~stick
         drag = np.where(slips, -sigma * cone.friction, 0.0)
         pull = np.where(slips, -sigma * cohesion, 0.0)
@@ -85,14 +87,14 @@ class Linear:
             np.where(closed, 0.0, held),
             p.dilatancy * sigma * slips,
             least[:, 0],
-            least[:, 1],
+            np.where(stick, p.a_t + least[:, 1], 1.0),
         )
 
     def blocks(self, p: StepProblem) -> Array:
         """Return D (m, 2, 2)."""
         soft_n = p.a_n - self.open_wide * p.a_t * self.drag + self.delta_n
         d_nn = np.where(self.closed, 1.0 / soft_n, 0.0)
-        d_tt = np.where(self.stick, 1.0 / (p.a_t + self.delta_t), 0.0)
+        d_tt = np.where(self.stick, 1.0 / self.soft_t, 0.0)
         D = np.zeros((p.pairs, 2, 2))
         D[:, 0, 0], D[:, 0, 1] = d_nn, -d_nn * self.open_wide
         D[:, 1, 0], D[:, 1, 1] = self.drag * d_nn, d_tt - self.drag * d_nn * self.open_wide
@@ -132,11 +134,11 @@ def solve_states(
         if not residual > EXACT or late >= 2 or residual > 1e3 * best[2]:
             break
         n0 = r_n * D[:, 0, 0]
-        t0 = np.where(stick, r_t / (p.a_t + linear.delta_t), drag * n0)
+        t0 = np.where(stick, r_t / linear.soft_t, drag * n0)
         dx = factor.solve(r_u + p.pull(np.column_stack([n0, t0])))
         v = p.opening(dx)
         dt_n = n0 - D[:, 0, 0] * (v[:, 0] - linear.open_wide * v[:, 1])
-        dt_t = np.where(stick, t0 - v[:, 1] / (p.a_t + linear.delta_t), drag * dt_n)
+        dt_t = np.where(stick, t0 - v[:, 1] / linear.soft_t, drag * dt_n)
         x, t = x + dx, t + np.column_stack([dt_n, dt_t])
     return best
 
