@@ -169,7 +169,7 @@ def test_the_cell_of_the_bond_is_found_or_asked_for():
 
 def test_what_is_carried_without_end_and_what_is_not_carried_at_all():
     """Pressure on a dry wall; a dry wall with a door, whose continuum has no lintel: proofs of both."""
-    wall = concio.wall(length=2.0, height=1.5, block="rigid", friction=0.6, top_pressure=10.0)
+    wall = concio.wall(length=2.0, height=1.5, block_size=(0.5, 0.25), block="rigid", friction=0.6, top_pressure=10.0)
     found = concio.compare_with_continuum(wall, live="top", elastic=False)
     assert found.strength.bracket == (np.inf, np.inf)
     assert found.strength.proven == (True, True)

@@ -31,6 +31,11 @@ def exact(small):
     return run_path(small, [WEIGHT, Stage("push", {"live": 0.5})])
 
 
+@pytest.fixture(scope="module")
+def fallen(small):
+    return run_path(small, [WEIGHT, Stage("push", {"live": 1.0}), Stage("never", {"dead": 2.0})])
+
+
 def test_stages_factors_and_certificates(exact):
     assert exact.complete
     assert exact.notes == ()
@@ -91,13 +96,13 @@ def test_control_point_passes_the_peak(small):
     assert found.peak() <= limit(small, path=False).associated.multiplier * (1 + 1e-9)
 
 
-def test_load_that_cannot_be_carried(small):
-    found = run_path(small, [WEIGHT, Stage("push", {"live": 1.0}), Stage("never", {"dead": 2.0})])
-    assert found.outcomes[-1] is Outcome.LIMIT
-    assert len(found.outcomes) == 2
-    assert not found.complete
-    assert "grows no further" in found.notes[-1]
-    assert found.events[-1].step == len(found.steps) - 1
+def test_load_that_cannot_be_carried(fallen):
+    assert fallen.outcomes[-1] is Outcome.LIMIT
+    assert len(fallen.outcomes) == 2
+    assert not fallen.complete
+    assert fallen.peak() < 0.6 + 1e-9
+    assert "grows no further" in fallen.notes[-1]
+    assert fallen.events[-1].step == len(fallen.steps) - 1
 
 
 def test_restart_from_a_step(small, exact):
@@ -135,7 +140,7 @@ def test_result_of_a_step(exact):
 
 
 def test_limit_of_rigid_and_elastic_blocks_agree():
-    size = {"length": 2.0, "height": 1.0, "block_size": (0.4, 0.2), "mesh_size": 0.2}
+    size = {"length": 1.6, "height": 0.8, "block_size": (0.4, 0.2), "mesh_size": 0.2}
     found = [limit(wall(**size, horizontal=1.0, friction=0.65, block=kind)) for kind in ("rigid", "elastic")]
     rigid, elastic = found
     assert rigid.associated.checked
@@ -211,7 +216,6 @@ def test_a_stage_that_ends_where_it_begins(small):
     found = run_path(small, [WEIGHT, Stage("push", {"live": 0.1}), Stage("same", {"live": 0.1})])
     assert found.complete
     assert found.peak(1) == pytest.approx(1.0)
-    assert run_path(small, [WEIGHT, Stage("fall", {"live": 5.0})]).peak() < 0.6 / 5.0 + 1e-9
 
 
 def test_a_support_that_sinks_breaks_the_grip_of_the_joint_above_it():
