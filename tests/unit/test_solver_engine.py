@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +12,9 @@ import pytest
 
 import concio
 from commands import run
+from concio.analysis.limit import limit_stages
 from concio.io.result_file import load_result, save_result
+from concio.solvers.algebra.sparse_factor import Array, Pattern, chosen_engine
 
 TEXT = """
 [column]
@@ -59,3 +63,68 @@ def test_engines_that_are_none(tmp_path: Path) -> None:
         code, _, told = run("run", file, *arguments)
         assert (code, "engine" in told) == (2, True)
         assert "Traceback" not in told
+
+
+def engines_of(function: Callable[[], object], monkeypatch: pytest.MonkeyPatch) -> set[str]:
+    """Return the engines in force wherever a function orders a linear system, which SuperLU then factorises."""
+    seen: set[str] = set()
+    order = Pattern.of.__func__
+
+    def watched(cls: type[Pattern], row: Array, column: Array, size: int, engine: str | None = None) -> Pattern:
+        seen.add(chosen_engine())
+        pattern: Pattern = order(cls, row, column, size, "superlu")
+        return pattern
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Pattern, "of", classmethod(watched))
+        function()
+    return seen
+
+
+BLOCKS = concio.wall(length=0.8, height=0.4, block_size=(0.4, 0.2), block="rigid", friction=0.6, horizontal=1.0)
+WALLS = {"plane": BLOCKS, "space": concio.extrude(BLOCKS, 0.2)}
+ASKED = {
+    "limit": lambda m: concio.limit(m, path=False, steps=True, search=False),
+    "stages": lambda m: list(limit_stages(m, path=False, steps=True, search=False)),
+    "margin": lambda m: concio.load_margin(m, tolerance=0.2),
+    "friction": lambda m: concio.friction_by_solving(m, factor=0.2, tolerance=0.2),
+    "steps": lambda m: concio.run_path(m, [concio.Stage("all", {"dead": 1.0, "live": 0.1}, steps=2)], method="steps"),
+}
+MOVED = {
+    "push": lambda m: concio.push(m, step=0.02, until=0.02),
+    "shake": lambda m: concio.dynamics(m, duration=0.01, step=5e-3),
+}
+
+
+@pytest.mark.parametrize("asked", ASKED)
+@pytest.mark.parametrize("kind", WALLS)
+def test_all_that_is_solved_on_the_way_is_solved_by_the_engine_of_the_model(
+    asked: str, kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for engine in ("pardiso", "superlu"):
+        model = replace(WALLS[kind], engine=engine)
+        assert engines_of(lambda model=model: ASKED[asked](model), monkeypatch) == {engine}
+
+
+@pytest.mark.parametrize("asked", MOVED)
+def test_steps_of_a_motion_are_solved_by_the_engine_of_the_model(asked: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    pillar = concio.column(width=0.2, height=0.8, blocks=2, block="rigid", friction=0.6)
+    for engine in ("pardiso", "superlu"):
+        model = replace(pillar, engine=engine)
+        assert engines_of(lambda model=model: MOVED[asked](model), monkeypatch) == {engine}
+
+
+def test_between_two_numbers_of_a_limit_the_engine_is_what_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    stages = limit_stages(replace(BLOCKS, engine="pardiso"), path=False, steps=False, search=False)
+    next(stages)
+    assert engines_of(lambda: concio.load_margin(BLOCKS, tolerance=0.5), monkeypatch) == {"superlu"}
+
+
+@pytest.mark.parametrize("command", ["run", "limit", "path", "push", "shake", "cell"])
+def test_commands_take_the_engine(command: str, tmp_path: Path) -> None:
+    file = tmp_path / "column.toml"
+    file.write_text(TEXT.format(solver=""), encoding="utf-8")
+    code, _, told = run(command, file, "--engine", "pardizo")
+    assert code == 2
+    assert "--engine" in told
+    assert "pardizo" in told

@@ -22,6 +22,7 @@ from typing import Literal
 import numpy as np
 
 from concio.analysis.coulomb_path import coulomb_path, dead_state, live_load_path
+from concio.analysis.engine import by_its_engine, step_by_step
 from concio.analysis.lent_compliance import lent_assembly
 from concio.analysis.limit_result import LimitResult
 from concio.analysis.load_steps import load_steps
@@ -60,6 +61,7 @@ Found = Literal["bound", "friction", "steps", "collapse state", "path"]
 
 
 @strict
+@by_its_engine
 def limit(
     model: Model | Assembly,
     live: str | Sequence[str] = "live",
@@ -102,6 +104,7 @@ def limit(
 
 
 @strict
+@step_by_step
 def limit_stages(
     model: Model | Assembly,
     live: str | Sequence[str] = "live",

@@ -130,6 +130,7 @@ class LimitResult:
         """Return the numbers of ``--json``."""
         a = self.associated
         return {
+            "engine": self.assembly.model.engine,
             "associated": "locked" if a.locked else "bounded",
             "associated_multiplier": _finite(a.multiplier),
             "associated_upper_bound": _finite(a.upper),

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from concio.analysis.engine import by_its_engine
 from concio.analysis.lent_compliance import lent_assembly
 from concio.analysis.limit import dead_and_live, factored_problem
 from concio.arguments import strict
@@ -74,6 +75,7 @@ class Margin:
 
 
 @strict
+@by_its_engine
 def load_margin(model: Model | Assembly, live: str | Sequence[str] = "live", tolerance: float = 1e-3) -> Margin:
     """Return the largest factor of the live load that :func:`concio.solve` was found to carry, in one step.
 
@@ -101,6 +103,7 @@ def load_margin(model: Model | Assembly, live: str | Sequence[str] = "live", tol
 
 
 @strict
+@by_its_engine
 def friction_by_solving(
     model: Model | Assembly, live: str | Sequence[str] | None = None, factor: float = 1.0, tolerance: float = 1e-3
 ) -> Margin:

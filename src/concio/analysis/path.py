@@ -18,6 +18,7 @@ from typing import Literal
 
 import numpy as np
 
+from concio.analysis.engine import by_its_engine
 from concio.analysis.lent_compliance import SHEAR_TO_NORMAL, lent_assembly
 from concio.analysis.path_result import NamedEvent, PathResult, PathStep, control_functional, named_event
 from concio.arguments import closest, strict
@@ -38,6 +39,7 @@ Array = np.ndarray
 
 
 @strict
+@by_its_engine
 def run_path(
     model: Model | Assembly,
     stages: Sequence[Stage] = (),

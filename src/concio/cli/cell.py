@@ -10,7 +10,7 @@ import typer
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
-from concio.cli.run import File, Json
+from concio.cli.run import EngineOf, File, Json, loaded
 
 if TYPE_CHECKING:
     from concio.analysis.cells.moduli import Moduli
@@ -40,6 +40,7 @@ def cell(
     ] = True,
     programmes: Annotated[int, typer.Option("--programmes", help="Linear programmes for the domain at most.")] = 400,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for tables and figures.")] = None,
+    engine: EngineOf = None,
     json: Json = False,
 ) -> int:
     """Homogenise a periodic cell: moduli, strength domain, and its response to macroscopic strains and stresses.
@@ -50,7 +51,6 @@ def cell(
 
     Example: concio cell cell.toml --stress yy=-100 --direction xy=1 --out result
     """
-    import concio
     from concio.analysis.cells.path import strain_path
     from concio.analysis.cells.periodic_cell import PeriodicCell
     from concio.analysis.cells.strength import strength as strength_of
@@ -62,7 +62,7 @@ def cell(
         check_directory(out)
     directions = [components(text, "--direction") for text in direction or ()]
     base = components(stress, "--stress") if stress is not None else (0.0, 0.0, 0.0)
-    model = concio.load(file)
+    model = loaded(file, engine=engine)
     if model.periods is None:
         msg = "this model is no periodic cell"
         hint = "start from: concio new cell; or give the blocks of a model periods = [[x1, y1], [x2, y2]]"

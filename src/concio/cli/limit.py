@@ -11,7 +11,7 @@ import typer
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
-from concio.cli.run import File, Json, UnitsOf, in_units
+from concio.cli.run import EngineOf, File, Json, UnitsOf, loaded
 
 if TYPE_CHECKING:
     from concio.analysis.limit import LimitResult
@@ -48,6 +48,7 @@ def limit(
         bool, typer.Option("--solves", help="Also bisect load and friction with solved load steps (some twenty).")
     ] = False,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for figures of the mechanisms.")] = None,
+    engine: EngineOf = None,
     units: UnitsOf = None,
     json: Json = False,
 ) -> int:
@@ -66,7 +67,7 @@ def limit(
     groups = list(group or ["live"])
     if out is not None:
         check_directory(out)
-    assembly = concio.assemble(in_units(concio.load(file), units))
+    assembly = concio.assemble(loaded(file, units, engine))
     wanted = len(assembly.pairs) <= LARGEST_MARGIN if friction is None else friction
     found: LimitResult | None = None
 

@@ -10,7 +10,7 @@ import typer
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
-from concio.cli.run import File, Json, UnitsOf, factors_of, in_units
+from concio.cli.run import EngineOf, File, Json, UnitsOf, factors_of, loaded
 
 if TYPE_CHECKING:
     from concio.analysis.path import ControlPoint, PathResult
@@ -42,6 +42,7 @@ def path(
     ] = False,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for curve, events and last state.")] = None,
     every: Annotated[bool, typer.Option("--all", help="List every event.")] = False,
+    engine: EngineOf = None,
     units: UnitsOf = None,
     json: Json = False,
 ) -> int:
@@ -64,7 +65,7 @@ def path(
 
     if out is not None:
         check_directory(out)
-    assembly = concio.assemble(in_units(concio.load(file), units))
+    assembly = concio.assemble(loaded(file, units, engine))
     control = None if point is None else control_of(point, along, assembly.model.dim)
     if control is None and until is not None:
         msg = "--until is the motion of a control point, and there is none"

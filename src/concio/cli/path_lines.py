@@ -65,6 +65,7 @@ def path_facts(found: PathResult, point: ControlPoint) -> dict[str, Any]:
         "status": "solved" if found.complete else found.outcomes[-1].name.lower(),
         "sentence": found.sentence,
         "title": found.assembly.model.title,
+        "engine": found.assembly.model.engine,
         "stages": [
             {
                 "name": stage.name,

@@ -11,7 +11,7 @@ from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.path import control_of
 from concio.cli.progress import progress_bar
-from concio.cli.run import Factors, File, Json, UnitsOf, factors_of, in_units
+from concio.cli.run import EngineOf, Factors, File, Json, UnitsOf, factors_of, loaded
 
 Film = Annotated[
     list[str] | None,
@@ -59,6 +59,7 @@ def push(
     film: Film = None,
     series: Series = False,
     every: Annotated[bool, typer.Option("--all", help="List every event.")] = False,
+    engine: EngineOf = None,
     units: UnitsOf = None,
     json: Json = False,
 ) -> int:
@@ -81,7 +82,7 @@ def push(
     if load and point is not None:
         msg = "either the load grows or a point moves"
         raise InputError(msg, where="--load, --point", hint="leave one of them out")
-    model = in_units(concio.load(file), units)
+    model = loaded(file, units, engine)
     kind = "number" if load else "length"
     sizes = [None if t is None else quantity(t, kind, where=w) for t, w in ((step, "--step"), (until, "--until"))]
     towards = {"x": (1.0, 0.0), "-x": (-1.0, 0.0), "y": (0.0, 1.0), "-y": (0.0, -1.0)}[direction]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -13,6 +13,7 @@ from concio.cli.progress import progress_bar
 
 if TYPE_CHECKING:
     from concio.model.model import Model
+    from concio.solvers.algebra.sparse_factor import Engine
 
 File = Annotated[Path, typer.Argument(help="Model file (TOML).", show_default=False)]
 Out = Annotated[Path | None, typer.Option("--out", "-o", help="Directory for figures, report and numbers.")]
@@ -21,6 +22,10 @@ Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing; the e
 UnitsOf = Annotated[
     str | None,
     typer.Option("--units", help="Units of texts, figures and reports: 'N, mm, MPa'; by default those of the file."),
+]
+EngineOf = Annotated[
+    Literal["superlu", "pardiso"] | None,
+    typer.Option("--engine", help="Engine of linear systems: superlu or pardiso; by default that of the file."),
 ]
 Factors = Annotated[
     list[str] | None, typer.Option("--factor", "-f", help="Factor of a load group: live=1.5 (repeatable).")
@@ -32,10 +37,7 @@ def run(
     file: File,
     out: Out = None,
     method: Annotated[str, typer.Option("--method", "-m", help="Solver by name.")] = "auto",
-    engine: Annotated[
-        str | None,
-        typer.Option("--engine", help="Engine of linear systems: superlu or pardiso; by default that of the file."),
-    ] = None,
+    engine: EngineOf = None,
     factor: Factors = None,
     json: Json = False,
     quiet: Quiet = False,
@@ -70,6 +72,22 @@ def run(
         for line in where_written(written):
             say(line)
     return result.status.exit_code
+
+
+def loaded(file: Path, units: str | None = None, engine: Engine | None = None) -> Model:
+    """Return the model of a file, told in the units of ``--units`` and solved by ``--engine``, where there are any.
+
+    Raises
+    ------
+    InputError
+        The file is no model, or an option says nothing.
+    """
+    from dataclasses import replace
+
+    import concio
+
+    model = in_units(concio.load(file), units)
+    return model if engine is None else replace(model, engine=engine)
 
 
 def in_units(model: Model, units: str | None) -> Model:

@@ -12,7 +12,7 @@ from concio.cli.output import replaced_directory
 from concio.cli.path import control_of
 from concio.cli.progress import progress_bar
 from concio.cli.push import Film, Series, check_out
-from concio.cli.run import Factors, File, Json, UnitsOf, factors_of, in_units
+from concio.cli.run import EngineOf, Factors, File, Json, UnitsOf, factors_of, loaded
 
 
 @guarded
@@ -42,6 +42,7 @@ def shake(
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for histories, report and film.")] = None,
     film: Film = None,
     series: Series = False,
+    engine: EngineOf = None,
     units: UnitsOf = None,
     json: Json = False,
 ) -> int:
@@ -65,7 +66,7 @@ def shake(
     from concio.model.motion.records import read_record
 
     check_out(out, film, series)
-    model = in_units(concio.load(file), units)
+    model = loaded(file, units, engine)
     table = motion_table(read_tables(file), str(file))
     options: dict[str, Any] = table.arguments()
     if motion is None and pulse is None:

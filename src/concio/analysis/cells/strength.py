@@ -20,6 +20,7 @@ import numpy as np
 from concio.analysis.cells.half_spaces import HalfSpaces
 from concio.analysis.cells.periodic_cell import PeriodicCell, three
 from concio.analysis.cells.strength_faces import StrengthFaces, strength_faces
+from concio.analysis.engine import by_its_engine
 from concio.analysis.lent_compliance import with_compliance
 from concio.analysis.limit import coulomb_path, search_collapse
 from concio.arguments import strict
@@ -205,6 +206,7 @@ class StrengthDomain:
 
 
 @strict
+@by_its_engine
 def strength(
     cell: Model | Assembly | PeriodicCell,
     directions: Sequence[Sequence[float]] | Array | int = (),

@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from concio.analysis.engine import by_its_engine
 from concio.analysis.motion.dynamics_result import DynamicsResult, Ending
 from concio.analysis.motion.ground import Ground, Motion
 from concio.analysis.motion.history import Recorder
@@ -50,6 +51,7 @@ AT_REST = 1e-12
 
 
 @strict
+@by_its_engine
 def dynamics(
     model: Model,
     motion: Motion = None,
@@ -72,7 +74,7 @@ def dynamics(
     points: Sequence[ControlPoint] = (),
     stop_overturned: bool = True,
     stop_at_rest: bool = False,
-    engine: Engine = "superlu",
+    engine: Engine | None = None,
     progress: ProgressCallback | None = None,
 ) -> DynamicsResult:
     """Compute the motion of a structure of blocks.
@@ -116,7 +118,8 @@ def dynamics(
         Points whose positions are kept at every step.
     stop_overturned, stop_at_rest : bool
         Whether to stop when a block has turned by 60 degrees, or when nothing moves any more after the ground motion.
-    engine : {"superlu", "pardiso"}
+    engine : {"superlu", "pardiso"}, optional
+        What factorises linear systems; by default that of the model.
     progress : callable, optional
         Called after every step; true stops the motion, and what was computed is kept. So does Ctrl-C.
 
@@ -182,7 +185,7 @@ def _begin(
     factors: Mapping[str, float],
     start: str | MotionState,
     velocities: Mapping[str, Sequence[float]] | None,
-    engine: Engine,
+    engine: Engine | None,
 ) -> tuple[MotionState, list[str]]:
     """Return the state at the beginning, and what there is to say about it."""
     notes: list[str] = []

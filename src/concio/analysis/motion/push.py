@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from concio.analysis.engine import by_its_engine
 from concio.analysis.motion.joint_events import JointEvent, joint_events
 from concio.analysis.motion.observer import Observer
 from concio.analysis.motion.push_result import PushEnding, PushResult
@@ -62,6 +63,7 @@ ENDS = 1e-9
 
 
 @strict
+@by_its_engine
 def push(
     model: Model,
     *,
@@ -75,7 +77,7 @@ def push(
     points: Sequence[ControlPoint] = (),
     gravity: float = GRAVITY,
     brittle: bool = True,
-    engine: Engine = "superlu",
+    engine: Engine | None = None,
     progress: ProgressCallback | None = None,
 ) -> PushResult:
     """Push a structure over: statics at large displacements, past the peak, until its strength is lost.
@@ -110,7 +112,8 @@ def push(
         Turns weights into masses, of which only ratios matter here [m/s2].
     brittle : bool
         Whether joints lose cohesion and tensile strength for good once either was used up.
-    engine : {"superlu", "pardiso"}
+    engine : {"superlu", "pardiso"}, optional
+        What factorises linear systems; by default that of the model.
     progress : callable, optional
         Called at every point; true stops, and what was computed is kept. So does Ctrl-C.
 

@@ -131,7 +131,7 @@ class Statics:
         Share of the weights that the multiplier lets act along this direction, where no group is live.
     control : ControlPoint, optional
         Whose displacement controls the load; otherwise the mean displacement on which the load works.
-    engine : {"superlu", "pardiso"}
+    engine : {"superlu", "pardiso"}, optional
     sag : float
         Depth over the width of the bodies to which hard joints are sunk in.
     """
@@ -144,7 +144,7 @@ class Statics:
         live: tuple[str, ...] = (),
         push: Array | None = None,
         control: ControlPoint | None = None,
-        engine: Engine = "superlu",
+        engine: Engine | None = None,
         sag: float = SAG,
     ) -> None:
         self.reference, self.scheme, self.factors, self.live, self.push = reference, scheme, dict(factors), live, push

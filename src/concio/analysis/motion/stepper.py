@@ -73,10 +73,10 @@ class Stepper:
     ----------
     reference : Reference
     scheme : Scheme
-    engine : {"superlu", "pardiso"}
+    engine : {"superlu", "pardiso"}, optional
     """
 
-    def __init__(self, reference: Reference, scheme: Scheme, engine: Engine = "superlu") -> None:
+    def __init__(self, reference: Reference, scheme: Scheme, engine: Engine | None = None) -> None:
         self.reference, self.scheme = reference, scheme
         disc = reference.disc
         self.frames = Frames(reference, scheme)

@@ -54,7 +54,7 @@ class BlockFactor:
         m.
     bodies : (B+1,) integer array
         Unknowns of body k are ``bodies[k]:bodies[k+1]``.
-    engine : {"superlu", "pardiso"}
+    engine : {"superlu", "pardiso"}, optional
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class BlockFactor:
     """
 
     def __init__(
-        self, K: sp.csr_array, C: sp.csr_array, pairs: int, bodies: Array, engine: Engine = "superlu"
+        self, K: sp.csr_array, C: sp.csr_array, pairs: int, bodies: Array, engine: Engine | None = None
     ) -> None:
         n = K.shape[0]
         groups = _groups(C, pairs, bodies)

@@ -260,13 +260,13 @@ def typical_stiffness(problem: ContactProblem) -> float:
     return float(np.abs(problem.f).sum()) or 1.0
 
 
-def scale(problem: ContactProblem, engine: Engine = "superlu", *, loads: Array | None = None) -> Scaled:
+def scale(problem: ContactProblem, engine: Engine | None = None, *, loads: Array | None = None) -> Scaled:
     """Bring a problem to units of its own.
 
     Parameters
     ----------
     problem : ContactProblem
-    engine : {"superlu", "pardiso"}
+    engine : {"superlu", "pardiso"}, optional
         Sparse factorisation.
     loads : (N,) array, optional
         Loads by which forces are measured where those of the problem are not the measure (a load path) [kN].

@@ -5,11 +5,16 @@ ordering is computed once, on the graph of the nodes, and every later matrix is 
 on running-bond walls (``benchmarks/orderings.py``), nested dissection costs a quarter of the minimum-degree ordering.
 
 Engines, chosen by name and never by what happens to be installed: ``superlu`` (SciPy) and ``pardiso`` (extra ``fast``).
+Paths, limit loads and motions solve many systems far below where the model names its engine: :func:`factorised_by`
+names it for all of them.
 """
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from copy import copy
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -23,6 +28,8 @@ from concio.errors import ConcioError, InputError
 Array = np.ndarray
 Engine = Literal["superlu", "pardiso"]
 
+_CHOSEN: ContextVar[Engine] = ContextVar("engine", default="superlu")
+"""What factorises where nothing else is asked for."""
 
 PIVOT = 0.01
 """Share of the largest entry of its column down to which a diagonal entry is the pivot, unless told otherwise."""
@@ -30,6 +37,21 @@ PIVOT = 0.01
 
 class SingularMatrixError(ConcioError):
     """A factorisation met a zero or a non-finite pivot."""
+
+
+@contextmanager
+def factorised_by(engine: Engine | None) -> Iterator[None]:
+    """Let an engine factorise all systems inside that leave the choice; None leaves it as it is."""
+    before = _CHOSEN.set(engine or chosen_engine())
+    try:
+        yield
+    finally:
+        _CHOSEN.reset(before)
+
+
+def chosen_engine() -> Engine:
+    """Return the engine that factorises where nothing else is asked for."""
+    return _CHOSEN.get()
 
 
 def nested_dissection(pattern: sp.csr_array, group: int = 2) -> tuple[Array, str]:
@@ -88,8 +110,9 @@ class Pattern:
     slot: Array
 
     @classmethod
-    def of(cls, row: Array, column: Array, size: int, engine: Engine) -> Pattern:
+    def of(cls, row: Array, column: Array, size: int, engine: Engine | None = None) -> Pattern:
         """Return the pattern of entries (k,), repeated ones among them, of a matrix of ``size`` unknowns."""
+        engine = engine or chosen_engine()
         if engine not in ("superlu", "pardiso"):
             msg = f"unknown factorisation engine '{engine}'"
             raise InputError(msg, hint="superlu or pardiso")
@@ -208,10 +231,10 @@ class PatternFactor:
         Rows coupled by ``D``.
     couples : (k, 2) integer array
         Entry ``(i, j)`` of D for each k; the matrix is K + sum_k d_k C_i' C_j + diagonal.
-    engine : {"superlu", "pardiso"}
+    engine : {"superlu", "pardiso"}, optional
     """
 
-    def __init__(self, K: sp.csr_array, C: sp.csr_array, couples: Array, engine: Engine = "superlu") -> None:
+    def __init__(self, K: sp.csr_array, C: sp.csr_array, couples: Array, engine: Engine | None = None) -> None:
         n = K.shape[0]
         rows, columns, terms, values = _outer_terms(C, couples)
         identity = np.arange(n)

@@ -36,7 +36,7 @@ def solve(
     problem: ContactProblem,
     *,
     progress: ProgressCallback | None = None,
-    engine: Engine = "superlu",
+    engine: Engine | None = None,
 ) -> Solution:
     """Solve one load step by whatever it takes.
 
@@ -44,7 +44,7 @@ def solve(
     ----------
     problem : ContactProblem
     progress : callable, optional
-    engine : {"superlu", "pardiso"}
+    engine : {"superlu", "pardiso"}, optional
 
     Returns
     -------

@@ -54,7 +54,7 @@ def solve(
     problem: ContactProblem,
     *,
     progress: ProgressCallback | None = None,
-    engine: Engine = "superlu",
+    engine: Engine | None = None,
 ) -> Solution:
     """Solve one load step of a problem of any dimension.
 
@@ -62,7 +62,7 @@ def solve(
     ----------
     problem : ContactProblem
     progress : callable, optional
-    engine : {"superlu", "pardiso"}
+    engine : {"superlu", "pardiso"}, optional
         Sparse factorisation.
 
     Returns

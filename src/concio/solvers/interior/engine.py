@@ -38,7 +38,7 @@ def solve(
     problem: ContactProblem,
     *,
     progress: ProgressCallback | None = None,
-    engine: Engine = "superlu",
+    engine: Engine | None = None,
     homotopy: bool = True,
     starts: tuple[float, ...] = STARTS,
 ) -> Solution:
@@ -48,7 +48,7 @@ def solve(
     ----------
     problem : ContactProblem
     progress : callable, optional
-    engine : {"superlu", "pardiso"}
+    engine : {"superlu", "pardiso"}, optional
         Sparse factorisation.
     homotopy : bool
         Walk from associated flow where the plain iteration fails.

@@ -51,10 +51,10 @@ class StepFactor:
         A; its pattern must stay.
     columns : (m, w) integer array
         Unknowns of the rows of each pair; N where there is none.
-    engine : {"superlu", "pardiso"}
+    engine : {"superlu", "pardiso"}, optional
     """
 
-    def __init__(self, matrix: sp.csr_array, columns: Array, engine: Engine = "superlu") -> None:
+    def __init__(self, matrix: sp.csr_array, columns: Array, engine: Engine | None = None) -> None:
         n = matrix.shape[0]
         m, w = columns.shape
         coo = matrix.tocoo()

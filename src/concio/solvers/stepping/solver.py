@@ -33,10 +33,10 @@ class StepSolver:
 
     Parameters
     ----------
-    engine : {"superlu", "pardiso"}
+    engine : {"superlu", "pardiso"}, optional
     """
 
-    def __init__(self, engine: Engine = "superlu") -> None:
+    def __init__(self, engine: Engine | None = None) -> None:
         self.engine = engine
         self.factor: StepFactor | None = None
         self.counts: dict[str, int] = {}
