@@ -36,7 +36,7 @@ from concio.solvers.statics.collapse_search import WORK_OF_ALL, find_collapse_st
 from concio.solvers.statics.collapse_state import CollapseState
 from concio.solvers.statics.existence import find_mechanism
 from concio.solvers.statics.friction import FrictionMargin, smallest_friction
-from concio.solvers.statics.limit import associated_limit
+from concio.solvers.statics.limit import LimitLoad, associated_limit
 
 __all__ = [
     "LimitResult", "coulomb_path", "dead_and_live", "friction_margin", "limit", "limit_stages", "search_collapse"
@@ -160,7 +160,8 @@ def limit_stages(
         yield "steps", found
     if search if search is not None else path is not False:
         tell("collapse states")
-        state, said = search_collapse(dead, load, work=WORK_OF_ALL if search else UNASKED_WORK, progress=progress)
+        work = WORK_OF_ALL if search else UNASKED_WORK
+        state, said = search_collapse(dead, load, work=work, bound=found.associated, progress=progress)
         found = replace(found, collapse_state=state, search=said)
         yield "collapse state", found
     if exact:
@@ -188,12 +189,17 @@ def _telling(progress: ProgressCallback | None) -> Callable[[str], None]:
 
 
 def search_collapse(
-    dead: ContactProblem, live: Array, *, work: int = WORK_OF_ALL, progress: ProgressCallback | None = None
+    dead: ContactProblem,
+    live: Array,
+    *,
+    work: int = WORK_OF_ALL,
+    bound: LimitLoad | None = None,
+    progress: ProgressCallback | None = None,
 ) -> tuple[CollapseState | None, str]:
     """Search collapse states where the problem is not too large; return the least one, and what was done in words."""
     if dead.pairs > LARGEST_SEARCH:
         return None, f"not tried: {dead.pairs:,} contact pairs are more than {LARGEST_SEARCH:,}"
-    found = find_collapse_state(dead, live, work=work, progress=progress)
+    found = find_collapse_state(dead, live, work=work, bound=bound, progress=progress)
     return found.state, found.words
 
 

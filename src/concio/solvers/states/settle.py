@@ -34,6 +34,9 @@ ROUNDS = 12
 TOGETHER = 40
 """Largest number of pairs decided together."""
 
+PATIENCE = 2
+"""Rounds in a row that leave no fewer pairs in question, more than can be decided together, before settling stops."""
+
 ANCHORS = 8
 """Largest number of times the springs of loose unknowns are anchored anew."""
 
@@ -97,6 +100,7 @@ class Settler:
     def _settle(self, run: _Run, states: PairStates, u: Array, t: Array, chosen: Array, rounds: int) -> None:
         """Decide the pairs in question until none is contradicted, or nothing new comes of it."""
         seen: set[bytes] = set()
+        least, late = len(t) + 1, 0
         if 0 < chosen.sum() <= TOGETHER:
             states, u, t = run.decided(states, np.flatnonzero(chosen), u, t) or (states, u, t)
         for _ in range(rounds):
@@ -104,6 +108,9 @@ class Settler:
             u, t, wrong, shown = run.solved(states, u, t)
             if not wrong.any():
                 return
+            least, late = (int(wrong.sum()), 0) if wrong.sum() < least else (least, late + 1)
+            if late >= PATIENCE and wrong.sum() > TOGETHER:
+                return  # far from the answer each round contradicts half of the pairs anew
             flipped = _mixed(states, shown, wrong)
             found = None
             if (chosen | wrong).sum() <= TOGETHER:

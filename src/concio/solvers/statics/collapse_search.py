@@ -88,6 +88,7 @@ def find_collapse_state(
     average: float = 0.5,
     seed: int = 0,
     work: int = WORK_OF_ALL,
+    bound: LimitLoad | None = None,
     progress: ProgressCallback | None = None,
 ) -> CollapseSearch:
     """Search Coulomb collapse states.
@@ -108,9 +109,11 @@ def find_collapse_state(
     work : int
         Linear programmes times pairs after which no further start is made; one start alone takes no more either where
         this is less than its own share.
+    bound : LimitLoad, optional
+        Associated limit of the problem, where it is known already.
     progress : callable, optional
     """
-    top = associated_limit(problem, live)
+    top = associated_limit(problem, live) if bound is None else bound
     search = _Search(problem, live, average, progress)
     if not np.isfinite(top.multiplier):
         return search.outcome(0)
