@@ -375,7 +375,7 @@ class Joints:
             "impact": float(lost_n.sum()) - crushed,
             "damping": damped,
             "crushing": crushed,
-            "overlap": step.overlap - float(memory.stored.sum()),
+            "overlap": step.overlap - float(memory.stored.sum()) if self.any_stiffness else 0.0,
             "drift": step.drift,
         }
         return new, works

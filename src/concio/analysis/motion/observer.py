@@ -65,12 +65,15 @@ class Observer:
         self._held_row = {i: len(self.fixed) + k for k, i in enumerate(held)}
         self.joints = tuple((model.bodies[f.a].name, model.bodies[f.b].name) for f in reference.detection.interfaces)
         self._joint = {key: k for k, key in enumerate(reference.drawn)}
+        self._reacting: tuple[Array, Array, Array, Array] | None = None
         self._known: tuple[Array, Array, Array] | None = None
         self.rest = as_complex(reference.disc.centroids)
         self.node_rest = frames.arm + self.rest[frames.body] if frames.elastic else frames.arm
 
     def positions(self, state: MotionState) -> Array:
         """Return where the points are (p, d) [m]."""
+        if not len(self.points):
+            return np.zeros((0, 2))
         turn = np.exp(1j * state.rotation)
         strain = np.append(as_complex(state.strain), 0.0)
         return as_vectors(self.points.positions(as_complex(state.centre), turn, strain))
@@ -86,21 +89,28 @@ class Observer:
             Number of contact pairs.
         normal : (pairs, d) array
         """
-        total = np.zeros((len(self.names), 2))
-        slots, t = self.maker.slots, force[:pairs]
+        count = len(self.names)
+        total = np.zeros((count, 2))
         if len(self.fixed) and pairs:
-            row_a, row_b = self._row[slots.body_a], self._row[slots.body_b]
-            near = np.flatnonzero((row_a >= 0) | (row_b >= 0))
-            n = normal[near]
-            on_b = t[near, :1] * n + t[near, 1:] * np.stack([-n[:, 1], n[:, 0]], axis=1)
-            for row, sign in ((row_a[near], 1.0), (row_b[near], -1.0)):
-                hit = row >= 0
-                np.add.at(total, row[hit], sign * on_b[hit])
+            near, row, sign = self._of_fixed()
+            t, n = force[near] * sign, normal[near]
+            total[:, 0] = np.bincount(row, t[:, 0] * n[:, 0] - t[:, 1] * n[:, 1], count)
+            total[:, 1] = np.bincount(row, t[:, 0] * n[:, 1] + t[:, 1] * n[:, 0], count)
         held = self.maker.held
         for k in range(len(held)):
             vector = (force[pairs + k, 0] + 1j * force[pairs + k, 1]) * held.normal[k]
             total[self._held_row[int(held.support[k])]] += vector.real, vector.imag
         return total
+
+    def _of_fixed(self) -> tuple[Array, Array, Array]:
+        """Return the slots (k,) of fixed bodies, their rows among the reactions (k,), and signs of forces (k, 1)."""
+        slots = self.maker.slots
+        if self._reacting is None or self._reacting[0] is not slots.key:
+            row_a, row_b = self._row[slots.body_a], self._row[slots.body_b]
+            a, b = np.flatnonzero(row_a >= 0), np.flatnonzero(row_b >= 0)
+            sign = np.concatenate([np.ones(len(a)), -np.ones(len(b))])[:, None]
+            self._reacting = slots.key, np.concatenate([a, b]), np.concatenate([row_a[a], row_b[b]]), sign
+        return self._reacting[1:]
 
     def rows(self, state: MotionState) -> Rows:
         """Return the contact rows where the bodies stand, in the present layout."""

@@ -49,6 +49,7 @@ class PairMaker:
             reference.laws, scheme, reference.disc.size, self.width, self.search.skin, lent, yielding(reference)
         )  # fmt: skip
         self.held, self.ties = Held.of(reference), Ties.of(reference)
+        self.nothing = no_pairs(self.n)
 
     @property
     def slots(self) -> Slots:
@@ -72,7 +73,7 @@ class PairMaker:
         """Return the pairs of supports; ``shift`` complex (k,): how far or fast they are from their places."""
         held, k = self.held, len(self.held)
         if not k:
-            return no_pairs(self.n)
+            return self.nothing
         zero, inf = np.zeros(k), np.full(k, np.inf)
         off = np.stack([dot(shift, held.normal), dot(shift, 1j * held.normal)], axis=1)
         return PairData(
@@ -91,9 +92,9 @@ class PairMaker:
         A tight tie resists being swung by its tension over its length: nothing where the bodies stand, but without it
         iterations to an equilibrium would not converge.
         """
-        ties, k, none = self.ties, len(self.ties), no_pairs(self.n)
+        ties, k = self.ties, len(self.ties)
         if not k:
-            return none, np.zeros(0), none
+            return self.nothing, np.zeros(0), self.nothing
         values, across, gap, length = ties.rows(centre, turn, np.append(strain, 0.0))
         gap = gap + tied.plastic
         zero, every, inf = np.zeros(k), np.ones(k, dtype=bool), np.full(k, np.inf)
@@ -121,8 +122,9 @@ def yielding(reference: Reference) -> Array:
 
 def relative(columns: Array, values: Array, x: Array) -> Array:
     """Return the relative velocities (m, d) of unknowns x (N,)."""
-    moved: Array = np.matmul(values, np.append(x, 0.0)[columns][:, :, None])[:, :, 0]
-    return moved
+    padded = np.empty(len(x) + 1)
+    padded[:-1], padded[-1] = x, 0.0
+    return np.asarray(np.einsum("mdw,mw->md", values, padded[columns]))
 
 
 def no_pairs(n: int) -> PairData:

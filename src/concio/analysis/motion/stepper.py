@@ -146,11 +146,14 @@ class Stepper:
         data, joint = maker.joints.pairs(rows, slots, memory, y0, h, speed, self._give(rows, h))
         held = self._held(state, turn, h, drive)
         ties = self._ties(state, middle, turn, strain, x0, h)
-        problem = assembled(self.matrix(h), b, [data, held[0], ties.data], force, speed)
+        parts = [data, held[0]] if ties is None else [data, held[0], ties.data]
+        problem = assembled(self.matrix(h), b, parts, force, speed)
         m, count = len(memory.key), problem.pairs
         states = StepStates(np.ones(count, dtype=np.int8), np.zeros(count, dtype=np.int8))
         k = m + len(maker.held)
-        states.contact[:m], states.slip[:m], states.contact[k:] = memory.contact, memory.slip, ties.states()
+        states.contact[:m], states.slip[:m] = memory.contact, memory.slip
+        if ties is not None:
+            states.contact[k:] = ties.states()
         t0 = np.zeros((count, 2))
         t0[:m] = memory.force
         found = self.solver.solve(problem, states, x0, t0)
@@ -164,15 +167,18 @@ class Stepper:
         works["input"] = h * float(ground @ x) - h * float((found.t[:m] * rows.imposed).sum())
         works["input"] -= h * float((found.t[m:k] * held[1]).sum())
         works["damping"] += self._damping(x, found.x - x0, turn, strain, h)
-        tied, lost, yielded = ties.remember(
-            relative(ties.data.columns, ties.data.values, x)[:, 0], found.t[k:, 0], found.states.contact[k:], h
-        )
-        works["damping" if self.scheme.stiffness_damping else "impact"] += lost
-        works["crushing"] += yielded
+        tied = state.ties
+        if ties is not None:
+            rate = relative(ties.data.columns, ties.data.values, x)[:, 0]
+            tied, lost, yielded = ties.remember(rate, found.t[k:, 0], found.states.contact[k:], h)
+            works["damping" if self.scheme.stiffness_damping else "impact"] += lost
+            works["crushing"] += yielded
+            works["drift"] += ties.drift
         end = joint.gap + h * y[:, 0] - 0.5 * h * joint.y0[:, 0] + memory.crushing - memory_before.crushing
         apart = maker.joints.apart(data, joint, end, self._movable, slots.body_a, slots.body_b)
-        works["drift"] += ties.drift - float(loads @ apart)
-        works["overlap"] += float(memory_before.stored.sum()) - float(state.memory.stored.sum())
+        works["drift"] -= float(loads @ apart)
+        if maker.joints.any_stiffness:
+            works["overlap"] += float(memory_before.stored.sum()) - float(state.memory.stored.sum())
         new = self._moved(state, found.x, x, apart, turn, strain, h, velocity, memory, tied)
         hard = rows.valid & ~joint.springy
         depth = float(np.maximum(-end[hard & data.active], 0.0).max(initial=0.0))
@@ -196,7 +202,7 @@ class Stepper:
         """Return the pairs of supports, and the velocities (k, 2) imposed on them [m/s]."""
         maker = self.maker
         if not len(maker.held):
-            return maker.supports(turn, np.zeros(0)), np.zeros((0, 2))
+            return maker.nothing, np.zeros((0, 2))
         centre, here = as_complex(state.centre), np.exp(1j * state.rotation)
         drift = maker.off_support(centre, here, as_complex(state.strain), drive.factors)
         wanted = np.full(len(drift), complex(*drive.velocity))
@@ -204,10 +210,14 @@ class Stepper:
         normal = maker.held.normal
         return data, -np.stack([dot(wanted, normal), dot(wanted, 1j * normal)], axis=1)
 
-    def _ties(self, state: MotionState, centre: Array, turn: Array, strain: Array, x0: Array, h: float) -> TieStep:
-        """Return the ties of a step whose bodies stand so in its middle."""
+    def _ties(
+        self, state: MotionState, centre: Array, turn: Array, strain: Array, x0: Array, h: float
+    ) -> TieStep | None:
+        """Return the ties of a step whose bodies stand so in its middle; None where there are none."""
+        if not len(self.maker.ties):
+            return None
         data, gap, _ = self.maker.tie_pairs(centre, turn, strain, state.ties)
-        y0 = relative(data.columns, data.values, x0)[:, 0] if len(gap) else gap
+        y0 = relative(data.columns, data.values, x0)[:, 0]
         return TieStep.of(self.maker.ties, state.ties, data, gap, y0, h, self.scheme)
 
     def _damping(self, x: Array, jump: Array, turn: Array, strain: Array, h: float) -> float:

@@ -17,12 +17,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array, ContactProblem, Laws
+
+FEW = 40
+"""Unknowns up to which dense products are cheaper than everything around sparse ones."""
+
+DELTA = 1e-6
+"""Compliance added to closed pairs in the factorised matrix, over the typical flexibility of a pair."""
+
+ENOUGH = 100.0
+"""Own compliance of a pair over that, from which on nothing is added: the first solve is exact then."""
 
 GLUED = 1e6
 """Tensile strength of glued pairs over F, where a method needs a number for it."""
@@ -97,21 +107,57 @@ class StepProblem:
     def flexibility(self) -> Array:
         """Displacement of each pair under a unit force along each direction, roughly: C diag(A)^-1 C' (m, d)."""
         inverse = np.append(1.0 / self.diagonal, 0.0)
-        return np.asarray(np.einsum("mdw,mdw,mw->md", self.values, self.values, inverse[self.columns]))
+        return np.asarray(np.einsum("mdw,mw->md", self.values**2, inverse[self.columns]))
+
+    @cached_property
+    def added(self) -> tuple[Array, Array]:
+        """Compliances (m,) added along normal and tangent where a pair has next to none of its own."""
+        flexible, zero = self.flexibility, np.zeros(self.pairs)
+        most = flexible.max(axis=0, initial=0.0)
+        found = []
+        for k, own in enumerate((self.a_n, self.a_t)):
+            if not self.pairs or own.min() > ENOUGH * DELTA * most[k]:
+                found.append(zero)
+                continue
+            delta = DELTA * np.maximum(flexible[:, k], 1e-3 * flexible[:, k].mean())
+            found.append(np.where(own > ENOUGH * delta, 0.0, delta))
+        return found[0], found[1]
+
+    @cached_property
+    def rows(self) -> tuple[Any, Any]:
+        """C and its transpose: dense where unknowns are few, sparse and with a last column of zeros elsewhere."""
+        (m, d, w), n = self.values.shape, len(self.b)
+        if n <= FEW:
+            dense = np.zeros((m, d, n + 1))
+            dense[np.arange(m)[:, None, None], np.arange(d)[:, None], self.columns[:, None, :]] = self.values
+            few = dense.reshape(m * d, n + 1)[:, :n]
+            return few, few.T
+        columns = np.repeat(self.columns.astype(np.int32), d, axis=0).ravel()
+        ends = np.arange(0, m * d * w + 1, w, dtype=np.int32)
+        C = sp.csr_array((self.values.ravel(), columns, ends), shape=(m * d, n + 1))
+        return C, C.T
 
     def opening(self, x: Array) -> Array:
         """Return C x (m, d), normal first."""
-        extended = np.append(x, 0.0)
-        moved: Array = np.matmul(self.values, extended[self.columns][:, :, None])[:, :, 0]
-        return moved
+        C = self.rows[0]
+        moved: Array = C @ (x if C.shape[1] == len(x) else np.append(x, 0.0))
+        return moved.reshape(-1, self.values.shape[1])
 
     def pull(self, t: Array) -> Array:
         """Return C' t (N,) of forces (m, d)."""
-        nodal = np.matmul(t[:, None, :], self.values)[:, 0]
-        total: Array = np.bincount(self.columns.ravel(), weights=nodal.ravel(), minlength=len(self.b) + 1)[
-            : len(self.b)
-        ]
+        total: Array = (self.rows[1] @ t.ravel())[: len(self.b)]
         return total
+
+    @cached_property
+    def times(self) -> Any:
+        """A as it multiplies fastest."""
+        return self.matrix.toarray() if len(self.b) <= FEW else self.matrix
+
+    @cached_property
+    def plain(self) -> bool:
+        """Whether every pair has friction only: no strength without compression, no cap, nothing glued."""
+        cone = self.cone
+        return not (cone.cohesion.any() or cone.tension.any() or np.isfinite(cone.cap).any())
 
     def relative(self, x: Array, t: Array) -> tuple[Array, Array]:
         """Return y_n (m,) without dilatancy and y_t (m, d-1)."""
@@ -120,9 +166,18 @@ class StepProblem:
 
     def residual(self, x: Array, t: Array) -> tuple[float, Array]:
         """Return the worst relative violation of any equation, and that of the joint law of each pair (m,)."""
-        left = np.abs(self.matrix @ x - self.b - self.pull(t)).max(initial=0.0) / self.force
+        left = np.abs(self.times @ x - self.b - self.pull(t)).max(initial=0.0) / self.force
         y_n, y_t = self.relative(x, t)
         cone, t_n, t_t = self.cone, t[:, 0], t[:, 1:]
+        if self.plain and self.dim == 2:
+            y, along, force = y_t[:, 0], t[:, 1], self.force
+            law = np.abs(np.minimum(t_n / force, (y_n - self.dilatancy * np.abs(y)) / self.length))
+            strength = np.maximum(cone.friction * t_n, 0.0)
+            trial = along - force / self.length * y
+            wrong = np.abs(along - np.minimum(np.maximum(trial, -strength), strength)) / force
+            idle = np.maximum(np.abs(t_n), np.abs(along)) / force
+            simple: Array = np.where(self.active, np.maximum(law, wrong), idle)
+            return float(max(left, simple.max(initial=0.0))), simple
         glued = self.glued
         slip = np.abs(y_t[:, 0]) if self.dim == 2 else np.linalg.norm(y_t, axis=1)
         y_n = (y_n - np.where(cone.rough & ~glued, self.dilatancy * slip, 0.0)) / self.length

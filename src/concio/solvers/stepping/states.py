@@ -1,6 +1,6 @@
 r"""The linear equations of given states, and the states that forces and velocities suggest.
 
-With a state for every pair the problem is linear. A compliance ``DELTA`` (over the flexibility of the pair) gives the
+With a state for every pair the problem is linear. A small compliance (:attr:`StepProblem.added`) gives the
 matrix A + C'DC, one 2 x 2 block D for each pair; iterative refinement against the equations without it takes it out
 again. Where forces are not unique (rigid blocks on many corners) refinement from zero ends at those of least norm.
 """
@@ -14,9 +14,6 @@ import numpy as np
 
 from concio.problem.contact_problem import Array
 from concio.solvers.stepping.problem import StepProblem, StepStates
-
-DELTA = 1e-6
-"""Compliance of closed pairs in the factorised matrix, over the typical flexibility of a pair."""
 
 EXACT = 1e-13
 """Relative residual at which refinement stops."""
@@ -67,6 +64,17 @@ class Linear:
     def of(cls, p: StepProblem, states: StepStates) -> Linear:
         """Return the linear laws of states."""
         cone, sigma = p.cone, states.slip.astype(float)
+        delta_n, delta_t = p.added
+        if p.plain:
+            closed, zero = (states.contact == 1) & p.active, np.zeros(p.pairs)
+            rough = closed & cone.rough
+            stick = rough & (states.slip == 0) & (p.flexibility[:, 1] + p.a_t > 0)
+            slips = rough & (states.slip != 0)
+            drag = np.where(slips, -sigma * cone.friction, 0.0)
+            return cls(
+                closed, stick, drag, zero, zero, p.dilatancy * sigma * slips, delta_n,
+                np.where(stick, p.a_t + delta_t, 1.0),
+            )  # fmt: skip
         closed = ((states.contact == 1) & p.active) | p.glued
         tension = np.where(p.glued | ~p.active, 0.0, cone.tension)
         cohesion = np.where(p.pinned, 0.0, cone.cohesion)
@@ -77,8 +85,6 @@ class Linear:
         pull = np.where(slips, -sigma * cohesion, 0.0)
         crushed = (states.contact == 2) & p.active
         held = np.where(crushed, np.where(np.isfinite(cone.cap), cone.cap, 0.0), -tension)
-        delta = DELTA * p.flexibility
-        least = np.maximum(delta, 1e-3 * delta.mean(axis=0)) if len(delta) else delta
         return cls(
             closed,
             stick,
@@ -86,8 +92,8 @@ class Linear:
             pull,
             np.where(closed, 0.0, held),
             p.dilatancy * sigma * slips,
-            least[:, 0],
-            np.where(stick, p.a_t + least[:, 1], 1.0),
+            delta_n,
+            np.where(stick, p.a_t + delta_t, 1.0),
         )
 
     def blocks(self, p: StepProblem) -> Array:
@@ -116,10 +122,10 @@ def solve_states(
     closed, stick, drag = linear.closed, linear.stick, linear.drag
     t_n = np.where(closed, t[:, 0], linear.held_n)
     t_t = np.where(stick, t[:, 1], drag * t_n + linear.pull)
-    t = np.column_stack([t_n, t_t])
+    t = _side_by_side(t_n, t_t)
     best, late = (x, t, np.inf), 0
     for _ in range(ROUNDS):
-        r_u = p.b + p.pull(t) - p.matrix @ x
+        r_u = p.b + p.pull(t) - p.times @ x
         y_n, y_t = p.relative(x, t)
         r_n = np.where(closed, -(y_n - linear.open_wide * y_t[:, 0]), 0.0)
         r_t = np.where(stick, -y_t[:, 0], 0.0)
@@ -135,12 +141,18 @@ def solve_states(
             break
         n0 = r_n * D[:, 0, 0]
         t0 = np.where(stick, r_t / linear.soft_t, drag * n0)
-        dx = factor.solve(r_u + p.pull(np.column_stack([n0, t0])))
+        dx = factor.solve(r_u + p.pull(_side_by_side(n0, t0)))
         v = p.opening(dx)
         dt_n = n0 - D[:, 0, 0] * (v[:, 0] - linear.open_wide * v[:, 1])
         dt_t = np.where(stick, t0 - v[:, 1] / linear.soft_t, drag * dt_n)
-        x, t = x + dx, t + np.column_stack([dt_n, dt_t])
+        x, t = x + dx, t + _side_by_side(dt_n, dt_t)
     return best
+
+
+def _side_by_side(first: Array, second: Array) -> Array:
+    both = np.empty((len(first), 2))
+    both[:, 0], both[:, 1] = first, second
+    return both
 
 
 def read_states(p: StepProblem, x: Array, t: Array) -> StepStates:
