@@ -9,18 +9,14 @@ import tomllib
 from importlib.resources import files
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import concio
 from commands import run
 from concio.analysis.seismic.anchors import Anchor
-from concio.analysis.seismic.applied import pushed
 from concio.analysis.seismic.asked import Head, read_asked
-from concio.analysis.seismic.pushed_curve import pushed_curve
 from concio.analysis.seismic.variations import tie_force, variations
 from concio.errors import InputError
-from concio.model.stages import ControlPoint
 from concio.report.assessment_page import AssessmentReport
 from concio.report.assessment_texts import words_of
 from seismic_walls import overturning, site
@@ -151,18 +147,3 @@ def test_sensitivity_to_set_back_and_friction() -> None:
     varied = {(v.what, v.factor): v.multiplier for v in variations(found)}
     assert varied["friction", 0.8] == pytest.approx(found.worst.multiplier)  # type: ignore[union-attr]
     assert varied["strength", 0.5] == pytest.approx((27.42 - 84.4**2 / (2 * 1000.0)) / 271.2)
-
-
-def test_pushing_over_meets_the_linkage() -> None:
-    """Equilibrium at large displacements, which keeps no mechanism, finds the curve of the mechanism kept."""
-    model = overturning(2)
-    found = concio.assess(model, site=site(), direction="left", levels=["SLV"])
-    worst = found.worst
-    assert worst is not None
-    control = ControlPoint(worst.control[0], (worst.control[1][0], worst.control[1][1]), (-1.0, 0.0))
-    curve = pushed_curve(pushed(model, -1.0), ["earthquake"], 1.0, [1, 2], control)
-    assert curve is not None
-    late = curve.displacement > 0.02 * worst.followed.end
-    met = np.interp(curve.displacement[late], worst.followed.displacement, worst.followed.multiplier)
-    assert curve.multiplier[late][:-1] == pytest.approx(met[:-1], abs=2e-4)
-    assert curve.end == pytest.approx(worst.followed.end, rel=2e-3)

@@ -74,7 +74,7 @@ def assess_lines(found: Assessment, tie: TieForce | None = None) -> list[str]:
     lines += [f"  attention            {note}" for note in found.notes]
     lines.append(f"  code                 {found.site.rules.name}, FC {number(found.confidence)}")
     for m in found.mechanisms:
-        lines.append(f"  {m.name}, push to the {m.direction}")
+        lines.append(f"  {m.name}, push {m.direction}")
         lines.append(
             f"    alpha_0            {m.multiplier:.6g}, e* {number(m.e_star, 4)}, a_0* {number(m.onset, 4)} m/s2"
         )
@@ -95,7 +95,7 @@ def assess_lines(found: Assessment, tie: TieForce | None = None) -> list[str]:
         lines += [f"    {level:18s} not checked" for level in m.unchecked]
         if m.found.flow == "associated":
             lines.append("    upper bound        a joint slides, and no Coulomb state was found: alpha_0 may be less")
-    lines += [f"  {n.name}, push to the {n.direction}: {n.sentence}" for n in found.locked]
+    lines += [f"  {n.name}, push {n.direction}: {n.sentence}" for n in found.locked]
     if found.worst is not None:
         word = "verified" if found.holds else "not verified" if found.zeta < 1 else "not settled"
         lines.append(f"  in short             {word}: zeta_E {number(found.zeta, 4)} of '{found.worst.name}'")

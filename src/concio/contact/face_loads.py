@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import shapely
 
@@ -32,6 +34,41 @@ def near_polygon(points: Array, polygon: Array, tolerance: float) -> Array:
     return near
 
 
+@dataclass(frozen=True, eq=False)
+class LoadedPart:
+    """Part of a face that a uniform load acts on.
+
+    Parameters
+    ----------
+    body, face : int
+    part : shapely geometry
+        In the plane of the load.
+    middle, axes : (3,), (2, 3) arrays
+        Origin and axes of that plane.
+    pull : (3,) array
+        [kN/m2].
+    """
+
+    body: int
+    face: int
+    part: shapely.Geometry
+    middle: Array
+    axes: Array
+    pull: Array
+
+    @property
+    def centre(self) -> Array:
+        """Centroid (3,) [m]."""
+        found: Array = self.middle + np.array([self.part.centroid.x, self.part.centroid.y]) @ self.axes
+        return found
+
+    @property
+    def force(self) -> Array:
+        """Resultant (3,) [kN]."""
+        found: Array = self.pull * float(self.part.area)
+        return found
+
+
 def add_face_load(disc: Discretisation, load: Load, f: Array) -> None:
     """Add the nodal forces of a pressure or traction: on parts of faces that lie in its polygon, or along its edge.
 
@@ -40,16 +77,28 @@ def add_face_load(disc: Discretisation, load: Load, f: Array) -> None:
     InputError
         There is neither polygon nor edge, the polygon has no area or is not planar, or no face of a body lies in it.
     """
-    where = f"load group '{load.group}'"
     if load.edge is not None:
         _along_line(disc, load, f)
         return
+    for p in loaded_parts(disc.model, load):
+        _uniform(disc, p.body, p.face, p.part, p.middle, p.axes, p.pull, f)
+
+
+def loaded_parts(model: Model, load: Load) -> list[LoadedPart]:
+    """Return the parts of faces that the polygon of a pressure or traction covers.
+
+    Raises
+    ------
+    InputError
+        There is no polygon, it has no area or is not planar, or no face of a body lies in it.
+    """
+    where = f"load group '{load.group}'"
     if load.polygon is None:
         msg = f"a {load.kind} load in space needs a polygon"
         raise InputError(msg, where=where, hint="give the vertices of the loaded area, in order")
     corners = np.array(load.polygon, dtype=float)
     middle, normal, axes = plane_of(corners)
-    tolerance = line_tolerance(disc.model)
+    tolerance = line_tolerance(model)
     off = float(np.abs((corners - middle) @ normal).max())
     area = shapely.Polygon((corners - middle) @ axes.T)
     if off > tolerance:
@@ -58,14 +107,16 @@ def add_face_load(disc: Discretisation, load: Load, f: Array) -> None:
     if not area.is_valid or area.area <= tolerance * area.length:
         msg = f"the polygon of a {load.kind} load crosses itself or has no area"
         raise InputError(msg, where=where, hint="list its vertices in order round the area")
-    found = _in_polygon(disc.model, load, area, middle, normal, axes, tolerance)
+    found = _in_polygon(model, load, area, middle, normal, axes, tolerance)
     if not found:
         msg = f"the {load.kind} load on the polygon from {_text(corners[0])} lies on no face of a body"
         raise InputError(msg, where=where, hint="give a polygon in the plane of a face")
+    made = []
     for b, face, part in found:
-        body = disc.model.polyhedra[b]
-        pull = -load.value[0] * body.normals[face] if load.kind == "pressure" else np.array(load.value)
-        _uniform(disc, b, face, part, middle, axes, pull, f)
+        inward = -model.polyhedra[b].normals[face]
+        pull = load.value[0] * inward if load.kind == "pressure" else np.array(load.value, dtype=float)
+        made.append(LoadedPart(b, face, part, middle, axes, pull))
+    return made
 
 
 def _text(point: Array) -> str:

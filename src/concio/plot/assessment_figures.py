@@ -14,6 +14,7 @@ import numpy as np
 from concio.analysis.seismic.applied import applied_forces
 from concio.display import number
 from concio.plot import style
+from concio.plot.assessment_in_space import mechanism_in_space, model_in_space
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,6 +33,8 @@ DASHES: tuple[Any, ...] = ("-", (0, (5, 2)))
 def model_figure(found: Assessment, ax: Axes | None = None) -> Axes:
     """Draw the blocks, what is fixed, supports, ties and loads with their resultants."""
     model = found.model
+    if model.dim == 3:
+        return model_in_space(model, ax)
     points = np.vstack([b.outline for b in model.outlines if b.kind != "fixed"])
     low, high = points.min(0), points.max(0)
     size = float((high - low).max())
@@ -68,21 +71,18 @@ def model_figure(found: Assessment, ax: Axes | None = None) -> Axes:
 def mechanism_figure(mechanism: LocalMechanism, ax: Axes | None = None) -> Axes:
     """Draw a mechanism at its onset, enlarged, with its joints and its control point."""
     model, mechanics = mechanism.assembly.model, mechanism.mechanics
+    if model.dim == 3:
+        return mechanism_in_space(mechanism, ax)
     free = [b for b in model.outlines if b.kind != "fixed"]
     points = np.vstack([b.outline for b in free])
     size = float(np.ptp(points, axis=0).max())
-    linkage = mechanism.linkage
-    v = mechanism.velocity.reshape(-1, 3)
-    still = np.zeros_like(v)
 
     def moved(b: int, outline: Array, scale: float) -> Array:
         block = mechanics.of_body.get(b)
-        if block is None:
-            return outline
-        return np.array([linkage.place(still, block, p) + scale * _velocity(linkage, v, block, p) for p in outline])
+        return outline if block is None else outline + scale * mechanism.velocity_at(block, outline)
 
-    fastest = max(float(np.hypot(*_velocity(linkage, v, g, p))) for b, g in mechanics.of_body.items()
-                  for p in model.outlines[b].outline)  # fmt: skip
+    fastest = max(float(np.linalg.norm(mechanism.velocity_at(g, model.outlines[b].outline), axis=1).max())
+                  for b, g in mechanics.of_body.items())  # fmt: skip
     scale = ENLARGED * size / fastest
     shapes = {b: moved(b, body.outline, scale) for b, body in enumerate(model.outlines)}
     box = style.box_of(points, *(shapes[b] for b in mechanics.of_body), margin=0.06)
@@ -99,14 +99,14 @@ def mechanism_figure(mechanism: LocalMechanism, ax: Axes | None = None) -> Axes:
         look = {"hinge": "o", "roller": "s", "bar": "D"}[joint.kind]
         place = joint.point
         if joint.a >= 0:
-            place = place + scale * _velocity(linkage, v, joint.a, joint.point)
+            place = place + scale * mechanism.velocity_at(joint.a, joint.point)
         ax.plot(*place, look, ms=5.5, mfc="#FFFFFF", mec=style.INK, mew=1.2, zorder=5)
     for participant in mechanism.chain.participants:
         way = participant.force / participant.size
         _arrow(ax, participant.point, participant.point + 0.09 * size * way)
     at = np.array(mechanism.control[1])
-    block = linkage.control[0]
-    ax.plot(*(at + scale * _velocity(linkage, v, block, at)), "x", ms=8, mew=2, color=style.TENSION.colour, zorder=6)
+    block = mechanism.linkage.control[0]
+    ax.plot(*(at + scale * mechanism.velocity_at(block, at)), "x", ms=8, mew=2, color=style.TENSION.colour, zorder=6)
     style.dress(ax, box, "")
     return ax
 
@@ -118,12 +118,6 @@ def _xy(point: Array) -> tuple[float, float]:
 def _arrow(ax: Axes, start: Array, end: Array) -> None:
     look = {"arrowstyle": "-|>", "color": style.LOAD.colour, "lw": 1.3}
     ax.annotate("", _xy(end), _xy(start), arrowprops=look, zorder=6)
-
-
-def _velocity(linkage: Any, v: Array, block: int, point: Array) -> Array:
-    x, y, turn = v[block]
-    arm = point - linkage.mechanics.blocks[block].centre
-    return np.array([x - turn * arm[1], y + turn * arm[0]])
 
 
 def curve_figure(mechanism: LocalMechanism, words: Words, ax: Axes | None = None) -> Axes:

@@ -41,12 +41,15 @@ VIEWS: dict[str, tuple[float, float]] = {
 """Turn about the vertical and height of the eye, of each view [rad]."""
 
 
-def directions(view: View) -> tuple[Array, Array, Array]:
-    """Return (right, up, towards the eye) of a view, unit vectors (3,)."""
-    if view not in VIEWS:
+def directions(view: View | tuple[float, float]) -> tuple[Array, Array, Array]:
+    """Return (right, up, towards the eye) of a view or of its angles, unit vectors (3,)."""
+    if isinstance(view, tuple):
+        turn, lift = view
+    elif view in VIEWS:
+        turn, lift = VIEWS[view]
+    else:
         msg = f"there is no view '{view}'"
         raise InputError(msg, hint="one of " + ", ".join(VIEWS))
-    turn, lift = VIEWS[view]
     c, s, cl, sl = np.cos(turn), np.sin(turn), np.cos(lift), np.sin(lift)
     return np.array([c, s, 0.0]), np.array([-s * sl, c * sl, cl]), np.array([s * cl, -c * cl, sl])
 
@@ -66,7 +69,7 @@ def plot_space_model(
         Write the names of the blocks that are seen; default for up to 60 bodies.
     """
     shown = model_solids(model)
-    ax, picture = _draw(shown, _block_colours(model), view, ax, 0.0, model.title or "Model")
+    ax, picture = draw_solids(shown, block_colours(model), view, ax, 0.0, model.title or "Model")
     if len(model.bodies) <= NAMED if names is None else names:
         _names(ax, model, picture)
     for load in model.loads:
@@ -124,23 +127,25 @@ def plot_space(
         corners = faces.corners + chosen * moved
         extra += [(corners[k], looks[int(state[k])]) for k in np.flatnonzero(np.isin(state, tuple(looks)))]
     title = "Collapse mechanism" if mechanism else f"Displaced shape, {number(chosen)} times"
-    return _draw(shown, _block_colours(result.model), view, ax, chosen, title, extra)[0]
+    return draw_solids(shown, block_colours(result.model), view, ax, chosen, title, extra)[0]
 
 
-def _block_colours(model: Model) -> list[str]:
+def block_colours(model: Model) -> list[str]:
+    """Return the colour of each body."""
     looks = {"rigid": style.RIGID, "fixed": "#CFCBC2"}
     return [looks.get(b.kind, style.FILM if b.role == "mortar" else style.BLOCK) for b in model.bodies]
 
 
-def _draw(
+def draw_solids(
     shown: Solids,
     colours: Sequence[str],
-    view: View,
+    view: View | tuple[float, float],
     ax: Axes | None,
     scale: float,
     title: str,
     extra: Sequence[tuple[Array, str]] = (),
 ) -> tuple[Axes, Picture]:
+    """Draw bodies, each in its colour, with coloured areas (n, 3) upon them; return the axes and the picture."""
     from matplotlib.colors import to_rgb
 
     right, up, eye = directions(view)
@@ -166,7 +171,7 @@ def _draw(
     ax.imshow(picture.image(), extent=extent, interpolation="antialiased", zorder=1)
     style.dress(ax, box, title, "")
     names = {"front": ("x", "z"), "side": ("y", "z"), "plan": ("x", "y")}
-    if view in names:
+    if isinstance(view, str) and view in names:
         ax.set_xlabel(f"{names[view][0]} [m]", fontsize=8)
         ax.set_ylabel(f"{names[view][1]} [m]", fontsize=8)
     else:

@@ -15,11 +15,10 @@ if TYPE_CHECKING:
 
 def mechanism_html(t: Texts, m: LocalMechanism, place: int, used: str) -> str:
     """Return what was found of one mechanism."""
-    title = f"{place}. " + t.words["mechanism"].format(name=t.name(m), direction=t.words[m.direction])
+    title = f"{place}. " + t.words["mechanism"].format(name=t.name(m), direction=t.way(m.direction))
     flow = {"no sliding": "flow_none", "Coulomb": "flow_coulomb", "associated": "flow_associated"}[m.found.flow]
     said = t.say(flow, bound=t.n(m.found.associated.multiplier, 6))
-    x, y = m.control[1]
-    control = t.say("control_text", x=t.n(x), y=t.n(y), body=m.control[0], z=t.n(m.level))
+    control = t.say("control_text", point=t.pair(m.control[1]), body=m.control[0], z=t.n(m.level))
     backs = [t.n(j.set_back) for j in m.mechanics.joints if j.inward is not None]
     back = t.say("set_back_text", values="; ".join(backs)) if backs else ""
     return (
@@ -81,7 +80,7 @@ def _curve(t: Texts, m: LocalMechanism, used: str) -> str:
     if not m.followed.ends:
         reason = w["reason_" + m.followed.reason.replace(" ", "_")]
         return f"{head}<p>{t.say('curve_none', reason=reason)}</p>"
-    how = "curve_pushed" if m.followed.kind == "pushed" else "curve_text"
+    how = "curve_steps" if m.followed.kind == "steps" else "curve_text"
     text = t.say(how, used=w[f"curve_{used}"])
     if m.followed.reason != "falls":
         reason = w["reason_" + m.followed.reason.replace(" ", "_")]

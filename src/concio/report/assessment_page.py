@@ -106,7 +106,7 @@ class AssessmentReport(Texts):
             text = self.say(key, zeta=self.n(found.zeta))
         more = ""
         if worst is not None:
-            way = self.words[worst.direction]
+            way = self.way(worst.direction)
             more = (
                 f"<p>{self.say('weakest', name=self.name(worst), direction=way, alpha=self.n(worst.multiplier, 6))}</p>"
             )
@@ -160,7 +160,8 @@ class AssessmentReport(Texts):
         given = (model.laws[k].compressive_strength for k in used)
         strength = "".join(w["strength_text"].format(f=self.n(v)) for v in sorted({v for v in given if v is not None}))
         joints = len(self.found.mechanisms[0].assembly.detection.interfaces) if self.found.mechanisms else 0
-        deep = "; ".join(sorted({self.n(b.thickness) for b in model.outlines}))
+        deep = "" if model.dim == 3 else "; ".join(sorted({self.n(b.thickness) for b in model.outlines}))
+        deep = w["thickness_text"].format(thickness=deep) if deep else ""
         free = len(model.free_bodies)
         text = self.say(
             "model_text", title=model.title or w["model"], free=str(free), fixed=str(len(model.bodies) - free),
@@ -169,9 +170,10 @@ class AssessmentReport(Texts):
         rows = []
         for k, load in enumerate(model.loads):
             forces = applied_forces(model, [k])
-            total = np.sum([f.force for f in forces], axis=0) if forces else np.zeros(2)
-            size = np.array([float(np.hypot(*f.force)) for f in forces])
-            point = size @ np.array([f.point for f in forces]) / size.sum() if size.sum() > 0 else np.zeros(2)
+            nothing = np.zeros(model.dim)
+            total = np.sum([f.force for f in forces], axis=0) if forces else nothing
+            size = np.array([float(np.linalg.norm(f.force)) for f in forces])
+            point = size @ np.array([f.point for f in forces]) / size.sum() if size.sum() > 0 else nothing
             value = "; ".join(self.n(v) for v in load.value)
             rows.append([escape(load.group), escape(w[f"load_{load.kind}"]), value, UNITS[load.kind],
                          self.pair(total), self.pair(point)])  # fmt: skip
@@ -200,13 +202,13 @@ class AssessmentReport(Texts):
         for k, m in enumerate(found.mechanisms, 1):
             settled = m.complete or m.zeta < 1
             verdict = self.verdict(m.zeta, m.zeta >= 1) if settled else self.say("unchecked")
-            rows.append([f'<a href="#m{k}">{escape(self.name(m))}</a>', escape(w[m.direction]), self.n(m.multiplier, 6),
-                         self.n(m.e_star), self.n(m.onset), self.n(m.d0), self.n(m.zeta),
+            rows.append([f'<a href="#m{k}">{escape(self.name(m))}</a>', escape(self.way(m.direction)),
+                         self.n(m.multiplier, 6), self.n(m.e_star), self.n(m.onset), self.n(m.d0), self.n(m.zeta),
                          verdict])  # fmt: skip
         for none in found.locked:
             said = "no_locked" if math.isinf(none.multiplier) else "no_large"
             text = self.say(said, alpha=self.n(none.multiplier))
-            rows.append([escape(self.name(none)), escape(w[none.direction]), *["&ndash;"] * 5, text])
+            rows.append([escape(self.name(none)), escape(self.way(none.direction)), *["&ndash;"] * 5, text])
         head = [w[k] for k in ("name", "direction", "alpha0", "e_star", "a0_star", "d0", "zeta", "outcome")]
         text = self.say("search_text", gap=f"{gap:.0e}")
         return f"<section id=search><h2>{self.say('search')}</h2><p>{text}</p>{self.table(head, rows, 2)}</section>"

@@ -67,6 +67,10 @@ class Texts:
         """Return the name of a mechanism as it was asked for."""
         return self.words["every"] if mechanism.name == EVERY else str(mechanism.name)
 
+    def way(self, direction: str) -> str:
+        """Return which way the earthquake pushes."""
+        return self.words[direction] if direction in self.words else self.words["towards"].format(way=direction)
+
     def table(self, headings: Iterable[str], rows: Iterable[Sequence[str]], texts: int = 1) -> str:
         """Return a table; the first ``texts`` columns are words, the others numbers."""
         head = "".join(f"<th>{escape(h)}</th>" for h in headings)
@@ -91,7 +95,7 @@ class Texts:
         return f'<b class="{tone}">{self.say("verified" if holds else "not_verified", ratio=self.n(ratio))}</b>'
 
     def pair(self, vector: Any) -> str:
-        """Return the two numbers of a vector."""
-        x, y = (float(v) for v in vector)
-        size = math.hypot(x, y)
-        return "(" + "; ".join(self.n(0.0 if abs(v) < 1e-9 * size else v) for v in (x, y)) + ")"
+        """Return the numbers of a vector."""
+        numbers = [float(v) for v in vector]
+        size = math.hypot(*numbers)
+        return "(" + "; ".join(self.n(0.0 if abs(v) < 1e-9 * size else v) for v in numbers) + ")"

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from concio.contact.face_loads import loaded_parts, plane_of
 from concio.contact.load_faces import loaded_bodies, loaded_faces
 from concio.errors import InputError
 from concio.model.model import Load, Model
@@ -27,9 +28,9 @@ class Applied:
         Number of the load in the model.
     body : int
         Number of the body.
-    force : (2,) array
+    force : (d,) array
         [kN].
-    point : (2,) array
+    point : (d,) array
         Where it acts [m].
     """
 
@@ -40,7 +41,7 @@ class Applied:
 
 
 def applied_forces(model: Model, numbers: Sequence[int]) -> list[Applied]:
-    """Return the forces of some loads of a plane model; loads on fixed bodies have none.
+    """Return the forces of some loads of a model; loads on fixed bodies have none.
 
     Parameters
     ----------
@@ -54,13 +55,20 @@ def applied_forces(model: Model, numbers: Sequence[int]) -> list[Applied]:
         value = np.array(load.value, dtype=float)
         if load.kind in ("weight", "body"):
             for b in loaded_bodies(model, load):
-                body = model.outlines[b]
+                body = model.bodies[b]
                 density = model.materials[body.material].unit_weight if load.kind == "weight" else 1.0
                 if density:
                     found.append(Applied(k, b, density * body.volume * value, body.centroid))
         elif load.kind == "point":
             assert load.at is not None  # the assembly has checked it
             found += [Applied(k, b, value, np.array(load.at)) for b in loaded_bodies(model, load)]
+        elif model.dim == 3 and load.edge is not None:
+            ends = np.array(load.edge, dtype=float)
+            force = value * float(np.linalg.norm(ends[1] - ends[0]))
+            found += [Applied(k, b, force, ends.mean(0)) for b in loaded_bodies(model, load)]
+        elif model.dim == 3:
+            found += [Applied(k, p.body, p.force, p.centre) for p in loaded_parts(model, load)
+                      if model.bodies[p.body].kind != "fixed"]  # fmt: skip
         else:
             for face in loaded_faces(model, load):
                 outline = model.outlines[face.body].outline
@@ -75,21 +83,20 @@ def applied_forces(model: Model, numbers: Sequence[int]) -> list[Applied]:
 
 
 def pushes_sideways(model: Model, group: str) -> bool:
-    """Return whether a load group is there and acts along x rather than along y."""
+    """Return whether a load group is there and acts sideways rather than up or down."""
     numbers = [k for k, load in enumerate(model.loads) if load.group == group]
-    total = sum((np.abs(f.force) for f in applied_forces(model, numbers)), np.zeros(2))
-    return bool(total[0] > total[1])
+    total = sum((np.abs(f.force) for f in applied_forces(model, numbers)), np.zeros(model.dim))
+    return bool(float(np.linalg.norm(total[:-1])) > float(total[-1]))
 
 
-def pushed(model: Model, direction: float) -> Model:
+def pushed(model: Model, direction: Sequence[float]) -> Model:
     """Return a model with one more load group: every weight it carries once more, sideways.
 
     Parameters
     ----------
     model : Model
-        Plane.
-    direction : {1, -1}
-        Along x.
+    direction : sequence of float
+        Unit vector: (1,) or (-1,) in the plane, horizontal (x, y) in space.
 
     Raises
     ------
@@ -97,11 +104,12 @@ def pushed(model: Model, direction: float) -> Model:
         Nothing in it has weight.
     """
     pushes = []
+    way = np.array(direction, dtype=float)
     for load in model.loads:
         if load.kind == "pressure":
-            pushes += [] if load.edge is None else [_sideways(load, direction)]
+            pushes += [] if load.edge is None and load.polygon is None else [_sideways(load, way)]
         elif load.value[-1] < 0:
-            pushes.append(replace(load, value=(-direction * load.value[-1], 0.0), group=EARTHQUAKE))
+            pushes.append(replace(load, value=(*(-way * load.value[-1]).tolist(), 0.0), group=EARTHQUAKE))
     pushes = [p for p in pushes if any(p.value)]
     if not pushes:
         msg = "the model carries no weight that an earthquake could push with"
@@ -109,9 +117,13 @@ def pushed(model: Model, direction: float) -> Model:
     return replace(model, loads=(*model.loads, *pushes))
 
 
-def _sideways(load: Load, direction: float) -> Load:
-    """Return a pressure from above as a traction along x of the size of its vertical part."""
-    assert load.edge is not None
-    p, q = (np.array(end, dtype=float) for end in load.edge)
-    share = abs(q[0] - p[0]) / float(np.linalg.norm(q - p))
-    return replace(load, kind="traction", value=(direction * max(load.value[0], 0.0) * share, 0.0), group=EARTHQUAKE)
+def _sideways(load: Load, way: Array) -> Load:
+    """Return a pressure from above as a horizontal traction of the size of its vertical part."""
+    if load.polygon is not None:
+        share = abs(float(plane_of(np.array(load.polygon, dtype=float))[1][2]))
+    else:
+        assert load.edge is not None
+        p, q = (np.array(end, dtype=float) for end in load.edge)
+        share = abs(q[0] - p[0]) / float(np.linalg.norm(q - p))
+    value = (*(way * max(load.value[0], 0.0) * share).tolist(), 0.0)
+    return replace(load, kind="traction", value=value, group=EARTHQUAKE)

@@ -3,30 +3,31 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from collections.abc import Sequence as Several
 from typing import Any, Literal
 
 import numpy as np
 
-from concio.analysis.seismic.applied import EARTHQUAKE, pushed, pushes_sideways
+from concio.analysis.seismic.applied import pushes_sideways
 from concio.analysis.seismic.assessment import Assessment, LocalMechanism, NoMechanism
 from concio.analysis.seismic.chain import Chain, Participant, gathered
 from concio.analysis.seismic.checks import Displacement, checks_of, limit_of
-from concio.analysis.seismic.curve import follow, not_followed, straight
+from concio.analysis.seismic.curve import CapacityCurve, follow, not_followed, straight
+from concio.analysis.seismic.directions import Direction, pushes
 from concio.analysis.seismic.linkage import Force, Linkage
-from concio.analysis.seismic.macro_blocks import GROUND
+from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, carried
 from concio.analysis.seismic.mechanism import LARGEST, Found, chosen_bodies, find
-from concio.analysis.seismic.pushed_curve import pushed_curve
+from concio.analysis.seismic.placed import contacts_of
+from concio.analysis.seismic.sequence import Sequence, follow_in_steps
 from concio.analysis.seismic.site import STRONG, Site
 from concio.arguments import closest, strict
 from concio.contact.assembly import Assembly, assemble
 from concio.errors import InputError, NoEquilibriumError
-from concio.model.model import Model, require_model
-from concio.model.stages import ControlPoint
+from concio.model.model import Model, Tie, require_model
 
 Array = np.ndarray
-Direction = Literal["right", "left", "both"]
-Control = tuple[str, tuple[float, float]]
+Control = tuple[str, tuple[float, ...]]
 
 LIVE = "live"
 EVERY = "weakest of all"
@@ -38,30 +39,28 @@ SAME = 1e-6
 BARELY = 1e-3
 """Curves that end before this share of the size of the mechanism are no curves: other joints take over at once."""
 
-SIGNS = {"right": (1.0,), "left": (-1.0,), "both": (1.0, -1.0)}
-
 
 @strict
 def assess(
     model: Model,
     *,
     site: Site,
-    levels: Sequence[str] | None = None,
-    mechanisms: Mapping[str, Sequence[str] | Mapping[str, float]] | None = None,
-    direction: Direction = "both",
-    live: str | Sequence[str] | None = None,
+    levels: Several[str] | None = None,
+    mechanisms: Mapping[str, Several[str] | Mapping[str, float]] | None = None,
+    direction: Direction | None = None,
+    live: str | Several[str] | None = None,
     knowledge: str = "LC1",
     confidence: float | None = None,
     control: Control | None = None,
     limits: Mapping[str, float] | None = None,
     curve: Literal["followed", "straight"] = "followed",
 ) -> Assessment:
-    """Find the local mechanisms of a plane model and check them against the demand of a site.
+    """Find the local mechanisms of a model and check them against the demand of a site.
 
     Parameters
     ----------
     model : Model
-        Plane: a facade in its plane, or a vertical strip of a wall.
+        In the plane a facade in its plane, or a vertical strip of a wall; in space walls with returns and corners.
     site : Site
         Hazard, soil, code.
     levels : sequence of str, optional
@@ -69,8 +68,10 @@ def assess(
     mechanisms : mapping, optional
         Beside the weakest mechanism of all: for each name the bodies that move while all others stand: their names
         (``*`` stands for any letters), roles or layers, or ``{"above": 3.0}`` for those whose centroid lies there.
-    direction : {"both", "right", "left"}
-        Which way the earthquake pushes along x; where ``live`` is given, "left" is against it.
+    direction : str, or (x, y) in space
+        Which way the earthquake pushes: in the plane "right", "left" or "both", by default both; in space "+x", "-x",
+        "+y", "-y", "both" (along x), "all" or a horizontal vector, by default all four. Where ``live`` is given, in the
+        plane "left" is against it; in space both ways along it are looked at.
     live : str or sequence of str, optional
         Load groups that push, for a multiplier of one. By default "live" where the model has such a group and it
         pushes sideways; otherwise every weight of the model, imposed loads included, pushes sideways.
@@ -78,7 +79,7 @@ def assess(
         Level of knowledge, which gives the confidence factor.
     confidence : float, optional
         Another confidence factor.
-    control : (body, (x, y)), optional
+    control : (body, point), optional
         Control point of the mechanisms that it moves in; by default the point that moves fastest.
     limits : mapping, optional
         For a limit state, the largest displacement of the control point [m], where a floor loses its bearing say.
@@ -93,7 +94,6 @@ def assess(
         The model does not stand without an earthquake.
     """
     require_model(model)
-    _ = model.outlines
     if model.periods is not None:
         msg = "this is a periodic cell, which has no mechanism of a wall"
         raise InputError(msg, hint="assess the wall itself")
@@ -105,7 +105,6 @@ def assess(
     if not wanted:
         msg = "there is no limit state to check"
         raise InputError(msg, hint="one of " + ", ".join(site.levels))
-    _one_of("direction", direction, tuple(SIGNS))
     _one_of("curve", curve, ("followed", "straight"))
     for level, value in (limits or {}).items():
         rules.pick("levels", level, "limit state")
@@ -124,25 +123,21 @@ def assess(
     made: list[LocalMechanism] = []
     locked: list[NoMechanism] = []
     sought = {EVERY: (), **(mechanisms or {})}
-    assemblies: dict[float, tuple[Assembly, tuple[str, ...], float]] = {}
-    for sign in SIGNS[direction]:
-        if groups:
-            assemblies[sign] = (next(iter(assemblies.values()))[0] if assemblies else assemble(model), groups, sign)
-        else:
-            assemblies[sign] = (assemble(pushed(model, sign)), (EARTHQUAKE,), 1.0)
+    known = tuple(dict.fromkeys(load.group for load in model.loads))
     for group in groups:
-        known = next(iter(assemblies.values()))[0].groups
         if group not in known:
             msg = f"there is no load group '{group}'"
             raise InputError(msg, hint=closest(group, known, names="groups"))
+    ways = pushes(model, direction, groups)
+    one = assemble(model) if groups else None
+    assemblies = {p.way: (p, one or assemble(p.model)) for p in ways}
     if control is not None:
         _check_control(model, control)
-    for name, words in sought.items():
-        for sign, (assembly, push, factor_of_push) in assemblies.items():
-            way = "right" if sign > 0 else "left"
-            moving = None if name == EVERY else chosen_bodies(assembly, name, words)
+    chosen = {name: None if name == EVERY else chosen_bodies(model, name, words) for name, words in sought.items()}
+    for name, moving in chosen.items():
+        for way, (push, assembly) in assemblies.items():
             try:
-                found = find(assembly, push, moving, factor_of_push)
+                found = find(assembly, push.groups, moving, push.sign)
             except NoEquilibriumError as error:
                 raise NoEquilibriumError(error.what, where=None if name == EVERY else name, hint=error.hint) from None
             if found.locked or found.multiplier > LARGEST:
@@ -150,7 +145,7 @@ def assess(
                 continue
             made.append(
                 _examined(
-                    assembly, found, push, factor_of_push, name=name, way=way, site=site, levels=wanted,
+                    assembly, found, push.groups, push.sign, name=name, way=way, site=site, levels=wanted,
                     confidence=factor, control=control, limits=limits or {}, curve=curve,
                 )
             )  # fmt: skip
@@ -202,23 +197,23 @@ def _check_control(model: Model, control: Control) -> None:
         raise InputError(msg, where=where, hint="choose a point of the part that falls")
     low, high = body.vertices.min(0), body.vertices.max(0)
     slack = 1e-6 * model.size
-    if point.shape != (2,) or (point < low - slack).any() or (point > high + slack).any():
+    if point.shape != (model.dim,) or (point < low - slack).any() or (point > high + slack).any():
         place = ", ".join(f"{v:g}" for v in point)
         msg = f"({place}) lies outside '{body.name}'"
-        span = f"x from {low[0]:g} to {high[0]:g}, y from {low[1]:g} to {high[1]:g} m"
-        raise InputError(msg, where=where, hint=f"the body reaches {span}")
+        span = ", ".join(f"{k} from {a:g} to {b:g}" for k, a, b in zip("xyz", low, high, strict=False))
+        raise InputError(msg, where=where, hint=f"the body reaches {span} m")
 
 
 def _examined(
     assembly: Assembly,
     found: Found,
-    groups: Sequence[str],
+    groups: Several[str],
     sign: float,
     *,
     name: str,
     way: str,
     site: Site,
-    levels: Sequence[str],
+    levels: Several[str],
     confidence: float,
     control: Control | None,
     limits: Mapping[str, float],
@@ -232,45 +227,38 @@ def _examined(
     push = [(kind, Force(f.block, sign * f.force, f.point)) for kind, f in gathered(model, mechanics, live)]
     dead = gathered(model, mechanics, rest)
     total = np.sum([f.force for _, f in push], axis=0)
-    along = total / float(np.hypot(*total))
+    along = total / float(np.linalg.norm(total))
     number = {b.name: i for i, b in enumerate(model.bodies)}
     ties = []
     for tie in model.ties:
         a, b = (mechanics.of_body.get(number.get(word, -1), GROUND) for word in (tie.body_a, tie.body_b))
-        bar = any(j.kind == "bar" and np.array_equal(j.point, np.array(tie.at_a)) for j in mechanics.joints)
-        if a != b and not bar:
+        if a != b:
             ties.append((tie, a, b))
     chosen = _control_of(assembly, found, control, number, along)
     block = mechanics.of_body[number[chosen[0]]]
     at = np.array(chosen[1], dtype=float)
-    linkage = Linkage(mechanics, tuple(f for _, f in dead), tuple(f for _, f in push), tuple(ties), (block, at, along))
-    linkage = linkage.set_back()
-    still = np.zeros((len(mechanics.blocks), 3))
-    alpha, velocity = found.multiplier, np.concatenate([b.motion for b in mechanics.blocks])
-    onset = linkage.balance(still, plastic=True) if linkage.freedom == 1 else None
-    crushes = any(j.inward is not None for j in mechanics.joints)
-    if onset is not None and crushes:
-        alpha = onset.multiplier
-    if onset is None:
-        followed = not_followed("several motions" if linkage.freedom != 1 else "no forces")
-    elif abs(onset.multiplier - alpha) > SAME * abs(alpha):
-        followed = not_followed("no forces")  # of a dilatant motion: the joints that slide do not stay closed in it
-    else:
-        velocity = linkage.velocity(still)
-        followed = follow(linkage)
-    velocity = velocity / float(linkage.row(still, block, at, along) @ velocity)
+    forces = tuple(f for _, f in dead), tuple(f for _, f in push)
+    alpha, motion = found.multiplier, np.array([b.motion for b in mechanics.blocks])
+    contacts = contacts_of(assembly, mechanics, found.normal_force)
+    sequence = Sequence(mechanics, contacts, *forces, tuple(ties), (block, at, along))
+    linkage: Linkage | Sequence = sequence
+    followed = not_followed("several motions")
+    if model.dim == 2:
+        linkage, alpha, motion, followed = _as_linkage(mechanics, forces, ties, (block, at, along), alpha, motion)
+    if all(site.rules.tables["levels"][level]["kind"] == "onset" for level in levels):
+        followed = followed if followed.points else not_followed("not asked")
+    elif not followed.points or followed.end < BARELY * model.size:
+        steps = follow_in_steps(sequence)
+        followed = steps if steps.end >= BARELY * model.size else not_followed(steps.reason)
+    motion = motion / float(carried(motion[block], at - mechanics.blocks[block].centre) @ along)
     chain = Chain(
         tuple(
             Participant(f.block, kind, f.force, f.point,
-                        float(linkage.row(still, f.block, f.point, f.force) @ velocity) / float(np.hypot(*f.force)))
+                        float(carried(motion[f.block], f.point - mechanics.blocks[f.block].centre) @ f.force)
+                        / float(np.linalg.norm(f.force)))
             for kind, f in push
         )
     )  # fmt: skip
-    if not followed.points or followed.end < BARELY * linkage.size:
-        free = tuple(i for i, b in enumerate(model.bodies) if b.kind != "fixed")
-        moving = free if found.moving is None else found.moving
-        point = ControlPoint(chosen[0], (float(at[0]), float(at[1])), (float(along[0]), float(along[1])))
-        followed = pushed_curve(model, groups, sign, moving, point) or followed
     line = straight(alpha, followed.end) if followed.ends else None
     used = followed if curve == "followed" else line
     factor = site.rules.gravity / (chain.e_star * confidence)
@@ -288,8 +276,31 @@ def _examined(
         name=name, direction=way, found=found, assembly=assembly, linkage=linkage, chain=chain, dead=tuple(dead),
         control=(chosen[0], tuple(at.tolist())), level=z, multiplier=alpha, confidence=confidence,
         factor=factor, followed=followed, straight=line, limits=reached, checks=tuple(checks),
-        periods={level: site.at(level) for level in levels}, site=site, velocity=velocity,
+        periods={level: site.at(level) for level in levels}, site=site, velocity=motion.ravel(),
     )  # fmt: skip
+
+
+def _as_linkage(
+    mechanics: Mechanics,
+    forces: tuple[tuple[Force, ...], tuple[Force, ...]],
+    ties: Several[tuple[Tie, int, int]],
+    control: tuple[int, Array, Array],
+    alpha: float,
+    motion: Array,
+) -> tuple[Linkage, float, Array, CapacityCurve]:
+    """Return a plane mechanism as a linkage, with its multiplier, motion (G, 3) and curve."""
+    bars = [j.point for j in mechanics.joints if j.kind == "bar"]
+    free = tuple(t for t in ties if not any(np.array_equal(p, np.array(t[0].at_a)) for p in bars))
+    linkage = Linkage(mechanics, *forces, free, control).set_back()
+    still = np.zeros((len(mechanics.blocks), 3))
+    onset = linkage.balance(still, plastic=True) if linkage.freedom == 1 else None
+    if onset is None:
+        return linkage, alpha, motion, not_followed("several motions" if linkage.freedom != 1 else "no forces")
+    if any(j.inward is not None for j in mechanics.joints):
+        alpha = onset.multiplier
+    if abs(onset.multiplier - alpha) > SAME * abs(alpha):  # of a dilatant motion: joints that slide do not stay closed
+        return linkage, alpha, motion, not_followed("no forces")
+    return linkage, alpha, linkage.velocity(still).reshape(-1, 3), follow(linkage)
 
 
 def _control_of(
@@ -301,17 +312,14 @@ def _control_of(
     top = float(np.abs(found.velocity).max())
 
     def speed(b: int, point: Array) -> float:
-        block = mechanics.blocks[mechanics.of_body[b]]
-        arm = point - block.centre
-        moved = block.motion[:2] + block.motion[2] * np.array([-arm[1], arm[0]])
-        return float(moved @ along)
+        return float(mechanics.blocks[mechanics.of_body[b]].velocity(point) @ along)
 
     if control is not None and number[control[0]] in mechanics.of_body:
         point = np.array(control[1], dtype=float)
         if speed(number[control[0]], point) > 1e-6 * top:
             return control
     corners = [
-        (speed(b, v), float(v[1]), float(v @ along), assembly.model.bodies[b].name, (float(v[0]), float(v[1])))
+        (speed(b, v), float(v[-1]), float(v @ along), assembly.model.bodies[b].name, tuple(v.tolist()))
         for b in mechanics.of_body
         for v in np.asarray(assembly.model.bodies[b].vertices)
     ]

@@ -15,10 +15,12 @@ from concio.analysis.seismic.chain import Chain
 from concio.analysis.seismic.checks import Check, Displacement, return_period
 from concio.analysis.seismic.curve import CapacityCurve
 from concio.analysis.seismic.linkage import Force, Linkage
-from concio.analysis.seismic.macro_blocks import Mechanics
+from concio.analysis.seismic.macro_blocks import Mechanics, carried
 from concio.analysis.seismic.mechanism import LARGEST, Found
+from concio.analysis.seismic.sequence import Sequence
 from concio.analysis.seismic.site import Hazard, Site
 from concio.contact.assembly import Assembly
+from concio.kinematics.rigid import motions
 from concio.model.model import Model
 
 Array = np.ndarray
@@ -67,7 +69,7 @@ class LocalMechanism:
         Multiplier with its proof.
     assembly : Assembly
         With the loads of the earthquake.
-    linkage : Linkage
+    linkage : Linkage or Sequence
         Macro-blocks, joints, forces and control point.
     chain : Chain
         The forces of the earthquake.
@@ -91,7 +93,7 @@ class LocalMechanism:
     periods : dict of str to Hazard
         By limit state.
     site : Site
-    velocity : (3 G,) array
+    velocity : (3 G,) or (6 G,) array
         Motion of the macro-blocks, for a control point that moves by one.
     """
 
@@ -99,7 +101,7 @@ class LocalMechanism:
     direction: str
     found: Found
     assembly: Assembly
-    linkage: Linkage
+    linkage: Linkage | Sequence
     chain: Chain
     dead: tuple[tuple[str, Force], ...]
     control: tuple[str, tuple[float, ...]]
@@ -119,6 +121,12 @@ class LocalMechanism:
     def mechanics(self) -> Mechanics:
         """Macro-blocks and joints."""
         return self.linkage.mechanics
+
+    def velocity_at(self, block: int, points: Array) -> Array:
+        """Return the velocity (..., d) of points (..., d) of a macro-block, for a control point that moves by one."""
+        d = points.shape[-1]
+        motion = self.velocity.reshape(len(self.mechanics.blocks), motions(d))[block]
+        return carried(motion, points - self.mechanics.blocks[block].centre)
 
     @property
     def e_star(self) -> float:
@@ -176,7 +184,7 @@ class LocalMechanism:
 
     def __repr__(self) -> str:
         zeta = f"zeta_E {self.zeta:.4g}" if math.isfinite(self.zeta) else "no check"
-        return f"<LocalMechanism '{self.name}' to the {self.direction}: alpha_0 {self.multiplier:.6g}, {zeta}>"
+        return f"<LocalMechanism '{self.name}', push {self.direction}: alpha_0 {self.multiplier:.6g}, {zeta}>"
 
     def summary(self) -> dict[str, Any]:
         """Return its numbers."""

@@ -36,9 +36,9 @@ class Participant:
         Macro-block.
     kind : str
         "weight", or the kind and number of the load: "point 3".
-    force : (2,) array
+    force : (d,) array
         [kN].
-    point : (2,) array
+    point : (d,) array
         [m].
     delta : float
         Displacement of the point along the force, when the control point moves by one.
@@ -53,7 +53,7 @@ class Participant:
     @property
     def size(self) -> float:
         """Size of the force [kN]."""
-        return float(np.hypot(*self.force))
+        return float(np.linalg.norm(self.force))
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,11 +95,12 @@ def gathered(model: Model, mechanics: Mechanics, numbers: Sequence[int]) -> list
         if block is not None and found.force.any():
             kind = model.loads[found.load].kind
             name = "weight" if kind == "weight" else f"{kind} {_original(model, found.load) + 1}"
-            key = (block, name, bool(np.abs(found.force[0]) > np.abs(found.force[1])))
+            sideways = float(np.linalg.norm(found.force[:-1])) > abs(float(found.force[-1]))
+            key = (block, name, sideways)
             sums.setdefault(key, []).append((found.force, found.point))
     result = []
     for (block, name, _), parts in sorted(sums.items(), key=lambda item: item[0][:2]):
-        size = np.array([np.hypot(*force) for force, _ in parts])
+        size = np.array([np.linalg.norm(force) for force, _ in parts])
         point = size @ np.array([point for _, point in parts]) / size.sum()
         result.append((name, Force(block, np.sum([force for force, _ in parts], axis=0), point)))
     return result
@@ -110,5 +111,7 @@ def _original(model: Model, k: int) -> int:
     load = model.loads[k]
     if load.group != EARTHQUAKE:
         return k
-    same = (load.bodies, load.edge, load.at)
-    return next(j for j, other in enumerate(model.loads) if (other.bodies, other.edge, other.at) == same)
+    same = (load.bodies, load.edge, load.at, load.polygon)
+    return next(
+        j for j, other in enumerate(model.loads) if (other.bodies, other.edge, other.at, other.polygon) == same
+    )

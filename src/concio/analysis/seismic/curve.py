@@ -25,6 +25,9 @@ REASONS = {
     "joint opens": "a joint opens or a tie goes slack or yields; what may stand beyond does not count",
     "several motions": "its joints leave more than one way to move, or none",
     "no forces": "its joints carry no forces in equilibrium",
+    "not asked": "no limit state asks for it",
+    "no state": "no collapse state is found to go on with; what may stand beyond does not count",
+    "long": "too many changes of its joints to follow; what may stand beyond does not count",
 }
 """Why a curve ends where it ends."""
 
@@ -38,8 +41,8 @@ class CapacityCurve:
 
     Parameters
     ----------
-    kind : {"followed", "pushed", "straight"}
-        "pushed": equilibrium at large displacements without a mechanism kept (:func:`concio.push`).
+    kind : {"followed", "steps", "straight"}
+        "steps": by limit analysis of the displaced macro-blocks, step by step.
     displacement : (n,) array
         Of the control point [m], growing.
     multiplier : (n,) array
@@ -56,7 +59,7 @@ class CapacityCurve:
         The configurations; none for a straight line.
     """
 
-    kind: Literal["followed", "pushed", "straight"]
+    kind: Literal["followed", "steps", "straight"]
     displacement: Array
     multiplier: Array
     end: float

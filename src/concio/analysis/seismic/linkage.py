@@ -42,9 +42,9 @@ class Force:
     Parameters
     ----------
     block : int
-    force : (2,) array
+    force : (d,) array
         [kN].
-    point : (2,) array
+    point : (d,) array
         In the initial configuration [m].
     """
 

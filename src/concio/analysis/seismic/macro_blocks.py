@@ -20,15 +20,15 @@ import numpy as np
 from concio.contact.assembly import Assembly
 from concio.fem.discretisation import FIXED, RIGID
 from concio.kinematics.frames import turned_left
-from concio.kinematics.rigid import rigid_operator
+from concio.kinematics.rigid import motions, rigid_operator, swept
 
 Array = np.ndarray
 
 GROUND = -1
 """Number of the macro-block that does not move."""
 
-STILL = 1e-7
-"""Relative velocities below this share of the largest are none."""
+STILL = {2: 1e-7, 3: 1e-6}
+"""Relative velocities below this share of the largest are none; in space they come from cone programmes."""
 
 CARRIES = 1e-9
 """Forces below this share of the largest are none."""
@@ -42,10 +42,10 @@ class MacroBlock:
     ----------
     bodies : tuple of int
     names : tuple of str
-    centre : (2,) array
+    centre : (d,) array
         Of their volume [m].
-    motion : (3,) array
-        Velocity (x, y) of the centre, and rotation.
+    motion : (3,) or (6,) array
+        Velocity (x, y) or (x, y, z) of the centre, and rotation.
     """
 
     bodies: tuple[int, ...]
@@ -53,14 +53,9 @@ class MacroBlock:
     centre: Array
     motion: Array
 
-    @property
-    def pole(self) -> Array | None:
-        """Absolute centre of rotation (2,); None where it only shifts."""
-        x, y, turn = self.motion
-        if abs(turn) * float(np.abs(self.centre).max() + 1.0) < STILL * float(np.hypot(x, y)):
-            return None
-        found: Array = self.centre + np.array([-y, x]) / turn
-        return found
+    def velocity(self, point: Array) -> Array:
+        """Return the velocity (..., d) of points (..., d)."""
+        return carried(self.motion, point - self.centre)
 
     @property
     def label(self) -> str:
@@ -77,13 +72,13 @@ class MacroJoint:
     kind : {"hinge", "roller", "bar"}
     a, b : int
         Macro-blocks; ``GROUND`` is what does not move.
-    point : (2,) array
+    point : (d,) array
         Of a hinge; the point that slides, of a roller; the end on ``a``, of a bar [m].
-    normal : (2,) array
+    normal : (d,) array
         From a to b; the unit normal of the face on which a roller slides; of a bar from ``a`` to ``b``.
     face : {0, 1}
         Whether the face of a roller belongs to ``a`` or to ``b``.
-    end : (2,) array
+    end : (d,) array
         The end of a bar on ``b`` [m].
     friction, cohesion : float
         mu, and c [kN], of what slides.
@@ -142,22 +137,30 @@ class Mechanics:
     @property
     def level(self) -> float:
         """Mean height of the joints with what does not move [m]."""
-        heights = [float(j.point[1]) for j in self.joints if GROUND in (j.a, j.b)]
-        return float(np.mean(heights)) if heights else min(float(b.centre[1]) for b in self.blocks)
+        heights = [float(j.point[-1]) for j in self.joints if GROUND in (j.a, j.b)]
+        return float(np.mean(heights)) if heights else min(float(b.centre[-1]) for b in self.blocks)
+
+
+def carried(motion: Array, arm: Array) -> Array:
+    """Return the velocity (..., d) at arms (..., d) from the centre of a rigid motion (3,) or (6,)."""
+    d = arm.shape[-1]
+    found: Array = motion[:d] + swept(motion[2] if d == 2 else motion[3:], arm)
+    return found
 
 
 def body_velocities(assembly: Assembly, velocity: Array) -> Array:
-    """Return the rigid motion (B, 3) of each body in a velocity (N_all,): of its centroid, and its rotation."""
+    """Return the rigid motion (B, 3 or 6) of each body in a velocity (N_all,): of its centroid, and its rotation."""
     disc = assembly.disc
-    found = np.zeros((len(disc.shape_of), 3))
+    d = disc.dim
+    found = np.zeros((len(disc.shape_of), motions(d)))
     for b, shape in enumerate(disc.shape_of):
         own = velocity[disc.offsets[b] : disc.offsets[b + 1]]
         if shape == FIXED:
             continue
         if shape == RIGID:
-            found[b] = own[0], own[1], own[2] / disc.reach[b]
+            found[b] = np.concatenate([own[:d], own[d:] / disc.reach[b]])
         else:
-            modes = rigid_operator(disc.nodes(b) - disc.centroids[b], 1.0).reshape(-1, 3)
+            modes = rigid_operator(disc.nodes(b) - disc.centroids[b], 1.0).reshape(-1, motions(d))
             found[b] = np.linalg.lstsq(modes, own, rcond=None)[0]
     return found
 
@@ -168,7 +171,6 @@ def mechanics_of(assembly: Assembly, velocity: Array, normal_force: Array) -> Me
     Parameters
     ----------
     assembly : Assembly
-        Plane.
     velocity : (N_all,) array
     normal_force : (m,) array
         That goes with it [kN].
@@ -176,8 +178,10 @@ def mechanics_of(assembly: Assembly, velocity: Array, normal_force: Array) -> Me
     disc, pairs = assembly.disc, assembly.pairs
     motion = body_velocities(assembly, velocity)
     size = disc.reach[:, None] if len(disc.reach) else np.ones((1, 1))
-    reach = np.hstack([np.ones((len(motion), 2)), size])
+    d = disc.dim
+    reach = np.hstack([np.ones((len(motion), d)), np.repeat(size, motion.shape[1] - d, axis=1)])
     top = float(np.abs(motion * reach).max()) or 1.0
+    still = STILL[d] * top
     of_body = _grouped(assembly, motion, top)
     blocks = []
     for g in range(max(of_body.values(), default=-1) + 1):
@@ -185,16 +189,16 @@ def mechanics_of(assembly: Assembly, velocity: Array, normal_force: Array) -> Me
         volume = np.array([disc.model.bodies[b].volume for b in bodies])
         centre = volume @ disc.centroids[list(bodies)] / volume.sum()
         first = bodies[int(np.argmax(volume))]
-        x, y = motion[first, :2] + motion[first, 2] * turned_left(centre - disc.centroids[first])
+        shifted = carried(motion[first], centre - disc.centroids[first])
         names = tuple(disc.model.bodies[b].name for b in bodies)
-        blocks.append(MacroBlock(bodies, names, centre, np.array([x, y, motion[first, 2]])))
+        blocks.append(MacroBlock(bodies, names, centre, np.concatenate([shifted, motion[first, d:]])))
     across = np.array([of_body.get(int(b), GROUND) for b in pairs.body_a])
     beyond = np.array([of_body.get(int(b), GROUND) for b in pairs.body_b])
     loaded = normal_force > CARRIES * max(float(np.abs(normal_force).max(initial=0.0)), 1e-12)
     active = np.flatnonzero(loaded & (across != beyond))
-    w_t = (pairs.C_t @ velocity).reshape(len(pairs), -1)[:, 0]
+    speed = np.linalg.norm((pairs.C_t @ velocity).reshape(len(pairs), d - 1), axis=1)
     joints: list[MacroJoint] = []
-    crushing = np.isfinite(assembly.laws.cap) & (pairs.interface >= 0)
+    crushing = np.isfinite(assembly.laws.cap) & (pairs.interface >= 0) & (d == 2)
     for a, b in sorted({(int(across[k]), int(beyond[k])) for k in active if crushing[k]}):
         own = active[(across[active] == a) & (beyond[active] == b) & crushing[active]]
         joints += _set_back(assembly, blocks, own, a, b, normal_force, top)
@@ -202,16 +206,16 @@ def mechanics_of(assembly: Assembly, velocity: Array, normal_force: Array) -> Me
         a, b = int(across[k]), int(beyond[k])
         if pairs.interface[k] < 0:
             tie = disc.model.ties[int(np.flatnonzero(np.flatnonzero(pairs.interface < 0) == k)[0])]
-            if abs(float((pairs.C_n[[k]] @ velocity)[0])) <= STILL * top:
+            if abs(float((pairs.C_n[[k]] @ velocity)[0])) <= still:
                 at_a, at_b = np.array(tie.at_a), np.array(tie.at_b)
                 along = (at_b - at_a) / float(np.linalg.norm(at_b - at_a))
                 joints.append(MacroJoint("bar", a, b, at_a, along, end=at_b, pulls=True, strength=tie.most))
             continue
-        if abs(float(w_t[k])) <= STILL * top:
+        if speed[k] <= still:
             joints.append(MacroJoint("hinge", a, b, pairs.point[k], pairs.normal[k]))
         else:
             law = assembly.laws
-            face = _face_of(assembly, int(k))
+            face = face_of(assembly, int(k))
             joints.append(
                 MacroJoint(
                     "roller", a, b, pairs.point[k], pairs.normal[k], face,
@@ -225,9 +229,7 @@ def mechanics_of(assembly: Assembly, velocity: Array, normal_force: Array) -> Me
 def _grouped(assembly: Assembly, motion: Array, top: float) -> dict[int, int]:
     """Return the macro-block of each body that moves: bodies that touch and move alike share one."""
     disc, pairs = assembly.disc, assembly.pairs
-    at_origin = motion.copy()
-    at_origin[:, 0] += motion[:, 2] * disc.centroids[:, 1]
-    at_origin[:, 1] -= motion[:, 2] * disc.centroids[:, 0]
+    still = STILL[disc.dim] * top
     parent = list(range(len(motion)))
 
     def root(b: int) -> int:
@@ -237,26 +239,24 @@ def _grouped(assembly: Assembly, motion: Array, top: float) -> dict[int, int]:
         return b
 
     def speed(m: Array, b: int) -> float:
-        vertices = np.asarray(disc.model.bodies[b].vertices) - disc.centroids[b]
-        return float(np.abs(m[:2] + m[2] * turned_left(vertices)).max())
+        return float(np.abs(carried(m, np.asarray(disc.model.bodies[b].vertices) - disc.centroids[b])).max())
 
-    moving = [b for b in range(len(motion)) if disc.shape_of[b] != FIXED and speed(motion[b], b) > STILL * top]
+    moving = [b for b in range(len(motion)) if disc.shape_of[b] != FIXED and speed(motion[b], b) > still]
     touching: Iterable[tuple[int, int]] = {
         (int(a), int(b)) for a, b, i in zip(pairs.body_a, pairs.body_b, pairs.interface, strict=True) if i >= 0
     }
     for a, b in sorted(touching):
         if a not in moving or b not in moving:
             continue
-        arm = disc.centroids[b] - disc.centroids[a]
-        carried = motion[a].copy()
-        carried[:2] += motion[a, 2] * turned_left(arm)
-        if speed(motion[b] - carried, b) <= STILL * top:
+        along = motion[a].copy()
+        along[: disc.dim] = carried(motion[a], disc.centroids[b] - disc.centroids[a])
+        if speed(motion[b] - along, b) <= still:
             parent[root(a)] = root(b)
     roots: dict[int, int] = {}
     return {b: roots.setdefault(root(b), len(roots)) for b in moving}
 
 
-def _face_of(assembly: Assembly, k: int) -> int:
+def face_of(assembly: Assembly, k: int) -> int:
     """Return 0 where the point of a pair is a corner of its side b, so that the face is that of a; else 1."""
     corners = [
         float(
@@ -281,7 +281,7 @@ def _set_back(
     N = float(force[own].sum())
     per_length = float(law.cap[every].sum() / pairs.area[every].sum() * _width(assembly, own))
     turning = turns[1] - turns[0]
-    if abs(turning) * max(float(np.ptp(along)), 1e-12) <= STILL * top:
+    if abs(turning) * max(float(np.ptp(along)), 1e-12) <= STILL[2] * top:
         return [MacroJoint("roller", a, b, pairs.point[k], normal, friction=float(law.friction[k])) for k in own]
     # points of b at the place s along the tangent approach a where turning * s is negative along the normal
     rising = float(turned_left(tangent) @ normal) * turning
@@ -307,9 +307,10 @@ def _supports(assembly: Assembly, of_body: dict[int, int]) -> list[MacroJoint]:
         b = number[support.body]
         if b not in of_body:
             continue
-        points = np.unique(np.array(support.edge), axis=0) if support.edge is not None else disc.nodes(b)
+        given = support.edge if support.edge is not None else support.polygon
+        points = np.unique(np.array(given), axis=0) if given is not None else disc.nodes(b)
         for point in points:
-            for axis, normal in (("x", np.array([1.0, 0.0])), ("y", np.array([0.0, 1.0]))):
+            for axis, normal in zip("xyz", np.eye(disc.dim), strict=False):
                 if axis in support.directions or support.directions == "all":
                     found.append(MacroJoint("roller", GROUND, of_body[b], point, normal, pulls=True))
     return found

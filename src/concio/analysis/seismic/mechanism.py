@@ -15,12 +15,14 @@ from fnmatch import fnmatchcase
 import numpy as np
 import scipy.sparse as sp
 
-from concio.analysis.limit import search_collapse
+from concio.analysis.limit import UNASKED_WORK, search_collapse
 from concio.analysis.seismic.macro_blocks import Mechanics, mechanics_of
 from concio.arguments import closest
 from concio.contact.assembly import Assembly
 from concio.errors import InputError, NoEquilibriumError
+from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
+from concio.solvers.statics.collapse_search import WORK_OF_ALL
 from concio.solvers.statics.existence import find_mechanism
 from concio.solvers.statics.limit import LimitLoad, associated_limit
 
@@ -67,12 +69,12 @@ class Found:
         return self.mechanics is None
 
 
-def chosen_bodies(assembly: Assembly, name: str, wanted: Sequence[str] | Mapping[str, float]) -> tuple[int, ...]:
+def chosen_bodies(model: Model, name: str, wanted: Sequence[str] | Mapping[str, float]) -> tuple[int, ...]:
     """Return the numbers of the bodies that a mechanism is sought among.
 
     Parameters
     ----------
-    assembly : Assembly
+    model : Model
     name : str
         Of the mechanism, for messages.
     wanted : sequence of str, or mapping
@@ -84,7 +86,7 @@ def chosen_bodies(assembly: Assembly, name: str, wanted: Sequence[str] | Mapping
     InputError
         A word fits no body that can move.
     """
-    bodies = assembly.model.bodies
+    bodies = model.bodies
     free = [i for i, b in enumerate(bodies) if b.kind != "fixed"]
     where = f"mechanism '{name}'"
     if isinstance(wanted, Mapping):
@@ -115,7 +117,6 @@ def find(assembly: Assembly, live: Iterable[str], moving: Sequence[int] | None =
     Parameters
     ----------
     assembly : Assembly
-        Plane.
     live : iterable of str
         Load groups that push.
     moving : sequence of int, optional
@@ -155,7 +156,7 @@ def _found(assembly: Assembly, groups: tuple[str, ...], moving: Sequence[int] | 
     mechanics = mechanics_of(assembly, velocity, forces)
     if not mechanics.slides:
         return Found(bound, bound.multiplier, "no sliding", velocity, forces, mechanics)
-    state, _ = search_collapse(problem, push)
+    state, _ = search_collapse(problem, push, work=WORK_OF_ALL if problem.dim == 2 else UNASKED_WORK)
     if state is None:
         return Found(bound, bound.multiplier, "associated", velocity, forces, mechanics)
     velocity, forces = spread(state.velocity, state.normal_force)
@@ -168,8 +169,10 @@ def _held(problem: ContactProblem, moving: Sequence[int] | None) -> tuple[Array,
         return np.arange(problem.unknowns), np.arange(problem.pairs), problem
     columns = np.concatenate([np.arange(problem.bodies[b], problem.bodies[b + 1]) for b in moving])
     C_n, C_t = sp.csc_array(problem.C_n)[:, columns], sp.csc_array(problem.C_t)[:, columns]
-    touched = (abs(C_n) + abs(C_t)).sum(axis=1)
+    s = problem.dim - 1
+    touched = abs(C_n).sum(axis=1) + abs(C_t).sum(axis=1).reshape(-1, s).sum(axis=1)
     rows = np.flatnonzero(touched > 0)
+    every = (rows[:, None] * s + np.arange(s)).ravel()
     R = sp.csc_array(sp.csr_array(problem.R)[columns])
     R = sp.csc_array(R[:, np.flatnonzero(abs(R).sum(axis=0) > 0)])
     sizes = [int(problem.bodies[b + 1] - problem.bodies[b]) for b in moving]
@@ -178,7 +181,7 @@ def _held(problem: ContactProblem, moving: Sequence[int] | None) -> tuple[Array,
         rows,
         replace(
             problem, K=sp.csr_array(sp.csc_array(problem.K)[:, columns].tocsr()[columns]), f=problem.f[columns],
-            C_n=sp.csr_array(C_n.tocsr()[rows]), C_t=sp.csr_array(C_t.tocsr()[rows]), gap=problem.gap[rows],
+            C_n=sp.csr_array(C_n.tocsr()[rows]), C_t=sp.csr_array(C_t.tocsr()[every]), gap=problem.gap[rows],
             laws=problem.laws[rows], R=R, bodies=np.concatenate([[0], np.cumsum(sizes)]),
             slip_origin=problem.slip_origin[rows], area=problem.area[rows], inertia=problem.inertia[columns], load=0.0,
         ),

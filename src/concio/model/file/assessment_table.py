@@ -91,7 +91,7 @@ class AssessmentTable(Table):
 
     levels: list[Name] | None = None
     mechanisms: dict[str, list[StrictStr] | HeightsTable] = Field(default_factory=dict)
-    direction: Literal["both", "right", "left"] = "both"
+    direction: StrictStr | tuple[Number, Number] | None = None
     live: list[Name] | None = None
     knowledge: Name = "LC1"
     confidence: Number | None = None

@@ -1,0 +1,123 @@
+"""Which way the earthquake pushes, in words: the model with its horizontal forces, for each way that is asked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.analysis.seismic.applied import EARTHQUAKE, applied_forces, pushed
+from concio.arguments import closest
+from concio.errors import InputError
+from concio.model.model import Model
+
+Array = np.ndarray
+Direction = str | Sequence[float]
+
+PLANE = {"right": (1.0,), "left": (-1.0,)}
+SPACE = {"+x": (1.0, 0.0), "-x": (-1.0, 0.0), "+y": (0.0, 1.0), "-y": (0.0, -1.0)}
+ALIAS = {"right": "+x", "left": "-x"}
+SEVERAL: dict[int, dict[str, tuple[str, ...]]] = {
+    2: {"both": ("right", "left")}, 3: {"both": ("+x", "-x"), "all": ("+x", "-x", "+y", "-y")}
+}  # fmt: skip
+"""Words for several ways."""
+
+USUAL = {2: "both", 3: "all"}
+"""What is looked at unless another is asked for."""
+
+ALONG = 0.999
+"""Cosine above which a direction is that of the load that pushes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Push:
+    """One way of pushing.
+
+    Parameters
+    ----------
+    way : str
+        In a word: "right", "+x", "(0.6, 0.8)".
+    model : Model
+        With the loads that push.
+    groups : tuple of str
+        Their load groups.
+    sign : {1, -1}
+        Which way these are multiplied.
+    """
+
+    way: str
+    model: Model
+    groups: tuple[str, ...]
+    sign: float
+
+
+def pushes(model: Model, direction: Direction | None, groups: tuple[str, ...]) -> list[Push]:
+    """Return the ways in which a model is pushed: by its weights, or by load groups of its own.
+
+    Parameters
+    ----------
+    model : Model
+    direction : str, (2,) vector or None
+        In the plane "right", "left" or "both" (the default); in space "+x", "-x", "+y", "-y", "both" (along x), "all"
+        (the default), or a horizontal vector.
+    groups : tuple of str
+        Load groups that push; none for the weights. In the plane "right" is along them, "left" against them; in space
+        a direction is looked for along and against them.
+
+    Raises
+    ------
+    InputError
+        There is no such direction, or the groups do not push that way.
+    """
+    ways = _asked(model.dim, direction)
+    if not groups:
+        return [Push(way, pushed(model, vector.tolist()), (EARTHQUAKE,), 1.0)
+                for way, vector in ways.items()]  # fmt: skip
+    if model.dim == 2:
+        return [Push(way, model, groups, vector[0]) for way, vector in ways.items()]
+    numbers = [k for k, load in enumerate(model.loads) if load.group in groups]
+    total = np.sum([f.force[:2] for f in applied_forces(model, numbers)], axis=0)
+    total = total / (float(np.linalg.norm(total)) or 1.0)
+    if direction is None:
+        return [Push(_name(sign * total), model, groups, sign) for sign in (1.0, -1.0)]
+    found = [
+        Push(way, model, groups, float(np.sign(total @ vector)))
+        for way, vector in ways.items()
+        if abs(float(total @ vector)) > ALONG
+    ]
+    if not found:
+        msg = f"the load of '{', '.join(groups)}' pushes along {_name(total)}, not along {', '.join(ways)}"
+        raise InputError(msg, hint="leave direction out, or leave live out so that the weights push that way")
+    return found
+
+
+def _asked(dim: int, direction: Direction | None) -> dict[str, Array]:
+    """Return the ways that are asked for, with their vectors (1,) in the plane and (2,) in space."""
+    known: dict[str, tuple[float, ...]] = dict(PLANE) if dim == 2 else dict(SPACE)
+    several = SEVERAL[dim]
+    if direction is None:
+        direction = USUAL[dim]
+    if isinstance(direction, str):
+        word = ALIAS.get(direction, direction) if dim == 3 else direction
+        names = several.get(word, (word,))
+        if not set(names) <= set(known):
+            msg = f"there is no direction '{direction}'"
+            raise InputError(msg, hint=closest(direction, (*known, *several)))
+        return {name: np.array(known[name]) for name in names}
+    vector = np.array(direction, dtype=float)
+    if dim == 2 or vector.shape != (2,) or not 0 < float(np.linalg.norm(vector)) < np.inf:
+        msg = f"{direction!r} is no direction"
+        words = ", ".join((*known, *several))
+        more = " or a horizontal vector (x, y)" if dim == 3 else ""
+        raise InputError(msg, hint=f"one of {words}{more}")
+    vector = vector / float(np.linalg.norm(vector))
+    return {_name(vector): vector}
+
+
+def _name(vector: Array) -> str:
+    """Return a direction in a word."""
+    for word, known in SPACE.items():
+        if float(vector @ np.array(known)) > 1 - 1e-9:
+            return word
+    return "(" + ", ".join(f"{v:.3g}" for v in vector) + ")"

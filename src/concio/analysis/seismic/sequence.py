@@ -1,0 +1,256 @@
+"""A mechanism followed by limit analysis on its displaced macro-blocks, step by step.
+
+Where the joints of a mechanism leave more than one way to move (courses that slide over each other, wedges torn out of
+a wall), and in space, no linkage can be followed. Here the macro-blocks stay what they are at the onset, but how they
+move is found anew in each configuration: a collapse state of Coulomb friction without dilatancy
+(:mod:`concio.solvers.statics.collapse_state`) gives the multiplier and the motion; the blocks are moved along it, each
+by a screw of its own, and put back where contacts that press have come apart. Contacts open, close, begin and cease to
+slide on the way. In the limit of small steps that is a quasi-static path; one block that topples is followed exactly.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+from concio.analysis.seismic.curve import FARTHEST, CapacityCurve, not_followed
+from concio.analysis.seismic.linkage import Force
+from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, carried
+from concio.analysis.seismic.placed import Contacts, Placed, Stated, on_blocks, problem_of, stated
+from concio.kinematics.rigid import motions
+from concio.model.model import Tie
+from concio.solvers.statics.collapse_search import find_collapse_state
+from concio.solvers.statics.collapse_state import certify_collapse
+from concio.solvers.statics.limit import associated_limit
+
+Array = np.ndarray
+
+STEPS = 30
+"""Configurations of a curve, about."""
+
+MOST = 150
+"""Configurations of a curve, at most."""
+
+TRIES = 12
+"""Programmes in search of a collapse state of one configuration."""
+
+CLOSED = 1e-6
+"""Contacts nearer than this share of the size of the mechanism are closed."""
+
+LOST = 1e-3
+"""Share of the size of the mechanism by which a step may leave contacts wrong after it was corrected."""
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """How the mechanism moves in one configuration.
+
+    Parameters
+    ----------
+    q : Placed
+    multiplier : float
+    velocity : (G, 3 or 6) array
+        For a control point that moves by one.
+    normal_force : (m,) array
+        Of all contacts [kN].
+    stays : (m,) boolean array
+        Contacts that press and do not slide.
+    contacts : Stated
+    tie_force, elongation : (n,) arrays
+    """
+
+    q: Placed
+    multiplier: float
+    velocity: Array
+    normal_force: Array
+    stays: Array
+    contacts: Stated
+    tie_force: Array
+    elongation: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Sequence:
+    """Macro-blocks with their contacts and forces, and a control point.
+
+    Parameters
+    ----------
+    mechanics : Mechanics
+    contacts : Contacts
+    dead, push : tuple of Force
+    ties : tuple of (Tie, int, int)
+        With the macro-blocks of their ends.
+    control : (int, (d,) array, (d,) array)
+        Macro-block, point and direction of the control displacement.
+    """
+
+    mechanics: Mechanics
+    contacts: Contacts
+    dead: tuple[Force, ...]
+    push: tuple[Force, ...]
+    ties: tuple[tuple[Tie, int, int], ...]
+    control: tuple[int, Array, Array]
+
+    @cached_property
+    def size(self) -> float:
+        """Largest distance of a contact or a force from the first centre [m]."""
+        points = [*self.contacts.point, *(f.point for f in (*self.dead, *self.push))]
+        return float(np.abs(np.array(points) - self.mechanics.blocks[0].centre).max()) or 1.0
+
+    def controlled(self, q: Placed) -> float:
+        """Return the displacement of the control point [m]."""
+        block, point, along = self.control
+        return float((q.carry(np.array([block]), point[None])[0] - point) @ along)
+
+    def pulls(self, q: Placed) -> tuple[Array, Array, Array]:
+        """Return forces (n,) [kN] and elongations (n,) [m] of the ties, and their pull on the unknowns (N,)."""
+        load = np.zeros(len(self.mechanics.blocks) * motions(q.centre.shape[1]))
+        forces, longer = np.zeros(len(self.ties)), np.zeros(len(self.ties))
+        for k, (tie, a, b) in enumerate(self.ties):
+            ends = np.array([tie.at_a, tie.at_b], dtype=float)
+            now = q.carry(np.array([a, b]), ends)
+            length = float(np.linalg.norm(now[1] - now[0]))
+            longer[k] = length - float(np.linalg.norm(ends[1] - ends[0]))
+            forces[k] = tie.force(float(longer[k]))
+            along = (now[1] - now[0]) / length
+            pull = [Force(g, s * forces[k] * along, ends[i]) for i, (g, s) in enumerate(((a, 1.0), (b, -1.0)))]
+            load += on_blocks(q, tuple(f for f in pull if f.block != GROUND), self.size)
+        return forces, longer, load
+
+    def state(self, q: Placed, normal_force: Array) -> State | None:
+        """Return how the mechanism moves in a configuration, from normal forces (m,) near it; None if nothing tells."""
+        L, d = self.size, q.centre.shape[1]
+        now = stated(self.contacts, q, L)
+        closed = np.flatnonzero(now.gap <= CLOSED * L)
+        pull, longer, tied = self.pulls(q)
+        problem = problem_of(self.contacts, now, closed, on_blocks(q, self.dead, L) + tied)
+        live = on_blocks(q, self.push, L)
+        strength = problem.cone.strength(normal_force[closed])
+        zero = np.zeros(len(closed))
+        found = None
+        for _ in range(TRIES):
+            laws = replace(problem.laws, friction=zero, dilatancy=zero, cohesion=strength)
+            bound = associated_limit(replace(problem, laws=laws), live)
+            if bound.mechanism is None or not np.isfinite(bound.multiplier):
+                return None
+            found = certify_collapse(problem, live, bound.mechanism.velocity, 0)
+            if found is not None:
+                break
+            strength = 0.5 * strength + 0.5 * problem.cone.strength(bound.normal_force)
+        if found is None and d == 2:
+            found = find_collapse_state(problem, live, starts=4).state
+        if found is None:
+            return None
+        velocity = found.velocity.reshape(-1, motions(d)).copy()
+        velocity[:, d:] /= L
+        block, point, along = self.control
+        arm = q.carry(np.array([block]), point[None])[0] - q.centre[block]
+        speed = float(carried(velocity[block], arm) @ along)
+        if speed <= CLOSED * float(np.abs(found.velocity).max()):
+            return None
+        forces = np.zeros(len(now.gap))
+        forces[closed] = found.normal_force
+        slip = np.linalg.norm((problem.C_t @ found.velocity).reshape(len(closed), d - 1), axis=1)
+        stays = np.zeros(len(now.gap), dtype=bool)
+        presses = found.normal_force > 1e-9 * max(float(found.normal_force.max(initial=0.0)), 1e-12)
+        stays[closed] = presses & (slip <= 1e-8)
+        return State(q, found.multiplier, velocity / speed, forces, stays, now, pull, longer)
+
+    def step(self, last: State, length: float) -> Placed | None:
+        """Return the configuration after the control point has moved by about ``length``; None if it cannot be."""
+        L, d = self.size, last.q.centre.shape[1]
+        q = last.q.moved(last.velocity, length)
+        crushing = np.isfinite(self.contacts.laws.cap)
+        presses = np.flatnonzero((last.normal_force > 1e-9 * last.normal_force.max(initial=0.0)) & ~crushing)
+        stuck = np.flatnonzero(last.stays)
+        rows = (stuck[:, None] * (d - 1) + np.arange(d - 1)).ravel()
+        for _ in range(8):
+            now = stated(self.contacts, q, L)
+            wrong = np.concatenate([now.gap[presses], (now.drift - last.contacts.drift)[stuck].ravel()])
+            if float(np.abs(wrong).max(initial=0.0)) <= 1e-4 * CLOSED * L:
+                break
+            J = sp.vstack([now.C_n[presses], now.C_t[rows]]).tocsc()
+            factor = splu(sp.csc_matrix(J.T @ J + 1e-10 * sp.eye_array(J.shape[1])))
+            change = -factor.solve(J.T @ wrong)
+            change -= factor.solve(J.T @ (J @ change + wrong))
+            moved = change.reshape(-1, motions(d)).copy()
+            moved[:, d:] /= L
+            q = q.moved(moved, 1.0)
+        now = stated(self.contacts, q, L)
+        off = float(np.abs(now.gap[presses]).max(initial=0.0))
+        off = max(off, float(-now.gap[~crushing].min(initial=0.0)))
+        return q if off <= LOST * length and np.isfinite(q.centre).all() else None
+
+    def room(self, state: State) -> float:
+        """Return how far the control point can move before an open contact closes [m]."""
+        speed = state.velocity.copy()
+        speed[:, state.q.centre.shape[1] :] *= self.size
+        rate = state.contacts.C_n @ speed.ravel()
+        gap = state.contacts.gap
+        coming = (gap > CLOSED * self.size) & (rate < -1e-12)
+        return float((gap[coming] / -rate[coming]).min(initial=np.inf))
+
+
+def follow_in_steps(sequence: Sequence) -> CapacityCurve:
+    """Follow a mechanism until its multiplier vanishes.
+
+    Returns
+    -------
+    CapacityCurve
+        Of kind "steps"; where it ends early, its reason says why.
+    """
+    L = sequence.size
+    state = sequence.state(Placed.at_rest(sequence.mechanics), sequence.contacts.force)
+    if state is None:
+        return not_followed("no state")
+    first = state.multiplier
+    costly = state.q.centre.shape[1] == 3
+    d, alpha, ties = [0.0], [first], [state.tie_force]
+    broken: list[float] = []
+    usual, reason, end = (1e-4 if sequence.ties else 1e-3) * L, "far", float("nan")
+    step, least = usual, usual
+    while d[-1] < FARTHEST * L:
+        tried = max(min(step, sequence.room(state)), 1e-3 * step)
+        q = sequence.step(state, tried)
+        after = None if q is None else sequence.state(q, state.normal_force)
+        snaps = after is not None and _breaks(sequence, state, after)
+        overshot = after is not None and after.multiplier <= 0
+        if after is None or ((snaps or overshot) and tried > 1e-2 * least):
+            step = tried / 4
+            if after is None and step < (0.05 if costly and q is not None else 1e-3) * least:
+                end, reason = d[-1], "joints end" if q is None else "no state"
+                break
+            continue
+        at = sequence.controlled(after.q)
+        if overshot:
+            share = state.multiplier / (state.multiplier - after.multiplier)
+            end, reason = d[-1] + share * (at - d[-1]), "falls"
+            d, alpha, ties = [*d, end], [*alpha, 0.0], [*ties, after.tie_force]
+            break
+        if snaps:
+            broken.append(at)
+            d, alpha, ties = [*d, at], [*alpha, alpha[-1]], [*ties, ties[-1]]
+        if len(d) == 1:
+            fall = (first - after.multiplier) / max(at, 1e-12)
+            usual = min(max((first / fall if fall > 0 else L) / STEPS, usual), 0.05 * L)
+            least = usual
+        state, step = after, min(2.0 * max(step, tried), usual)
+        d, alpha, ties = [*d, at], [*alpha, after.multiplier], [*ties, after.tie_force]
+        if len(d) >= MOST:
+            end, reason = d[-1], "long"
+            break
+    if reason not in ("far", "falls"):  # what may still stand beyond does not count
+        d, alpha, ties = [*d, end], [*alpha, 0.0], [*ties, ties[-1]]
+    return CapacityCurve("steps", np.array(d), np.array(alpha), end, reason, tuple(broken), np.array(ties))
+
+
+def _breaks(sequence: Sequence, before: State, after: State) -> bool:
+    """Return whether a tie breaks between two configurations."""
+    return any(
+        tie.break_elongation is not None and before.elongation[k] < tie.break_elongation <= after.elongation[k]
+        for k, (tie, _, _) in enumerate(sequence.ties)
+    )
