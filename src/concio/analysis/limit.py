@@ -25,7 +25,7 @@ from concio.analysis.coulomb_path import coulomb_path, dead_state, live_load_pat
 from concio.analysis.engine import by_its_engine, step_by_step
 from concio.analysis.lent_compliance import lent_assembly
 from concio.analysis.limit_result import LimitResult
-from concio.analysis.load_steps import load_steps
+from concio.analysis.load_steps import in_one_step, load_steps
 from concio.arguments import closest, strict
 from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import InputError, NoEquilibriumError
@@ -56,7 +56,10 @@ LARGEST_SEARCH = 15_000
 UNASKED_WORK = 40_000
 """Linear programmes times pairs of that search where it is not asked for: some five seconds."""
 
-Found = Literal["bound", "friction", "steps", "collapse state", "path"]
+UNASKED_IN_SPACE = 1_500
+"""Up to this number of pairs in space the least load that was not reached is put on in one step unasked."""
+
+Found = Literal["bound", "friction", "steps", "collapse state", "in one step", "path"]
 """The numbers of a limit load, in the order in which they are found: the quick ones first."""
 
 
@@ -84,6 +87,8 @@ def limit(
         (:data:`LARGEST_PATH`).
     steps : bool, optional
         Whether the load grows in certified Coulomb steps; by default where ``path`` was left open and is not followed.
+        In space the least load that they did not reach is then put on in one step, unasked up to
+        :data:`UNASKED_IN_SPACE` pairs: a motion may prove that it is not carried.
     search : bool, optional
         Whether collapse states are searched for; by default where ``path`` is not False, and then only as long as the
         other numbers take.
@@ -164,6 +169,11 @@ def limit_stages(
         state, said = search_collapse(dead, load, work=work, bound=found.associated, progress=progress)
         found = replace(found, collapse_state=state, search=said)
         yield "collapse state", found
+    if found.steps is not None and dead.dim == 3 and found.steps.failed < bound:
+        if steps or dead.pairs <= UNASKED_IN_SPACE:
+            tell("the least load not reached, in one step")
+            found = replace(found, steps=in_one_step(dead, load, found.steps, progress=progress))
+        yield "in one step", found
     if exact:
         tell("Coulomb path")
         start, note = dead_state(dead, progress=progress)

@@ -7,14 +7,15 @@ reached is carried, by forces that obey every law; that more is not carried is n
 The exact path (:mod:`concio.solvers.path.event_path`) follows every event and can show collapse, at a price that grows
 with the square of the number of pairs; these are some ten load steps, whatever the size.
 
-In space there are no exact paths. There the structure is released at the least multiplier that found no certified
-state: where it moves away, a motion proves that, and the two multipliers bracket collapse under Coulomb friction.
+In space there are no exact paths. There the least multiplier that found no certified state is put on in one step
+(:func:`in_one_step`): where the structure moves away, a motion proves that, and the two multipliers bracket collapse
+under Coulomb friction.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -32,6 +33,9 @@ FIRST = 1 / 4
 
 START = (10.0,)
 """Starting points of the interior point: a step that needs others is halved instead."""
+
+CONE_STARTS = cone_run.STARTS[:2]
+"""The same in space."""
 
 
 @short_repr
@@ -54,7 +58,7 @@ class LoadSteps:
     dead : Status
         Outcome of the dead load in one step.
     outcome : Status or None
-        What is proven at ``failed`` where the load is put on in one step; None where nothing was asked.
+        What comes of ``failed`` put on in one step (:func:`in_one_step`); None where that was not tried.
     """
 
     multipliers: tuple[float, ...]
@@ -125,18 +129,34 @@ def load_steps(
         worst = max(worst, solution.certificate.worst)
         if found is not None:
             found(trial)
-    outcome = None
-    if dead.dim == 3 and failed < bound:
-        outcome = find("auto")(dead.with_loads(dead.f + failed * live), progress=progress).status
-        solves += 1
-    return LoadSteps(tuple(reached), failed, state, worst, solves, first.status, outcome)
+    return LoadSteps(tuple(reached), failed, state, worst, solves, first.status)
+
+
+def in_one_step(
+    dead: ContactProblem, live: Array, steps: LoadSteps, *, progress: ProgressCallback | None = None
+) -> LoadSteps:
+    """Put on in one step the least load that the steps did not reach, by whatever it takes; return them with that.
+
+    Parameters
+    ----------
+    dead : ContactProblem
+        With its dead load.
+    live : (N,) array
+    steps : LoadSteps
+        Their ``failed`` is a number.
+    progress : callable, optional
+    """
+    answer = find("auto")(dead.with_loads(dead.f + steps.failed * live), progress=progress)
+    return replace(steps, outcome=answer.status, solves=steps.solves + 1)
 
 
 def _step(problem: ContactProblem, state: PathState, progress: ProgressCallback | None) -> Solution:
     near = (state.displacement, state.normal_force, state.friction_force)
+    if problem.dim == 3 and not needed(problem):
+        return cone_run.solve(problem, progress=progress, starts=CONE_STARTS, near=near)
     solution = solve_near(problem, *near, starts=START, progress=progress)
     if solution.solved or solution.status is Status.CANCELLED or not needed(problem):
         return solution
     if problem.dim == 3:
-        return cone_run.solve(problem, progress=progress)
+        return cone_run.solve(problem, progress=progress, starts=CONE_STARTS, near=near)
     return engine.solve(problem, homotopy=False, starts=START, progress=progress)

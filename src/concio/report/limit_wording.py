@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from concio.analysis.limit_result import NOT_ASKED, LimitResult
 from concio.display import number
-from concio.problem.solution import PROVEN_FAILURES
+from concio.problem.solution import PROVEN_FAILURES, Status
 
 if TYPE_CHECKING:
     from concio.analysis.margins import Margin
@@ -28,6 +28,7 @@ def limit_lines(found: LimitResult) -> list[str]:
     lines = [*head_lines(found.assembly), *bound_lines(found), *stage_lines("friction", found)]
     lines += step_lines(found) if found.steps is not None else []
     lines += collapse_lines(found) if found.search != NOT_ASKED else []
+    lines += one_step_lines(found)
     return [*lines, *path_lines(found), *short_lines(found)]
 
 
@@ -41,6 +42,8 @@ def stage_lines(name: str, found: LimitResult) -> list[str]:
         return step_lines(found)
     if name == "collapse state":
         return collapse_lines(found)
+    if name == "in one step":
+        return one_step_lines(found)
     return path_lines(found)
 
 
@@ -115,11 +118,22 @@ def step_lines(found: LimitResult) -> list[str]:
         return [f"{head}none: the dead load alone came to no certified state ({steps.dead.name.lower()})"]
     tried = "" if math.isnan(steps.failed) else f"; none found at {steps.failed:.6g}"
     count = f"{len(steps.multipliers)} certified states from the dead load on"
-    lines = [f"{head}carried up to {steps.carried:.6g} at least: {count}{tried}"]
-    if steps.outcome is not None and steps.outcome in PROVEN_FAILURES:
-        said = steps.outcome.value[0].lower() + steps.outcome.value[1:]
-        lines.append(f"{REST}put on in one step, {steps.failed:.6g} is not carried: {said}")
-    return lines
+    return [f"{head}carried up to {steps.carried:.6g} at least: {count}{tried}"]
+
+
+def one_step_lines(found: LimitResult) -> list[str]:
+    """Return what comes in space of the least load that the steps did not reach, put on in one step."""
+    steps = found.steps
+    if steps is None or found.assembly.model.dim == 2 or not steps.failed < found.associated.multiplier:
+        return []
+    head = f"  in one step          {steps.failed:.6g} "
+    if steps.outcome is None:
+        return [f"{head}was not tried unasked (--steps tries it)"]
+    if steps.outcome is Status.SOLVED:
+        return [f"{head}is carried as well, without the history of the steps"]
+    said = steps.outcome.value[0].lower() + steps.outcome.value[1:]
+    proven = steps.outcome in PROVEN_FAILURES
+    return [f"{head}is not carried: {said}" if proven else f"{head}is left open: {said}"]
 
 
 def collapse_lines(found: LimitResult) -> list[str]:

@@ -55,6 +55,8 @@ def solve(
     *,
     progress: ProgressCallback | None = None,
     engine: Engine | None = None,
+    starts: tuple[Start, ...] = STARTS,
+    near: tuple[Array, Array, Array] | None = None,
 ) -> Solution:
     """Solve one load step of a problem of any dimension.
 
@@ -64,6 +66,10 @@ def solve(
     progress : callable, optional
     engine : {"superlu", "pardiso"}, optional
         Sparse factorisation.
+    starts : tuple of Start
+        Tried in turn.
+    near : arrays, optional
+        Displacements [m], t_n and t_t [kN] of a state from which Newton's method is tried first.
 
     Returns
     -------
@@ -75,8 +81,8 @@ def solve(
         return rest
     run = ConeRun(scale(problem, engine), progress)
     try:
-        found = None
-        for start in STARTS:
+        found = None if near is None else run.settle(*run.scaled.bring(*near), WEIGHTS[:1])
+        for start in starts:
             found = found or run.from_start(start)
     except Cancelled:
         return run.solution(None, Status.CANCELLED)

@@ -29,6 +29,12 @@ ROUNDING = 1e-14
 ENDLESS = 1e7
 """Multiplier, in units of the programme, from which on a load may be one that can grow without end."""
 
+SETTLED = 1e-11
+"""Residual of forces in balance, and of an admissible motion, at which a programme may stop that has its answer."""
+
+CLEAR = 100.0
+"""Times the gap that the multiplier must be away from one for the programme to stop with a motion as its answer."""
+
 ROUNDS = 6
 """Times forces are brought closer to balance."""
 
@@ -157,10 +163,12 @@ class ConeStatics:
         if not size > 0:
             return self._judged(ones, f, np.zeros_like(f), 1.0)
 
-        def carries(a: ConeAnswer) -> bool:
-            return a.multiplier >= size and a.primal < 1e-11
+        def decided(a: ConeAnswer) -> bool:
+            carried = a.multiplier >= size and a.primal < SETTLED
+            above = a.multiplier + a.gap * max(1.0, abs(a.multiplier))  # what the motion does not exceed
+            return carried or (a.dual < SETTLED and CLEAR * (above - a.multiplier) < size - above)
 
-        answer = it.solve(e, g / size, start=ones, stop=carries)
+        answer = it.solve(e, g / size, start=ones, stop=decided)
         multiplier = answer.multiplier / size
         share = min(1.0 / multiplier, 1.0) if multiplier > 0 else 1.0
         t = (1.0 - share) * ones + share * answer.t

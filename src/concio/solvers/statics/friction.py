@@ -59,6 +59,10 @@ WIDE = 1e-5
 """Distance of two bounds, relative to the upper one, from which on the least friction is not called settled."""
 
 
+BELOW = 0.1
+"""Share of the bracket by which a trial lies below an upper bound that Newton's step has not come under."""
+
+
 class _Search:
     """Asks whether factors hold, and keeps the closest proofs either way."""
 
@@ -99,17 +103,27 @@ class _Search:
         return bool(np.isfinite(self.high) and np.isfinite(self.low))
 
     def close_in(self, width: float) -> None:
-        """Shrink the bracket: Newton's method from below, kept within it, and bisection; round what is undecided."""
+        """Shrink the bracket: Newton's method from below, kept within it, and bisection; round what is undecided.
+
+        Newton's step ends above the answer where what is missing is a concave function of the friction. Then the upper
+        bound is close, and the next trial lies below it by a share of the bracket that shrinks while that proves right.
+        """
         shares = (0.5, 0.25, 0.75, 0.125, 0.875)
-        undecided = 0
+        undecided, short = 0, BELOW
         while self.high - self.low > width and self.programmes < MOST:
-            step = 0.25 * width
-            inside = np.isfinite(self.guess) and self.low < self.guess < self.high
-            if inside and self.programmes % 4 and not undecided:
-                trial = min(max(self.guess + step, self.low + step), self.high - step)
+            step, beyond = 0.25 * width, False
+            inside = np.isfinite(self.guess) and self.low < self.guess + step < self.high - step
+            if inside and not undecided:
+                trial = max(self.guess + step, self.low + step)
+            elif np.isfinite(self.guess) and self.guess + step >= self.high - step and not undecided:
+                beyond = True
+                trial = self.high - max(short * (self.high - self.low), step)
             else:
                 trial = self.low + shares[undecided] * (self.high - self.low)
-            undecided = undecided + 1 if self.ask(trial) is None else 0
+            holds = self.ask(trial)
+            if beyond and holds is not None:
+                short = min(4.0 * short, 0.5) if holds else max(0.1 * short, 1e-3)
+            undecided = undecided + 1 if holds is None else 0
             if undecided == len(shares):
                 break
 
