@@ -84,6 +84,22 @@ def test_a_motion_goes_on_from_where_it_ended():
     assert second.end.rotation == pytest.approx(whole.end.rotation, abs=1e-9)
 
 
+def test_a_motion_that_may_stop_at_rest_waits_for_the_ground():
+    """Begun at 0.2 s, under a pulse of 0.3 s too weak to move anything: not before 0.5 s, and at once then."""
+    options = {"step": 5e-3, "gravity": G, "adaptive": False}
+    begun = concio.dynamics(standing(), duration=0.2, **options).end
+    pulse = concio.Pulse("half sine", 0.1 * G, 0.3)
+    found = concio.dynamics(standing(), pulse, 1.0, start=begun, stop_at_rest=True, **options)
+    assert found.ending is Ending.AT_REST
+    assert found.end.time == pytest.approx(0.5, abs=0.02)
+
+
+def test_the_drift_told_is_the_deepest_of_all_steps():
+    found = concio.dynamics(standing(tilt=0.3 * ALPHA), duration=0.4, step=2e-3, start="as described", gravity=G)
+    assert 0 < found.summary()["drift"] < 1e-2
+    assert all(found.steps.depth <= found.summary()["drift"])
+
+
 @pytest.mark.parametrize("block", ["springs", "elastic"])
 def test_energy_balance_of_walls(block):
     """Energy stored in joints counts from the beginning; what their common lengths change by has its own column."""

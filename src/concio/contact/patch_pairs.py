@@ -156,9 +156,6 @@ def _coupling(
             continue
         from_first = np.vstack([patch.polygon, *patch.holes]) - disc.origins[body]
         key += [s, face, np.round(from_first / unit).astype(np.int64).tobytes()]
-    if all(part == -1 for part in key[1:]) or key[0] == -1:
-        shape = np.round((patch.polygon - patch.polygon[0]) / unit).astype(np.int64)
-        key.append(shape.tobytes())
     found = known.get(tuple(key))
     if found is not None:
         return found
