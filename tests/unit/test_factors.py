@@ -6,7 +6,7 @@ import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array
 from concio.solvers.algebra.block_factor import BlockFactor
-from concio.solvers.algebra.sparse_factor import Engine, PatternFactor, SingularMatrixError
+from concio.solvers.algebra.sparse_factor import Engine, SingularMatrixError
 
 ENGINES: tuple[Engine, ...] = ("superlu", "pardiso")
 
@@ -16,22 +16,6 @@ def available(engine: Engine) -> Engine:
     if engine == "pardiso":
         pytest.importorskip("pypardiso")
     return engine
-
-
-@pytest.mark.parametrize("engine", ENGINES)
-def test_pattern_factor_puts_every_diagonal_entry_where_it_belongs(engine: Engine) -> None:
-    rng = np.random.default_rng(0)
-    n, rows = 40, 60
-    C = sp.csr_array(sp.random(rows, n, 0.1, random_state=1))
-    K = sp.csr_array(sp.diags_array(rng.uniform(1, 2, n)))
-    factor = PatternFactor(K, C, np.column_stack([np.arange(rows)] * 2), available(engine))
-    d, added, b = rng.uniform(1, 2, rows), rng.uniform(0, 10, n), rng.standard_normal(n)
-    wanted = np.linalg.solve((K + C.T @ sp.diags_array(d) @ C).toarray() + np.diag(added), b)
-    factor.factorise(d, added)
-    np.testing.assert_allclose(factor.solve(b), wanted, rtol=1e-12, atol=1e-14)
-    other = factor.with_diagonal(added)
-    other.factorise(d)
-    np.testing.assert_allclose(other.solve(b), wanted, rtol=1e-12, atol=1e-14)
 
 
 def gram(a: Array) -> Array:

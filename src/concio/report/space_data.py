@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from concio.plot import style
 from concio.post.joint_faces import JointFaces, joint_faces
 from concio.post.outlines import display_scale
 from concio.post.solids import Solids, body_motions_in_space, solids
 from concio.post.space_states import mechanism_states_in_space
-from concio.report.view_data import pack
+from concio.report.view_data import LOOK, kind_of, pack, steps_within, units_of
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
@@ -44,11 +43,10 @@ def space_view_data(results: Sequence[Result], labels: Sequence[str]) -> dict[st
     low, high = shown.points.min(axis=0), shown.points.max(axis=0)
     origin = 0.5 * (low + high)
     each = 12 * len(shown.points) + (72 + 40) * len(faces.pair) + 100 * len(model.bodies)
-    room = int(max(2, min(len(results), BUDGET // max(each, 1))))
-    kept = sorted({round(k) for k in np.linspace(0, len(results) - 1, room)})
+    kept = steps_within(BUDGET, len(results), each)
     packed = [_step(results[k], labels[k]) for k in kept]
     largest = max(step.pop("largest") for step in packed)
-    resultants = first.joints_in_space
+    resultants, last = first.joints_in_space, results[kept[-1]]
     return {
         "origin": origin.tolist(),
         "low": (low - origin).tolist(),
@@ -57,23 +55,11 @@ def space_view_data(results: Sequence[Result], labels: Sequence[str]) -> dict[st
         "scale": display_scale(largest, shown.size),
         "mechanism": first.mechanism is not None,
         "left_out": len(results) - len(kept),
-        "units": _units(results[kept[-1]], largest),
-        "look": {
-            "block": style.BLOCK,
-            "mortar": style.FILM,
-            "rigid": style.RIGID,
-            "fixed": "#C9C4BA",
-            "edge": style.EDGE,
-            "compression": style.COMPRESSION.colour,
-            "tension": style.TENSION.colour,
-            "stick": "#7A7A7A",
-            "slip": style.SLIP.colour,
-            "crushed": style.CRUSHED.colour,
-            "open": style.OPEN.colour,
-        },
+        "units": units_of(last, largest, last.stress.principal_in_space[:1] if last.solved else ()),
+        "look": {**LOOK, "fixed": "#C9C4BA", "stick": "#7A7A7A"},
         "bodies": {
             "name": [b.name for b in model.bodies],
-            "kind": [_kind(b) for b in model.bodies],
+            "kind": [kind_of(b) for b in model.bodies],
             "point": pack(shown.points - origin, "f4"),
             "triangle": pack(shown.triangles, "i4"),
             "owner": pack(shown.body, "i4"),
@@ -95,19 +81,6 @@ def space_view_data(results: Sequence[Result], labels: Sequence[str]) -> dict[st
         },
         "steps": packed,
     }
-
-
-def _units(result: Result, largest: float) -> dict[str, tuple[float, str]]:
-    units = result.model.report
-    stress = float(np.nanmax(np.abs(result.stress.principal_in_space[0]), initial=0.0)) if result.solved else 0.0
-    sizes = {"force": 0.0, "length": 0.0, "motion": largest, "stress": stress, "rotation": 0.0}
-    return {kind: units.factor(kind, size) for kind, size in sizes.items()}
-
-
-def _kind(body: Any) -> str:
-    if body.kind == "elastic":
-        return "mortar" if body.role == "mortar" else "block"
-    return str(body.kind)
 
 
 def _velocity(result: Result) -> Array | None:

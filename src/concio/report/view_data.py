@@ -20,11 +20,27 @@ from concio.post.outlines import Outlines, display_scale, outlines
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
+    from concio.model.body import Body
+    from concio.model.polyhedron import Polyhedron
 
 Array = np.ndarray
 
 BUDGET = 40_000_000
 """Bytes of arrays above which steps of a load path are left out of the view, evenly."""
+
+
+LOOK = {
+    "block": style.BLOCK,
+    "mortar": style.FILM,
+    "rigid": style.RIGID,
+    "edge": style.EDGE,
+    "compression": style.COMPRESSION.colour,
+    "tension": style.TENSION.colour,
+    "slip": style.SLIP.colour,
+    "crushed": style.CRUSHED.colour,
+    "open": style.OPEN.colour,
+}
+"""Colours of both views."""
 
 
 def pack(array: Array, kind: str) -> dict[str, Any]:
@@ -60,7 +76,8 @@ def view_data(results: Sequence[Result], labels: Sequence[str]) -> dict[str, Any
     origin = shown.points.mean(0)
     pieces = joint_lines(first, shown)
     pairs = first.assembly.pairs
-    steps = _kept(len(results), len(shown.points), len(pieces.pair))
+    each = 8 * len(shown.points) + (32 + 4 + 1 + 32) * len(pieces.pair)
+    steps = steps_within(BUDGET, len(results), each)
     packed = [_step(results[k], labels[k]) for k in steps]
     largest = max(step.pop("largest") for step in packed)
     interfaces = first.joints
@@ -69,25 +86,12 @@ def view_data(results: Sequence[Result], labels: Sequence[str]) -> dict[str, Any
         "scale": display_scale(largest, shown.size),
         "size": shown.size,
         "mechanism": first.mechanism is not None,
-        "units": _units(results[steps[-1]], largest),
+        "units": units_of(results[steps[-1]], largest, results[steps[-1]].stress.principal[:2]),
         "left_out": len(results) - len(steps),
-        "look": {
-            "block": style.BLOCK,
-            "mortar": style.FILM,
-            "rigid": style.RIGID,
-            "edge": style.EDGE,
-            "hatch": style.HATCH,
-            "compression": style.COMPRESSION.colour,
-            "tension": style.TENSION.colour,
-            "stick": style.STICK.colour,
-            "slip": style.SLIP.colour,
-            "crushed": style.CRUSHED.colour,
-            "open": style.OPEN.colour,
-            "gap": style.FILL_OPEN,
-        },
+        "look": {**LOOK, "stick": style.STICK.colour, "hatch": style.HATCH, "gap": style.FILL_OPEN},
         "bodies": {
             "name": [b.name for b in model.bodies],
-            "kind": [_kind(b) for b in model.bodies],
+            "kind": [kind_of(b) for b in model.bodies],
             "start": pack(shown.starts, "i4"),
             "ring": pack(shown.rings, "i4"),
             "point": pack(shown.points - origin, "f4"),
@@ -107,15 +111,25 @@ def view_data(results: Sequence[Result], labels: Sequence[str]) -> dict[str, Any
     }
 
 
-def _units(result: Result, largest: float) -> dict[str, tuple[float, str]]:
-    """Return what values in kN and m are multiplied by, and the unit they then have, for each kind of quantity."""
+def units_of(result: Result, motion: float, stresses: Sequence[Array]) -> dict[str, tuple[float, str]]:
+    """Return what values in kN and m are multiplied by, and the unit they then have, for each kind of quantity.
+
+    Parameters
+    ----------
+    result : Result
+    motion : float
+        Largest displacement [m].
+    stresses : sequence of arrays
+        Principal stresses [kN/m2].
+    """
     units = result.model.report
-    stress = max((float(np.nanmax(np.abs(s), initial=0.0)) for s in result.stress.principal[:2]), default=0.0)
-    sizes = {"force": 0.0, "length": 0.0, "motion": largest, "stress": stress, "rotation": 0.0}
+    stress = max((float(np.nanmax(np.abs(s), initial=0.0)) for s in stresses), default=0.0)
+    sizes = {"force": 0.0, "length": 0.0, "motion": motion, "stress": stress, "rotation": 0.0}
     return {kind: units.factor(kind, size) for kind, size in sizes.items()}
 
 
-def _kind(body: Any) -> str:
+def kind_of(body: Body | Polyhedron) -> str:
+    """Return by which colour of the view a body is drawn."""
     if body.kind == "elastic":
         return "mortar" if body.role == "mortar" else "block"
     return str(body.kind)
@@ -127,10 +141,9 @@ def _shown(result: Result) -> Outlines:
     return outlines(result)
 
 
-def _kept(count: int, points: int, pieces: int) -> list[int]:
-    """Return the steps that fit the budget: the first, the last, and evenly between."""
-    each = 8 * points + (32 + 4 + 1 + 32) * pieces
-    room = int(max(2, min(count, BUDGET // max(each, 1))))
+def steps_within(budget: int, count: int, each: int) -> list[int]:
+    """Return which of ``count`` steps of ``each`` bytes fit a budget: the first, the last, and evenly between."""
+    room = int(max(2, min(count, budget // max(each, 1))))
     return sorted({round(k) for k in np.linspace(0, count - 1, room)})
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -71,21 +71,13 @@ def assemble(
         kind: Literal["elastic", "rigid"] = "rigid" if isinstance(table[p.material], Rigid) else "elastic"
         depth = p.thickness or options.thickness
         bodies.append(Body(p.name, p.outline, p.material, kind, p.role, p.layer, depth, holes=p.holes))
-    laws: dict[str, JointLaw] = {"joint": options.law}
-    rules = [JointRule("joint")]
-    if options.base_law is not None:
-        laws["base"] = options.base_law
-        rules += [JointRule("base", (role, "*")) for role in dict.fromkeys(o.role for o in obstacles)]
-    own = []
-    if any(material.unit_weight for material in table.values()):
-        own.append(Load("weight", (0.0, -1.0), group="dead"))
-        if options.horizontal:
-            own.append(Load("weight", (options.horizontal, 0.0), group="live"))
+    laws, rules = joints_on(options, [o.role for o in obstacles])
+    own = own_weight(table.values(), (0.0, -1.0), (options.horizontal, 0.0))
     return Model(
         bodies=tuple(bodies),
         materials=table,
         laws=laws,
-        rules=tuple(rules),
+        rules=rules,
         loads=(*own, *loads),
         plane=options.plane,
         element=options.element,
@@ -94,3 +86,21 @@ def assemble(
         title=options.title or title,
         generator=dict(generator),
     )
+
+
+def joints_on(options: Checked, roles: Iterable[str]) -> tuple[dict[str, JointLaw], tuple[JointRule, ...]]:
+    """Return joint laws and rules: one law for all joints, and ``base_friction`` on obstacles of the roles given."""
+    if options.base_law is None:
+        return {"joint": options.law}, (JointRule("joint"),)
+    on_base = (JointRule("base", (role, "*")) for role in dict.fromkeys(roles))
+    return {"joint": options.law, "base": options.base_law}, (JointRule("joint"), *on_base)
+
+
+def own_weight(
+    materials: Iterable[Elastic | Rigid], down: tuple[float, ...], sideways: tuple[float, ...]
+) -> tuple[Load, ...]:
+    """Return own weight in group "dead" and its share ``sideways`` in "live", where anything has a weight."""
+    if not any(material.unit_weight for material in materials):
+        return ()
+    dead = Load("weight", down, group="dead")
+    return (dead, Load("weight", sideways, group="live")) if any(sideways) else (dead,)

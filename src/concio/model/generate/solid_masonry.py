@@ -11,8 +11,9 @@ import numpy as np
 from concio.arguments import closest
 from concio.errors import InputError
 from concio.model.generate.arguments import Checked, checked, two
+from concio.model.generate.masonry import joints_on, own_weight
 from concio.model.materials import Elastic, JointLaw, Rigid
-from concio.model.model import JointRule, Load, Model
+from concio.model.model import Load, Model
 from concio.model.polyhedron import BOX, Polyhedron
 from concio.model.surfaces import Surface, grid_surface, merged_faces, prism_surface
 from concio.model.topology import Loop
@@ -171,23 +172,15 @@ def assemble_space(
     table: dict[str, Elastic | Rigid] = {"block": base.block, **(materials or {})}
     bodies = [o.body("fixed") for o in obstacles]
     bodies += [p.body("rigid" if isinstance(table[p.material], Rigid) else "elastic") for p in pieces]
-    laws: dict[str, JointLaw] = {"joint": base.law}
-    rules = [JointRule("joint")]
-    if base.base_law is not None:
-        laws["base"] = base.base_law
-        rules += [JointRule("base", (role, "*")) for role in dict.fromkeys(o.role for o in obstacles)]
-    own = []
-    if any(material.unit_weight for material in table.values()):
-        own.append(Load("weight", (0.0, 0.0, -1.0), group="dead"))
-        if base.horizontal:
-            share = base.horizontal * np.array(options.towards)
-            own.append(Load("weight", (float(share[0]), float(share[1]), 0.0), group="live"))
+    laws, rules = joints_on(base, [o.role for o in obstacles])
+    share = [float(base.horizontal * c) for c in options.towards]
+    own = own_weight(table.values(), (0.0, 0.0, -1.0), (share[0], share[1], 0.0))
     used = {p.material for p in pieces}
     return Model(
         bodies=tuple(bodies),
         materials={name: material for name, material in table.items() if name in used},
         laws=laws,
-        rules=tuple(rules),
+        rules=rules,
         loads=(*own, *loads),
         element=options.element,
         mesh_size=base.mesh_size,

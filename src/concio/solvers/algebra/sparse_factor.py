@@ -15,7 +15,6 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from copy import copy
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -219,85 +218,3 @@ class OrderedFactor:
         result = np.empty_like(b)
         result[order] = x
         return result
-
-
-class PatternFactor:
-    """Factorises ``base + sum_k d_k * term_k`` for changing ``d`` without touching the pattern again.
-
-    Parameters
-    ----------
-    K : (N, N) CSR array
-    C : (p, N) CSR array
-        Rows coupled by ``D``.
-    couples : (k, 2) integer array
-        Entry ``(i, j)`` of D for each k; the matrix is K + sum_k d_k C_i' C_j + diagonal.
-    engine : {"superlu", "pardiso"}, optional
-    """
-
-    def __init__(self, K: sp.csr_array, C: sp.csr_array, couples: Array, engine: Engine | None = None) -> None:
-        n = K.shape[0]
-        rows, columns, terms, values = _outer_terms(C, couples)
-        identity = np.arange(n)
-        K_coo = K.tocoo()
-        i = np.concatenate([K_coo.row, identity, rows])
-        j = np.concatenate([K_coo.col, identity, columns])
-        self.pattern = pattern = Pattern.of(i, j, n, engine)
-        self.nnz, slot, k_nnz = pattern.nnz, pattern.slot, K_coo.nnz
-        self._base = np.bincount(slot[:k_nnz], weights=K_coo.data, minlength=self.nnz).astype(float)
-        self._diagonal = slot[k_nnz : k_nnz + n]
-        self._terms = sp.csr_array((values, (slot[k_nnz + n :], terms)), shape=(self.nnz, len(couples)))
-        self.numeric = OrderedFactor(pattern)
-
-    @property
-    def engine(self) -> Engine:
-        """Name of the factorisation."""
-        return self.pattern.engine
-
-    @property
-    def ordering(self) -> str:
-        """Name of the fill-reducing ordering."""
-        return self.pattern.ordering
-
-    @property
-    def count(self) -> int:
-        """Number of factorisations made."""
-        return self.numeric.count
-
-    def with_diagonal(self, diagonal: Array) -> PatternFactor:
-        """Return a factor of K + diag(diagonal) that shares ordering and pattern; each keeps factors of its own."""
-        other = copy(self)
-        other._base = self._base.copy()
-        other._base[self._diagonal] += diagonal
-        other.numeric = OrderedFactor(self.pattern)
-        return other
-
-    def factorise(self, d: Array, diagonal: Array | float = 0.0) -> None:
-        """Factorise K + sum_k d_k C_i' C_j + diag(diagonal).
-
-        Raises
-        ------
-        SingularMatrixError
-            A pivot is zero or not finite.
-        """
-        data = self._base + self._terms @ d
-        if np.any(diagonal):
-            data[self._diagonal] += diagonal
-        self.numeric.factorise(data)
-
-    def solve(self, b: Array) -> Array:
-        """Return the solution for the last matrix factorised; ``b`` is (N,) or (N, k)."""
-        return self.numeric.solve(b)
-
-
-def _outer_terms(C: sp.csr_array, couples: Array) -> tuple[Array, Array, Array, Array]:
-    """Return rows, columns, term numbers and values of the products C_i' C_j, for every couple (i, j)."""
-    C = sp.csr_array(C)
-    counts = np.diff(C.indptr)
-    first, second = couples[:, 0], couples[:, 1]
-    n_i, n_j = counts[first], counts[second]
-    size = n_i * n_j
-    term = np.repeat(np.arange(len(couples)), size)
-    within = np.arange(size.sum()) - np.repeat(np.cumsum(size) - size, size)
-    at_i = C.indptr[first][term] + within // np.maximum(n_j[term], 1)
-    at_j = C.indptr[second][term] + within % np.maximum(n_j[term], 1)
-    return C.indices[at_i], C.indices[at_j], term, C.data[at_i] * C.data[at_j]

@@ -12,15 +12,23 @@ methods of their own.
 
 from __future__ import annotations
 
-import time
-from dataclasses import replace
+from functools import partial
 
 from concio.problem.contact_problem import Array, ContactProblem
-from concio.problem.solution import ProgressCallback, Solution, Status
+from concio.problem.solution import ProgressCallback, Solution
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.algebra.sparse_factor import Engine
-from concio.solvers.auto.strategies import Strategy, let_go_at_rest, neighbours, released, statics, usual_starts
-from concio.solvers.interior.engine import Cancelled, Run, at_rest
+from concio.solvers.auto.strategies import (
+    Strategy,
+    first_answer,
+    let_go_at_rest,
+    neighbours,
+    released,
+    statics,
+    usual_starts,
+    where_it_ends,
+)
+from concio.solvers.interior.engine import Run, at_rest
 from concio.solvers.pivoting import sparse_lemke
 
 STRATEGIES: tuple[Strategy, ...] = (
@@ -58,19 +66,7 @@ def solve(
     rest = at_rest(problem)
     if rest is not None:
         return rest
-    run = Run(scale(problem, engine), progress)
-    cost: list[tuple[str, float]] = []
-    try:
-        for strategy in STRATEGIES:
-            begin = time.process_time()
-            answer = strategy.decide(run)
-            cost.append((strategy.name, time.process_time() - begin))
-            if answer is not None:
-                return replace(answer, info={**answer.info, "strategy": strategy.name, "cost": tuple(cost)})
-    except Cancelled:
-        return run.solution(None, Status.CANCELLED)
-    undecided = run.solution(None, Status.UNDECIDED, method="auto")
-    return replace(undecided, info={**undecided.info, "strategy": "none", "cost": tuple(cost)})
+    return first_answer(Run(scale(problem, engine), progress), STRATEGIES)
 
 
 def let_go(problem: ContactProblem, u: Array, progress: ProgressCallback | None = None) -> Solution:
@@ -84,8 +80,4 @@ def let_go(problem: ContactProblem, u: Array, progress: ProgressCallback | None 
     progress : callable, optional
     """
     run = Run(scale(problem), progress)
-    try:
-        answer = released(run, u / run.scaled.length)
-    except Cancelled:
-        return run.solution(None, Status.CANCELLED)
-    return answer or run.solution(None, Status.UNDECIDED, method="release")
+    return where_it_ends(run, partial(released, run), u)

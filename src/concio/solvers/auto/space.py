@@ -14,22 +14,18 @@ here.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from concio.problem.contact_problem import Array, ContactProblem
-from concio.problem.solution import Departure, ProgressCallback, Solution, Status
+from concio.problem.solution import Departure, ProgressCallback, Solution
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.algebra.sparse_factor import Engine
-from concio.solvers.auto.strategies import moves_away, statics
+from concio.solvers.auto.strategies import Strategy, first_answer, moves_away, statics, where_it_ends
 from concio.solvers.interior.cone_run import STARTS, ConeRun
-from concio.solvers.interior.engine import Cancelled, at_rest
+from concio.solvers.interior.engine import at_rest
 from concio.solvers.motion.cone_release import associated_state, release
-
-Strategy = Callable[[ConeRun], "Solution | None"]
-"""Returns an answer, or None where it decides nothing."""
 
 
 def usual_starts(run: ConeRun) -> Solution | None:
@@ -52,12 +48,12 @@ def released_jammed(run: ConeRun) -> Solution | None:
     return _released(run, associated_state(run))
 
 
-STRATEGIES: tuple[tuple[str, Strategy], ...] = (
-    ("interior-point", usual_starts),
-    ("mechanism", statics),
-    ("interior-point, other starts", other_starts),
-    ("release", released_at_rest),
-    ("release, jammed", released_jammed),
+STRATEGIES: tuple[Strategy, ...] = (
+    Strategy("interior-point", usual_starts),
+    Strategy("mechanism", statics),
+    Strategy("interior-point, other starts", other_starts),
+    Strategy("release", released_at_rest),
+    Strategy("release, jammed", released_jammed),
 )
 """What is tried, in this order; the name of the one that decided is ``info["strategy"]``."""
 
@@ -84,25 +80,13 @@ def solve(
     rest = at_rest(problem)
     if rest is not None:
         return rest
-    run = ConeRun(scale(problem, engine), progress)
-    try:
-        for name, strategy in STRATEGIES:
-            answer = strategy(run)
-            if answer is not None:
-                return replace(answer, info={**answer.info, "strategy": name})
-    except Cancelled:
-        return run.solution(None, Status.CANCELLED)
-    return run.solution(None, Status.UNDECIDED, method="auto")
+    return first_answer(ConeRun(scale(problem, engine), progress), STRATEGIES)
 
 
 def let_go(problem: ContactProblem, u: Array, progress: ProgressCallback | None = None) -> Solution:
     """Follow the slow motion from displacements u (N,) [m]: rest, COLLAPSES or UNDECIDED, as in the plane."""
     run = ConeRun(scale(problem), progress)
-    try:
-        answer = _released(run, u / run.scaled.length)
-    except Cancelled:
-        return run.solution(None, Status.CANCELLED)
-    return answer or run.solution(None, Status.UNDECIDED, method="release")
+    return where_it_ends(run, partial(_released, run), u)
 
 
 def _from(run: ConeRun, first: int, last: int) -> Solution | None:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from concio.problem.contact_problem import Array
 from concio.problem.solution import Departure, Mechanism, Solution, Status, failed, judge
 from concio.solvers.auto.friction_neighbours import from_neighbours
-from concio.solvers.interior.engine import STARTS, Run
+from concio.solvers.interior.cone_run import ConeRun
+from concio.solvers.interior.engine import STARTS, Cancelled, Run
 from concio.solvers.motion.release import release
 from concio.solvers.statics.existence import statically_admissible
 
@@ -24,11 +27,40 @@ class Strategy:
     name : str
         What ``info["strategy"]`` says of an answer of its.
     decide : callable
-        Takes the run, returns an answer or None; raises :class:`.Cancelled` where the callback asks to stop.
+        Takes the run (a :class:`.Run` in the plane, a :class:`.ConeRun` in space), returns an answer or None; raises
+        :class:`.Cancelled` where the callback asks to stop.
     """
 
     name: str
-    decide: Callable[[Run], Solution | None]
+    decide: Callable[[Any], Solution | None]
+
+
+def first_answer(run: Run | ConeRun, table: Sequence[Strategy]) -> Solution:
+    """Return what the first strategy of a table that decides says; UNDECIDED where none does.
+
+    ``info["strategy"]`` names it, ``info["cost"]`` those tried, each with its processor time [s].
+    """
+    cost: list[tuple[str, float]] = []
+    try:
+        for strategy in table:
+            begin = time.process_time()
+            answer = strategy.decide(run)
+            cost.append((strategy.name, time.process_time() - begin))
+            if answer is not None:
+                return replace(answer, info={**answer.info, "strategy": strategy.name, "cost": tuple(cost)})
+    except Cancelled:
+        return run.solution(None, Status.CANCELLED)
+    undecided = run.solution(None, Status.UNDECIDED, method="auto")
+    return replace(undecided, info={**undecided.info, "strategy": "none", "cost": tuple(cost)})
+
+
+def where_it_ends(run: Run | ConeRun, follow: Callable[[Array], Solution | None], u: Array) -> Solution:
+    """Return how slow motion from displacements u (N,) [m] ends: at rest, without end (COLLAPSES), or UNDECIDED."""
+    try:
+        answer = follow(u / run.scaled.length)
+    except Cancelled:
+        return run.solution(None, Status.CANCELLED)
+    return answer or run.solution(None, Status.UNDECIDED, method="release")
 
 
 def usual_starts(run: Run) -> Solution | None:
