@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,15 +12,19 @@ from typer.testing import CliRunner
 
 import concio
 from concio.analysis import limit as limits
+from concio.analysis import load_steps as stepping
 from concio.analysis.limit import dead_and_live, limit_stages
 from concio.analysis.load_steps import load_steps
 from concio.cli.main import app
 from concio.problem.certificate import certify
+from concio.problem.solution import Status
 from concio.report.limit_wording import as_given, limit_lines
+from concio.solvers.algebra.scaled import scale
 from concio.solvers.path.event_path import follow
 from concio.solvers.path.ray import homogeneous, ray
 from concio.solvers.path.record import Outcome
 from concio.solvers.path.state import LinearPath, at_rest, step_problem
+from concio.solvers.states.settle import Settler
 
 
 @pytest.fixture(scope="module")
@@ -140,3 +145,34 @@ def test_what_was_printed_before_an_interruption_stays(wall: concio.Model, tmp_p
     assert done.exit_code == 130
     assert "associated bound" in done.output
     assert "stopped on request" in done.output
+
+
+def test_load_steps_halve_towards_a_multiplier_that_failed(monkeypatch) -> None:
+    """Far steps fail from half of the bound on, near ones from 0.8 on: found to 1/64 of the bound, little in vain."""
+    size = {"length": 0.5, "height": 1.0, "block_size": (0.5, 1.0), "mesh_size": 0.5}
+    dead, live = dead_and_live(concio.assemble(concio.wall(friction=0.9, horizontal=1.0, **size)), "live")
+    bound, step, tried = 0.5, stepping._step, []
+    lost = replace(step(dead, at_rest(dead), None), status=Status.GAVE_UP)
+
+    def fails(problem, state, progress):
+        at = float((problem.f - dead.f) @ live / (live @ live)) / bound
+        tried.append((round(64 * state.parameter / bound), round(64 * at)))
+        far = at - state.parameter / bound > 0.2 and at > 0.45
+        return lost if far or at > 0.8 else step(problem, state, progress)
+
+    monkeypatch.setattr(stepping, "_step", fails)
+    steps = load_steps(dead, live, bound)
+    assert round(64 * steps.carried / bound) == 51
+    assert round(64 * steps.failed / bound) == 52
+    assert len(set(tried)) == len(tried) <= 11
+
+
+def test_settling_stops_where_every_round_contradicts_more_pairs() -> None:
+    """From a point that is none, on a wall of hundreds of pairs: a few rounds, not a dozen factorisations."""
+    wide = concio.wall(length=3.0, height=1.5, block_size=(0.25, 0.125), friction=0.5, horizontal=0.5, mesh_size=0.125)
+    s = scale(concio.assemble(wide).problem())
+    rng = np.random.default_rng(0)
+    u, t = 1e3 * rng.normal(size=len(s.f)), 1e3 * rng.normal(size=(s.pairs, 2))
+    found = Settler(s).settle(s, u, t)
+    assert not found.settled
+    assert found.solves < 10

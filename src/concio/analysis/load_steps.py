@@ -2,8 +2,7 @@
 
 The dead load comes first, in one step; then the live load grows in steps, each solved with slip measured from the state
 before (10, 11), so that friction has its history. A step that finds no certified state is halved, down to a share of
-the associated bound, and a multiplier that failed is tried again only from as near as the smallest step. What was
-reached is carried, by forces that obey every law; that more is not carried is not shown.
+the associated bound. What was reached is carried, by forces that obey every law; that more is not carried is not shown.
 The exact path (:mod:`concio.solvers.path.event_path`) follows every event and can show collapse, at a price that grows
 with the square of the number of pairs; these are some ten load steps, whatever the size.
 
@@ -121,8 +120,8 @@ def load_steps(
             continue
         if trial >= failed * (1 - 1e-9):
             failed = float("nan")
-        elif trial + size >= failed * (1 - 1e-9) and size > 2 * smallest:
-            size *= 0.5  # there it failed once already, from further off
+        elif trial + size >= failed * (1 - 1e-9) and 2 * smallest < size <= 4 * smallest:
+            size *= 0.5  # there it failed already, and one half is left to try
         u, t_n, t_t = solution.displacement, solution.normal_force, solution.friction_force
         state = state_of(path, trial, u, t_n, t_t, before=state)
         reached.append(trial)

@@ -78,8 +78,8 @@ def plot_forces(result: Result, ax: Axes | None = None, *, chains: bool = True, 
     ax : Axes, optional
         Where to draw; default a new figure.
     chains : bool
-        True joins the resultants of the joints with the centres of the blocks, the thicker the larger the force;
-        False draws the force of every contact pair in its own direction.
+        True joins the resultants of the joints by struts (and the ties that bending asks for) which hold each block
+        in balance, the thicker the larger the force; False draws the force of every contact pair in its own direction.
     reactions : bool
         Write the forces of fixed bodies and supports on the structure.
 
@@ -92,11 +92,15 @@ def plot_forces(result: Result, ax: Axes | None = None, *, chains: bool = True, 
     handles: list[Any] = []
     if chains:
         found = force_chains(result)
-        largest = float(found.force.max(initial=0.0))
-        _chain_lines(ax, found.lines, found.force, largest)
+        largest = float(np.abs(found.force).max(initial=0.0))
+        pulls = found.force < 0
+        _chain_lines(ax, found.lines[~pulls], found.force[~pulls], largest, style.COMPRESSION)
+        _chain_lines(ax, found.lines[pulls], -found.force[pulls], largest, style.TENSION)
         title = "Force chains"
-        note = f"line width in proportion to the force of the joint; largest {units.text('force', largest)}"
-        handles.append(style.handle(style.Line(style.COMPRESSION.colour, "-", 5, ""), "force between blocks"))
+        note = f"line width in proportion to the force; largest {units.text('force', largest)}"
+        handles.append(style.handle(style.Line(style.COMPRESSION.colour, "-", 5, ""), "compression"))
+        if pulls.any():
+            handles.append(style.handle(style.Line(style.TENSION.colour, "-", 3, ""), "tension: blocks that bend"))
     else:
         force = result.contacts.force_on_b
         keep = result.assembly.pairs.interface >= 0
@@ -168,14 +172,14 @@ def plot_thrust(result: Result, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def _chain_lines(ax: Axes, lines: Array, force: Array, largest: float) -> None:
-    if not largest > 0:
+def _chain_lines(ax: Axes, lines: Array, force: Array, largest: float, look: style.Line) -> None:
+    if not force.size:
         return
     share = force / largest
     order = np.argsort(share)
     thin = 0.5 if len(force) > 4 * style.LARGE else 1.0
     style.draw_lines(
-        ax, lines[order], style.COMPRESSION, width=thin * 7.0 * share[order], zorder=3, alpha=0.8, capstyle="round"
+        ax, lines[order], look, width=thin * 7.0 * share[order], zorder=3, alpha=0.8, capstyle="round"
     )
 
 

@@ -1,4 +1,4 @@
-"""Forces between bodies: where the resultant of each joint acts, how large it is, how it runs through the blocks."""
+"""Forces between bodies: where the resultant of each joint acts, how large it is, how it flows through the blocks."""
 
 from __future__ import annotations
 
@@ -7,16 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.post.struts import balanced, struts
 from concio.representation import short_repr
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
 
 Array = np.ndarray
-
-FILM = 4.0
-"""A body longer than this times its width is a film: no force is drawn to its centre."""
-
 
 @short_repr
 @dataclass(frozen=True, eq=False)
@@ -55,14 +52,14 @@ def joint_forces(result: Result, threshold: float = 1e-6) -> JointForces:
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Chains:
-    """Lines along which forces run from joint to joint, k in all.
+    """Lines along which forces run through the blocks from joint to joint, k in all.
 
     Parameters
     ----------
     lines : (k, 2, 2) array
         [m].
     force : (k,) array
-        Force that each carries [kN].
+        Force that each carries, compression positive [kN].
     """
 
     lines: Array
@@ -70,24 +67,20 @@ class Chains:
 
 
 def force_chains(result: Result, threshold: float = 1e-3) -> Chains:
-    """Return a line from each loaded joint to the centre of the block on either side.
+    """Return how forces flow through every block that is not fixed, see :mod:`concio.post.struts`.
 
-    Fixed bodies and films (such as mortar beds, much longer than wide) get no line: the force crosses them on the spot.
+    The lines in a block hold the resultants of its joints and its own load in balance; those that carry less than
+    ``threshold`` times the largest resultant of a joint are left out.
     """
-    found = joint_forces(result, threshold)
-    joints = result.joints
-    bodies = result.model.outlines
-    compact = np.array([b.kind != "fixed" and not _is_film(b.outline, b.area) for b in bodies])
-    centres = result.assembly.disc.centroids
-    lines, force = [], []
-    for side in (joints.body_a, joints.body_b):
-        body = side[found.joint]
-        keep = compact[body]
-        lines.append(np.stack([found.point[keep], centres[body[keep]]], axis=1))
-        force.append(found.size[keep])
-    return Chains(np.concatenate(lines), np.concatenate(force))
-
-
-def _is_film(outline: Array, area: float) -> bool:
-    longest = float(np.hypot(*(outline - np.roll(outline, 1, axis=0)).T).max())
-    return longest**2 > FILM * area
+    found = joint_forces(result, 0.0)
+    joints, bodies = result.joints, result.model.outlines
+    fixed = np.array([body.kind == "fixed" for body in bodies])
+    body = np.concatenate([joints.body_b[found.joint], joints.body_a[found.joint]])
+    point, force = np.vstack([found.point] * 2), np.vstack([found.force, -found.force])
+    pushed = []
+    for b in np.unique(body[~fixed[body]]):
+        own = body == b
+        pushed.append(balanced(bodies[b], point[own], force[own]))
+    bars = struts(pushed)
+    keep = np.abs(bars.force) > threshold * found.size.max(initial=0.0)
+    return Chains(bars.lines[keep], bars.force[keep])
