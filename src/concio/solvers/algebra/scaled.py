@@ -110,6 +110,11 @@ class Scaled:
         return sp.csr_array(self.C.T)
 
     @cached_property
+    def rigid_transposed(self) -> sp.csr_array:
+        """The rigid motions in compressed rows, transposed."""
+        return sp.csr_array(self.rigid.T)
+
+    @cached_property
     def stiffness_size(self) -> sp.csr_array:
         """Absolute values of K."""
         return abs(self.K)
@@ -137,7 +142,7 @@ class Scaled:
         """Return K u (N,), free of the resultants that rounding gives it on bodies that float."""
         forces: Array = self.K @ u
         if self.rigid.shape[1]:
-            forces -= self.rigid @ (self.rigid.T @ forces)
+            forces -= self.rigid @ (self.rigid_transposed @ forces)
         return forces
 
     def imbalance(self, u: Array, t: Array) -> Array:

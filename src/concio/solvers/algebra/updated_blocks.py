@@ -50,6 +50,7 @@ class UpdatedBlocks:
         self.version = self.factor.count
         self.pairs = np.zeros(0, dtype=int)
         self.X, self.W = np.zeros((self.C.shape[1], 0)), np.zeros((0, 0))
+        self.C_P = self.C[:0]
         self._delta = np.zeros((0, 0))
         self.D = self.factor.D
 
@@ -83,7 +84,7 @@ class UpdatedBlocks:
         delta[self._places(pairs)] = blocks - held[pairs]
         self.D = held.copy()
         self.D[pairs] = blocks
-        self._delta = sl.block_diag(*delta) if self.pairs.size else np.zeros((0, 0))
+        self._delta = block_diagonal(delta)
         if self._delta.any():
             system = np.eye(len(self.W)) + self._delta @ self.W
             lu, pivots, zero = sl.lapack.dgetrf(system)
@@ -97,7 +98,7 @@ class UpdatedBlocks:
         x = self.factor.solve(b)
         if not self._delta.any():
             return x
-        shift = sl.lu_solve(self._inverse, self._delta @ (self.C[self._rows(self.pairs)] @ x), check_finite=False)
+        shift = sl.lu_solve(self._inverse, self._delta @ (self.C_P @ x), check_finite=False)
         solution: Array = x - self.X @ shift
         return solution
 
@@ -127,4 +128,13 @@ class UpdatedBlocks:
             return
         self.X = np.hstack([self.X, self.factor.solve(self.C[self._rows(new)].T.toarray())])
         self.pairs = np.concatenate([self.pairs, new])
-        self.W = self.C[self._rows(self.pairs)] @ self.X
+        self.C_P = self.C[self._rows(self.pairs)]
+        self.W = self.C_P @ self.X
+
+
+def block_diagonal(blocks: Array) -> Array:
+    """Return the matrix (k d, k d) of blocks (k, d, d) on its diagonal."""
+    k, d, _ = blocks.shape
+    matrix = np.zeros((k, d, k, d))
+    matrix[np.arange(k), :, np.arange(k)] = blocks
+    return matrix.reshape(k * d, k * d)

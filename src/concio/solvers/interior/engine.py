@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from concio.problem.certificate import certify
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.pair_state import PairStates
 from concio.problem.solution import Progress, ProgressCallback, Solution, Status, judge
 from concio.solvers.algebra.scaled import Scaled, require_plane, scale
 from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.interior.homotopy import walk
-from concio.solvers.interior.interior_point import START, InteriorPoint, Iterate
-from concio.solvers.states.reading import Finished
-from concio.solvers.states.settle import Settler
+from concio.solvers.interior.interior_point import EARLY, START, InteriorPoint, Iterate
+from concio.solvers.states.reading import Finished, read_states
+from concio.solvers.states.settle import ROUNDS, TOGETHER, Settler
 
 NAME = "interior-point"
 
@@ -86,6 +87,41 @@ def at_rest(problem: ContactProblem) -> Solution | None:
     return replace(rest, trace=("nothing acts on the structure: it rests",)) if rest.solved else None
 
 
+class EarlyFinish:
+    """Tells when the exact finish is worth trying before the iteration has converged: its states hardly change.
+
+    Parameters
+    ----------
+    s : Scaled
+    """
+
+    FLIPS: ClassVar = 2
+    """Factorisations that such a try may cost beyond the first."""
+    SHARE: ClassVar = 0.01
+    """Share of the pairs that may differ, where that is more than are decided together."""
+    CLOSE: ClassVar = 0.2
+    """Residual from which on states mean something."""
+    AGAIN: ClassVar = 0.5
+    """Share of the changes at the last try at which it is tried again."""
+
+    def __init__(self, s: Scaled) -> None:
+        self.s = s
+        self.states: PairStates | None = None
+        self.fewer = 1.0 + max(min(TOGETHER, s.pairs // 4), self.SHARE * s.pairs)
+
+    def worth_trying(self, z: Iterate, residual: float) -> bool:
+        """Note the states of a point; return whether few enough differ from those of the point before."""
+        before = self.states
+        self.states = read_states(self.s, z.u, z.t) if residual < self.CLOSE else None
+        if before is None or self.states is None:
+            return False
+        changed = int(self.states.differ(before).sum())
+        if changed >= self.fewer:
+            return False
+        self.states, self.fewer = None, self.AGAIN * changed
+        return True
+
+
 class Run:
     """One run on one problem: keeps count of work and the trace of what was tried.
 
@@ -101,6 +137,7 @@ class Run:
         self.trace: list[str] = []
         self.history: list[float] = []
         self.best: Finished | None = None
+        self.judged: tuple[Finished, Solution] | None = None
 
     @cached_property
     def engine(self) -> InteriorPoint:
@@ -130,18 +167,23 @@ class Run:
 
     def close_in(self, z: Iterate, stage: str, theta: float = 0.0, most: int = 80) -> Finished | None:
         """Iterate to ever smaller targets, trying the exact finish at each, until it succeeds or nothing moves."""
-        found = None
-        for target in TARGETS:
-            z, outcome = self.engine.run(z, theta=theta, target=target, most=most, watch=self.watch(stage))
+        found, targets, early = None, list(TARGETS), EarlyFinish(self.scaled)
+        while targets and found is None:
+            z, outcome = self.engine.run(
+                z, theta=theta, target=targets[0], most=most, watch=self.watch(stage), ready=early.worth_trying
+            )
             self.iterations += outcome.iterations
-            close = outcome.converged or outcome.residual < 1e-5
+            most -= outcome.iterations
+            handed = outcome.why == EARLY
             self.trace.append(
                 f"{stage}: {outcome.iterations} iterations, residual {outcome.residual:.1e}"
-                + ("" if outcome.converged else ", stopped")
+                + ("" if outcome.converged else f", {EARLY}" if handed else ", stopped")
             )
-            if close:
-                found = self.finish(z.u, z.t)
-            if found is not None or not outcome.converged:
+            if outcome.converged or handed or outcome.residual < 1e-5:
+                found = self.finish(z.u, z.t, flips=early.FLIPS if handed else ROUNDS)
+            if outcome.converged:
+                del targets[0]
+            elif not handed:
                 break
         return found
 
@@ -155,13 +197,13 @@ class Run:
         )
         return self.close_in(z, "interior point from there") if path.theta == 0 else None
 
-    def finish(self, u: Array, t: Array) -> Finished | None:
+    def finish(self, u: Array, t: Array, flips: int = ROUNDS) -> Finished | None:
         """Exact finish of a point; return it if exact, None (and keep the best) if not.
 
         The finish measures against the largest force and displacement of the point itself. A point that runs off has
         them as large as it likes; it is exact only where the certificate, which measures against the load, says so.
         """
-        found = self.settler.settle(self.scaled, u, t)
+        found = self.settler.settle(self.scaled, u, t, flips=flips)
         exact = found.settled and self.certified(found)
         left = f", {len(found.undecided)} pairs undecided" if not found.settled else ", runs off" if not exact else ""
         self.trace.append(f"exact finish: {found.solves} linear solves, residual {found.error:.1e}{left}")
@@ -171,12 +213,21 @@ class Run:
 
     def certified(self, found: Finished) -> bool:
         """Return whether a point is an equilibrium by its certificate."""
-        return self.solution(found).solved
+        self.judged = found, self.solution(found)
+        return self.judged[1].solved
 
     def solution(self, found: Finished | None, failure: Status = Status.GAVE_UP, method: str = NAME) -> Solution:
         """Return the judged solution of what was found, or of the best point met."""
         s = self.scaled
         point = found or self.best
+        work: dict[str, Any] = {
+            "iterations": self.iterations,
+            "factorisations": s.factor.count,
+            "trace": tuple(self.trace),
+            "info": {"history": tuple(self.history), "engine": s.factor.engine, "ordering": s.factor.ordering},
+        }
+        if self.judged is not None and self.judged[0] is point and self.judged[1].solved:
+            return replace(self.judged[1], method=method, **work)
         if point is None:
             shift = s.problem.laws.tension / s.force
             u, t = np.zeros(len(s.f)), np.column_stack([shift, np.zeros((s.pairs, s.dim - 1))])
@@ -194,8 +245,5 @@ class Run:
             t_t,
             method=method,
             failure=failure,
-            iterations=self.iterations,
-            factorisations=s.factor.count,
-            trace=tuple(self.trace),
-            info={"history": tuple(self.history), "engine": s.factor.engine, "ordering": s.factor.ordering},
+            **work,
         )

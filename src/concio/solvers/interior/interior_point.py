@@ -28,7 +28,7 @@ J. Gondzio, Multiple centrality corrections in a primal-dual method for linear p
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -36,7 +36,7 @@ import numpy as np
 from concio.problem.contact_problem import Array
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
-from concio.solvers.states.given import LOOSE
+from concio.solvers.states.given import LOOSE, times
 
 START = 10.0
 """Size of slacks and multipliers at the start, in scaled units."""
@@ -53,6 +53,9 @@ FURTHER, GAIN = 0.1, 0.1
 OUTLIER = 10.0
 """Products this many times too large or too small are what centrality correctors correct."""
 
+EARLY = "states hardly change"
+"""Why a run ends whose caller finds its point good enough to be finished."""
+
 
 @dataclass(frozen=True, eq=False)
 class Iterate:
@@ -61,55 +64,53 @@ class Iterate:
     Parameters
     ----------
     u : (N,) array
-    t_n, t_t, y_n, s_p, y_p, s_m, y_m, q, p : (m,) arrays
-        See the module's equations; ``q, p`` belong to capped pairs and are one elsewhere.
+    t_t : (m,) array
+    slack : (4, m) array
+        Rows t_n, s+, s- and q; q belongs to capped pairs and is one elsewhere.
+    dual : (4, m) array
+        Rows y_n, y+, y- and p, the partners of the slacks; p is one where q is.
     """
 
-    PRODUCTS: ClassVar = (("t_n", "y_n"), ("s_p", "y_p"), ("s_m", "y_m"), ("q", "p"))
-
     u: Array
-    t_n: Array
     t_t: Array
-    y_n: Array
-    s_p: Array
-    y_p: Array
-    s_m: Array
-    y_m: Array
-    q: Array
-    p: Array
+    slack: Array
+    dual: Array
+
+    @property
+    def t_n(self) -> Array:
+        """Shifted normal forces (m,)."""
+        return np.asarray(self.slack[0])
 
     @property
     def t(self) -> Array:
         """Forces of the pairs (m, 2)."""
-        return np.column_stack([self.t_n, self.t_t])
+        return np.stack([self.slack[0], self.t_t], axis=1)
 
     def products(self) -> Array:
         """Return the four complementarity products of each pair, (4, m)."""
-        return np.array([getattr(self, a) * getattr(self, b) for a, b in self.PRODUCTS])
+        products: Array = self.slack * self.dual
+        return products
 
     def moved(self, d: Iterate, step: float) -> Iterate:
         """Return the point a step further along d."""
-        return Iterate(*(getattr(self, f.name) + step * getattr(d, f.name) for f in fields(self)))
+        return Iterate(
+            self.u + step * d.u, self.t_t + step * d.t_t, self.slack + step * d.slack, self.dual + step * d.dual
+        )
 
     def longest(self, d: Iterate, share: float = 1.0) -> float:
         """Return ``share`` of the step along d to the boundary, at most 1."""
-        alpha = 1.0
-        for a, b in self.PRODUCTS:
-            for name in (a, b):
-                x, dx = getattr(self, name), getattr(d, name)
-                down = dx < 0
-                if down.any():
-                    alpha = min(alpha, share * float(np.min(-x[down] / dx[down])))
-        return alpha
+        falls = min(float((d.slack / self.slack).min(initial=0.0)), float((d.dual / self.dual).min(initial=0.0)))
+        return 1.0 if -falls <= share else share / -falls
 
     def recentred(self, level: float) -> Iterate:
         """Return the point with products below ``level`` raised to it by the smaller factor."""
-        changed = {}
-        for a, b in self.PRODUCTS:
-            x, y = getattr(self, a), getattr(self, b)
-            grow = np.maximum(level / np.maximum(x * y, 1e-300), 1.0)
-            changed[a], changed[b] = np.where(x < y, x * grow, x), np.where(x < y, y, y * grow)
-        return replace(self, **changed)
+        grow = np.maximum(level / np.maximum(self.products(), 1e-300), 1.0)
+        smaller = self.slack < self.dual
+        return replace(
+            self,
+            slack=np.where(smaller, self.slack * grow, self.slack),
+            dual=np.where(smaller, self.dual, self.dual * grow),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,12 +217,14 @@ class Newton:
     def __init__(self, s: Scaled, z: Iterate, rest: Residuals, dilatancy: Array) -> None:
         self.s, self.z, self.rest, self.dilatancy = s, z, rest, dilatancy
         rough, capped, mu = s.rough, s.cone.capped, s.cone.friction
-        self.P = np.where(rough, z.y_p / z.s_p, 0.0)
-        self.Q = np.where(rough, z.y_m / z.s_m, 0.0)
-        crush = np.where(capped, z.p / z.q, 0.0)
-        h_nn = z.y_n / z.t_n + s.compliance[:, 0] + crush + dilatancy * mu * (self.P + self.Q)
-        lean = self.P - self.Q
-        h_tt = np.where(rough, self.P + self.Q + s.compliance[:, 1], 1.0)
+        # how stiff each law is: dual over slack, zero where the law is not there
+        self.ratio = z.dual / z.slack
+        self.ratio[1:3, ~rough] = 0.0
+        self.ratio[3, ~capped] = 0.0
+        opens, plus, minus, crush = self.ratio
+        h_nn = opens + s.compliance[:, 0] + crush + dilatancy * mu * (plus + minus)
+        lean = plus - minus
+        h_tt = np.where(rough, plus + minus + s.compliance[:, 1], 1.0)
         det = h_nn * h_tt - dilatancy * lean * mu * lean
         if not det.all():
             msg = "the equations of a pair are singular"
@@ -235,36 +238,23 @@ class Newton:
         """Return the direction that changes the products by ``change`` (4, m), to first order."""
         s, z, r, mu = self.s, self.z, self.rest, self.s.cone.friction
         rough, capped = s.rough, s.cone.capped
-        c_n, c_p, c_m, c_q = change
-        # slip parts: dy+ = (c_p - y+ ds+) / s+, ds+ = mu dt_n + dt_t + r_p; crushing dp = pressed + (p/q) dt_n
-        plus = np.where(rough, c_p / z.s_p - self.P * r.p, 0.0)
-        minus = np.where(rough, c_m / z.s_m - self.Q * r.m, 0.0)
-        pressed = np.where(capped, (c_q - z.p * r.q) / z.q, 0.0)
-        b = np.column_stack([r.n - c_n / z.t_n - self.dilatancy * (plus + minus) + pressed, r.t - plus + minus])
-        du = s.factor.solve(-r.u - s.pull(self._times(b)))
-        dt = -self._times(b + s.along(du))
-        dt_n, dt_t = dt[:, 0], np.where(rough, dt[:, 1], 0.0)
-        ds_p, ds_m = mu * dt_n + dt_t + r.p, mu * dt_n - dt_t + r.m
-        dq = np.where(capped, r.q - dt_n, 0.0)
-        return Iterate(
-            u=du,
-            t_n=dt_n,
-            t_t=dt_t,
-            y_n=(c_n - z.y_n * dt_n) / z.t_n,
-            s_p=np.where(rough, ds_p, 0.0),
-            y_p=np.where(rough, (c_p - z.y_p * ds_p) / z.s_p, 0.0),
-            s_m=np.where(rough, ds_m, 0.0),
-            y_m=np.where(rough, (c_m - z.y_m * ds_m) / z.s_m, 0.0),
-            q=dq,
-            p=np.where(capped, (c_q - z.p * dq) / z.q, 0.0),
-        )
-
-    def _times(self, y: Array) -> Array:
-        """Return D y (m, 2)."""
-        D = self.D
-        return np.column_stack(
-            [D[:, 0, 0] * y[:, 0] + D[:, 0, 1] * y[:, 1], D[:, 1, 0] * y[:, 0] + D[:, 1, 1] * y[:, 1]]
-        )
+        # dual parts: d dual = change / slack - ratio d slack, with ds+ = mu dt_n + dt_t + r+, ..., dq = r_q - dt_n
+        free = change / z.slack
+        free[1:3, ~rough] = 0.0
+        free[3, ~capped] = 0.0
+        plus, minus = free[1] - self.ratio[1] * r.p, free[2] - self.ratio[2] * r.m
+        b = np.empty((s.pairs, 2))
+        b[:, 0] = r.n - free[0] - self.dilatancy * (plus + minus) + free[3] - self.ratio[3] * r.q
+        b[:, 1] = r.t - plus + minus
+        du = s.factor.solve(-r.u - s.pull(times(self.D, b)))
+        dt = times(self.D, b + s.along(du))
+        slack = np.empty_like(z.slack)
+        slack[0] = dt_n = -dt[:, 0]
+        dt_t = np.where(rough, -dt[:, 1], 0.0)
+        slack[1], slack[2], slack[3] = mu * dt_n + dt_t + r.p, mu * dt_n - dt_t + r.m, r.q - dt_n
+        slack[1:3, ~rough] = 0.0
+        slack[3, ~capped] = 0.0
+        return Iterate(du, dt_t, slack, free - self.ratio * slack)
 
 
 class InteriorPoint:
@@ -293,7 +283,7 @@ class InteriorPoint:
         t_n = np.where(cone.capped, np.minimum(size, 0.5 * cone.cap), size)
         slack = np.where(s.rough, cone.strength(t_n), size)
         q = np.where(cone.capped, cone.cap - t_n, size)
-        return Iterate(np.zeros(len(s.f)), t_n, 0 * one, one, slack, one, slack, one, q, one)
+        return Iterate(np.zeros(len(s.f)), 0 * one, np.array([t_n, slack, slack, q]), np.array([one] * 4))
 
     def gap(self, z: Iterate) -> float:
         """Return the mean complementarity product."""
@@ -302,16 +292,18 @@ class InteriorPoint:
     def residuals(self, z: Iterate, theta: float) -> Residuals:
         """Return what the linear equations leave at a point."""
         s, rough, capped = self.problem, self.problem.rough, self.problem.cone.capped
-        y = s.position(z.u, z.t)
-        dilated = self.dilatancy(theta) * (z.y_p + z.y_m)
-        strength = s.cone.cohesion + s.cone.friction * z.t_n
+        t = z.t
+        y = s.position(z.u, t)
+        t_n, s_p, s_m, q = z.slack
+        y_n, y_p, y_m, p = z.dual
+        strength = s.cone.cohesion + s.cone.friction * t_n
         return Residuals(
-            u=s.imbalance(z.u, z.t),
-            n=y[:, 0] - dilated - z.y_n + np.where(capped, z.p, 0.0),
-            t=np.where(rough, y[:, 1] - z.y_p + z.y_m, 0.0),
-            p=np.where(rough, strength + z.t_t - z.s_p, 0.0),
-            m=np.where(rough, strength - z.t_t - z.s_m, 0.0),
-            q=np.where(capped, np.where(capped, s.cone.cap, 0.0) - z.t_n - z.q, 0.0),
+            u=s.imbalance(z.u, t),
+            n=y[:, 0] - self.dilatancy(theta) * (y_p + y_m) - y_n + np.where(capped, p, 0.0),
+            t=np.where(rough, y[:, 1] - y_p + y_m, 0.0),
+            p=np.where(rough, strength + z.t_t - s_p, 0.0),
+            m=np.where(rough, strength - z.t_t - s_m, 0.0),
+            q=np.where(capped, np.where(capped, s.cone.cap, 0.0) - t_n - q, 0.0),
         )
 
     def dilatancy(self, theta: float) -> Array:
@@ -328,6 +320,7 @@ class InteriorPoint:
         most: int = 80,
         level: float = 0.0,
         watch: Callable[[int, float], bool | None] | None = None,
+        ready: Callable[[Iterate, float], bool] | None = None,
     ) -> tuple[Iterate, Outcome]:
         """Iterate from ``z``; return the point reached, or the best met where it does not converge.
 
@@ -344,6 +337,8 @@ class InteriorPoint:
             Stop already at this mean product and residual (a point on the central path, for the homotopy).
         watch : callable, optional
             Called with (iteration, max of residual and product); true stops.
+        ready : callable, optional
+            Called with (point, max of residual and product); true stops before the target, as :data:`EARLY`.
         """
         stopping = Stopping(most)
         step, iteration, kept, why = 1.0, 0, z, ""
@@ -352,7 +347,7 @@ class InteriorPoint:
             force = max(1.0, float(z.t_n.max(initial=0.0)), float(np.abs(z.t_t).max(initial=0.0)))
             length = max(1.0, float(np.abs(z.u).max(initial=0.0)))
             residual = rest.size(force, length)
-            typical = max(1.0, float(z.t_n.mean())) * max(1.0, float((z.y_n + z.y_p + z.y_m).mean()))
+            typical = max(1.0, float(z.t_n.mean())) * max(1.0, float(z.dual[:3].sum(axis=0).mean()))
             merit = max(residual, gap / typical)
             if not np.isfinite(merit):
                 why = "numbers ran over"
@@ -364,6 +359,8 @@ class InteriorPoint:
             if watch is not None and watch(iteration, merit):
                 why = "asked to"
                 break
+            if ready is not None and ready(z, merit):
+                return z, Outcome(False, iteration, merit, EARLY)
             why = stopping.reason(iteration, merit, step)
             if why:
                 break

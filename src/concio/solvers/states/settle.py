@@ -62,6 +62,7 @@ class Settler:
         undecided: Array | None = None,
         springs: Array | float = LOOSE,
         rounds: int = ROUNDS,
+        flips: int = ROUNDS,
         least: bool = True,
     ) -> Finished:
         """Settle the states of a problem, from a point near its answer or from states near its own.
@@ -79,6 +80,8 @@ class Settler:
         springs : (N,) array or float
         rounds : int
             Largest number of times pairs are decided.
+        flips : int
+            How many of them too many pairs are in question for a small problem, and a factorisation is due.
         least : bool
             Whether forces that are not unique are those of least norm; otherwise those near to the point.
         """
@@ -88,7 +91,7 @@ class Settler:
         if undecided is not None:
             chosen[undecided] = True
         with suppress(SingularMatrixError):
-            self._settle(run, states, u, t, chosen, rounds)
+            self._settle(run, states, u, t, chosen, rounds, flips)
         found = run.best
         if found is None:
             error, laws = natural_residual(s, u, t)
@@ -97,7 +100,9 @@ class Settler:
             found = run.least_norm(found) if least else run.near(found)
         return replace(found, solves=run.solves)
 
-    def _settle(self, run: _Run, states: PairStates, u: Array, t: Array, chosen: Array, rounds: int) -> None:
+    def _settle(
+        self, run: _Run, states: PairStates, u: Array, t: Array, chosen: Array, rounds: int, flips: int
+    ) -> None:
         """Decide the pairs in question until none is contradicted, or nothing new comes of it."""
         seen: set[bytes] = set()
         least, late = len(t) + 1, 0
@@ -116,8 +121,10 @@ class Settler:
             if (chosen | wrong).sum() <= TOGETHER:
                 chosen |= wrong
                 found = run.decided(states, np.flatnonzero(chosen), u, t)
+            elif flips <= 0:
+                return
             else:
-                chosen = np.zeros_like(chosen)
+                chosen, flips = np.zeros_like(chosen), flips - 1
             if found is None or found[0].key() in seen:
                 found = flipped, u, t
             if found[0].key() in seen:

@@ -20,12 +20,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy.linalg as sl
 
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array
 from concio.problem.pair_state import Normal, PairStates
 from concio.solvers.algebra.scaled import Scaled
+from concio.solvers.algebra.updated_blocks import block_diagonal
 from concio.solvers.lcp.lemke_method import Outcome, lemke
 from concio.solvers.lcp.linear_problem import LinearComplementarity
 from concio.solvers.states.equations import StateEquations
@@ -93,7 +93,7 @@ def decide(
         replace(s, compliance=s.compliance + soft, x=s.x - soft * t), PairStates.plane(normal, sign)
     )
     u, t, _ = given.solve(held, u, t, anchor, springs=springs, columns=pick)
-    D = sl.block_diag(*held.blocks[pick])
+    D = block_diagonal(held.blocks[pick])
     S = D - D @ given.blocks.flexibility(pick) @ D
     answer = _lemke(s.cone[pick], s.dilatancy[pick], t[pick], S)
     if answer is None:
