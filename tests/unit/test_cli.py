@@ -404,6 +404,18 @@ def test_the_bar_moves_forward_only(monkeypatch: pytest.MonkeyPatch) -> None:
     assert seen[-1] == 1.0
 
 
+def test_the_bar_tells_the_time_left_of_long_runs() -> None:
+    from concio.cli.progress import TimeLeft
+
+    left = TimeLeft()
+    assert left.after(0.0, 100.0) == ""  # nothing known
+    assert left.after(0.1, 102.0) == ""  # too soon to tell
+    assert left.after(0.25, 120.0) == ", about 60 s left"
+    assert left.after(0.5, 400.0) == ", about 5 min left"
+    assert left.after(0.5, 100.0 + 7200.0) == ", about 2.0 h left"
+    assert left.after(1.0, 9000.0) == ""
+
+
 WAITING = """
 import time
 import concio.analysis.step

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -11,15 +12,19 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from concio.problem.solution import Progress, ProgressCallback
 
-TARGET = 1e-10
-"""Residual at which the bar is full."""
+TARGET = 1e-6
+"""Residual at which the bar is full: where the exact finish begins, at the latest."""
+
+SOON = 5.0
+"""Seconds after which the time left is told."""
 
 
 @contextmanager
 def progress_bar(*, shown: bool) -> Iterator[ProgressCallback | None]:
     """Give a callback that moves a bar, or None where there is nobody to see it.
 
-    The bar shows how far the residual has fallen on a logarithmic scale; it never goes back.
+    The bar shows how far the residual has fallen on a logarithmic scale; it never goes back. Long runs tell how much
+    time is left if the residual goes on falling as it did.
     """
     if not shown or not sys.stderr.isatty():
         yield None
@@ -31,8 +36,8 @@ def progress_bar(*, shown: bool) -> Iterator[ProgressCallback | None]:
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
     with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("assembling", total=1.0)
-        first = 0.0
-        best = 0.0
+        first = best = 0.0
+        left = TimeLeft()
 
         def move(state: Progress) -> None:
             nonlocal first, best
@@ -45,6 +50,33 @@ def progress_bar(*, shown: bool) -> Iterator[ProgressCallback | None]:
                 share = math.log(first / state.residual) / math.log(first / TARGET)
                 best = max(best, min(share, 1.0))
                 text += f", residual {state.residual:.1e}"
-            bar.update(task, completed=best, description=text + (f", {state.message}" if state.message else ""))
+            text += (f", {state.message}" if state.message else "") + left.after(best, time.monotonic())
+            bar.update(task, completed=best, description=text)
 
         yield move
+
+
+class TimeLeft:
+    """Estimates the time left from the share of the work done so far."""
+
+    def __init__(self) -> None:
+        self.begun: tuple[float, float] | None = None
+
+    def after(self, share: float, now: float) -> str:
+        """Return ", about ... left" when ``share`` of the work (0 to 1) is done at the time ``now`` [s].
+
+        Empty while nothing is known, before :data:`SOON`, and when the bar is full.
+        """
+        if self.begun is None:
+            self.begun = share, now
+        gained, passed = share - self.begun[0], now - self.begun[1]
+        if not gained > 0 or share >= 1 or passed < SOON:
+            return ""
+        return f", about {duration(passed / gained * (1 - share))} left"
+
+
+def duration(seconds: float) -> str:
+    """Return a time in the unit people would use."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from concio.cli.outcome import guarded, print_json, say
+from concio.cli.progress import duration
 from concio.cli.run import File, Json, Quiet
 
 if TYPE_CHECKING:
@@ -105,13 +106,7 @@ def study_bar(*, shown: bool) -> Iterator[Progress | None]:
 
         def move(state: StudyProgress) -> None:
             failed = f", {state.failed} without an answer" if state.failed else ""
-            text = f"runs{failed}, {_time(state.seconds_left)} left"
+            text = f"runs{failed}, {duration(state.seconds_left)} left"
             bar.update(task, completed=state.done, total=state.total, description=text)
 
         yield move
-
-
-def _time(seconds: float) -> str:
-    if seconds < 90:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

@@ -175,6 +175,7 @@ class OrderedFactor:
         if p.engine == "pardiso":
             self._factorise_pardiso(self._matrix)
             return
+        self._lu = None  # its memory is needed
         spec = "MMD_AT_PLUS_A" if p.ordering == "minimum degree" else "NATURAL"
         try:
             splu: Any = sla.splu

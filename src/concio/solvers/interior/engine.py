@@ -95,11 +95,14 @@ class EarlyFinish:
     s : Scaled
     """
 
+    LEAST: ClassVar = 500
+    """Pairs from which on a factorisation costs more than the solves of a try."""
     FLIPS: ClassVar = 2
     """Factorisations that such a try may cost beyond the first."""
+    FEW: ClassVar = 0.02
     SHARE: ClassVar = 0.01
-    """Share of the pairs that may differ, where that is more than are decided together."""
-    CLOSE: ClassVar = 0.2
+    """Shares of the pairs that may differ: up to as many as are decided together, and however many there are."""
+    CLOSE: ClassVar = 0.1
     """Residual from which on states mean something."""
     AGAIN: ClassVar = 0.5
     """Share of the changes at the last try at which it is tried again."""
@@ -107,18 +110,21 @@ class EarlyFinish:
     def __init__(self, s: Scaled) -> None:
         self.s = s
         self.states: PairStates | None = None
-        self.fewer = 1.0 + max(min(TOGETHER, s.pairs // 4), self.SHARE * s.pairs)
+        few = max(min(TOGETHER, self.FEW * s.pairs), self.SHARE * s.pairs)
+        self.fewer = few if s.pairs >= self.LEAST else -1.0
 
     def worth_trying(self, z: Iterate, residual: float) -> bool:
         """Note the states of a point; return whether few enough differ from those of the point before."""
+        if self.fewer < 0:
+            return False
         before = self.states
         self.states = read_states(self.s, z.u, z.t) if residual < self.CLOSE else None
         if before is None or self.states is None:
             return False
         changed = int(self.states.differ(before).sum())
-        if changed >= self.fewer:
+        if changed > self.fewer:
             return False
-        self.states, self.fewer = None, self.AGAIN * changed
+        self.states, self.fewer = None, self.AGAIN * changed if changed else -1.0
         return True
 
 
@@ -149,13 +155,19 @@ class Run:
         """What settles states of plane problems."""
         return Settler(self.scaled)
 
+    def tell(self, stage: str) -> None:
+        """Call back with the last residual; raise :class:`Cancelled` where the callback asks to stop."""
+        if self.progress is not None and self.progress(
+            Progress(NAME, len(self.history), self.history[-1], stage)
+        ):
+            raise Cancelled
+
     def watch(self, stage: str) -> Any:
         """Return the callback of a stage."""
 
         def report(iteration: int, residual: float) -> bool:
             self.history.append(residual)
-            if self.progress is not None and self.progress(Progress(NAME, len(self.history), residual, stage)):
-                raise Cancelled
+            self.tell(stage)
             return False
 
         return report
@@ -203,6 +215,8 @@ class Run:
         The finish measures against the largest force and displacement of the point itself. A point that runs off has
         them as large as it likes; it is exact only where the certificate, which measures against the load, says so.
         """
+        if self.history:
+            self.tell("exact finish")
         found = self.settler.settle(self.scaled, u, t, flips=flips)
         exact = found.settled and self.certified(found)
         left = f", {len(found.undecided)} pairs undecided" if not found.settled else ", runs off" if not exact else ""

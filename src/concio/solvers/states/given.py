@@ -92,23 +92,27 @@ class GivenStates:
         self.solves += 1
         anchor = u if anchor is None else anchor
         columns = np.zeros(0, dtype=int) if columns is None else columns
-        exact = self._prepare(equations, springs, columns, own=own)
+        fresh = self._prepare(equations, springs, columns, OTHER if not own else 0.0)
         best = self._refine(equations, u, t, anchor, springs, accuracy)
-        if not exact and best[2] > STUCK:
-            self._prepare(equations, springs, columns, own=True)
+        if not fresh and best[2] > STUCK:
+            self._prepare(equations, springs, columns, None)
             best = self._refine(equations, *best[:2], anchor, springs, accuracy)
         return best
 
-    def _prepare(self, equations: StateEquations, springs: Array | float, columns: Array, *, own: bool) -> bool:
-        """Bring the factor near to the states; return whether it is that of these very states."""
+    def _prepare(
+        self, equations: StateEquations, springs: Array | float, columns: Array, least: float | None
+    ) -> bool:
+        """Bring the factor near to the states; return whether it is that of these very states, and not updated.
+
+        Pairs whose blocks differ by more than ``least`` are updated where there is room for them; None: factorise.
+        """
         D, blocks = equations.blocks, self.blocks
         held = blocks.factor.D
-        if held is not None and blocks.has(springs):
-            least = 0.0 if own else OTHER
+        if held is not None and least is not None and blocks.has(springs):
             other = np.union1d(np.flatnonzero(difference(held, D) > least), columns)
             if blocks.room_for(other):
                 blocks.change(other, D[other])
-                return bool(blocks.D is not None and np.array_equal(blocks.D, D))
+                return bool(np.array_equal(held, D))
         blocks.factorise(D, springs)
         blocks.change(columns, D[columns])
         return True
