@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 import concio
 from concio import Assessment, JointLaw, Load, Tie
+from concio.analysis.seismic.applied import EARTHQUAKE, pushed
 from concio.errors import InputError, NoEquilibriumError
 from seismic_walls import HAZARD, bending, overturning, site
 
@@ -323,3 +324,47 @@ def test_the_spectrum_of_another_code() -> None:
     eta = (10 / 13) ** 0.5
     demand = 0.20 * 9.81 * 1.2 * eta * 2.5 * 0.5 * 2.0 / T**2 * (T / (2 * math.pi)) ** 2
     assert check(found, "SLV", "displacement").demand == pytest.approx(demand)
+
+
+@pytest.mark.parametrize("n", [1, 30])
+def test_courses_that_crush_tend_to_the_monolithic_wall_from_below(n: int) -> None:
+    """The hinge stands N / (2 f) from the edge: alpha_0 falls short of the closed form by 84.4^2 / (2 f 271.2)."""
+    closed = 27.42 / 271.2
+    found = []
+    for strength in (500.0, 2000.0, 20_000.0, 200_000.0):
+        worst = concio.assess(overturning(n, strength=strength), site=site(), direction="left", levels=["SLD"]).worst
+        assert worst is not None
+        found.append(worst.multiplier)
+        assert closed - worst.multiplier == pytest.approx(84.4**2 / (2 * strength * 271.2), rel=1e-9)
+    assert found == sorted(found)
+    assert found[-1] < closed
+
+
+@pytest.mark.long
+def test_thirty_compliant_courses_tend_to_the_monolithic_wall_from_below() -> None:
+    """Pushed at large displacements, a wall whose joints give peaks below alpha_0, the nearer the stiffer they are."""
+    peaks = []
+    for stiffness in (3e6, 1e7):
+        model = replace(
+            overturning(30), laws={"joint": JointLaw(0.8, normal_stiffness=stiffness, tangential_stiffness=stiffness)}
+        )  # fmt: skip
+        control = concio.ControlPoint("c30", (0.0, 6.0), (-1.0, 0.0))
+        peaks.append(concio.push(pushed(model, [-1.0]), live=(EARTHQUAKE,), control=control, until=0.06).peak)
+    closed = 27.42 / 271.2
+    assert peaks[0] < peaks[1] < closed
+    assert closed - peaks[1] == pytest.approx((closed - peaks[0]) * 0.3, rel=0.35)  # like one over the stiffness
+
+
+@pytest.mark.long
+def test_a_wall_with_a_door_is_assessed() -> None:
+    model = concio.wall(
+        length=3.0, height=2.0, block_size=(0.5, 0.25), friction=0.6, block="rigid",
+        openings=[{"x": 1.0, "y": 0.0, "width": 1.0, "height": 1.5, "lintel": 0.25}],
+    )  # fmt: skip
+    worst = concio.assess(model, site=site(), direction="right", levels=["SLV"]).worst
+    assert worst is not None
+    assert worst.found.flow == "Coulomb"
+    assert worst.multiplier < worst.found.associated.multiplier
+    assert len(worst.mechanics.blocks) > 2
+    assert worst.followed.kind == "steps"
+    assert worst.complete
