@@ -9,6 +9,8 @@ import pytest
 
 import concio
 from concio.analysis.motion.dynamics_result import Ending
+from concio.analysis.motion.stepper import at_rest
+from concio.contact.moving.reference import Reference
 from motion_models import G, standing
 
 ALPHA = np.arctan(1 / 3)
@@ -179,6 +181,57 @@ def test_a_tie_breaks_for_good():
     left = np.sqrt(speed**2 - 100.0 * 0.02**2 / mass)
     assert found.end.velocity[1, 0] == pytest.approx(left, rel=0.01)
     assert found.energy.error < 1e-10
+
+
+@pytest.mark.parametrize("damping", [{"mass_damping": 20.0}, {"stiffness_damping": 2e-4}])
+def test_rayleigh_damping_against_the_closed_form_of_a_damped_mode(damping):
+    """A block in flight rings in its softest mode: q = v / w_d exp(-z w t) sin w_d t, z w = (alpha + beta w^2) / 2."""
+    body = concio.Body("b", [(0, 0), (0.5, 0), (0.5, 2), (0, 2)], kind="elastic", material="block")
+    floor = concio.Body("floor", [(-5, -9), (5, -9), (5, -8), (-5, -8)], kind="fixed")
+    model = concio.Model((floor, body), {"block": concio.Elastic(E=1e5, nu=0.2, unit_weight=20.0)},
+                         {"joint": concio.JointLaw(0.5)}, mesh_size=0.25)  # fmt: skip
+    reference = Reference.of(model, G)
+    K, mass = reference.disc.shapes[0].K.toarray(), reference.mass
+    root = np.sqrt(mass)
+    squares, modes = np.linalg.eigh(K / np.outer(root, root))
+    w, mode = np.sqrt(squares[3]), modes[:, 3] / root
+    decay = 0.5 * (damping.get("mass_damping", 0.0) + damping.get("stiffness_damping", 0.0) * w**2)
+    start, speed = at_rest(reference), 1e-4
+    start = replace(start, nodal=speed * mode.reshape(-1, 2))
+    period = 2 * np.pi / w
+    found = concio.dynamics(
+        model, duration=2.0 * period, step=period / 200, gravity=G, start=start, every=period / 200, **damping
+    )
+    q = (found.shots.strain.reshape(len(found.shots), -1) * mass) @ mode
+    damped, t = np.sqrt(w**2 - decay**2), found.shots.time
+    exact = speed / damped * np.exp(-decay * t) * np.sin(damped * t)
+    assert 0.05 < 1 - np.exp(-decay * t[-1]) < 0.95
+    assert np.abs(q - exact).max() < 1e-3 * np.abs(exact).max()
+    assert found.energy.error < 1e-6
+    assert found.energy["damping"][-1] > 0
+
+
+def test_a_motion_stops_where_everything_has_come_to_rest():
+    found = concio.dynamics(
+        standing(height=0.4, friction=0.3), duration=3.0, step=4e-3, gravity=G, velocities={"block": (1.0, 0.0)},
+        stop_at_rest=True,
+    )  # fmt: skip
+    assert found.ending is Ending.AT_REST
+    assert 1.0 / (0.3 * G) < found.end.time < 1.0
+
+
+@pytest.mark.parametrize("base", ["inertia", "moving"])
+def test_what_a_support_holds_follows_the_ground(base):
+    """A block glued to a support shakes with it: its reaction is its mass by the acceleration of the ground."""
+    model = standing(height=0.4)
+    hold = concio.Support("hold", "block", edge=((-0.2, 0.0), (0.2, 0.0)))
+    pulse = concio.Pulse("sine", 0.5 * G, 0.4)
+    found = concio.dynamics(replace(model, supports=(hold,)), pulse, 0.4, 2e-3, gravity=G, base=base)
+    mass, acting = 20.0 * 0.16 / G, pulse.acceleration(found.steps.time - 1e-3)
+    held = found.steps.reaction.sum(axis=1)[:, 0]
+    assert np.abs(held - mass * acting).max() < 0.02 * mass * 0.5 * G
+    assert found.certified
+    assert np.abs(found.energy.total - found.energy.total[0]).max() < 1e-12
 
 
 @pytest.mark.parametrize(

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
+import sys
 import xml.etree.ElementTree as ET
 from dataclasses import replace
+from importlib.resources import files
 
 import numpy as np
 import pytest
 
 import concio
 from commands import run
+from concio.analysis.motion.dynamics_result import Ending
 from concio.io.motion_series import write_motion_series
 from concio.plot.motion_figure import plot_frame, write_film
 from concio.report.motion_page import motion_html
@@ -191,3 +195,32 @@ def test_bad_motion_tables(tmp_path, old, new, words):
     file.write_text(PILLAR.replace(old, new))
     with pytest.raises(concio.InputError, match=words):
         concio.load(file)
+
+
+def test_ctrl_c_keeps_what_was_computed(tmp_path):
+    """The command is stopped in the middle: exit code 130, and the motion written so far loads and goes on."""
+    file, out = tmp_path / "motion.toml", tmp_path / "out"
+    text = files("concio.model").joinpath("templates", "motion.toml").read_text(encoding="utf-8")
+    file.write_text(text.replace('duration = "3 s"', 'duration = "600 s"'), encoding="utf-8")
+    code = f"""
+import os, signal, sys
+from concio.analysis.motion.stepper import Stepper
+from concio.cli.main import main
+step, made = Stepper.step, []
+def counted(*arguments):
+    made.append(1)
+    if len(made) == 40:
+        os.kill(os.getpid(), signal.SIGINT)
+    return step(*arguments)
+Stepper.step = counted
+sys.argv = ["concio", "shake", {str(file)!r}, "--out", {str(out)!r}]
+main()
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 130, done.stderr
+    assert "Traceback" not in done.stderr
+    kept = concio.load_motion(out / "motion.npz")
+    assert kept.ending is Ending.STOPPED
+    assert 0 < kept.end.time < 1
+    assert len(kept.steps) == len(kept.steps.reaction)
+    assert concio.dynamics(kept.model, duration=0.01, start=kept.end).certified

@@ -95,3 +95,14 @@ def test_a_record_given_as_velocity_or_displacement_is_the_same_motion():
         assert record.velocity(at) - record.velocity(np.array([0.1])) == pytest.approx(
             by_a.velocity(at) - by_a.velocity(np.array([0.1])), abs=1e-3
         )
+
+
+@pytest.mark.parametrize(("suffix", "quantity", "unit"), [(".vt2", "velocity", 0.01), (".DT2", "displacement", 0.01)])
+def test_velocities_and_displacements_of_peer_are_read_in_cm(tmp_path, suffix, quantity, unit):
+    file = tmp_path / f"record{suffix}"
+    head = "PEER STRONG MOTION DATABASE RECORD\nSOMEWHERE 01/01/70\nUNITS\nNPTS=    4, DT= .0100 SEC\n"
+    file.write_text(head + "  .1000E+01 -.2000E+01  .3000E+01\n  .0000E+00\n")
+    record = concio.read_record(file)
+    assert record.quantity == quantity
+    assert record.step == 0.01
+    assert record.values == pytest.approx(unit * np.array([1.0, -2.0, 3.0, 0.0]))

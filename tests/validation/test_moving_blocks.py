@@ -35,4 +35,4 @@ def test_a_small_wall_at_rest_stays_at_rest():
 
 @pytest.mark.long
 def test_a_wall_of_427_blocks_stays_at_rest_for_a_minute():
-    resting_wall(30, 14, 60.0, 2e-2)
+    resting_wall(30, 14, 60.0, 1e-2)

@@ -13,6 +13,7 @@ from concio.analysis.engine import by_its_engine
 from concio.analysis.motion.dynamics_result import DynamicsResult, Ending
 from concio.analysis.motion.ground import Ground, Motion
 from concio.analysis.motion.history import Recorder
+from concio.analysis.motion.interruption import Interruption
 from concio.analysis.motion.joints import SAG
 from concio.analysis.motion.observer import Observer
 from concio.analysis.motion.scheme import Drive, Scheme
@@ -260,7 +261,8 @@ class _Run:
     def drive(self, time: float, h: float) -> Drive:
         """Return what is imposed in a step."""
         if self.base == "moving":
-            return Drive(np.zeros(2), self.ground.mean_velocity(time, time + h), self.factors)
+            moved = complex(*self.ground.displacement(np.array(time)))
+            return Drive(np.zeros(2), self.ground.mean_velocity(time, time + h), self.factors, moved)
         return Drive(self.ground.mean_acceleration(time, time + h), np.zeros(2), self.factors)
 
     def follow(self, state: MotionState, every: float, stop_overturned: bool, stop_at_rest: bool) -> Ending:
@@ -271,7 +273,7 @@ class _Run:
         h, calm = self.step, 0
         weight = float(self.reference.body_mass.sum()) * self.reference.gravity * self.stepper.maker.width
         self._shoot(state)
-        try:
+        with Interruption() as interruption:
             while state.time < end - 1e-9 * self.step:
                 h = min(h, end - state.time)
                 made = self._attempt(state, h)
@@ -288,14 +290,9 @@ class _Run:
                     return Ending.OVERTURNED
                 if stop_at_rest and state.time - start > self.ground.duration and self._rests(state, weight):
                     return Ending.AT_REST
-                if self.progress is not None and self.progress(self._told(state, start)):
+                told = self.progress is not None and self.progress(self._told(state, start))
+                if told or interruption.wanted:
                     return Ending.STOPPED
-        except KeyboardInterrupt:
-            return Ending.STOPPED
-        finally:
-            if self.recorder.shots[-1][0] is not self.state:
-                self._shoot(self.state)
-            self.seconds = clock.perf_counter() - self.begun
         return Ending.COMPLETE
 
     def _attempt(self, state: MotionState, h: float) -> tuple[MotionState, StepReport, float] | None:
@@ -339,6 +336,9 @@ class _Run:
     def result(self, ending: Ending) -> DynamicsResult:
         """Return what was computed."""
         assert self.state is not None
+        if self.recorder.shots[-1][0] is not self.state:
+            self._shoot(self.state)
+        self.seconds = clock.perf_counter() - self.begun
         shots, steps, energy = self.recorder.done(len(self.points), len(self.observer.names))
         return DynamicsResult(
             model=self.reference.model, gravity=self.reference.gravity, scheme=self.scheme, factors=self.factors,

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from concio.analysis.engine import by_its_engine
+from concio.analysis.motion.interruption import Interruption
 from concio.analysis.motion.joint_events import JointEvent, joint_events
 from concio.analysis.motion.observer import Observer
 from concio.analysis.motion.push_result import PushEnding, PushResult
@@ -152,10 +153,8 @@ def push(
         raise NoEquilibriumError(msg, hint=hint)
     run = _Push(reference, statics, chosen, step, until, float(smallest), progress)
     run.keep(start, 0.0)
-    try:
+    with Interruption() as run.interruption:
         ending = run.by_load() if by_load else run.by_displacement()
-    except KeyboardInterrupt:
-        ending = PushEnding.STOPPED
     unit = statics.unit(np.ones(len(model.bodies), dtype=complex))
     at = np.concatenate([statics.frames.x, statics.frames.node_x])
     return PushResult(
@@ -236,6 +235,7 @@ class _Push:
     reactions: list[Array] = field(default_factory=list)
     events: list[JointEvent] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    interruption: Interruption = field(default_factory=Interruption)
 
     def __post_init__(self) -> None:
         self.observer = Observer(self.reference, self.statics.maker, self.statics.frames, self.factors)
@@ -257,9 +257,9 @@ class _Push:
     def told(self, share: float) -> bool:
         """Tell how far it is; return whether to stop."""
         if self.progress is None:
-            return False
+            return self.interruption.wanted
         message = f"multiplier {self.multiplier[-1]:.4g} at {self.displacement[-1]:.4g} m"
-        return bool(self.progress(Progress("push", len(self.states), 1.0 - share, message)))
+        return bool(self.progress(Progress("push", len(self.states), 1.0 - share, message))) or self.interruption.wanted
 
     def by_displacement(self) -> PushEnding:
         """Let the controlled displacement grow."""

@@ -60,8 +60,11 @@ class Drive:
         Mean velocity of the fixed bodies, where these are moved [m/s].
     factors : mapping of str to float
         Load factors.
+    moved : complex
+        How far the fixed bodies, and what supports hold, were moved before [m].
     """
 
     ground: Array
     velocity: Array
     factors: Mapping[str, float]
+    moved: complex = 0j

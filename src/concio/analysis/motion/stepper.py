@@ -26,7 +26,7 @@ from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import Memory, MotionState, TieMemory
 from concio.analysis.motion.tie_bars import TieStep
 from concio.contact.moving.attachments import Ties
-from concio.contact.moving.edges import as_complex, as_vectors, dot
+from concio.contact.moving.edges import as_complex, as_vectors
 from concio.contact.moving.reference import Reference
 from concio.contact.moving.rows import Rows
 from concio.solvers.algebra.sparse_factor import Engine
@@ -146,7 +146,7 @@ class Stepper:
         data, joint = maker.joints.pairs(rows, slots, memory, y0, h, speed, self._give(rows, h))
         held = self._held(state, turn, h, drive)
         ties = self._ties(state, middle, turn, strain, x0, h)
-        parts = [data, held[0]] if ties is None else [data, held[0], ties.data]
+        parts = [data, held] if ties is None else [data, held, ties.data]
         problem = assembled(self.matrix(h), b, parts, force, speed)
         m, count = len(memory.key), problem.pairs
         states = StepStates(np.ones(count, dtype=np.int8), np.zeros(count, dtype=np.int8))
@@ -165,7 +165,8 @@ class Stepper:
             memory, joint, data, y, found.t[:m], found.states.contact[:m], found.states.slip[:m], h
         )
         works["input"] = h * float(ground @ x) - h * float((found.t[:m] * rows.imposed).sum())
-        works["input"] -= h * float((found.t[m:k] * held[1]).sum())
+        if len(maker.held):
+            works["input"] += h * float((found.t[m:k] * relative(held.columns, held.values, x)).sum())
         works["damping"] += self._damping(x, found.x - x0, turn, strain, h)
         tied = state.ties
         if ties is not None:
@@ -198,17 +199,14 @@ class Stepper:
             force = float(np.abs(self.frames.mass * x0).sum()) / h or 1.0
         return force, h * force / self.total_mass
 
-    def _held(self, state: MotionState, turn: Array, h: float, drive: Drive) -> tuple[PairData, Array]:
-        """Return the pairs of supports, and the velocities (k, 2) imposed on them [m/s]."""
+    def _held(self, state: MotionState, turn: Array, h: float, drive: Drive) -> PairData:
+        """Return the pairs of supports."""
         maker = self.maker
         if not len(maker.held):
-            return maker.nothing, np.zeros((0, 2))
+            return maker.nothing
         centre, here = as_complex(state.centre), np.exp(1j * state.rotation)
-        drift = maker.off_support(centre, here, as_complex(state.strain), drive.factors)
-        wanted = np.full(len(drift), complex(*drive.velocity))
-        data = maker.supports(turn, RETURN / h * drift - wanted)
-        normal = maker.held.normal
-        return data, -np.stack([dot(wanted, normal), dot(wanted, 1j * normal)], axis=1)
+        drift = maker.off_support(centre, here, as_complex(state.strain), drive.factors) - drive.moved
+        return maker.supports(turn, RETURN / h * drift - complex(*drive.velocity))
 
     def _ties(
         self, state: MotionState, centre: Array, turn: Array, strain: Array, x0: Array, h: float

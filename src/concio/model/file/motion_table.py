@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, StrictBool, StrictStr, ValidationError
+from pydantic import BeforeValidator, Field, StrictBool, StrictStr, ValidationError, WithJsonSchema
 
 from concio.errors import InputError
 from concio.model.file.errors import first_fault
@@ -55,8 +55,9 @@ def acceleration(value: Any) -> Any:
     return with_unit(value, ACCELERATIONS, "acceleration")
 
 
-Time = Annotated[float, BeforeValidator(seconds)]
-Acceleration = Annotated[float, BeforeValidator(acceleration)]
+_PUBLISHED = WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string"}]})
+Time = Annotated[float, BeforeValidator(seconds), _PUBLISHED]
+Acceleration = Annotated[float, BeforeValidator(acceleration), _PUBLISHED]
 
 
 class PulseTable(Table):
