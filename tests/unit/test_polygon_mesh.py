@@ -42,6 +42,25 @@ def test_opposite_breaks_share_one_line():
     assert_good_mesh(square, points, cells)
 
 
+def test_spans_of_a_mapped_mesh_are_no_longer_than_asked():
+    points, cells = mesh_polygon(TRAPEZIUM, 0.2)
+    x = points[cells]
+    assert np.hypot(*(np.roll(x, -1, axis=1) - x).transpose(2, 0, 1)).max() <= 0.2 * (1 + 1e-9)
+    assert len(cells) == 5 * 4  # the longer of two opposite sides says into how many
+
+
+def test_a_break_is_joined_with_the_one_that_is_nearest_to_it():
+    """Of 0.2 and 0.3 below, the second is nearer to 0.29 above: one line joins these two, another leaves from 0.2."""
+    square = np.array([(0, 0), (1, 0), (1, 1), (0, 1.0)])
+    points, cells = mesh_polygon(square, 1.0, [np.array([0.2, 0.3]), np.zeros(0), np.array([0.71]), np.zeros(0)])
+    assert_good_mesh(square, points, cells)
+    lines = {frozenset(edge) for cell in cells for edge in zip(cell, np.roll(cell, -1), strict=True)}
+    below, above = (int(np.argmin(np.hypot(*(points - at).T))) for at in ((0.3, 0.0), (0.29, 1.0)))
+    assert np.hypot(*(points[above] - (0.29, 1.0))) < 1e-12
+    assert frozenset((below, above)) in lines
+    assert len(cells) == 3
+
+
 def test_voussoir_with_curved_edges_is_mapped():
     outline = sector(1.0, 1.3, 0.4, 0.7, 5)
     points, cells = mesh_polygon(outline, 0.1)
