@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from concio.contact.assembly import assemble, default_tolerance
+from concio.contact.factors import load_factor
 from concio.errors import GeometryError, InputError
 from concio.model.model import Body, Load, Support
 from models import box, model_of, on_ground, weight
@@ -106,3 +107,9 @@ def test_names_and_materials_of_a_model():
         on_ground(box("a", 0, 1, 0, 1, material="stone"))
     with pytest.raises(InputError, match="no body called 'z'"):
         on_ground(box("a", 0, 1, 0, 1)).body("z")
+
+
+def test_a_group_that_is_not_named_acts_as_described_and_a_strain_not_at_all() -> None:
+    assert load_factor(None, "live") == load_factor({"dead": 3.0}, "live") == 1.0
+    assert load_factor({"live": 0.5}, "live") == 0.5
+    assert load_factor(None, "strain xy") == load_factor({"strain xx": 1e-3}, "strain xy") == 0.0

@@ -15,6 +15,7 @@ from concio.analysis.stress import Stress
 from concio.analysis.verdict import attention, result_lines, self_stress, sentence
 from concio.arguments import closest
 from concio.contact.assembly import Assembly
+from concio.contact.factors import load_factor
 from concio.contact.outline_gaps import outline_gaps
 from concio.display import Units
 from concio.errors import InputError
@@ -254,7 +255,7 @@ class Result:
         arm = nodes - self.assembly.disc.centroids[b]
         for s in self.model.supports:
             if s.body == self.model.bodies[b].name:
-                factor = self.factors.get(s.group, 1.0)
+                factor = load_factor(self.factors, s.group)
                 total = total + factor * (np.array(s.displacement) + swept(np.asarray(s.rotation), arm))
         return total
 
@@ -357,7 +358,7 @@ class Result:
             "iterations": self.solution.iterations,
             "factorisations": self.solution.factorisations,
             "seconds": {k: round(v, 6) for k, v in self.seconds.items()},
-            "load_factors": {g: float(self.factors.get(g, 1.0)) for g in self.assembly.groups},
+            "load_factors": {g: load_factor(self.factors, g) for g in self.assembly.groups},
             "total_load": list(self.total_load),
             "trace": list(self.solution.trace),
             "lent_compliance": self.lent_compliance,

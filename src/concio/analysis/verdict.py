@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.contact.factors import load_factor
 from concio.display import number
 from concio.model.plausibility import implausible
 from concio.problem.solution import Status
@@ -78,7 +79,7 @@ def result_lines(result: Result) -> list[str]:
     """Return a result in some ten lines: outcome, certificate, sizes, loads; of a solved one motions and forces."""
     model, units, assembly = result.model, result.model.report, result.assembly
     size = f"{len(model.free_bodies):,} bodies, {len(assembly.pairs):,} contact pairs"
-    factors = ", ".join(f"{g} = {number(float(result.factors.get(g, 1.0)))}" for g in assembly.groups) or "none"
+    factors = ", ".join(f"{g} = {number(load_factor(result.factors, g))}" for g in assembly.groups) or "none"
     lines = [
         f"Result: {result.status.name}. {result.status.value}",
         f"  {model.title or 'model without a title'}: {size}",

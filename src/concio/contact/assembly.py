@@ -10,11 +10,12 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.arguments import closest, strict
+from concio.contact.factors import load_factor
 from concio.contact.geometry import GEOMETRIES
 from concio.contact.inertia import lumped_masses
 from concio.contact.loads import load_vectors
 from concio.contact.pairs import Pairs, pair_laws
-from concio.contact.periodic import STRAINS, held_at_a_point, strain_groups
+from concio.contact.periodic import held_at_a_point, strain_groups
 from concio.contact.supports import Supported, apply_supports, moved_obstacles
 from concio.contact.ties import add_ties
 from concio.errors import GeometryError, InputError
@@ -72,14 +73,14 @@ class Assembly:
         """Return the imposed part u0 (N_all,) of the displacements under load factors [m]."""
         u0 = np.zeros(self.disc.unknowns)
         for group, vector in self.supported.imposed.items():
-            u0 += _factor(factors, group) * vector
+            u0 += load_factor(factors, group) * vector
         return u0
 
     def load(self, factors: Mapping[str, float] | None = None) -> Array:
         """Return the nodal forces (N_all,) under load factors [kN]."""
         f = np.zeros(self.disc.unknowns)
         for group, vector in self.loads.items():
-            f += _factor(factors, group) * vector
+            f += load_factor(factors, group) * vector
         return f
 
     def problem(self, factors: Mapping[str, float] | None = None) -> ContactProblem:
@@ -100,8 +101,8 @@ class Assembly:
         gap = self.pairs.gap + C_n @ u0
         origin = -(C_t @ u0).reshape(len(gap), self.model.dim - 1)
         for group, (normal, tangential) in self.moved.items():
-            gap = gap + _factor(factors, group) * normal
-            origin = origin - _factor(factors, group) * tangential
+            gap = gap + load_factor(factors, group) * normal
+            origin = origin - load_factor(factors, group) * tangential
         loads = T.T @ self.load(factors)
         return ContactProblem(
             K=sp.csr_array(T.T @ self.K @ T),
@@ -141,11 +142,6 @@ def _no_pairs(disc: Discretisation) -> Pairs:
         length=value, area=value, gap=value, law=number, law_names=tuple(disc.model.laws), C_n=operator, C_t=operator,
         rule=number,
     )  # fmt: skip
-
-
-def _factor(factors: Mapping[str, float] | None, group: str) -> float:
-    usual = 0.0 if group in STRAINS else 1.0
-    return usual if factors is None else float(factors.get(group, usual))
 
 
 def default_tolerance(model: Model) -> float:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.contact.factors import load_factor
 from concio.fem.discretisation import FIXED, RIGID
 from concio.kinematics.rigid import rigid_operator
 
@@ -46,6 +47,6 @@ def body_motions(result: Result, u: Array | None = None) -> Array:
             name = result.model.bodies[b].name
             for support in result.model.supports:
                 if support.body == name:
-                    factor = result.factors.get(support.group, 1.0)
+                    factor = load_factor(result.factors, support.group)
                     motion[b] += factor * np.array([*support.displacement, support.rotation])
     return motion

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.contact.factors import load_factor
 from concio.fem.discretisation import FIXED, RIGID
 from concio.fem.solid import SolidShape
 from concio.kinematics.rigid import rigid_operator, swept
@@ -124,7 +125,7 @@ def body_motions_in_space(result: Result, u: Array | None = None) -> Array:
         for support in result.model.supports:
             b = number[support.body]
             if disc.shape_of[b] == FIXED:
-                factor = result.factors.get(support.group, 1.0)
+                factor = load_factor(result.factors, support.group)
                 motion[b] += factor * np.array([*support.displacement, *np.broadcast_to(support.rotation, 3)])
     return motion
 

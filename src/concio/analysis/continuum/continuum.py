@@ -24,6 +24,7 @@ from concio.analysis.continuum.outline import (
     wall_shape,
 )
 from concio.contact.assembly import Assembly, default_tolerance
+from concio.contact.factors import load_factor
 from concio.errors import InputError
 from concio.model.generate.spacing import subdivided
 from concio.model.interfaces.detect import Interface
@@ -127,7 +128,7 @@ class Continuum:
 def _sum(groups: Mapping[str, Array], factors: Mapping[str, float], zero: Array) -> Array:
     total = zero.copy()
     for name, value in groups.items():
-        total += float(factors.get(name, 1.0)) * value
+        total += load_factor(factors, name) * value
     return total
 
 

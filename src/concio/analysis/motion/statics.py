@@ -24,6 +24,7 @@ from concio.analysis.motion.pairs import PairMaker, assembled, relative
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import Memory, MotionState
 from concio.analysis.motion.tie_bars import settled_ties
+from concio.contact.factors import load_factor
 from concio.contact.moving.edges import as_complex, as_vectors, dot
 from concio.contact.moving.points import Followed
 from concio.contact.moving.reference import Reference
@@ -214,14 +215,14 @@ class Statics:
         return unit / size if size > 0 else unit
 
     def _factors(self, multiplier: float) -> dict[str, float]:
-        return {**self.factors, **{g: multiplier * self.factors.get(g, 1.0) for g in self.live}}
+        return {**self.factors, **{g: multiplier * load_factor(self.factors, g) for g in self.live}}
 
     def unit(self, turn: Array) -> Array:
         """Return the load of a multiplier of one (N,) [kN]."""
         f = self.frames
         if self.live:
             groups = self.reference.loads.groups
-            only = {g: (self.factors.get(g, 1.0) if g in self.live else 0.0) for g in groups}
+            only = {g: (load_factor(self.factors, g) if g in self.live else 0.0) for g in groups}
             return f.loads(Drive(np.zeros(2), np.zeros(2), only), turn)
         if self.push is None:
             return np.zeros(f.n)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.contact.factors import load_factor
 from concio.contact.moving.edges import as_complex
 from concio.contact.moving.points import NOWHERE, MaterialPoints
 from concio.contact.supports import points_held
@@ -84,7 +85,7 @@ class Held:
 
     def target(self, factors: Mapping[str, float]) -> Array:
         """Return where the points are wanted under load factors, complex (k,) [m]."""
-        factor = np.array([factors.get(g, 1.0) for g in self.group])
+        factor = np.array([load_factor(factors, g) for g in self.group])
         return np.asarray(self.start + factor * self.motion)
 
     def values(self, turn: Array) -> Array:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from concio.contact.factors import load_factor
 from concio.contact.loads import load_vectors
 from concio.fem.discretisation import RIGID, Discretisation
 from concio.kinematics.frames import turned_right
@@ -75,7 +76,7 @@ class MovingLoads:
             Groups not named have factor 1.
         turn : (B,) complex array
         """
-        size = [factors.get(g, 1.0) for g in self.groups]
+        size = [load_factor(factors, g) for g in self.groups]
         parts = list(self.groups.values())
         dead = _sum(size, [p.dead for p in parts])
         f = dead.copy()
@@ -118,7 +119,7 @@ class MovingLoads:
         """
         if not self.groups:
             return 0.0
-        size = [factors.get(g, 1.0) for g in self.groups]
+        size = [load_factor(factors, g) for g in self.groups]
         dead = _sum(size, [p.dead for p in self.groups.values()])
         across = _sum(size, [p.across for p in self.groups.values()])
         u, angle, x = moved[self.rigid], rotation[self.rigid], self.first
