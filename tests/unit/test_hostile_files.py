@@ -207,3 +207,27 @@ def test_counts_in_python_are_bounded_too() -> None:
     ):
         with pytest.raises(InputError, match=r"more than|whole number"):
             call()
+
+
+@pytest.mark.parametrize(("name", "key"), [("wall.dxf", "blocks_file"), ("VAULT.OBJ", "solids_file")])
+def test_a_drawing_given_as_a_model_file_is_told_where_to_go(tmp_path, name, key):
+    drawing = tmp_path / name
+    drawing.write_text("0\nSECTION\n")
+    with pytest.raises(InputError, match="not a model file") as told:
+        concio.load(drawing)
+    assert f"{key} = '{name}'" in str(told.value)
+    table = tmp_path / "model.toml"
+    table.write_text("blocks_file = 'vault.obj'\n")
+    (tmp_path / "vault.obj").write_text("v 0 0 0\n")
+    with pytest.raises(InputError, match="solids_file = "):
+        concio.load(table)
+
+
+@pytest.mark.parametrize("options", [{"workers": 0}, {"workers": -2}, {"executor": "procesess"}, {"executor": 3}])
+def test_a_study_that_cannot_run_leaves_no_directory(tmp_path, options):
+    """The next study into that place would have been told that there is one already."""
+    place = tmp_path / "study"
+    mu = concio.variable("mu", "uniform", keys="arch.friction", low=0.3, high=0.7)
+    with pytest.raises(InputError):
+        concio.study({"arch": {"span": 2.0}}, [mu], "stands", size=2, directory=place, **options)
+    assert not place.exists()

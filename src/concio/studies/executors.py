@@ -71,9 +71,7 @@ def run_rows(
     InputError
         There is no such executor.
     """
-    if workers is not None and (isinstance(workers, bool) or not isinstance(workers, int) or not 1 <= workers <= 1024):
-        msg = f"workers = {workers!r} must be a whole number from 1 to 1024"
-        raise InputError(msg)
+    check_executor(executor, workers)
     if executor is None:
         executor = "processes" if workers is not None and workers > 1 else "serial"
     if executor == "serial":
@@ -87,15 +85,22 @@ def run_rows(
     elif isinstance(executor, str) and (executor == "dask" or "://" in executor):
         with _dask(None if executor == "dask" else executor, workers) as (pool, size):
             _run_foreign(pool, replace(task, own_process=executor == "dask"), sample, wanted, emit, size)
-    elif isinstance(executor, str):
-        msg = f"there is no executor '{executor}'"
-        raise InputError(msg, hint=closest(executor, [*NAMES, "tcp://HOST:PORT of a Dask scheduler"]))
     elif hasattr(executor, "get_executor"):  # a Dask client
         size = workers or max(len(executor.nthreads()), 1)
         _run_foreign(executor.get_executor(pure=False), task, sample, wanted, emit, size)
-    elif hasattr(executor, "submit"):
-        _run_foreign(executor, task, sample, wanted, emit, size)
     else:
+        _run_foreign(executor, task, sample, wanted, emit, size)
+
+
+def check_executor(executor: Any, workers: int | None) -> None:
+    """Raise InputError where there is no such executor, or no such number of processes."""
+    if workers is not None and (isinstance(workers, bool) or not isinstance(workers, int) or not 1 <= workers <= 1024):
+        msg = f"workers = {workers!r} must be a whole number from 1 to 1024"
+        raise InputError(msg)
+    if isinstance(executor, str) and executor not in NAMES and "://" not in executor:
+        msg = f"there is no executor '{executor}'"
+        raise InputError(msg, hint=closest(executor, [*NAMES, "tcp://HOST:PORT of a Dask scheduler"]))
+    if not (executor is None or isinstance(executor, str) or hasattr(executor, "submit")):
         msg = f"{type(executor).__name__} is no executor: it has no 'submit'"
         raise InputError(msg, hint="give one of " + ", ".join(NAMES) + ", or an executor of concurrent.futures")
 

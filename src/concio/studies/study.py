@@ -27,7 +27,7 @@ from concio.model.file.writing import dumps
 from concio.model.model import Model
 from concio.representation import short_repr
 from concio.studies.bridges import variables_of_salib
-from concio.studies.executors import run_rows
+from concio.studies.executors import check_executor, run_rows
 from concio.studies.outputs import Settings, outputs_of
 from concio.studies.rows import Row, Tables, Task
 from concio.studies.sampling import Correlation, Sample, draw, given_sample
@@ -184,6 +184,7 @@ def study(
     >>> len(found)
     4
     """
+    check_executor(executor, workers)
     source, table = _source(model)
     given = table or StudyTable()
     stated = tuple(variable(**v.arguments()) for v in given.variables)

@@ -62,6 +62,11 @@ def load(path: str | os.PathLike[str]) -> Model:
 
 def read_tables(path: Path) -> dict[str, Any]:
     """Return the tables of a TOML file as they stand in it; raises as :func:`load`."""
+    named = {".dxf": "blocks_file", **dict.fromkeys((".obj", ".stl", ".3dm"), "solids_file")}
+    key = named.get(path.suffix.lower())
+    if key is not None:
+        msg = f"this is a drawing of blocks ({path.suffix}), not a model file"
+        raise InputError(msg, where=str(path), hint=f"name it in a model file: {key} = '{path.name}'")
     too_large = "put the blocks into a table of their own: blocks_file = 'blocks.csv'"
     text = read_text(path, hint="start one with: concio new panel", pipes=True, too_large=too_large)
     return parse(text, str(path))
