@@ -10,10 +10,13 @@ import pytest
 import concio
 from concio.kinematics.rigid import rotation_matrix
 from concio.problem.contact_problem import ContactProblem
-from concio.problem.solution import Status
+from concio.problem.solution import Departure, Status
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.interior.cone_iteration import ConeIteration, NewtonStep
+from concio.solvers.interior.cone_run import ConeRun
 from concio.solvers.methods import find
+from concio.solvers.motion.cone_release import at_once
+from concio.solvers.states.reading import Finished
 from concio.solvers.statics.limit import associated_limit
 from space_problems import barrel, dome, wall
 
@@ -106,6 +109,17 @@ def test_between_the_limits_letting_go_decides() -> None:
     assert found.departure.certified
     assert found.info["strategy"] == "release"
     assert any("statically admissible forces exist" in line for line in found.trace)
+
+
+def test_single_long_steps_from_rest_show_the_motion_that_never_ends() -> None:
+    """Between the Coulomb and the associated limit they move away; under half the load they come to rest."""
+    built = wall(6, 6, kn=1e3)
+    limit = associated_limit(built.problem, built.live).multiplier
+    moves = at_once(ConeRun(scale(built.at(0.995 * limit))))
+    assert isinstance(moves, Departure)
+    assert moves.certified
+    rests = at_once(ConeRun(scale(built.at(0.5 * limit))))
+    assert isinstance(rests, Finished)
 
 
 def test_newton_direction_solves_the_linearised_equations() -> None:

@@ -4,7 +4,8 @@
 2. a cone programme: either a mechanism, rechecked, proves that there is no equilibrium, or there are statically
    admissible forces; where no body has to move under them (rigid blocks), they are the answer;
 3. interior point from the other starts;
-4. release: the structure is let go and followed in slow motion, from rest and from the state in which associated flow
+4. release, single steps: the structure is let go, and ever longer steps from rest show where it goes;
+5. release: it is followed in slow motion, from rest and from the state in which associated flow
    jams; it comes to rest, which is an equilibrium, or settles into a motion without end, which is the answer.
 
 What was tried is the solution's trace. Words are those of the plane (:mod:`concio.solvers.auto.strategies`). Pivoting
@@ -25,7 +26,8 @@ from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.auto.strategies import Strategy, first_answer, moves_away, statics, where_it_ends
 from concio.solvers.interior.cone_run import STARTS, ConeRun
 from concio.solvers.interior.engine import at_rest
-from concio.solvers.motion.cone_release import associated_state, release
+from concio.solvers.motion.cone_release import associated_state, at_once, release
+from concio.solvers.states.reading import Finished
 
 
 def usual_starts(run: ConeRun) -> Solution | None:
@@ -36,6 +38,11 @@ def usual_starts(run: ConeRun) -> Solution | None:
 def other_starts(run: ConeRun) -> Solution | None:
     """Interior point from the starts that are left."""
     return _from(run, 2, len(STARTS))
+
+
+def released_in_single_steps(run: ConeRun) -> Solution | None:
+    """Let the structure go, and look at what single long steps from rest show."""
+    return _judged(run, at_once(run))
 
 
 def released_at_rest(run: ConeRun) -> Solution | None:
@@ -52,6 +59,7 @@ STRATEGIES: tuple[Strategy, ...] = (
     Strategy("interior-point", usual_starts),
     Strategy("mechanism", statics),
     Strategy("interior-point, other starts", other_starts),
+    Strategy("release, single steps", released_in_single_steps),
     Strategy("release", released_at_rest),
     Strategy("release, jammed", released_jammed),
 )
@@ -98,7 +106,10 @@ def _from(run: ConeRun, first: int, last: int) -> Solution | None:
 
 
 def _released(run: ConeRun, u: Array) -> Solution | None:
-    ended = release(run, u)
+    return _judged(run, release(run, u))
+
+
+def _judged(run: ConeRun, ended: Finished | Departure | None) -> Solution | None:
     if isinstance(ended, Departure):
         return moves_away(run, ended)
     return None if ended is None else run.solution(ended)

@@ -4,6 +4,10 @@ The same slow motion in a resisting medium as in the plane (:mod:`concio.solvers
 contact problem of its own, solved by Newton's method from the step before, and by the interior point where that fails.
 What stands still is an equilibrium, made exact; what settles into a steady motion is a
 :class:`concio.problem.solution.Departure`.
+
+Before that single steps are made from rest, each ten times longer than the last (:func:`at_once`). In the longest that
+is solved the structure has moved far beyond what its joints give way, and mostly in the very motion that never ends:
+that saves following all that happens on the way.
 """
 
 from __future__ import annotations
@@ -16,7 +20,7 @@ from concio.problem.contact_problem import Array
 from concio.problem.solution import Departure
 from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
-from concio.solvers.interior.cone_run import STARTS, ConeRun
+from concio.solvers.interior.cone_run import STARTS, ConeRun, Start
 from concio.solvers.interior.newton_finish import finish
 from concio.solvers.motion.cone_departure import departure
 from concio.solvers.states.reading import Finished
@@ -36,8 +40,37 @@ STEP = 1e-10
 MOST = 80
 """Largest number of steps tried."""
 
+LONG = 1e-5
+"""Resistance e up to which a single step from rest is looked at as a motion that never ends."""
+
 FAILURES = 12
 """Largest number of steps that may fail."""
+
+
+def at_once(run: ConeRun) -> Finished | Departure | None:
+    """Make single steps from rest, ever longer; return the rest or the motion without end that one shows, or None.
+
+    Parameters
+    ----------
+    run : ConeRun
+        Keeps count and trace.
+    """
+    s = run.scaled
+    rest = np.zeros(len(s.f))
+    e = FIRST
+    last: Finished | None = None
+    ended: Finished | Departure | None = None
+    while e >= LEAST and ended is None:
+        step = s.step_from(rest, e)
+        found = None if last is None else _newton(step, (GROWTH * last.u, last.u), last.t)
+        found = found or _inner(run, step, STARTS[:1])
+        if found is None:
+            break
+        ended = _rest(run, found) or (departure(s, found.u, found.t, e * found.u) if e <= LONG else None)
+        e, last = e / GROWTH, found
+    outcome = {Finished: "comes to rest", Departure: "moves away", type(None): "no end found"}[type(ended)]
+    run.trace.append(f"release: single steps down to a resistance of {GROWTH * e:.0e}, {outcome}")
+    return ended
 
 
 def release(run: ConeRun, u: Array | None = None) -> Finished | Departure | None:
@@ -53,16 +86,17 @@ def release(run: ConeRun, u: Array | None = None) -> Finished | Departure | None
     s = run.scaled
     u = np.zeros(len(s.f)) if u is None else u
     e, growth, good, failures, taken = FIRST, GROWTH, 0, 0, 0
+    before = e
     here: Finished | None = None
     ended: Finished | Departure | None = None
     while taken + failures < MOST and failures < FAILURES:
-        moved = _solve(run, s.step_from(u, e), here)
+        moved = _solve(run, s.step_from(u, e), here, before / e)
         if moved is None:
             failures, good = failures + 1, 0
             e, growth = growth * e, max(np.sqrt(growth), 1.5)
             continue
         u = u + moved.u
-        here, taken, good = moved, taken + 1, good + 1
+        here, taken, good, before = moved, taken + 1, good + 1, e
         ended = _rest(run, replace(moved, u=u)) or departure(s, u, moved.t, e * moved.u)
         if ended is not None:
             break
@@ -79,16 +113,26 @@ def _rest(run: ConeRun, now: Finished) -> Finished | None:
     return rest if rest.error <= EXACT and run.certified(rest) else None
 
 
-def _solve(run: ConeRun, step: Scaled, here: Finished | None) -> Finished | None:
-    """Solve one step: by Newton's method from the last one, then from nothing."""
-    if here is not None:
-        for guess in (here.u, 0.0 * here.u):
-            new = finish(step, guess, here.t, rounds=20)
-            if new.error <= STEP:
-                return new
+def _solve(run: ConeRun, step: Scaled, here: Finished | None, longer: float) -> Finished | None:
+    """Solve one step, so much longer than the last one: by Newton's method from that, then from nothing."""
+    found = None if here is None else _newton(step, (longer * here.u, here.u, 0.0 * here.u), here.t)
+    return found or _inner(run, step, STARTS)
+
+
+def _newton(step: Scaled, guesses: tuple[Array, ...], t: Array) -> Finished | None:
+    """Solve a step by Newton's method from displacements guessed and forces known."""
+    for guess in guesses:
+        new = finish(step, guess, t, rounds=20)
+        if new.error <= STEP:
+            return new
+    return None
+
+
+def _inner(run: ConeRun, step: Scaled, starts: tuple[Start, ...]) -> Finished | None:
+    """Solve a step by the interior point from starts in turn."""
     inner = ConeRun(step, run.progress)
     found: Finished | None = None
-    for start in STARTS:
+    for start in starts:
         found = inner.from_start(start)
         if found is None and inner.best is not None and inner.best.error <= STEP:
             found = inner.best
