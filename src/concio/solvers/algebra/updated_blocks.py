@@ -22,6 +22,9 @@ from concio.solvers.algebra.sparse_factor import SingularMatrixError
 MOST = 48
 """Largest number of pairs whose columns are kept."""
 
+AT_ONCE = 32
+"""Largest number of columns solved for together."""
+
 ROOM = 3e7
 """Largest number of entries of the columns kept."""
 
@@ -126,7 +129,13 @@ class UpdatedBlocks:
         new = np.setdiff1d(pairs, self.pairs)
         if not new.size:
             return
-        self.X = np.hstack([self.X, self.factor.solve(self.C[self._rows(new)].T.toarray())])
+        rows, kept = self._rows(new), self.X.shape[1]
+        X = np.empty((self.C.shape[1], kept + rows.size))
+        X[:, :kept] = self.X
+        for first in range(0, rows.size, AT_ONCE):  # copies of all columns at once would not fit beside large factors
+            some = slice(first, first + AT_ONCE)
+            X[:, kept:][:, some] = self.factor.solve(self.C[rows[some]].T.toarray())
+        self.X = X
         self.pairs = np.concatenate([self.pairs, new])
         self.C_P = self.C[self._rows(self.pairs)]
         self.W = self.C_P @ self.X
