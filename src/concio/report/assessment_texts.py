@@ -73,7 +73,7 @@ class Texts:
 
     def table(self, headings: Iterable[str], rows: Iterable[Sequence[str]], texts: int = 1) -> str:
         """Return a table; the first ``texts`` columns are words, the others numbers."""
-        head = "".join(f"<th>{escape(h)}</th>" for h in headings)
+        head = "".join(f"<th{' class=n' * (i >= texts)}>{escape(h)}</th>" for i, h in enumerate(headings))
         body = "".join(
             "<tr>" + "".join(f"<td{' class=n' * (i >= texts)}>{cell}</td>" for i, cell in enumerate(row)) + "</tr>"
             for row in rows
