@@ -15,7 +15,7 @@ import concio
 def main(figure: Path | None = None) -> dict[str, float]:
     """Solve, print, draw into ``figure`` where given; return the numbers that the tests look at."""
     model = concio.cross_vault(span=3, ring=0.2, courses=15, block_length=0.5, block="rigid", friction=0.7)
-    sinks = concio.Support("settlement", "springer 1", displacement=(0.0, 0.0, -5e-3))
+    sinks = concio.Support("settlement", "springer 3", displacement=(0.0, 0.0, -5e-3))
     before, after = concio.solve(model), concio.solve(replace(model, supports=(sinks,)))
     lift = {name: [force[2] for force in result.reactions.values()] for name, result in
             (("before", before), ("after", after))}  # fmt: skip
@@ -24,11 +24,11 @@ def main(figure: Path | None = None) -> dict[str, float]:
         print(f"{name}: " + ", ".join(f"{force:.2f}" for force in forces) + f" kN of {weight:.2f} kN")
     print(f"largest opening {1e3 * float(after.contacts.gap.max()):.2f} mm")
     if figure:
-        after.plot.deformed().figure.savefig(figure)
+        after.plot.deformed(scale=40).figure.savefig(figure)
     return {
         "worst": max(before.certificate.worst, after.certificate.worst), "weight": weight,
         "before": sum(lift["before"]), "after": sum(lift["after"]), "opening": float(after.contacts.gap.max()),
-        "sinking": lift["after"][0], "rest": lift["before"][0],
+        "sinking": lift["after"][2], "rest": lift["before"][2],
     }  # fmt: skip
 
 

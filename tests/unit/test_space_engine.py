@@ -156,6 +156,18 @@ def test_a_model_in_space_is_solved_and_hard_joints_keep_their_exact_answer() ->
     assert weight.shape[1] == 3
 
 
+def test_sliding_joints_of_rigid_blocks_have_their_limit() -> None:
+    """Nothing moves in the limit of stiff joints, and the forces are certified there, though solves do not reach it."""
+    model = concio.walls(
+        lines=[((0, 0), (0, 1.5)), ((0, 0), (1.5, 0)), ((0, 1.5), (1.5, 1.5))], height=1.5,
+        block_size=(0.5, 0.25, 0.25), block="rigid", friction=0.3, horizontal=1.0, towards=(-1, 0),
+    )  # fmt: skip
+    result = concio.solve(model, factors={"live": 0.15})
+    assert result.solved
+    assert result.assembly.lent_compliance == 0.0
+    assert result.attention == ()
+
+
 def test_collapse_of_a_model_in_space() -> None:
     tall = concio.column(width=0.5, height=3.0, blocks=3, block="rigid", friction=0.6, horizontal=0.3)
     result = concio.solve(concio.extrude(tall, 0.4), on_failure="return")

@@ -133,12 +133,12 @@ def test_a_picture_shows_what_is_nearest() -> None:
         for triangle in (first, second):
             picture.fill(triangle, np.array([[1.0, 0, 0] if triangle is near else [0, 0, 1.0]]))
         height, width = picture.depth.shape
-        assert picture.colour[height // 4, width // 8].tolist() == [1, 0, 0]
-        assert picture.colour[height // 4, width // 2].tolist() == [0, 0, 1]
+        assert picture.colour[height // 4, width // 8].tolist() == [255, 0, 0]
+        assert picture.colour[height // 4, width // 2].tolist() == [0, 0, 255]
     picture.stroke(np.array([[[0.0, 0.25, 0.5], [1.5, 0.25, 0.5]]]), (0.0, 1.0, 0.0), 1, 1e-9)
     row = picture.colour[round(0.25 / picture.step)]
-    assert row[width // 8].tolist() == [1, 0, 0]  # behind the near triangle
-    assert row[width // 2].tolist() == [0, 1, 0]
+    assert row[width // 8].tolist() == [255, 0, 0]  # behind the near triangle
+    assert row[width // 2].tolist() == [0, 255, 0]
 
 
 def test_figures_of_a_model_in_space() -> None:

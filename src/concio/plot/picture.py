@@ -9,6 +9,9 @@ import numpy as np
 
 Array = np.ndarray
 
+MOST_POINTS = 200_000
+"""Points of triangles that are looked at together."""
+
 LONGER_SIDE = 2000
 """Points along the longer side of a picture; it is drawn at this size and shown at about half of it."""
 
@@ -25,7 +28,7 @@ class Picture:
         Size of a point [m].
     axes : (3, 3) array
         Unit vectors to the right, up, and towards the eye.
-    colour : (h, w, 3) array
+    colour : (h, w, 3) array of bytes
         Rows from below.
     depth : (h, w) array
         Distance towards the eye of what is shown, minus infinity where there is nothing [m].
@@ -43,7 +46,8 @@ class Picture:
         span = box[1] - box[0]
         step = float(span.max()) / LONGER_SIDE
         width, height = (max(1, int(np.ceil(s / step))) for s in span)
-        return cls(box[0], step, axes, np.ones((height, width, 3)), np.full((height, width), -np.inf))
+        white = np.full((height, width, 3), 255, dtype=np.uint8)
+        return cls(box[0], step, axes, white, np.full((height, width), -np.inf))
 
     def placed(self, points: Array) -> Array:
         """Return points (..., 3) in units of the picture: to the right, up, and their depth [m]."""
@@ -51,22 +55,44 @@ class Picture:
         return np.concatenate([(seen[..., :2] - self.low) / self.step, seen[..., 2:]], axis=-1)
 
     def fill(self, triangles: Array, colours: Array) -> None:
-        """Draw triangles (t, 3, 3) in colours (t, 3)."""
+        """Draw triangles (t, 3, 3) in colours (t, 3), those of one size together."""
+        placed, colours = self.placed(triangles), _bytes(colours)
         height, width = self.depth.shape
-        for (a, b, c), colour in zip(self.placed(triangles), colours, strict=True):
-            x0, x1 = max(0, int(min(a[0], b[0], c[0]))), min(width - 1, int(max(a[0], b[0], c[0])) + 1)
-            y0, y1 = max(0, int(min(a[1], b[1], c[1]))), min(height - 1, int(max(a[1], b[1], c[1])) + 1)
-            whole = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-            if x0 > x1 or y0 > y1 or whole == 0.0:
-                continue
-            x, y = np.arange(x0, x1 + 1) + 0.5, (np.arange(y0, y1 + 1) + 0.5)[:, None]
-            s = ((x - a[0]) * (c[1] - a[1]) - (y - a[1]) * (c[0] - a[0])) / whole
-            t = ((y - a[1]) * (b[0] - a[0]) - (x - a[0]) * (b[1] - a[1])) / whole
-            depth = a[2] + s * (b[2] - a[2]) + t * (c[2] - a[2])
-            held = self.depth[y0 : y1 + 1, x0 : x1 + 1]
-            nearer = (s >= 0) & (t >= 0) & (s + t <= 1) & (depth > held)
-            held[nearer] = depth[nearer]
-            self.colour[y0 : y1 + 1, x0 : x1 + 1][nearer] = colour
+        limit = np.array([width, height]) - 1
+        low = np.clip(np.floor(placed[..., :2].min(1)).astype(int), 0, limit)
+        span = np.clip(placed[..., :2].max(1).astype(int) + 1, 0, limit) - low + 1
+        outside = (placed[..., :2].max(1) < 0).any(1) | (placed[..., :2].min(1) > limit + 1).any(1)
+        a, ab, ac = placed[:, 0], placed[:, 1] - placed[:, 0], placed[:, 2] - placed[:, 0]
+        whole = ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]
+        size = 1 << np.ceil(np.log2(span)).astype(int)  # (t, 2): boxes a power of two wide and high
+        drawn = np.flatnonzero(~outside & (whole != 0.0))
+        kinds, kind = np.unique(size[drawn], axis=0, return_inverse=True)
+        for number, (wide, high) in enumerate(kinds.tolist()):
+            own = drawn[kind.ravel() == number]
+            for part in np.array_split(own, -(-len(own) * wide * high // MOST_POINTS)):
+                self._fill(part, (a, ab, ac, whole), low, span, (wide, high), colours)
+
+    def _fill(
+        self, part: Array, shape: tuple[Array, ...], low: Array, span: Array, box: tuple[int, int], colours: Array
+    ) -> None:
+        """Draw the triangles ``part``, each within a box of so many points from its lower left corner."""
+        a, ab, ac, whole = (v[part] for v in shape)
+        column, row = np.meshgrid(np.arange(box[0]), np.arange(box[1]))
+        within = (column < span[part, 0, None, None]) & (row < span[part, 1, None, None])
+        x = column + (low[part, 0] + 0.5 - a[:, 0])[:, None, None]
+        y = row + (low[part, 1] + 0.5 - a[:, 1])[:, None, None]
+        p, q, r, t, z = (v[:, None, None] for v in (ab[:, 0], ab[:, 1], ac[:, 0], ac[:, 1], whole))
+        first, second = (x * t - y * r) / z, (y * p - x * q) / z
+        inside = within & (first >= 0) & (second >= 0) & (first + second <= 1)
+        k, j, i = np.nonzero(inside)
+        depth = a[k, 2] + first[inside] * ab[k, 2] + second[inside] * ac[k, 2]
+        at = (low[part[k], 1] + j) * self.depth.shape[1] + low[part[k], 0] + i
+        held = self.depth.reshape(-1)
+        nearer = depth > held[at]
+        k, at, depth = k[nearer], at[nearer], depth[nearer]
+        np.maximum.at(held, at, depth)
+        shown = np.flatnonzero(depth == held[at])[::-1]  # of equals the first
+        self.colour.reshape(-1, 3)[at[shown]] = colours[part[k[shown]]]
 
     def stroke(self, lines: Array, colour: Any, wide: int, slack: float) -> None:
         """Draw lines (l, 2, 3) ``wide`` points thick, wherever nothing is nearer by more than ``slack`` [m]."""
@@ -83,10 +109,13 @@ class Picture:
                 inside = (x >= 0) & (x < width) & (y >= 0) & (y < height)
                 x, y, depth = x[inside], y[inside], at[inside, 2]
                 seen = depth >= self.depth[y, x] - slack
-                self.colour[y[seen], x[seen]] = colour
+                self.colour[y[seen], x[seen]] = _bytes(colour)
 
     def image(self) -> Array:
         """Return the picture (h, w, 4) in bytes, rows from above, clear where there is nothing."""
-        alpha = np.isfinite(self.depth) | (self.colour < 1).any(axis=2)
-        image = np.concatenate([self.colour, alpha[:, :, None]], axis=2)[::-1]
-        return np.asarray(np.rint(255 * image).astype(np.uint8))
+        alpha = np.isfinite(self.depth) | (self.colour < 255).any(axis=2)
+        return np.dstack([self.colour, np.where(alpha, np.uint8(255), np.uint8(0))])[::-1]
+
+
+def _bytes(colour: Any) -> Array:
+    return np.asarray(np.rint(255 * np.asarray(colour)).astype(np.uint8))

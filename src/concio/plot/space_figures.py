@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 Array = np.ndarray
 View = Literal["front", "side", "plan", "axonometry"]
+WORDS = {0: "open", 2: "slips", 3: "crushed"}
+WORDS_OF_MECHANISMS = {0: "opens", 2: "slides", 3: "crushes"}
 NAMED = 60
 """Up to this many bodies get their names written."""
 
@@ -118,7 +120,7 @@ def plot_space(
         return plot_space_model(result.model, ax, view=view)
     shown = solids(result, u)
     largest = float(np.linalg.norm(shown.displacement, axis=1).max(initial=0.0))
-    chosen = display_scale(largest, shown.size) if scale is None else scale
+    chosen = (2.0 if mechanism else 1.0) * display_scale(largest, shown.size) if scale is None else scale
     faces = joint_faces(result, u)
     state = mechanism_states_in_space(result, faces) if mechanism else result.contacts.state[faces.pair]
     looks = {0: style.OPEN.colour, 2: style.SLIP.colour, 3: style.CRUSHED.colour}
@@ -127,7 +129,12 @@ def plot_space(
         corners = faces.corners + chosen * moved
         extra += [(corners[k], looks[int(state[k])]) for k in np.flatnonzero(np.isin(state, tuple(looks)))]
     title = "Collapse mechanism" if mechanism else f"Displaced shape, {number(chosen)} times"
-    return draw_solids(shown, block_colours(result.model), view, ax, chosen, title, extra)[0]
+    factors = ", ".join(f"{group} = {number(factor)}" for group, factor in result.factors.items())
+    note = f"loads {factors}" if factors else ""
+    ax, _ = draw_solids(shown, block_colours(result.model), view, ax, chosen, title, extra, note)
+    words = WORDS_OF_MECHANISMS if mechanism else WORDS
+    style.legend(ax, [style.patch(looks[k], words[k]) for k in looks if (state == k).any()])
+    return ax
 
 
 def block_colours(model: Model) -> list[str]:
@@ -144,6 +151,7 @@ def draw_solids(
     scale: float,
     title: str,
     extra: Sequence[tuple[Array, str]] = (),
+    note: str = "",
 ) -> tuple[Axes, Picture]:
     """Draw bodies, each in its colour, with coloured areas (n, 3) upon them; return the axes and the picture."""
     from matplotlib.colors import to_rgb
@@ -169,11 +177,26 @@ def draw_solids(
     picture.stroke(points[shown.edges], to_rgb(style.EDGE), wide, 1.5e-3 * shown.size)
     extent = (box[0, 0], box[1, 0], box[0, 1], box[1, 1])
     ax.imshow(picture.image(), extent=extent, interpolation="antialiased", zorder=1)
-    style.dress(ax, box, title, "")
+    style.dress(ax, box, title, note)
     names = {"front": ("x", "z"), "side": ("y", "z"), "plan": ("x", "y")}
     if isinstance(view, str) and view in names:
         ax.set_xlabel(f"{names[view][0]} [m]", fontsize=8)
         ax.set_ylabel(f"{names[view][1]} [m]", fontsize=8)
     else:
         ax.set_axis_off()
+        _triad(ax, box, right, up)
     return ax, picture
+
+
+def _triad(ax: Axes, box: Array, right: Array, up: Array) -> None:
+    """Draw the directions x, y, z in the lower left corner."""
+    length = 0.06 * float((box[1] - box[0]).max())
+    at = box[0] + 1.4 * length
+    for k, name in enumerate("xyz"):
+        along = np.array([right[k], up[k]])
+        ax.annotate(
+            "", at + length * along, at, zorder=5,
+            arrowprops={"arrowstyle": "-|>", "lw": 0.9, "color": style.INK, "shrinkA": 0, "shrinkB": 0},
+        )  # fmt: skip
+        x, y = (at + 1.35 * length * along).tolist()
+        ax.text(x, y, name, fontsize=7.5, color=style.INK, ha="center", va="center", zorder=5)

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from concio.kinematics.frames import cross
 from concio.kinematics.rigid import swept
 from concio.post.solids import body_motions_in_space
 from concio.representation import short_repr
@@ -69,29 +68,33 @@ def joint_faces(result: Result, u: Array | None = None) -> JointFaces:
 
 def pieces_of(result: Result) -> tuple[Array, Array]:
     """Return triangles (T, 3, 3) that cover the interfaces, and the pair (T,) of each."""
-    pairs = result.assembly.pairs
+    pairs, patches = result.assembly.pairs, result.assembly.detection.patches
     order = np.argsort(pairs.interface, kind="stable")
-    bounds = np.searchsorted(pairs.interface[order], np.arange(len(result.assembly.detection.patches) + 1))
-    corners, owner = [], []
-    for k, patch in enumerate(result.assembly.detection.patches):
-        own = order[bounds[k] : bounds[k + 1]]
-        if not len(own):
-            continue
-        flat = patch.frame
-        sites = (pairs.point[own] - patch.polygon[0]) @ flat.T
-        for triangle in _triangles(patch):
-            for j, pair in enumerate(own):
-                cell = _cell(triangle, sites, j)
-                if len(cell) < 3:
-                    continue
-                fan = np.array([(cell[0], cell[i], cell[i + 1]) for i in range(1, len(cell) - 1)])
-                sizes = np.abs(cross(fan[:, 1] - fan[:, 0], fan[:, 2] - fan[:, 0]))
-                fan = fan[sizes > TINY * patch.area]
-                corners.append(patch.polygon[0] + fan @ flat)
-                owner.append(np.full(len(fan), pair))
-    if not corners:
-        return np.zeros((0, 3, 3)), np.zeros(0, dtype=int)
-    return np.vstack(corners), np.concatenate(owner)
+    bounds = np.searchsorted(pairs.interface[order], np.arange(len(patches) + 1))
+    alike: dict[tuple[int, int], list[tuple[int, Array]]] = {}
+    for k, patch in enumerate(patches):
+        count = int(bounds[k + 1] - bounds[k])
+        for polygon in _triangles(patch) if count else ():
+            alike.setdefault((len(polygon), count), []).append((k, polygon))
+    corners, owner = [np.zeros((0, 3, 3))], [np.zeros(0, dtype=int)]
+    for (_, count), group in alike.items():
+        number = np.array([k for k, _ in group])
+        own = order[bounds[number][:, None] + np.arange(count)]  # (g, n)
+        frame = np.array([patches[k].frame for k in number])  # (g, 2, 3)
+        origin = np.array([patches[k].polygon[0] for k in number])
+        sites = np.einsum("gnd,gcd->gnc", pairs.point[own] - origin[:, None], frame)
+        cells, sides = _nearest(np.array([polygon for _, polygon in group]), sites)
+        area = np.array([patches[k].area for k in number])
+        for j in range(1, cells.shape[2] - 1):  # a fan from the first corner of each cell
+            fan = cells[:, :, [0, j, j + 1]]
+            p, q = fan[:, :, 1] - fan[:, :, 0], fan[:, :, 2] - fan[:, :, 0]
+            size = np.abs(p[..., 0] * q[..., 1] - p[..., 1] * q[..., 0])
+            g, n = np.nonzero((j + 1 < sides) & (size > TINY * area[:, None]))
+            corners.append(origin[g, None] + np.einsum("tvc,tcd->tvd", fan[g, n], frame[g]))
+            owner.append(own[g, n])
+    pair = np.concatenate(owner)
+    first = np.argsort(pair, kind="stable")
+    return np.concatenate(corners)[first], pair[first]
 
 
 def _triangles(patch: Patch) -> list[Array]:
@@ -107,24 +110,39 @@ def _triangles(patch: Patch) -> list[Array]:
     return [shapely.get_coordinates(part)[:3] for part in parts]
 
 
-def _cell(polygon: Array, sites: Array, j: int) -> Array:
-    """Return what of a convex polygon (k, 2) lies nearest to site j of (n, 2)."""
-    cell = polygon
-    for i in range(len(sites)):
-        if i == j or not len(cell):
-            continue
-        away = sites[i] - sites[j]
-        if not away.any():
-            continue
-        side = (cell - 0.5 * (sites[i] + sites[j])) @ away
-        if (side <= 0).all():
-            continue
-        kept = []
-        for k in range(len(cell)):
-            p, q, a, b = cell[k - 1], cell[k], side[k - 1], side[k]
-            if (a <= 0) != (b <= 0):
-                kept.append(p + a / (a - b) * (q - p))
-            if b <= 0:
-                kept.append(q)
-        cell = np.array(kept).reshape(-1, 2)
-    return cell
+def _nearest(polygons: Array, sites: Array) -> tuple[Array, Array]:
+    """Return of convex polygons (g, k, 2) what lies nearest to each of their sites (g, n, 2).
+
+    The cells (g, n, m, 2) and their numbers of corners (g, n); what follows the last corner means nothing.
+    """
+    groups, n = sites.shape[:2]
+    cell = np.repeat(polygons, n, axis=0)  # (g n, m, 2)
+    count = np.full(len(cell), polygons.shape[1])
+    own = sites.reshape(-1, 2)
+    for i in range(n):
+        other = np.repeat(sites[:, i], n, axis=0)
+        away = other - own
+        cell, count = _halved(cell, count, 0.5 * (other + own), away)
+    return cell.reshape(groups, n, -1, 2), count.reshape(groups, n)
+
+
+def _halved(cell: Array, count: Array, at: Array, away: Array) -> tuple[Array, Array]:
+    """Return convex polygons (b, m, 2) of ``count`` corners without what lies beyond lines through ``at``."""
+    rows, room = np.arange(len(cell)), cell.shape[1]
+    side = np.einsum("bmc,bc->bm", cell - at[:, None], away)
+    real = np.arange(room) < count[:, None]
+    before = np.where(np.arange(room) > 0, np.arange(room) - 1, np.maximum(count, 1)[:, None] - 1)
+    behind, inside = side[rows[:, None], before], side <= 0
+    crosses = real & (inside != (behind <= 0))
+    keeps = real & inside
+    if not crosses.any():
+        return cell, np.where(keeps.any(axis=1), count, 0)
+    place = np.cumsum(crosses.astype(int) + keeps, axis=1)
+    fresh = np.zeros((len(cell), int(place[:, -1].max(initial=0)), 2))
+    b, m = np.nonzero(crosses)
+    last = cell[b, before[b, m]]
+    share = behind[b, m] / (behind[b, m] - side[b, m])
+    fresh[b, place[b, m] - 1 - keeps[b, m]] = last + share[:, None] * (cell[b, m] - last)
+    b, m = np.nonzero(keeps)
+    fresh[b, place[b, m] - 1] = cell[b, m]
+    return fresh, place[:, -1]

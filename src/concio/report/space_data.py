@@ -1,4 +1,8 @@
-"""What the view in space shows, as typed arrays in base64; the same forms as :mod:`concio.report.view_data`."""
+"""What the view in space shows, as typed arrays in base64; the same forms as :mod:`concio.report.view_data`.
+
+Numbers of a pair are written once, whatever the number of triangles it is drawn with, and faces of joints are moved
+with their bodies by the view: a file of 2,000 blocks stays below 10 MB.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +46,7 @@ def space_view_data(results: Sequence[Result], labels: Sequence[str]) -> dict[st
     shown, faces = _shown(first)
     low, high = shown.points.min(axis=0), shown.points.max(axis=0)
     origin = 0.5 * (low + high)
-    each = 12 * len(shown.points) + (72 + 40) * len(faces.pair) + 100 * len(model.bodies)
+    each = 12 * len(shown.points) + 25 * len(pairs) + 100 * len(model.bodies)
     kept = steps_within(BUDGET, len(results), each)
     packed = [_step(results[k], labels[k]) for k in kept]
     largest = max(step.pop("largest") for step in packed)
@@ -71,8 +75,8 @@ def space_view_data(results: Sequence[Result], labels: Sequence[str]) -> dict[st
         "pieces": {
             "corner": pack(faces.corners - origin, "f4"),
             "pair": pack(faces.pair, "i4"),
-            "face": pack(pairs.interface[faces.pair], "i4"),
         },
+        "pairs": {"face": pack(pairs.interface, "i4")},
         "joints": {
             "a": pack(resultants.body_a, "i4"),
             "b": pack(resultants.body_b, "i4"),
@@ -104,8 +108,6 @@ def _step(result: Result, label: str) -> dict[str, Any]:
         "status": result.status.name.lower(),
         "largest": float(np.linalg.norm(shown.displacement, axis=1).max(initial=0.0)),
         "move": pack(shown.displacement, "f4"),
-        "moved_a": pack(faces.moved_a, "f4"),
-        "moved_b": pack(faces.moved_b, "f4"),
         "motion": pack(body_motions_in_space(result, u), "f8"),
     }
     if not result.solved:
@@ -114,17 +116,14 @@ def _step(result: Result, label: str) -> dict[str, Any]:
         return step
     contacts, joints = result.contacts, result.joints_in_space
     values, directions = result.stress.principal_in_space
-    pair = faces.pair
     return {
         **step,
         "stress": pack(values, "f8"),
         "axes": pack(directions, "f4"),
-        "state": pack(contacts.state[pair], "u1"),
-        "t_n": pack(contacts.normal_force[pair], "f8"),
-        "t_t": pack(contacts.friction_force[pair], "f8"),
-        "gap": pack(contacts.gap[pair], "f8"),
-        "slip": pack(contacts.slip[pair], "f8"),
-        "pressure": pack(contacts.pressure[pair], "f8"),
+        "state": pack(contacts.state, "u1"),
+        "gap": pack(contacts.gap, "f8"),
+        "slip": pack(np.linalg.norm(contacts.slip, axis=1), "f8"),
+        "pressure": pack(contacts.pressure, "f8"),
         "N": pack(joints.N, "f8"),
         "V": pack(np.linalg.norm(joints.V, axis=1), "f8"),
         "force": pack(joints.force, "f4"),

@@ -20,8 +20,29 @@
   const data = JSON.parse($("data").textContent);
   const look = data.look, bodies = unpacked(data.bodies), pieces = unpacked(data.pieces), joints = unpacked(data.joints);
   const steps = data.steps.map(() => null);
-  const stepAt = (k) => (steps[k] ??= unpacked(data.steps[k]));
+  const stepAt = (k) => (steps[k] ??= stepOf(unpacked(data.steps[k])));
   const count = bodies.name.length, triangles = bodies.owner.length, cells = pieces.pair.length;
+  const pairFace = unpack(data.pairs.face);
+  pieces.face = pieces.pair.map((p) => pairFace[p]);
+  /* a step: numbers of pairs spread over the pieces they are drawn with, faces of joints moved with their two bodies */
+  function stepOf(found) {
+    for (const key of ["state", "gap", "slip", "pressure"]) {
+      const values = found[key];
+      if (values && values.length === pairFace.length && found.pressure) { found[key] = new values.constructor(cells); for (let k = 0; k < cells; k++) found[key][k] = values[pieces.pair[k]]; }
+    }
+    for (const side of ["a", "b"]) {
+      const moves = new Float32Array(9 * cells);
+      for (let k = 0; k < cells; k++) {
+        const b = joints[side][pieces.face[k]], m = 6 * b;
+        for (let v = 9 * k; v < 9 * k + 9; v += 3) {
+          const [x, y, z] = [0, 1, 2].map((c) => pieces.corner[v + c] - bodies.centre[3 * b + c]), [p, q, r] = [3, 4, 5].map((c) => found.motion[m + c]);
+          moves[v] = found.motion[m] + q * z - r * y; moves[v + 1] = found.motion[m + 1] + r * x - p * z; moves[v + 2] = found.motion[m + 2] + p * y - q * x;
+        }
+      }
+      found[`moved_${side}`] = moves;
+    }
+    return found;
+  }
   const STATES = ["open", "sticks", "slips", "is crushed"], STATE_LOOK = ["open", "stick", "slip", "crushed"];
   const view = {
     turn: -0.7, lift: 0.45, x: 0, y: 0, z: 0, distance: 1, scale: data.scale, step: data.steps.length - 1, colour: "none",
@@ -257,7 +278,7 @@
       parts.push(`<span class="bar" style="background:linear-gradient(90deg,${steps.join()})"></span>${told(range[0], KINDS[view.colour])} to ${told(range[1], KINDS[view.colour])}, ${WORDS[view.colour]}`);
     }
     if (view.joints && step.state) {
-      const held = new Set(step.state), words = data.mechanism && !step.t_n ? ["opens", "stays closed", "slides", "is crushed"] : STATES;
+      const held = new Set(step.state), words = data.mechanism && !step.pressure ? ["opens", "stays closed", "slides", "is crushed"] : STATES;
       for (const k of [0, 1, 2, 3]) if (held.has(k)) parts.push(`<span class="key" style="background:${look[STATE_LOOK[k]]}"></span>joint ${words[k]}`);
     }
     if (view.crosses || view.forces) parts.push(`<span class="key" style="background:${look.compression}"></span>compression <span class="key" style="background:${look.tension}"></span>tension`);
@@ -352,7 +373,7 @@
     const p = view.picked, info = $("info");
     const text = (s) => { const d = document.createElement("span"); d.textContent = s; return d.innerHTML; };
     if (!p) { info.textContent = "Click a block or a joint to read its numbers."; return; }
-    const answer = !!step.t_n, rows = [];
+    const answer = !!step.pressure, rows = [];
     if (p.body !== undefined) {
       const b = p.body, m = step.motion.subarray(6 * b, 6 * b + 6);
       rows.push(`<b>${text(bodies.name[b])}</b> (${bodies.kind[b]}), volume ${digits(bodies.volume[b])} m³`);
@@ -365,7 +386,7 @@
       rows.push(`joint <b>${text(bodies.name[joints.a[j]])}</b> | <b>${text(bodies.name[joints.b[j]])}</b>, ${digits(joints.area[j])} m²`);
       if (answer) {
         rows.push(`N ${told(step.N[j], "force")}, V ${told(step.V[j], "force")}, ${digits(100 * step.open_share[j])} % open`);
-        rows.push(`contact point ${pair}: ${STATES[step.state[k]]}, pressure ${told(step.pressure[k], "stress")}, gap ${told(step.gap[k], "motion")}, slip ${told(Math.hypot(step.slip[2 * k], step.slip[2 * k + 1]), "motion")}`);
+        rows.push(`contact point ${pair}: ${STATES[step.state[k]]}, pressure ${told(step.pressure[k], "stress")}, gap ${told(step.gap[k], "motion")}, slip ${told(step.slip[k], "motion")}`);
       } else if (step.state) rows.push(["opens", "stays closed", "slides"][step.state[k]]);
     }
     info.innerHTML = rows.join("<br>");
@@ -417,7 +438,7 @@
   listen("crosses", "change", (e) => { view.crosses = e.checked; legend(); });
   listen("solid", "input", (e) => { view.solid = e.value / 100; });
   ["x", "y", "z"].forEach((name, c) => listen(`cut-${name}`, "input", (e) => { view.cut[c] = e.value / 100; }));
-  const scaleText = () => { $("scale-text").textContent = data.mechanism && !step.t_n ? "" : `× ${digits(view.scale)}`; };
+  const scaleText = () => { $("scale-text").textContent = data.mechanism && !step.pressure ? "" : `× ${digits(view.scale)}`; };
   listen("scale", "input", (e) => { view.scale = data.scale * (e.value / 100) ** 2; scaleText(); });
   listen("step", "input", (e) => { view.step = Number(e.value); setStep(); });
   listen("play", "click", (e) => { view.playing = !view.playing; e.textContent = view.playing ? "stop" : "play"; if (view.playing) requestAnimationFrame(tick); else { view.phase = 1; } });

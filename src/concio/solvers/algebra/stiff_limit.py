@@ -8,8 +8,12 @@ A problem whose joints are hard between bodies that do not deform is solved with
 and what is wanted is the limit of x as a goes to zero, where M alone is singular: its forces are not unique. Repeated
 solves with residuals of M,  x <- x + (M + a D)^{-1} (b - M x),  converge to that limit, an error of the order a times
 smaller with each, and never bring in forces that balance themselves. Forces are eliminated as in the engine,
-K + C'(aD)^{-1}C, one factorisation for all. Hard pairs to which nothing was lent, those of bodies that deform, take
-part with the least compliance lent: it only has to be small beside that of their bodies, and is gone in the limit.
+K + C'(aD)^{-1}C, one factorisation for all. Of blocks that begin where they are joined and are not moved the
+displacements are in proportion to a and the forces do not depend on it: where the solves do not converge, no motion
+with the forces as they are is the other candidate.
+
+Hard pairs to which nothing was lent, those of bodies that deform, take part with the least compliance lent: it only has
+to be small beside that of their bodies, and is gone in the limit.
 """
 
 from __future__ import annotations
@@ -45,17 +49,21 @@ def without_compliance(hard: ContactProblem, lent: ContactProblem, answer: Solut
     answer : Solution
         A certified solution of ``lent``: its states are imposed.
     """
+    still = np.zeros_like(answer.displacement)
     try:
         u, t_n, t_t = _States(hard, lent, answer).limit(answer)
     except SingularMatrixError:
         return None
     if float(np.abs(u).max(initial=0.0)) <= NOTHING * float(np.abs(answer.displacement).max(initial=0.0)):
-        u = np.zeros_like(u)  # nothing moves: rounding must not be measured against itself
-    found = judge(
-        hard, u, t_n, t_t, method=answer.method, iterations=answer.iterations,
-        factorisations=answer.factorisations + 1, trace=answer.trace, info=answer.info,
-    )  # fmt: skip
-    return found if found.solved else None
+        u = still  # nothing moves: rounding must not be measured against itself
+    for forces in ((u, t_n, t_t), (still, answer.normal_force, answer.friction_force)):
+        found = judge(
+            hard, *forces, method=answer.method, iterations=answer.iterations,
+            factorisations=answer.factorisations + 1, trace=answer.trace, info=answer.info,
+        )  # fmt: skip
+        if found.solved:
+            return found
+    return None
 
 
 class _States:
