@@ -205,3 +205,10 @@ def test_a_crushing_toe_moves_the_hinge_inwards(cap, most):
     found = concio.push(standing(0.2, 1.0, friction=concio.JointLaw(1.0, compressive_strength=cap)))
     assert 0.9 * most < found.peak < 1.001 * most
     assert found.certified
+
+
+def test_blocks_that_could_all_slide_part():
+    """Every course slides at the same share of the weights; which block goes is decided by a millionth of them."""
+    curve = concio.push(concio.wall(length=0.5, height=0.25, block="rigid", friction=0.6), step=0.005, until=1e-4)
+    assert curve.ending is PushEnding.REACHED
+    assert curve.multiplier[1:] == pytest.approx(0.6, abs=3e-6)

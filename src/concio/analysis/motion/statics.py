@@ -36,11 +36,21 @@ from concio.solvers.stepping.solver import StepSolver
 
 Array = np.ndarray
 
-RESISTANCE = (2.0, 6.0, 20.0, 60.0, 200.0, 600.0)
-"""epsilon over gravity by the width of a body: the first, and larger ones where iterations swing to and fro.
+RESISTANCE = (2e-6, 6e-5, 2e-3, 6e-2, 2.0, 6.0, 20.0, 60.0, 200.0, 600.0)
+"""epsilon over gravity by the width of a body: :data:`USUAL`, larger ones where iterations swing to and fro, smaller
+ones where each moves as far as the last.
 
 What hangs by a tie and turns with the load is stiffer than the rows of the first order know: with the first alone the
 iterations swing about the equilibrium and lose two to fifteen hundredths of their size each time."""
+
+USUAL = 4
+"""The resistance to begin with, in :data:`RESISTANCE`."""
+
+STEADY = 0.9
+"""Share of the last iteration, gone once more, from which on the resistance is made smaller.
+
+Blocks that can all slide under nearly the same load part slowly: what the sag of their joints tilts them by decides
+which one goes, and that is a millionth of their weights."""
 
 SWINGING = 0.6
 """Share of the last iteration, turned back, from which on the resistance is made larger."""
@@ -228,7 +238,7 @@ class Statics:
             return np.zeros(f.n)
         return f.ground(Drive(-self.gravity * self.push, np.zeros(2), {}), turn)
 
-    def problem(self, look: _Look, multiplier: float, level: int = 0, bare: bool = False) -> StepProblem:
+    def problem(self, look: _Look, multiplier: float, level: int = USUAL, bare: bool = False) -> StepProblem:
         """Return the problem of the displacements to equilibrium at a multiplier, with a level of resistance."""
         b = look.dead + multiplier * look.live + look.internal
         force = float(np.abs(look.dead + multiplier * look.live).sum()) or 1.0
@@ -256,7 +266,7 @@ class Statics:
         contact = slip = None
         t_last: Array | None = None
         done, found, iterations, first = 0.0, None, 0, self._at(state)
-        level, last = 0, np.zeros(f.n)
+        level, last = USUAL, np.zeros(f.n)
         for iteration in range(1, most + 1):
             look = self.look(here, begun, slid, multiplier)
             begun, m = look.memory, len(look.memory.key)
@@ -282,8 +292,11 @@ class Statics:
             iterations = iteration
             if size < STILL * self.width:
                 break
-            if iteration > 2 and float(x @ last) < -SWINGING * float(last @ last):
+            along = float(x @ last)
+            if iteration > 2 and along < -SWINGING * float(last @ last):
                 level = min(level + 1, len(RESISTANCE) - 1)
+            elif iteration > 2 and level and along > STEADY * float(last @ last) and along > STEADY * float(x @ x):
+                level -= 1
             last = x
             if float(np.abs(moved).max()) > FAR * self.width + abs(target or 0.0):
                 break

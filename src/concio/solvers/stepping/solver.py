@@ -24,6 +24,9 @@ FLIPS = 6
 ROUNDS = 14
 """Factorisations at most before other methods are tried."""
 
+PIVOTS = 20
+"""Pivots a pair that are tried where nothing else decides."""
+
 GOOD = 1e-11
 """Residual below which an answer is taken without looking further."""
 
@@ -99,20 +102,18 @@ class StepSolver:
     def _fallback(self, p: StepProblem, best: StepSolution | None) -> StepSolution:
         problem = p.contact_problem()
         pick = np.flatnonzero(p.active)
-        if best is not None:
-            s = best.states
-            slides = np.where(s.slip == 0, PairState.STICK, PairState.SLIP)
-            code = np.where(s.contact == 0, PairState.OPEN, np.where(s.contact == 2, PairState.CRUSHED, slides))
-            named = PairStates(code[pick].astype(np.int8), s.slip[pick, None].astype(float))
-            answer = sparse_lemke.solve(problem, start_states=named, tries=0, limit=2000)
-            found = self._read(p, pick, answer.displacement, answer.normal_force, answer.friction_force, "pivoting")
-            if found.residual < SETTLED:
-                return found
         answer = interior.solve(problem)
         found = self._read(p, pick, answer.displacement, answer.normal_force, answer.friction_force, "interior point")
-        if best is None or found.residual < best.residual:
-            best = found
-        return best
+        if found.residual < SETTLED:
+            return found
+        nearest = found if best is None or found.residual < best.residual else best
+        s = nearest.states
+        slides = np.where(s.slip == 0, PairState.STICK, PairState.SLIP)
+        code = np.where(s.contact == 0, PairState.OPEN, np.where(s.contact == 2, PairState.CRUSHED, slides))
+        named = PairStates(code[pick].astype(np.int8), s.slip[pick, None].astype(float))
+        answer = sparse_lemke.solve(problem, start_states=named, tries=0, limit=PIVOTS * len(pick))
+        found = self._read(p, pick, answer.displacement, answer.normal_force, answer.friction_force, "pivoting")
+        return found if found.residual < nearest.residual else nearest
 
     def _read(self, p: StepProblem, pick: Array, x: Array, t_n: Array, t_t: Array, how: str) -> StepSolution:
         t = np.zeros((p.pairs, p.dim))
