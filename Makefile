@@ -49,8 +49,8 @@ test: $(VENV)/.installed-dev
 # Small faults put into the core on purpose: those that once passed unseen must be seen, a new sample is printed.
 .PHONY: mutants
 mutants: $(VENV)/.installed-dev
-	OMP_NUM_THREADS=1 $(BIN)/python tests/mutants.py --named
-	-OMP_NUM_THREADS=1 $(BIN)/python tests/mutants.py --count $(or $(COUNT),60)
+	OMP_NUM_THREADS=1 $(BIN)/python tests/mutants.py --named --minutes $(or $(MINUTES),inf)
+	-OMP_NUM_THREADS=1 $(BIN)/python tests/mutants.py --count $(or $(COUNT),60) --minutes $(or $(MINUTES),inf)
 
 # The tests with the lowest versions that pyproject.toml allows, and with the newest Python there is (NEWEST=python3.14).
 NEWEST ?= $(shell for v in 15 14 13 12; do command -v python3.$$v && break; done)

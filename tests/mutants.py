@@ -1,13 +1,13 @@
 """A sample of mutants of the core: small faults put in on purpose, which the tests must see.
 
-python tests/mutants.py [--count 60] [--seed 0] [--jobs 2] [--only PATH] [--named]
+python tests/mutants.py [--count 60] [--seed 0] [--jobs 2] [--only PATH] [--named] [--minutes M]
 
 Each mutant changes one operator, comparison, constant or function of one line of the core (a minus for a plus, a
 maximum for a minimum, a factor of two where a number is no tolerance); the tests of its room are run on a copy of the
 package that holds it, until one fails. A test that fails without the mutant, too, has killed nothing: the run ends, and
 says which. Survivors are defects of the tests, or mutants that change nothing: those stand
 in ``mutants_kept.toml`` with the reason. Any other survivor makes the exit code 1. With ``--named`` those of
-``mutants_named.toml`` are tried instead of a sample.
+``mutants_named.toml`` are tried instead of a sample. After ``--minutes`` no other mutant is begun.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import tomllib
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -203,7 +204,9 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--only", default="", help="a file or folder of the package")
     parser.add_argument("--named", action="store_true", help="those that once survived, one by one")
+    parser.add_argument("--minutes", type=float, default=float("inf"), help="after which no other mutant is begun")
     chosen = parser.parse_args()
+    last = time.monotonic() + 60 * chosen.minutes
     missing = sorted({t for tests in ROOMS.values() for t in tests if not (HERE.parent / t).exists()})
     if missing:
         sys.exit("no such tests: " + ", ".join(missing))
@@ -216,12 +219,14 @@ def main() -> int:
     kept = tomllib.loads(KEPT.read_text(encoding="utf-8")).get("kept", {}) if KEPT.exists() else {}
     print(f"{len(sample)} of {len(every)} mutants of {len(paths)} files, seed {chosen.seed}", flush=True)
     copies: SimpleQueue[Path] = SimpleQueue()
-    survivors = []
+    survivors, tried = [], 0
     with tempfile.TemporaryDirectory() as folder:
         for k in range(chosen.jobs):
             copies.put(Path(shutil.copytree(SOURCE, Path(folder) / str(k) / "concio")))
 
-        def attempt(mutant: Mutant) -> tuple[Mutant, str]:
+        def attempt(mutant: Mutant) -> tuple[Mutant, str | None]:
+            if time.monotonic() > last:
+                return mutant, None
             package = copies.get()
             try:
                 return mutant, killed_by(mutant, package)
@@ -231,13 +236,14 @@ def main() -> int:
         with ThreadPoolExecutor(chosen.jobs) as pool:
             for mutant, test in pool.map(attempt, sample):
                 why = kept.get(mutant.key, "")
-                word = "killed" if test else ("kept" if why else "SURVIVED")
+                word = "not tried" if test is None else "killed" if test else "kept" if why else "SURVIVED"
                 print(
-                    f"{word:9s} {mutant.path}:{mutant.line}  {mutant.old}  ->  {mutant.new}  {test or why}", flush=True
+                    f"{word:10s} {mutant.path}:{mutant.line}  {mutant.old}  ->  {mutant.new}  {test or why}", flush=True
                 )
+                tried += test is not None
                 if word == "SURVIVED":
                     survivors.append(mutant)
-    print(f"{len(sample) - len(survivors)} of {len(sample)} are seen or known to change nothing")
+    print(f"{tried - len(survivors)} of {tried} tried are seen or known to change nothing")
     return 1 if survivors else 0
 
 
