@@ -16,6 +16,7 @@ from typing import Any, ParamSpec, TypeVar
 
 from concio.argument_types import Check, checker, told
 from concio.errors import ArgumentError
+from concio.synonyms import meant
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -27,6 +28,8 @@ CLOSE = 0.6
 def closest(word: str, known: Iterable[str], *, names: str = "known", otherwise: str = "") -> str:
     """Return a hint that names the word that was probably meant, or all that are known.
 
+    Another word for a known one (:mod:`concio.synonyms`) comes before one that is only spelt alike.
+
     Parameters
     ----------
     word : str
@@ -37,6 +40,9 @@ def closest(word: str, known: Iterable[str], *, names: str = "known", otherwise:
         What to say in place of that list, where it would be long.
     """
     words = list(known)
+    other = meant(word, words)
+    if other is not None:
+        return f"did you mean '{other}'?"
     folded = {w.casefold(): w for w in reversed(words)}
     near = difflib.get_close_matches(word.casefold(), list(folded), n=1, cutoff=CLOSE)
     if near:

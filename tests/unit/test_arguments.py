@@ -11,8 +11,10 @@ import pytest
 import concio
 from concio.arguments import closest, strict, strict_class, strict_with
 from concio.errors import ArgumentError
+from concio.model.file.generator_tables import json_schema
 from concio.solvers.methods import METHODS, find
 from concio.studies.compare import compare
+from concio.synonyms import SAME, meant
 from models import box, on_ground, weight
 
 PASSES_ON = {"variable"}
@@ -139,9 +141,31 @@ def test_strict_keeps_what_a_function_says_of_itself() -> None:
 def test_closest() -> None:
     assert closest("fricton", ["cohesion", "friction"]) == "did you mean 'friction'?"
     assert closest("Friction", ["cohesion", "friction"]) == "did you mean 'friction'?"
+    assert closest("bodies", ["loads", "ties", "blocks"]) == "did you mean 'blocks'?"
+    assert closest("bodies", ["loads", "ties"]) == "did you mean 'ties'?"  # by its letters, where no word of ours is known
     assert closest("zzz", ["a", "b"], names="groups") == "groups: a, b"
     assert closest("zzz", []) == "known: none"
     assert closest("zzz", ["a"], otherwise="look") == "look"
+
+
+def keys_of(schema: Any) -> set[str]:
+    """Return the keys of all tables of a JSON Schema."""
+    if isinstance(schema, list):
+        return set().union(*map(keys_of, schema))
+    if not isinstance(schema, dict):
+        return set()
+    return set(schema.get("properties", ())).union(*map(keys_of, schema.values()))
+
+
+def test_other_words_lead_to_keys_that_there_are() -> None:
+    assert set(SAME) - keys_of(json_schema()) == set()
+    for name, others in SAME.items():
+        assert len({name.casefold(), *others}) == 1 + len(others)
+        assert all(word == word.casefold() and " " not in word for word in others)
+    assert meant("Poisson ratio", ["E", "nu"]) == "nu"
+    assert meant("peso specifico", ["E", "unit_weight"]) == "unit_weight"
+    assert meant("nodes", ["vertices", "outline"]) == "outline"
+    assert meant("nodes", ["span"]) is None
 
 
 COLUMN = "[column]\nwidth = 0.3\nheight = 1.2\nblocks = 3\nfriction = 0.9\nhorizontal = 1.0\n"

@@ -306,6 +306,9 @@ def test_a_generator_with_further_parts() -> None:
 WRONG = {
     "unknown key": ("[panel]\ncourse = 3", "[panel]: unknown key 'course' (did you mean 'courses'?)"),
     "unknown table": ("[pannel]\ncourses = 3", "f.toml: unknown key 'pannel' (did you mean 'panel'?)"),
+    "another word for a table": (BLOCK.replace("[[blocks]]", "[[bodies]]"), "'bodies' (did you mean 'blocks'?)"),
+    "another word for a key": (BLOCK + "vertici = [[0, 0]]", "unknown key 'vertici' (did you mean 'outline'?)"),
+    "a symbol for a key": ("[joints.a]\nmu = 0.5\n[panel]", "unknown key 'mu' (did you mean 'friction'?)"),
     "unknown key of a block": (BLOCK + "colour = 'red'", "[[blocks]] 2 'b': unknown key 'colour'"),
     "unknown key of a material": ("[materials.a]\ne = 1\n[panel]", "unknown key 'e' (did you mean 'E'?)"),
     "unknown key of a joint": ("[joints.a]\nfricton = 1\n[panel]", "unknown key 'fricton' (did you mean 'friction'?)"),

@@ -17,7 +17,7 @@ import concio
 
 ROOT = Path(concio.__file__).parent
 ORDER = (
-    "__version__", "representation", "argument_types", "errors", "files", "arguments", "units", "display", "kinematics",
+    "__version__", "representation", "argument_types", "errors", "files", "synonyms", "arguments", "units", "display", "kinematics",
     "model", "model/motion", "model/interfaces", "model/generate", "model/drawing", "model/solids",
     "model/file",
     "fem", "problem", "contact", "contact/moving",
