@@ -14,7 +14,7 @@ import pytest
 
 import concio
 from concio.cli.path_lines import path_facts
-from concio.model.file.generator_tables import json_schema
+from concio.model.file.file_table import json_schema
 from concio.post.path_curve import most_moving
 from concio.problem.solution import Status
 

@@ -11,7 +11,7 @@ import pytest
 import concio
 from concio.arguments import closest, strict, strict_class, strict_with
 from concio.errors import ArgumentError
-from concio.model.file.generator_tables import json_schema
+from concio.model.file.file_table import json_schema
 from concio.solvers.methods import METHODS, find
 from concio.studies.compare import compare
 from concio.synonyms import SAME, meant
@@ -142,7 +142,7 @@ def test_closest() -> None:
     assert closest("fricton", ["cohesion", "friction"]) == "did you mean 'friction'?"
     assert closest("Friction", ["cohesion", "friction"]) == "did you mean 'friction'?"
     assert closest("bodies", ["loads", "ties", "blocks"]) == "did you mean 'blocks'?"
-    assert closest("bodies", ["loads", "ties"]) == "did you mean 'ties'?"  # by its letters, where no word of ours is known
+    assert closest("bodies", ["loads", "ties"]) == "did you mean 'ties'?"  # by its letters
     assert closest("zzz", ["a", "b"], names="groups") == "groups: a, b"
     assert closest("zzz", []) == "known: none"
     assert closest("zzz", ["a"], otherwise="look") == "look"

@@ -21,7 +21,8 @@ from concio.errors import GeometryError, InputError
 from concio.fem.elements import FAMILIES, SOLID_FAMILIES
 from concio.files import LARGEST
 from concio.model.file.block_table import write_blocks
-from concio.model.file.generator_tables import KINDS, file_table, hints_of, json_schema
+from concio.model.file.file_table import file_table, json_schema
+from concio.model.file.generator_tables import KINDS, hints_of
 from concio.model.file.tables import Element
 from concio.model.generate.generators import GENERATORS
 

@@ -17,8 +17,8 @@ import concio
 
 ROOT = Path(concio.__file__).parent
 ORDER = (
-    "__version__", "representation", "argument_types", "errors", "files", "synonyms", "arguments", "units", "display", "kinematics",
-    "model", "model/motion", "model/interfaces", "model/generate", "model/drawing", "model/solids",
+    "__version__", "representation", "argument_types", "errors", "files", "synonyms", "arguments", "units", "display",
+    "kinematics", "model", "model/motion", "model/interfaces", "model/generate", "model/drawing", "model/solids",
     "model/file",
     "fem", "problem", "contact", "contact/moving",
     "solvers/algebra", "solvers/lcp", "solvers/states", "solvers/statics", "solvers/interior", "solvers/pivoting",

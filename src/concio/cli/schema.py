@@ -13,7 +13,7 @@ def schema() -> int:
 
     Example: concio schema > concio.schema.json
     """
-    from concio.model.file.generator_tables import json_schema
+    from concio.model.file.file_table import json_schema
 
     say(json.dumps(json_schema(), indent=2, ensure_ascii=False))
     return 0

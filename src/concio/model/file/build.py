@@ -10,22 +10,19 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Any, Literal
-
-import numpy as np
+from typing import Any
 
 from concio.arguments import closest
 from concio.display import Units
-from concio.errors import GeometryError, InputError
+from concio.errors import InputError
 from concio.model.drawing.drawing import model_from_dxf
 from concio.model.file.block_table import read_blocks
+from concio.model.file.bodies import Materials, body_of, rigid_where_its_material_is
 from concio.model.file.errors import placed
+from concio.model.file.file_table import FileTable
 from concio.model.file.parts import assembled_parts
 from concio.model.file.tables import (
-    BlockTable,
     CourseTable,
-    FileTable,
-    HoleTable,
     JointTable,
     LoadTable,
     MaterialTable,
@@ -37,14 +34,12 @@ from concio.model.file.tables import (
 from concio.model.generate.bonds import Course
 from concio.model.generate.extrusion import extrude
 from concio.model.generate.generators import GENERATORS
-from concio.model.interfaces.polygon_check import check_polygon
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Body, JointRule, Load, Model, Support, Tie, check_rules
 from concio.model.polyhedron import Polyhedron
 from concio.model.solids.importing import model_from_solids
 from concio.model.stages import ControlPoint, Stage
 
-Materials = dict[str, Elastic | Rigid]
 Laws = dict[str, JointLaw]
 
 
@@ -71,7 +66,7 @@ def build(data: FileTable, folder: Path, where: str, read: Callable[[str], Model
         laws = {name: _law(table, f"[joints.{name}]") for name, table in data.joints.items()}
         start = _start(data, materials, laws, folder, read)
         bodies = [*(start.bodies if start else ()), *_blocks_of_file(data, materials, folder)]
-        bodies += [_body(b, k, materials, data.analysis.thickness) for k, b in enumerate(data.blocks, 1)]
+        bodies += [body_of(b, k, materials, data.analysis.thickness) for k, b in enumerate(data.blocks, 1)]
         if not bodies:
             msg = "the file describes no blocks"
             hint = "add [[blocks]], blocks_file = ..., or one of " + ", ".join(f"[{name}]" for name in GENERATORS)
@@ -266,12 +261,7 @@ def _blocks_of_file(data: FileTable, materials: Materials, folder: Path) -> list
     if data.blocks_file is None or data.blocks_file.lower().endswith(".dxf"):
         return []
     bodies = read_blocks(folder / data.blocks_file)
-    return [_rigid_where_its_material_is(b, materials) for b in bodies]
-
-
-def _rigid_where_its_material_is(body: Body | Polyhedron, materials: Materials) -> Body | Polyhedron:
-    rigid = body.kind == "elastic" and isinstance(materials.get(body.material), Rigid)
-    return replace(body, kind="rigid") if rigid else body
+    return [rigid_where_its_material_is(b, materials) for b in bodies]
 
 
 def _material(table: MaterialTable, place: str) -> Elastic | Rigid:
@@ -291,87 +281,6 @@ def _material(table: MaterialTable, place: str) -> Elastic | Rigid:
 def _law(table: JointTable, place: str) -> JointLaw:
     with placed(place):
         return JointLaw(**table.model_dump())
-
-
-def _body(table: BlockTable, number: int, materials: Materials, thickness: float) -> Body | Polyhedron:
-    with placed(f"[[blocks]] {number} '{table.name}'", own=f"block '{table.name}'"):
-        if table.box is not None or table.vertices is not None or table.faces is not None:
-            return _solid(table, materials)
-        if (table.outline is None) == (table.rectangle is None):
-            msg = "give either an outline or a rectangle" + ("" if table.outline is None else ", not both")
-            raise InputError(msg, hint="outline = [[x, y], ...] or rectangle = [[x1, y1], [x2, y2]]")
-        if table.rectangle is not None:
-            _plane_points(table.rectangle)
-            (x0, x1), (y0, y1) = (sorted(values) for values in zip(*table.rectangle, strict=True))
-            if x0 == x1 or y0 == y1:
-                msg = "the rectangle has no area"
-                raise GeometryError(msg, hint="give two opposite corners")
-            outline = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
-        else:
-            assert table.outline is not None
-            _plane_points(table.outline)
-            outline = np.array(table.outline, dtype=float).reshape(-1, 2)
-            check_polygon(outline, table.name)
-        kind, role = _sort(table, materials)
-        grid = None if table.grid is None else (np.array(table.grid.x), np.array(table.grid.y))
-        depth = thickness if table.thickness is None else table.thickness
-        holes = tuple(_plane_hole(hole) for hole in table.holes)
-        for k, hole in enumerate(holes, 1):
-            check_polygon(hole, f"{table.name}', hole '{k}")
-        return Body(table.name, outline, table.material, kind, role, table.layer, depth, grid, table.mesh_size, holes)
-
-
-def _plane_hole(hole: HoleTable | Sequence[Sequence[float]]) -> np.ndarray:
-    if isinstance(hole, HoleTable):
-        msg = "a hole of a block in the plane is an outline"
-        raise InputError(msg, hint="holes = [[[x, y], ...], ...]")
-    _plane_points(hole)
-    return np.array(hole, dtype=float).reshape(-1, 2)
-
-
-def _plane_points(points: Sequence[Sequence[float]]) -> None:
-    if any(len(p) != 2 for p in points):
-        msg = "a point of an outline or a rectangle has three coordinates"
-        raise InputError(msg, hint="a block in space has vertices and faces, or box = [[x, y, z], [x, y, z]]")
-
-
-def _sort(table: BlockTable, materials: Materials) -> tuple[Literal["elastic", "rigid", "fixed"], str]:
-    kind: Literal["elastic", "rigid", "fixed"]
-    kind = table.kind or ("rigid" if isinstance(materials.get(table.material), Rigid) else "elastic")
-    role = table.role if table.role is not None else "obstacle" if kind == "fixed" else "block"
-    return kind, role
-
-
-def _solid(table: BlockTable, materials: Materials) -> Polyhedron:
-    """Return a block in space."""
-    flat = [key for key in ("outline", "rectangle", "thickness", "grid") if getattr(table, key) is not None]
-    if flat or (table.box is None) == (table.vertices is None) or (table.vertices is None) != (table.faces is None):
-        msg = f"'{flat[0]}' is no key of a block in space" if flat else "give either vertices and faces, or a box"
-        raise InputError(msg, hint="vertices = [[x, y, z], ...], faces = [[0, 2, 3, 1], ...], or box = two corners")
-    kind, role = _sort(table, materials)
-    words: dict[str, Any] = {
-        "material": table.material, "kind": kind, "role": role, "layer": table.layer, "mesh_size": table.mesh_size
-    }  # fmt: skip
-    if table.box is not None:
-        if any(len(p) != 3 for p in table.box):
-            msg = "a corner of the box has two coordinates"
-            raise InputError(msg, hint="box = [[x, y, z], [x, y, z]]")
-        low, high = (f(table.box, axis=0).tolist() for f in (np.min, np.max))
-        return Polyhedron.box(table.name, low, high, **words)
-    assert table.vertices is not None
-    assert table.faces is not None
-    if any(len(p) != 3 for p in table.vertices):
-        msg = "a vertex has two coordinates"
-        raise InputError(msg, hint="vertices = [[x, y, z], ...]")
-    holes = []
-    for hole in table.holes:
-        if not isinstance(hole, HoleTable):
-            msg = "a hole of a block in space is a face and a loop of vertices"
-            raise InputError(msg, hint="holes = [{ face = 0, loop = [4, 5, 6] }]")
-        holes.append((hole.face, tuple(hole.loop)))
-    grid = None if table.hexahedra is None else np.array(table.hexahedra, dtype=float)
-    faces = tuple(map(tuple, table.faces))
-    return Polyhedron(table.name, np.array(table.vertices), faces, holes=tuple(holes), grid=grid, **words)
 
 
 def _support(table: SupportTable, number: int) -> Support:

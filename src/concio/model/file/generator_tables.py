@@ -15,10 +15,7 @@ from typing import Annotated, Any, Literal, Union, Unpack, get_args, get_origin,
 
 from pydantic import Discriminator, Field, StrictBool, StrictInt, StrictStr, Tag, create_model
 
-from concio.model.file.assessment_table import AssessmentEntry, SiteEntry
-from concio.model.file.motion_table import Motion
-from concio.model.file.study_table import Study
-from concio.model.file.tables import Bond, Element, FileTable, Friction, Material, PartTable, Table
+from concio.model.file.tables import Bond, Element, Friction, Material, Table
 from concio.model.file.values import TYPES, Length, Number, Size
 from concio.model.generate.arguments import Common
 from concio.model.generate.generators import GENERATORS
@@ -63,40 +60,56 @@ def hints_of(function: Callable[..., Any]) -> dict[str, tuple[Any, Any]]:
     return found
 
 
+BY_NAME: Mapping[str, Any] = {
+    "contact_points": StrictInt | Literal["auto", "corners"],
+    "element": Element,
+    "at": tuple[Size, Size],
+    "start": tuple[Length, Length],
+    "end": tuple[Length, Length],
+    "towards": tuple[Number, Number],
+    "elements_per_block": tuple[StrictInt, StrictInt],
+    "repeat": tuple[StrictInt, StrictInt],
+}
+"""Types of the keys that their annotation does not tell: pairs of lengths and of numbers look alike there."""
+
+SIMPLE: Mapping[Any, Any] = {bool: StrictBool, int: StrictInt, str: StrictStr}
+
+
 def field_type(name: str, hint: Any, default: Any = None) -> Any:
-    """Return the type of a key of a file from annotation and default of the argument it stands for."""
+    """Return the type of a key of a file.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument it stands for, which tells the kind of quantity (:data:`KINDS`, :data:`BY_NAME`).
+    hint : type
+        Annotation of the argument: laws and materials, choices, lists of tables.
+    default : object
+        Default of the argument: a size of three entries is one of blocks in space.
+    """
     parts = [p for p in _parts(hint) if p is not NoneType]
-    if name == "contact_points":
-        return StrictInt | Literal["auto", "corners"]
-    if name == "element":
-        return Element
+    if name in BY_NAME:
+        return BY_NAME[name]
     if JointLaw in parts:
         return Friction
     if Elastic in parts or Rigid in parts:
         return Material
-    if len(parts) == 1 and (parts[0] is bool or parts[0] is int or parts[0] is str):
-        return {bool: StrictBool, int: StrictInt, str: StrictStr}[parts[0]]
+    if len(parts) == 1 and parts[0] in SIMPLE:
+        return SIMPLE[parts[0]]
     if all(get_origin(p) is Literal for p in parts):
         return Literal[tuple(word for p in parts for word in get_args(p))]
-    if name == "block_size" and isinstance(default, tuple) and len(default) == 3:
-        return tuple[Size, Size, Size]
-    if name in ("block_size", "at") or (name == "eccentricity" and float not in parts):
-        return tuple[Size, Size]
-    if name == "towards":
-        return tuple[Number, Number]
-    if name in ("start", "end"):
-        return tuple[Length, Length]
+    if name == "block_size" or (name == "eccentricity" and float not in parts):
+        in_space = isinstance(default, tuple) and len(default) == 3
+        return tuple[Size, Size, Size] if in_space else tuple[Size, Size]
+    if name == "bond":
+        return Bond
     if name == "lines":
         return GenericAlias(list, (_line_type(),))
-    if name in ("elements_per_block", "repeat"):
-        return tuple[StrictInt, StrictInt]
-    if any(p is float for p in parts):
+    if float in parts:
         return TYPES[KINDS.get(name, "number")]
     if name in ("openings", "panels"):
         own = GenericAlias(list, (_table_of(Opening if name == "openings" else Panel),))
         return GenericAlias(list, (own,)) if _nested(hint) else own
-    if name == "bond":
-        return Bond
     return list[list[Number]]
 
 
@@ -129,7 +142,7 @@ def _table_of(kind: type) -> type[Table]:
         raise TypeError(kind)
     hints = get_type_hints(kind)
     members: dict[str, Any] = {f.name: (field_type(f.name, hints[f.name]), Field(None)) for f in fields(kind)}
-    return create_model(kind.__name__, __base__=Table, __doc__=_first_line(kind), **members)
+    return create_model(kind.__name__, __base__=Table, __doc__=first_line(kind), **members)
 
 
 @cache
@@ -140,39 +153,9 @@ def generator_table(name: str) -> type[Table]:
     for key, (hint, default) in hints_of(function).items():
         kind = field_type(key, hint, default)
         members[key] = (kind, Field(...)) if default is ... else (kind, Field(None))
-    return create_model(name, __base__=Table, __doc__=_first_line(function), **members)
+    return create_model(name, __base__=Table, __doc__=first_line(function), **members)
 
 
-@cache
-def file_table() -> type[FileTable]:
-    """Return the table of a whole model file, generators included."""
-    members: dict[str, Any] = {name: (generator_table(name), Field(None)) for name in GENERATORS}
-    part = create_model("part", __base__=PartTable, __doc__=PartTable.__doc__, **members)
-    members["study"] = (Study, None)
-    members["site"] = (SiteEntry, None)
-    members["assessment"] = (AssessmentEntry, None)
-    members["parts"] = (GenericAlias(list, (part,)), Field(default_factory=list))
-    members["motion"] = (Motion, None)
-    return create_model("concio model", __base__=FileTable, __doc__=FileTable.__doc__, **members)
-
-
-def json_schema() -> dict[str, Any]:
-    """Return the JSON Schema of a model file (draft 2020-12)."""
-    schema = _any_of(file_table().model_json_schema())
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        **schema,
-        "title": "concio model file",
-        "description": "A masonry structure for concio, written in TOML.",
-    }
-
-
-def _any_of(schema: Any) -> Any:
-    """Return a schema in which a text may be read in two ways: the angle of a coefficient and a name are both texts."""
-    if isinstance(schema, dict):
-        return {"anyOf" if key == "oneOf" else key: _any_of(value) for key, value in schema.items()}
-    return [_any_of(value) for value in schema] if isinstance(schema, list) else schema
-
-
-def _first_line(thing: Any) -> str:
+def first_line(thing: Any) -> str:
+    """Return the first line of the docstring of a thing."""
     return (inspect.getdoc(thing) or "").split("\n", 1)[0]

@@ -36,7 +36,7 @@ from concio.errors import InputError
 from concio.files import read_text
 from concio.model.file.build import build
 from concio.model.file.errors import check_depth, check_finite, first_fault
-from concio.model.file.generator_tables import file_table
+from concio.model.file.file_table import file_table
 from concio.model.file.tables import UnitsTable
 from concio.model.file.values import FileUnits
 from concio.model.model import Model

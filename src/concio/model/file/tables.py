@@ -106,7 +106,8 @@ def _branch(value: Any) -> str:
     return "<name>" if isinstance(value, str) and not ANGLE.search(value) else "<number>"
 
 
-def _material_branch(value: Any) -> str:
+def word_or_table(value: Any) -> str:
+    """Return the branch of a value that is a table or the name of one."""
     return "<table>" if isinstance(value, dict | Table) else "<name>"
 
 
@@ -118,7 +119,7 @@ Friction = Annotated[
 ]
 """A coefficient, its angle with a unit, a table, or the name of a table in ``[joints]``."""
 Material = Annotated[
-    Annotated[MaterialTable, Tag("<table>")] | Annotated[StrictStr, Tag("<name>")], Discriminator(_material_branch)
+    Annotated[MaterialTable, Tag("<table>")] | Annotated[StrictStr, Tag("<name>")], Discriminator(word_or_table)
 ]
 """A table, or the name of a table in ``[materials]``."""
 
@@ -227,7 +228,7 @@ class SupportTable(Table):
     group: Name = "settlement"
 
 
-def _load_value(kind: str, value: Any, info: ValidationInfo) -> tuple[float, ...]:
+def load_value(kind: str, value: Any, info: ValidationInfo) -> tuple[float, ...]:
     """Return the numbers of a load in kN and m."""
     quantity, entries = LOAD_KINDS[kind]
     parts = value if isinstance(value, list) else [value]
@@ -253,7 +254,7 @@ class LoadTable(Table):
     @field_validator("value", mode="after")
     @classmethod
     def _value(cls, value: Any, info: ValidationInfo) -> tuple[float, ...]:
-        return _load_value(info.data["kind"], value, info) if "kind" in info.data else ()
+        return load_value(info.data["kind"], value, info) if "kind" in info.data else ()
 
 
 class TieTable(Table):
@@ -336,75 +337,3 @@ class PartTable(Table):
     without: StrictStr | list[StrictStr] = ""
     repeat: Annotated[StrictInt, Field(ge=1, le=10_000)] = 1
     step: Point | None = None
-
-
-class LayerTable(Table):
-    """What a layer of a drawing means; see :mod:`concio.model.drawing.layers`."""
-
-    use: Literal["block", "rigid", "fixed", "hole", "names", "ignore"] | None = None
-    material: StrictStr | None = None
-    role: StrictStr | None = None
-    thickness: Length | None = None
-    load: Literal["pressure", "traction", "point"] | None = None
-    value: Annotated[Any, Field(description="a number for pressure, [x, y] otherwise")] = None
-    group: Name | None = None
-    face: Face | None = None
-    support: Literal["x", "y", "xy"] | None = None
-
-    @field_validator("value", mode="after")
-    @classmethod
-    def _value(cls, value: Any, info: ValidationInfo) -> tuple[float, ...] | None:
-        kind = info.data.get("load")
-        return None if kind is None or value is None else _load_value(kind, value, info)
-
-
-Layer = Annotated[
-    Annotated[LayerTable, Tag("<table>")] | Annotated[StrictStr, Tag("<name>")], Discriminator(_material_branch)
-]
-"""A table, or a word: a use or a material."""
-
-
-class DrawingTable(Table):
-    """How a DXF drawing is read; see :func:`concio.model.drawing.drawing.model_from_dxf`."""
-
-    layers: dict[str, Layer] = Field(default_factory=dict)
-    mend: Length = 0.0
-    close: Length | None = None
-    on_fault: Literal["raise", "skip"] = "raise"
-    unit: StrictStr | None = None
-    chord_tolerance: Length | None = None
-
-
-class SolidsTable(Table):
-    """How a file of solids is read; see :func:`concio.model_from_solids`."""
-
-    layers: dict[str, StrictStr] = Field(default_factory=dict)
-    unit: StrictStr | None = None
-    mend: Length = 0.0
-    on_fault: Literal["raise", "skip"] = "raise"
-    ground: StrictBool = False
-
-
-class FileTable(Table):
-    """A whole model file, without the tables of generators."""
-
-    title: StrictStr = ""
-    units: UnitsTable = Field(default_factory=UnitsTable)
-    report: ReportTable | None = Field(None, description="units of texts, figures and reports")
-    materials: dict[str, MaterialTable] = Field(default_factory=dict)
-    joints: dict[str, JointTable] = Field(default_factory=dict)
-    rules: list[RuleTable] | None = None
-    blocks: list[BlockTable] = Field(default_factory=list)
-    blocks_file: Name | None = None
-    periods: tuple[Point, Point] | None = Field(None, description="the blocks are a cell that these vectors repeat")
-    drawing: DrawingTable | None = None
-    solids_file: Name | None = Field(None, description="blocks in space: OBJ, STL, 3dm, DXF, COMPAS JSON")
-    solids: SolidsTable | None = None
-    extrusion: ExtrusionTable | None = None
-    supports: list[SupportTable] = Field(default_factory=list)
-    loads: list[LoadTable] = Field(default_factory=list)
-    ties: list[TieTable] = Field(default_factory=list)
-    stages: list[StageTable] = Field(default_factory=list)
-    analysis: AnalysisTable = Field(default_factory=AnalysisTable)
-    solver: SolverTable | None = None
-    record: dict[str, Any] = Field(default_factory=dict, description="how the model was made; not read by concio")

@@ -1,0 +1,91 @@
+"""The table of a whole model file, generators and analyses included, and its JSON Schema."""
+
+from __future__ import annotations
+
+from functools import cache
+from types import GenericAlias
+from typing import Any
+
+from pydantic import Field, StrictStr, create_model
+
+from concio.model.file.assessment_table import AssessmentEntry, SiteEntry
+from concio.model.file.generator_tables import generator_table
+from concio.model.file.import_tables import DrawingTable, SolidsTable
+from concio.model.file.motion_table import Motion
+from concio.model.file.study_table import Study
+from concio.model.file.tables import (
+    AnalysisTable,
+    BlockTable,
+    ExtrusionTable,
+    JointTable,
+    LoadTable,
+    MaterialTable,
+    Name,
+    PartTable,
+    Point,
+    ReportTable,
+    RuleTable,
+    SolverTable,
+    StageTable,
+    SupportTable,
+    Table,
+    TieTable,
+    UnitsTable,
+)  # fmt: skip
+from concio.model.generate.generators import GENERATORS
+
+
+class FileTable(Table):
+    """A whole model file, without the tables of generators."""
+
+    title: StrictStr = ""
+    units: UnitsTable = Field(default_factory=UnitsTable)
+    report: ReportTable | None = Field(None, description="units of texts, figures and reports")
+    materials: dict[str, MaterialTable] = Field(default_factory=dict)
+    joints: dict[str, JointTable] = Field(default_factory=dict)
+    rules: list[RuleTable] | None = None
+    blocks: list[BlockTable] = Field(default_factory=list)
+    blocks_file: Name | None = None
+    periods: tuple[Point, Point] | None = Field(None, description="the blocks are a cell that these vectors repeat")
+    drawing: DrawingTable | None = None
+    solids_file: Name | None = Field(None, description="blocks in space: OBJ, STL, 3dm, DXF, COMPAS JSON")
+    solids: SolidsTable | None = None
+    extrusion: ExtrusionTable | None = None
+    supports: list[SupportTable] = Field(default_factory=list)
+    loads: list[LoadTable] = Field(default_factory=list)
+    ties: list[TieTable] = Field(default_factory=list)
+    stages: list[StageTable] = Field(default_factory=list)
+    analysis: AnalysisTable = Field(default_factory=AnalysisTable)
+    solver: SolverTable | None = None
+    record: dict[str, Any] = Field(default_factory=dict, description="how the model was made; not read by concio")
+
+
+@cache
+def file_table() -> type[FileTable]:
+    """Return the table of a whole model file, generators included."""
+    members: dict[str, Any] = {name: (generator_table(name), Field(None)) for name in GENERATORS}
+    part = create_model("part", __base__=PartTable, __doc__=PartTable.__doc__, **members)
+    members["study"] = (Study, None)
+    members["site"] = (SiteEntry, None)
+    members["assessment"] = (AssessmentEntry, None)
+    members["parts"] = (GenericAlias(list, (part,)), Field(default_factory=list))
+    members["motion"] = (Motion, None)
+    return create_model("concio model", __base__=FileTable, __doc__=FileTable.__doc__, **members)
+
+
+def json_schema() -> dict[str, Any]:
+    """Return the JSON Schema of a model file (draft 2020-12)."""
+    schema = _any_of(file_table().model_json_schema())
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **schema,
+        "title": "concio model file",
+        "description": "A masonry structure for concio, written in TOML.",
+    }
+
+
+def _any_of(schema: Any) -> Any:
+    """Return a schema in which a text may be read in two ways: the angle of a coefficient and a name are both texts."""
+    if isinstance(schema, dict):
+        return {"anyOf" if key == "oneOf" else key: _any_of(value) for key, value in schema.items()}
+    return [_any_of(value) for value in schema] if isinstance(schema, list) else schema
