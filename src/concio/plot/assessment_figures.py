@@ -131,6 +131,10 @@ def curve_figure(mechanism: LocalMechanism, words: Words, ax: Axes | None = None
         ax.plot(
             line.displacement, line.multiplier, color=style.INK, lw=1.0, ls=(0, (5, 2)), label=words["legend_straight"]
         )
+    if mechanism.branch is not None:
+        b, spectral = mechanism.branch, mechanism.chain.spectral
+        ax.plot([0.0, b.d / spectral], [0.0, b.a / mechanism.factor], color=style.LOAD.colour, lw=1.8,
+                label=words["legend_elastic"])  # fmt: skip
     for level, limit in mechanism.limits.items():
         ax.plot([limit.control], [limit.a / mechanism.factor], "o", ms=5, color=style.TENSION.colour)
         ax.annotate(f"d_{level}", (limit.control, limit.a / mechanism.factor), xytext=(5, 5),
@@ -148,6 +152,9 @@ def demand_figure(mechanism: LocalMechanism, words: Words, ax: Axes | None = Non
         if curve is not None:
             ax.plot(*mechanism.spectral_curve(curve), color=colour, lw=1.8 if dash == "-" else 1.0, ls=dash,
                     label=words[word])  # fmt: skip
+    if mechanism.branch is not None:
+        b = mechanism.branch
+        ax.plot([0.0, b.d], [0.0, b.a], color=style.LOAD.colour, lw=1.8, label=words["legend_elastic"])
     site = mechanism.site
     _, a = mechanism.spectral_curve(mechanism.followed)
     d_most = 1.15 * float(mechanism.d0) if math.isfinite(mechanism.d0) else 0.5

@@ -21,6 +21,8 @@ def mechanism_html(t: Texts, m: LocalMechanism, place: int, used: str) -> str:
     control = t.say("control_text", point=t.pair(m.control[1]), body=m.control[0], z=t.n(m.level))
     backs = [t.n(j.set_back) for j in m.mechanics.joints if j.inward is not None]
     back = t.say("set_back_text", values="; ".join(backs)) if backs else ""
+    if not m.in_one_plane:
+        back += " " + t.say("not_one_plane", clause=m.site.rules.clause("one_plane"))
     return (
         f'<section class=mechanism id="m{place}"><h2>{escape(title)}</h2>'
         f"{t.figure(mechanism_figure(m), 'figure_mechanism', 'tall')}<p>{said} {control} {back}</p>"
@@ -59,15 +61,26 @@ def _quantities(t: Texts, m: LocalMechanism) -> str:
     delta = "(P+Q)&thinsp;&delta;"
     rows = [
         ("&alpha;<sub>0</sub>", "formula_alpha", c("multiplier"), t.n(m.multiplier, 6), "-"),
-        (f"e* = (&Sigma; {delta})&sup2; / [&Sigma;(P+Q) &Sigma; {delta}&sup2;]", "formula_e", c("acceleration"),
+        (f"e* = (&Sigma; {delta})&sup2; / [&Sigma;(P+Q) &Sigma; {delta}&sup2;]", "formula_e", c("share"),
          t.n(m.e_star, 6), "-"),
         ("a<sub>0</sub>* = &alpha;<sub>0</sub> g / (e* FC)", "formula_a0", c("acceleration"), t.n(m.onset, 6),
          "m/s2"),
         (f"d = d<sub>C</sub> &Sigma; {delta}&sup2; / (&delta;<sub>C</sub> &Sigma; {delta})", "formula_d",
-         c("acceleration"), f"{t.n(m.chain.spectral, 6)} d<sub>C</sub>", "m"),
+         c("spectral"), f"{t.n(m.chain.spectral, 6)} d<sub>C</sub>", "m"),
     ]  # fmt: skip
     if m.followed.ends:
-        rows.append(("d<sub>C0</sub>", "formula_dC0", c("acceleration"), t.n(m.followed.end, 6), "m"))
+        rows.append(("d<sub>C0</sub>", "formula_dC0", c("end"), t.n(m.followed.end, 6), "m"))
+    if m.branch is not None:
+        b = m.branch
+        rows += [
+            (f"&lambda; = L / t = {t.n(b.length)} / {t.n(b.thickness)}", "formula_lambda", c("period"),
+             t.n(b.slenderness), "-"),
+            (f"T<sub>0</sub> = &kappa; &lambda; L &radic;(W / (E g)), &kappa; = {t.n(b.kappa)}", "formula_T0",
+             c("period"), t.n(b.T0, 6), "s"),
+            ("a = 4 &pi;&sup2; d / T<sub>0</sub>&sup2; = a(d): d<sub>y</sub>", "formula_dy", c("elastic"),
+             t.n(b.d, 6), "m"),
+            ("a<sub>y</sub>", "formula_ay", c("elastic"), t.n(b.a, 6), "m/s2"),
+        ]
     made = [[f, t.say(key), escape(clause), value, unit] for f, key, clause, value, unit in rows]
     head = [t.words[k] for k in ("formulas", "kind", "clause", "value", "unit")]
     return f"<h3>{t.say('formulas')}</h3>{t.table(head, made, 3)}"
@@ -85,6 +98,10 @@ def _curve(t: Texts, m: LocalMechanism, used: str) -> str:
     if m.followed.reason != "falls":
         reason = w["reason_" + m.followed.reason.replace(" ", "_")]
         text += " " + t.say("curve_cut", d=t.n(m.followed.end), reason=reason)
+    if m.branch is not None:
+        e = m.branch
+        kind = w.get("kind_" + e.kind, e.kind)
+        text += " " + t.say("branch_text", kind=kind, W=t.n(e.unit_weight), E=t.n(e.E), xi=t.n(e.xi))
     pictures = t.figure(curve_figure(m, w), "figure_curve", "half")
     pictures += t.figure(demand_figure(m, w), "figure_adrs", "half")
     difference = ""
@@ -99,7 +116,7 @@ def _curve(t: Texts, m: LocalMechanism, used: str) -> str:
         formula = f"{t.n(rule['period'])} &pi; &radic;(d/a)"
         rows.append([level, t.n(v.d, 6), escape(w[v.why]) + (f" {t.n(rule['share'])}" * (v.why == "share")),
                      t.n(v.a, 6), f"{formula} = {t.n(v.T, 6)}", t.n(v.xi),
-                     escape(rules.clause("displacement"))])  # fmt: skip
+                     escape(rules.clause("limits"))])  # fmt: skip
     table = t.table([w[k] for k in ("level", "d", "set_by", "a", "T", "xi", "clause")], rows) if rows else ""
     return f"{head}<p>{text}</p><div class=pair>{pictures}</div>{difference}<h3>{t.say('limits_text')}</h3>{table}"
 

@@ -129,6 +129,8 @@ class AssessmentReport(Texts):
         head = [w[k] for k in ("level", "T_R", "a_g", "F0", "Tc", "S", "corners")]
         text = self.say("site_text", soil=site.soil, topography=site.topography, life=self.n(site.nominal_life),
                         use=site.use_class, clause=rules.clause("spectrum"))  # fmt: skip
+        asked = [v for v in self.found.levels if rules.tables["levels"][v].get("on_request", False)]
+        text += "".join(f" {self.say('on_request', level=v)}" for v in asked)
         building = ""
         if site.building:
             modes = "; ".join(self.mode(m) for m in site.building)

@@ -15,6 +15,7 @@ from concio.analysis.seismic.chain import Chain, Participant, gathered
 from concio.analysis.seismic.checks import Displacement, checks_of, limit_of
 from concio.analysis.seismic.curve import CapacityCurve, follow, not_followed, straight
 from concio.analysis.seismic.directions import Direction, pushes
+from concio.analysis.seismic.free_standing import FreeStanding, branch_of, elements_of
 from concio.analysis.seismic.linkage import Force, Linkage
 from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, carried
 from concio.analysis.seismic.mechanism import LARGEST, Found, chosen_bodies, find
@@ -54,6 +55,7 @@ def assess(
     control: Control | None = None,
     limits: Mapping[str, float] | None = None,
     curve: Literal["followed", "straight"] = "followed",
+    free_standing: Mapping[str, FreeStanding | Mapping[str, Any]] | None = None,
 ) -> Assessment:
     """Find the local mechanisms of a model and check them against the demand of a site.
 
@@ -85,6 +87,10 @@ def assess(
         For a limit state, the largest displacement of the control point [m], where a floor loses its bearing say.
     curve : {"followed", "straight"}
         Which capacity curve counts; both are found.
+    free_standing : mapping, optional
+        For the names of mechanisms ("weakest of all" is the one sought among all motions) that are parapets,
+        chimneys, gables, free to vibrate: :class:`~concio.analysis.seismic.free_standing.FreeStanding` or its
+        arguments, ``{"kind": "cantilever", "E": 900e3}``. Their curve begins with an elastic branch.
 
     Raises
     ------
@@ -123,6 +129,7 @@ def assess(
     made: list[LocalMechanism] = []
     locked: list[NoMechanism] = []
     sought = {EVERY: (), **(mechanisms or {})}
+    elements = elements_of(free_standing or {}, tuple(sought), rules)
     known = tuple(dict.fromkeys(load.group for load in model.loads))
     for group in groups:
         if group not in known:
@@ -146,13 +153,14 @@ def assess(
             made.append(
                 _examined(
                     assembly, found, push.groups, push.sign, name=name, way=way, site=site, levels=wanted,
-                    confidence=factor, control=control, limits=limits or {}, curve=curve,
+                    confidence=factor, control=control, limits=limits or {}, curve=curve, element=elements.get(name),
                 )
             )  # fmt: skip
     made.sort(key=lambda m: (m.zeta, m.multiplier))
     arguments = {
         "levels": wanted, "mechanisms": mechanisms, "direction": direction, "live": live, "knowledge": knowledge,
         "confidence": confidence, "control": control, "limits": limits, "curve": curve,
+        "free_standing": free_standing,
     }  # fmt: skip
     return Assessment(
         model, site, wanted, tuple(made), tuple(locked), knowledge, factor, reason, curve, tuple(notes), arguments
@@ -218,6 +226,7 @@ def _examined(
     control: Control | None,
     limits: Mapping[str, float],
     curve: str,
+    element: FreeStanding | None,
 ) -> LocalMechanism:
     """Return a mechanism with its curves and checks."""
     model, mechanics = assembly.model, found.mechanics
@@ -263,20 +272,27 @@ def _examined(
     used = followed if curve == "followed" else line
     factor = site.rules.gravity / (chain.e_star * confidence)
     z = linkage.mechanics.level - min((b.base for b in site.building if hasattr(b, "base")), default=0.0)
+    branch = None
+    if element is not None:
+        branch = branch_of(
+            element, site.rules, model, mechanics, along, used, onset=alpha * factor, spectral=chain.spectral,
+            factor=factor,
+        )  # fmt: skip
     reached: dict[str, Displacement] = {}
     checks = []
     for level in levels:
         rule = site.rules.tables["levels"][level]
         limit = None
         if used is not None and used.ends and rule["kind"] != "onset":
-            limit = limit_of(level, rule, used, chain.spectral, factor, limits.get(level, math.inf))
+            limit = limit_of(level, rule, used, chain.spectral, factor, limits.get(level, math.inf), branch)
             reached[level] = limit
-        checks += checks_of(site, level, z, onset=alpha * factor, limit=limit)
+        checks += checks_of(site, level, z, onset=alpha * factor, limit=limit, branch=branch)
     return LocalMechanism(
         name=name, direction=way, found=found, assembly=assembly, linkage=linkage, chain=chain, dead=tuple(dead),
         control=(chosen[0], tuple(at.tolist())), level=z, multiplier=alpha, confidence=confidence,
         factor=factor, followed=followed, straight=line, limits=reached, checks=tuple(checks),
         periods={level: site.at(level) for level in levels}, site=site, velocity=motion.ravel(),
+        branch=branch,
     )  # fmt: skip
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from concio.analysis.seismic.chain import Chain
 from concio.analysis.seismic.checks import Check, Displacement, return_period
 from concio.analysis.seismic.curve import CapacityCurve
+from concio.analysis.seismic.free_standing import ElasticBranch
 from concio.analysis.seismic.linkage import Force, Linkage
 from concio.analysis.seismic.macro_blocks import Mechanics, carried
 from concio.analysis.seismic.mechanism import LARGEST, Found
@@ -24,6 +25,9 @@ from concio.kinematics.rigid import motions
 from concio.model.model import Model
 
 Array = np.ndarray
+
+PARALLEL = 1e-3
+"""Velocities out of a plane below this share of the others are none."""
 
 
 @dataclass(frozen=True)
@@ -95,6 +99,8 @@ class LocalMechanism:
     site : Site
     velocity : (3 G,) or (6 G,) array
         Motion of the macro-blocks, for a control point that moves by one.
+    branch : ElasticBranch or None
+        Of an element that is free to vibrate.
     """
 
     name: str
@@ -116,6 +122,7 @@ class LocalMechanism:
     periods: Mapping[str, Hazard]
     site: Site
     velocity: Array = field(repr=False)
+    branch: ElasticBranch | None = None
 
     @property
     def mechanics(self) -> Mechanics:
@@ -127,6 +134,14 @@ class LocalMechanism:
         d = points.shape[-1]
         motion = self.velocity.reshape(len(self.mechanics.blocks), motions(d))[block]
         return carried(motion, points - self.mechanics.blocks[block].centre)
+
+    @property
+    def in_one_plane(self) -> bool:
+        """Whether all its points move parallel to one plane, as the code's method supposes."""
+        bodies = self.assembly.model.bodies
+        moved = [self.velocity_at(g, np.asarray(bodies[b].vertices)) for b, g in self.mechanics.of_body.items()]
+        sizes = np.linalg.svd(np.vstack(moved), compute_uv=False)
+        return len(sizes) < 3 or bool(sizes[2] <= PARALLEL * sizes[0])
 
     @property
     def e_star(self) -> float:
@@ -201,9 +216,11 @@ class LocalMechanism:
             "control_body": self.control[0],
             "control_point": list(self.control[1]),
             "level": self.level,
+            "in_one_plane": self.in_one_plane,
             "d_C0": _number(self.followed.end),
             "d0": _number(self.d0),
             "curve_ends": self.followed.reason,
+            "elastic_branch": None if self.branch is None else self.branch.summary(),
             "limits": {
                 level: {"d": v.d, "a": v.a, "T": _number(v.T), "set_by": v.why} for level, v in self.limits.items()
             },

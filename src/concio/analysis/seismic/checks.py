@@ -4,8 +4,10 @@ r"""The checks of one mechanism: onset, with the behaviour factor, and in displa
 
     T = 1.68\,\pi \sqrt{d_{SLV}/a(d_{SLV})}, \qquad S_{De}(T, \xi) \le d_{SLV}
 
-and so on, with the factors of the code's table. The acceleration a site could have is found by scaling its a_g (or, in
-a table of return periods, by the return period) until demand meets capacity; the least one counts.
+and so on, with the factors of the code's table. An element that is free to vibrate feels its onset at its own period,
+:math:`S_e(T_0) \le a_y`, and its demand in displacement is the largest between T_0 and T. The acceleration a site could
+have is found by scaling its a_g (or, in a table of return periods, by the return period) until demand meets capacity;
+the least one counts.
 """
 
 from __future__ import annotations
@@ -18,11 +20,15 @@ from typing import Any, Literal
 import numpy as np
 
 from concio.analysis.seismic.curve import CapacityCurve
+from concio.analysis.seismic.free_standing import ElasticBranch
 from concio.analysis.seismic.site import LARGEST, Hazard, Site
 
 Array = np.ndarray
 Kind = Literal["onset", "linear", "displacement"]
 Place = Literal["ground", "height"]
+
+PERIODS = 200
+"""Periods between T_0 and that of a limit state at which the demand of a free-standing element is read."""
 
 GRID = 150
 """Accelerations that are tried between nothing and the largest before bisection."""
@@ -47,7 +53,8 @@ class Check:
         That over the acceleration of the site, zeta_E.
     clause : str
     T : float
-        Period at which the demand was read [s]; 0 for an acceleration of the ground or the floor.
+        Period at which the demand was read [s], of displacements the secant one; 0 for an acceleration of the ground
+        or the floor.
     xi : float
         Damping [%].
     least : float
@@ -113,7 +120,13 @@ class Displacement:
 
 
 def limit_of(
-    level: str, rule: Mapping[str, Any], curve: CapacityCurve, spectral: float, factor: float, given: float = math.inf
+    level: str,
+    rule: Mapping[str, Any],
+    curve: CapacityCurve,
+    spectral: float,
+    factor: float,
+    given: float = math.inf,
+    branch: ElasticBranch | None = None,
 ) -> Displacement:
     """Return the limit of displacement of a limit state.
 
@@ -130,6 +143,8 @@ def limit_of(
         Spectral acceleration over alpha [m/s2].
     given : float
         Displacement of the control point that the user does not want exceeded [m].
+    branch : ElasticBranch, optional
+        With which the curve begins.
     """
     choices = [(rule["share"] * curve.end, "share"), (given, "given")]
     if rule.get("mark") == "ties":
@@ -137,12 +152,21 @@ def limit_of(
     control, why = min(choices)
     a = max(curve.at(control), 0.0) * factor
     d = spectral * control
+    if branch is not None:
+        a = min(a, branch.stiffness * d)
     T = rule["period"] * math.pi * math.sqrt(d / a) if a > 0 else math.inf
     return Displacement(level, control, d, a, T, float(rule["damping"]), why)
 
 
 def checks_of(
-    site: Site, level: str, z: float, *, onset: float, limit: Displacement | None, linear: bool = True
+    site: Site,
+    level: str,
+    z: float,
+    *,
+    onset: float,
+    limit: Displacement | None,
+    linear: bool = True,
+    branch: ElasticBranch | None = None,
 ) -> list[Check]:
     """Return the checks of a limit state.
 
@@ -158,7 +182,11 @@ def checks_of(
         None where there is no curve that ends, or for the limit state of onset.
     linear : bool
         Whether the check with the behaviour factor is made.
+    branch : ElasticBranch, optional
+        Of an element that is free to vibrate: a_y is its capacity then, and the demand is read at its own period.
     """
+    own, xi = (0.0, 5.0) if branch is None else (branch.T0, branch.xi)
+    onset = onset if branch is None else branch.a
     rules = site.rules
     rule = rules.tables["levels"][level]
     hazard = site.at(level)
@@ -179,21 +207,25 @@ def checks_of(
             if kind == "onset" or "q" in rule:
 
                 def demand(h: Hazard, of: Callable[[Hazard], Any] = of_site, q: float = q) -> float:
-                    return float(of(h).acceleration(0.0)) / q
+                    return float(of(h).acceleration(own, xi)) / q
 
-                found.append(
-                    _check(site, level, kind, place, onset, demand, hazard, rules.clause(kind) + floor)
-                )  # fmt: skip
+                free = "" if branch is None else "; " + rules.clause("onset_free")
+                clause = rules.clause("onset_free") if branch and kind == "onset" else rules.clause(kind) + free
+                made = _check(site, level, kind, place, onset, demand, hazard, clause + floor)
+                found.append(replace(made, T=own, xi=xi))
         if limit is not None and rule["kind"] != "onset":
 
             def moved(h: Hazard, of: Callable[[Hazard], Any] = of_site, at: Displacement = limit) -> float:
-                return float(of(h).displacement(at.T, at.xi)) if math.isfinite(at.T) else math.inf
+                if not math.isfinite(at.T):
+                    return math.inf
+                periods = np.linspace(min(own, at.T), at.T, PERIODS) if own > 0 else at.T
+                return float(np.max(of(h).displacement(periods, at.xi)))
 
             clause = rules.clause("height" if place == "height" else "displacement") + floor
             made = _check(site, level, "displacement", place, limit.d, moved, hazard, clause)
 
             def begins(h: Hazard, of: Callable[[Hazard], Any] = of_site) -> float:
-                return float(of(h).acceleration(0.0))
+                return float(of(h).acceleration(own, xi))
 
             least = capacity_acceleration(site, hazard, onset, begins)
             found.append(replace(made, T=limit.T, xi=limit.xi, least=least))

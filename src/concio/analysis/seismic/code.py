@@ -144,6 +144,36 @@ def _own(name: str) -> str:
     return (files("concio.analysis.seismic") / "codes" / f"{name}.toml").read_text(encoding="utf-8")
 
 
+LEVEL = ("probability", "kind", "share", "period", "damping", "q", "mark", "on_request", "clause")
+"""Keys of a limit state."""
+
+
+def _over(base: Mapping[str, Any], own: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """Return the tables of a code with those of another one laid over them, number by number.
+
+    Raises
+    ------
+    InputError
+        A table or a key of a limit state is not known.
+    """
+    for key in own:
+        if key not in (*base, "base", "types", "soils"):
+            msg = f"a code has no table or key '{key}'"
+            raise InputError(msg, where=name, hint=closest(key, base))
+    for level, rule in own.get("levels", {}).items():
+        for key in rule if isinstance(rule, Mapping) else ():
+            if key not in LEVEL:
+                msg = f"a limit state has no key '{key}'"
+                raise InputError(msg, where=f"{name}, [levels.{level}]", hint=closest(key, LEVEL))
+
+    def laid(old: Any, new: Any) -> Any:
+        if isinstance(old, Mapping) and isinstance(new, Mapping):
+            return {**old, **{k: laid(old.get(k), v) for k, v in new.items()}}
+        return new
+
+    return {**base, **{k: laid(base.get(k), v) for k, v in own.items()}}
+
+
 def find_code(name: str) -> Code:
     """Return a code by its name, or from a file of the user's.
 
@@ -168,7 +198,7 @@ def find_code(name: str) -> Code:
     except tomllib.TOMLDecodeError as error:
         raise InputError(str(error), where=name) from None
     if "base" in tables:
-        tables = {**find_code(str(tables["base"])).tables, **tables}
+        tables = _over(find_code(str(tables["base"])).tables, tables, name)
     missing = [key for key in ("name", "gravity", "spectrum", "topography", "levels", "clauses") if key not in tables]
     if missing:
         msg = f"the code has no {missing[0]}"

@@ -41,6 +41,10 @@ TRIES = 12
 CLOSED = 1e-6
 """Contacts nearer than this share of the size of the mechanism are closed."""
 
+SLIGHT = 1e-3
+"""Contacts that press are put back by moves that change them by more than this share of the move: of many conditions
+that say the same, the directions left over turn a little in a finite step, and must not be taken for conditions."""
+
 LOST = 1e-3
 """Share of the size of the mechanism by which a step may leave contacts wrong after it was corrected."""
 
@@ -168,13 +172,16 @@ class Sequence:
         presses = np.flatnonzero((last.normal_force > 1e-9 * last.normal_force.max(initial=0.0)) & ~crushing)
         stuck = np.flatnonzero(last.stays)
         rows = (stuck[:, None] * (d - 1) + np.arange(d - 1)).ravel()
+        before = np.inf
         for _ in range(8):
             now = stated(self.contacts, q, L)
             wrong = np.concatenate([now.gap[presses], (now.drift - last.contacts.drift)[stuck].ravel()])
-            if float(np.abs(wrong).max(initial=0.0)) <= 1e-4 * CLOSED * L:
+            worst = float(np.abs(wrong).max(initial=0.0))
+            if worst <= 1e-4 * CLOSED * L or worst > 0.5 * before:
                 break
+            before = worst
             J = sp.vstack([now.C_n[presses], now.C_t[rows]]).tocsc()
-            factor = splu(sp.csc_matrix(J.T @ J + 1e-10 * sp.eye_array(J.shape[1])))
+            factor = splu(sp.csc_matrix(J.T @ J + SLIGHT**2 * sp.eye_array(J.shape[1])))
             change = -factor.solve(J.T @ wrong)
             change -= factor.solve(J.T @ (J @ change + wrong))
             moved = change.reshape(-1, motions(d)).copy()

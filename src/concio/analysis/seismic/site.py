@@ -127,9 +127,11 @@ class Site:
 
     @property
     def levels(self) -> tuple[str, ...]:
-        """Limit states for which the hazard is known."""
+        """Limit states for which the hazard is known; of a table of return periods without those made on request."""
         known = self.rules.choices("levels")
-        return tuple(level for level in known if not isinstance(self.hazard, Mapping) or level in self.hazard)
+        if isinstance(self.hazard, Mapping):
+            return tuple(level for level in known if level in self.hazard)
+        return tuple(level for level in known if not self.rules.tables["levels"][level].get("on_request", False))
 
     def at(self, level: str) -> Hazard:
         """Return the hazard of a limit state, with its return period.

@@ -71,6 +71,6 @@ class Spectrum:
         plain = self.acceleration(T, xi) * (T / (2.0 * math.pi)) ** 2
         ground = 0.025 * self.a_g * self.S * self.T_C * self.T_D
         top = self.F0 * self.eta(xi)
-        falling = ground * (top + (1.0 - top) * (T - self.T_E) / (self.T_F - self.T_E))
+        falling = ground * (top + (1.0 - top) * (T - self.T_E) / max(self.T_F - self.T_E, 1e-9))
         found: Array = np.select([self.T_E >= T, self.T_F >= T], [plain, falling], ground)
         return found

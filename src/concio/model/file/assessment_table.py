@@ -12,7 +12,7 @@ from pydantic import Field, StrictInt, StrictStr, ValidationError
 
 from concio.model.file.errors import first_fault
 from concio.model.file.tables import ControlTable, Name, Table
-from concio.model.file.values import FileUnits, Force, Length, Number, Stress
+from concio.model.file.values import FileUnits, Force, Length, Number, Stress, UnitWeight
 
 Acceleration = Annotated[StrictStr | float, Field(description="in g, or a text with m/s2")]
 Seconds = Annotated[StrictStr | float, Field(description="in s")]
@@ -75,6 +75,16 @@ class AnchorTable(Table):
     hole: Length | None = None
 
 
+class FreeStandingTable(Table):
+    """An element that is free to vibrate; the arguments of ``FreeStanding``."""
+
+    kind: Name
+    E: Stress
+    length: Length | None = None
+    thickness: Length | None = None
+    unit_weight: UnitWeight | None = None
+
+
 class ReportTextTable(Table):
     """What stands in the head of the report, and its language."""
 
@@ -98,6 +108,9 @@ class AssessmentTable(Table):
     control: ControlTable | None = None
     limits: dict[str, Length] = Field(default_factory=dict)
     curve: Literal["followed", "straight"] = "followed"
+    free_standing: Annotated[
+        dict[str, FreeStandingTable], Field(description="by mechanism: parapets, chimneys, gables; see the how-to")
+    ] = Field(default_factory=dict)
     size_tie: Annotated[StrictStr, Field(description="tie whose force is found that brings zeta_E to one")] = ""
     largest_tie: Force | None = None
     sensitivity: bool = True
