@@ -16,11 +16,13 @@ Rigid blocks on hard joints have no unique path; their joints are lent a complia
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 
+from concio.analysis.beside import Beside
 from concio.analysis.coulomb_path import coulomb_path, dead_state, live_load_path
 from concio.analysis.engine import by_its_engine, step_by_step
 from concio.analysis.lent_compliance import lent_assembly
@@ -159,16 +161,23 @@ def limit_stages(
         raise InputError(msg, hint="load steps are followed instead: leave path out")
     exact = path if path is not None else dead.dim == 2 and dead.pairs <= LARGEST_PATH
     stepped = steps if steps is not None else path is None and not exact
-    if stepped and bound > 0:
-        tell("load steps")
-        found = replace(found, steps=load_steps(dead, load, bound, progress=progress))
-        yield "steps", found
-    if search if search is not None else path is not False:
-        tell("collapse states")
+    searched, top = search if search is not None else path is not False, found.associated
+
+    def seek(note: ProgressCallback) -> tuple[CollapseState | None, str]:
         work = WORK_OF_ALL if search else UNASKED_WORK
-        state, said = search_collapse(dead, load, work=work, bound=found.associated, progress=progress)
-        found = replace(found, collapse_state=state, search=said)
-        yield "collapse state", found
+        return search_collapse(dead, load, work=work, bound=top, progress=note)
+
+    with ExitStack() as stack:
+        searching = stack.enter_context(Beside(seek)) if searched else None  # both take long, and neither the other
+        if stepped and bound > 0:
+            tell("load steps")
+            found = replace(found, steps=load_steps(dead, load, bound, progress=progress))
+            yield "steps", found
+        if searching is not None:
+            tell("collapse states")
+            state, said = searching.result(progress)
+            found = replace(found, collapse_state=state, search=said)
+            yield "collapse state", found
     if found.steps is not None and dead.dim == 3 and found.steps.failed < bound:
         if steps or dead.pairs <= UNASKED_IN_SPACE:
             tell("the least load not reached, in one step")

@@ -15,6 +15,7 @@ from concio.cli import (
     continuum,
     export,
     limit,
+    memory,
     new,
     outcome,
     path,
@@ -81,6 +82,7 @@ def main() -> None:
     if _open_closed() and not {"--quiet", "-q"} & set(sys.argv):
         sys.stderr.write("Error: standard output: it is closed\n  -> send it somewhere: > file, or > /dev/null\n")
         sys.exit(2)
+    memory.keep_memory()
     try:
         app()
     except KeyboardInterrupt:

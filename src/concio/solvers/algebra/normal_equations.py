@@ -31,24 +31,46 @@ class NormalEquations:
         self.order, self.ordering = nested_dissection(pattern, group)
         self.A = sp.csr_array(sp.csr_array(A)[self.order])
         self.At = sp.csr_array(self.A.T)
+        self.matrix, self.weights, self.diagonal = _products(sp.csc_array(self.A))
 
     def factorise(self, theta: Array) -> None:
         """Factorise A diag(theta) A', its diagonal lifted by rounding; rows of nothing get a one."""
-        matrix = sp.csc_matrix((self.A @ sp.diags_array(theta)) @ self.At)
-        diagonal = matrix.diagonal()
+        data = self.weights @ theta
+        diagonal = data[self.diagonal]
         lifted = diagonal * (1.0 + 1e-15) + 1e-14 * float(np.median(diagonal))
-        matrix.setdiag(np.where(lifted > 0, lifted, 1.0))
-        matrix.sort_indices()
-        self.matrix = matrix
+        data[self.diagonal] = np.where(lifted > 0, lifted, 1.0)
+        self.matrix.data = data
         spec = "MMD_AT_PLUS_A" if self.ordering == "minimum degree" else "NATURAL"
         splu: Any = sla.splu
-        self.lu = splu(matrix, permc_spec=spec, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        self.lu = splu(self.matrix, permc_spec=spec, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
     def solve(self, g: Array) -> Array:
         """Return M^-1 g for g in the order of :attr:`order`, once refined."""
         x = self.lu.solve(g)
         refined: Array = x + self.lu.solve(g - self.matrix @ x)
         return refined
+
+
+def _products(A: sp.csc_array) -> tuple[sp.csc_matrix, sp.csr_array, Array]:
+    """Return A Theta A' of zeros, the matrix that makes its entries of theta, and where its diagonal is among them.
+
+    An entry (i, j) is the sum of A_ik A_jk theta_k over the columns k: linear in theta, by weights that stay.
+    """
+    rows, columns = A.shape
+    entries = np.diff(A.indptr)
+    column = np.repeat(np.arange(columns), entries)
+    first = np.repeat(np.arange(A.nnz), entries[column])
+    run = np.repeat(np.cumsum(entries[column]) - entries[column], entries[column])
+    second = A.indptr[column[first]] + np.arange(first.size) - run
+    keys = A.indices[second].astype(np.int64) * rows + A.indices[first]
+    on_diagonal = np.arange(rows, dtype=np.int64) * (rows + 1)
+    kept, slot = np.unique(np.concatenate([keys, on_diagonal]), return_inverse=True)
+    value = A.data[first] * A.data[second]
+    weights = sp.csr_array((value, (slot[: keys.size], column[first])), shape=(kept.size, columns))
+    starts = np.searchsorted(kept, np.arange(rows + 1, dtype=np.int64) * rows)
+    matrix = sp.csc_matrix((np.zeros(kept.size), kept % rows, starts), shape=(rows, rows))
+    matrix.has_canonical_format = True
+    return matrix, weights, slot[keys.size :]
 
 
 def rebalance(A: sp.csc_array, x: Array, target: Array, bounds: Array, rounds: int = 4) -> Array:
