@@ -1,6 +1,6 @@
 """What steps of motion cost: a rocking block, a wall at rest, shaken walls; the search against the solving.
 
-    python benchmarks/motion.py [--fast]
+    python benchmarks/motion.py [--fast] [--only block|search|rest|rigid|springs|elastic]
 
 Times are CPU times of this process. Each line has the steps, the time a step, the shares of steps by what solved them,
 factorisations a step and the error of the energy balance.
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -73,21 +74,34 @@ def search_share(duration: float) -> None:
 
 
 def main() -> None:
-    """Run all."""
+    """Run all cases, or one."""
+    sine = concio.Pulse("sine", 0.3 * 9.81, 0.5, cycles=20.0)
+    law = concio.JointLaw(0.6, normal_stiffness=1e6, tangential_stiffness=4e5)
+
+    def wall(material: concio.Rigid | concio.Elastic = RIGID, **options: Any) -> concio.Model:
+        return concio.running_bond_panel(**{**WALL, **options}, block=material)
+
+    def rocking(share: float) -> None:
+        report("rocking block", block(), duration=60.0 * share, step=1e-3, start="as described", adaptive=False)
+
+    def shaken(name: str, model: concio.Model, motion: concio.Pulse | None = sine) -> Callable[[float], None]:
+        return lambda share: report(name, model, motion=motion, duration=10.0 * share, step=2e-3)
+
+    cases: dict[str, Callable[[float], None]] = {
+        "block": rocking,
+        "search": lambda share: search_share(0.4 * share),
+        "rest": shaken("427 rigid blocks at rest", wall(), None),
+        "rigid": shaken("427 rigid blocks, 0.3 g at 2 Hz", wall()),
+        "springs": shaken("427 rigid blocks, joints with stiffness", wall(friction=law)),
+        "elastic": shaken("427 elastic blocks, hard joints", wall(SOFT, elements_per_block=(2, 2))),
+    }
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--fast", action="store_true", help="a twentieth of the steps")
-    share = 0.05 if parser.parse_args().fast else 1.0
-    report("rocking block", block(), duration=60.0 * share, step=1e-3, start="as described", adaptive=False)
-    search_share(0.4 * share)
-    sine = concio.Pulse("sine", 0.3 * 9.81, 0.5, cycles=20.0)
-    still = concio.running_bond_panel(**WALL, block=RIGID)
-    report("427 rigid blocks at rest", still, duration=10.0 * share, step=2e-3)
-    report("427 rigid blocks, 0.3 g at 2 Hz", still, motion=sine, duration=10.0 * share, step=2e-3)
-    law = concio.JointLaw(0.6, normal_stiffness=1e6, tangential_stiffness=4e5)
-    soft = concio.running_bond_panel(**{**WALL, "friction": law}, block=RIGID)
-    report("427 rigid blocks, joints with stiffness", soft, motion=sine, duration=10.0 * share, step=2e-3)
-    elastic = concio.running_bond_panel(**WALL, block=SOFT, elements_per_block=(2, 2))
-    report("427 elastic blocks, hard joints", elastic, motion=sine, duration=10.0 * share, step=2e-3)
+    parser.add_argument("--only", choices=cases, help="one case")
+    chosen = parser.parse_args()
+    for name, case in cases.items():
+        if chosen.only in (None, name):
+            case(0.05 if chosen.fast else 1.0)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import concio
+import concio.solvers.stepping.solver as step_solver
 from concio.analysis.motion.dynamics_result import Ending
 from concio.analysis.motion.stepper import at_rest
 from concio.contact.moving.reference import Reference
@@ -263,3 +264,16 @@ def test_bodies_without_mass_are_refused():
     light = {**model.materials, "stone": concio.Rigid(0.0)}
     with pytest.raises(concio.InputError, match="'block' has no mass"):
         concio.dynamics(concio.Model(model.bodies, light, model.laws, loads=model.loads), duration=1.0)
+
+
+def test_pairs_that_slide_to_and_fro_stick(monkeypatch):
+    """Rounds that turned sliding pairs round would come back to states of before, in 8 steps of these 100."""
+    monkeypatch.setattr(step_solver, "FEW", 0)
+    law = concio.JointLaw(0.6, normal_stiffness=1e6, tangential_stiffness=4e5)
+    options = {"block_size": (1.0, 0.5), "thickness": 1.0, "friction": law, "side_walls": False}
+    wall = concio.running_bond_panel(courses=6, blocks=6, block=concio.Rigid(unit_weight=20.0), **options)
+    pulse = concio.Pulse("sine", 0.3 * 9.81, 0.5, cycles=20.0)
+    found = concio.dynamics(wall, pulse, 0.4, 4e-3, adaptive=False)
+    assert found.steps.shares() == {"active set": 1.0}
+    assert found.steps.factorisations.max() <= 5
+    assert found.energy.error < 1e-9

@@ -78,6 +78,11 @@ class Cone:
         return rough
 
     @cached_property
+    def plain(self) -> bool:
+        """Whether every pair has friction only: no strength without compression, no cap."""
+        return not (self.cohesion.any() or self.tension.any() or self.capped.any())
+
+    @cached_property
     def capped(self) -> Array:
         """Pairs with a cap, (m,) booleans."""
         capped: Array = np.isfinite(self.cap)

@@ -274,7 +274,7 @@ class _Run:
         weight = float(self.reference.body_mass.sum()) * self.reference.gravity * self.stepper.maker.width
         self._shoot(state)
         with Interruption() as interruption:
-            while state.time < end - 1e-9 * self.step:
+            while state.time < end - 1e-6 * self.step:
                 h = min(h, end - state.time)
                 made = self._attempt(state, h)
                 if made is None:

@@ -22,6 +22,7 @@ from concio.analysis.motion.state import Memory
 from concio.contact.moving.laws import LawTable
 from concio.contact.moving.rows import Rows
 from concio.contact.moving.slots import Slots
+from concio.problem.cone import Cone
 
 Array = np.ndarray
 
@@ -66,10 +67,7 @@ class PairData:
     columns: Array
     values: Array
     shift: Array
-    friction: Array
-    cohesion: Array
-    tension: Array
-    cap: Array
+    cone: Cone
     a_n: Array
     a_t: Array
     dilatancy: Array
@@ -149,6 +147,20 @@ class Joints:
         self.any_stiffness = bool(laws.normal.any() or laws.tangential.any())
         self.any_bond = bool(laws.cohesion.any())
         self.any_cap = bool(np.isfinite(laws.cap).any())
+        self._dry: tuple[Slots, Cone] | None = None
+        self._lent: tuple[Slots, Array, Array] | None = None
+
+    def strengths(self, slots: Slots, bonded: Array, area: Array) -> Cone:
+        """Return the strength domains of slots (m,), of which those ``bonded`` have cohesion, on areas (m,) [m2]."""
+        laws, law, zero = self.laws, slots.law, np.zeros(len(slots))
+        if self.any_bond or self.any_cap:
+            cohesion = np.where(bonded, laws.cohesion[law] * area, 0.0) if self.any_bond else zero
+            tension = np.where(bonded, laws.tension[law] * area, 0.0) if self.any_bond else zero
+            cap = laws.cap[law] * area if self.any_cap else np.full(len(slots), np.inf)
+            return Cone(laws.friction[law], cohesion, tension, cap)
+        if self._dry is None or self._dry[0] is not slots:
+            self._dry = slots, Cone(laws.friction[law], zero, zero, np.full(len(slots), np.inf))
+        return self._dry[1]
 
     def compliances(self, slots: Slots, area: Array, tension: Array) -> tuple[Array, Array, Springs | None]:
         """Return compliances (m,) along normal and tangent [m/kN], lent ones too, and the springs of joints.
@@ -162,9 +174,11 @@ class Joints:
             Tensile strength [kN].
         """
         law = slots.law
-        a_n = self.yielding[slots.body_a] + self.yielding[slots.body_b]
-        a_n = np.where(a_n > 0, a_n, self.lent)
-        a_t = SHEAR_TO_NORMAL * a_n
+        if self._lent is None or self._lent[0] is not slots:
+            both = self.yielding[slots.body_a] + self.yielding[slots.body_b]
+            both = np.where(both > 0, both, self.lent)
+            self._lent = slots, both, SHEAR_TO_NORMAL * both
+        _, a_n, a_t = self._lent
         if not self.any_stiffness:
             return a_n, a_t, None
         own_n, own_t = self.laws.normal[law] / area, self.laws.tangential[law] / area
@@ -203,10 +217,9 @@ class Joints:
         area = np.maximum(rows.area, self.least_area)
         zero = np.zeros(m)
         bonded = slots.bonded & ~memory.broken
-        cohesion = np.where(bonded, laws.cohesion[law] * area, 0.0) if self.any_bond else zero
-        tension = np.where(bonded, laws.tension[law] * area, 0.0) if self.any_bond else zero
+        cone = self.strengths(slots, bonded, area)
         ground = standing(memory, area) if self.any_stiffness else zero
-        a_n, a_t, springs = self.compliances(slots, ground, tension)
+        a_n, a_t, springs = self.compliances(slots, ground, cone.tension)
         lasting = memory.force[:, 0] > 0
         turning = 0.5 * h * rows.turning
         turning[~(lasting & (np.abs(turning) > NOTHING * speed).any(axis=1))] = 0.0
@@ -235,10 +248,8 @@ class Joints:
             soft_n = np.where(springs.normal, a_n / implicit, soft_n)
             soft_t = np.where(springs.shear, a_t / implicit, soft_t)
         data = PairData(
-            rows.columns, rows.values, shift, laws.friction[law], cohesion, tension,
-            laws.cap[law] * area if self.any_cap else np.full(m, np.inf), soft_n, soft_t, laws.dilatancy[law],
-            rows.valid & near,
-        )  # fmt: skip
+            rows.columns, rows.values, shift, cone, soft_n, soft_t, laws.dilatancy[law], rows.valid & near
+        )
         springy = np.zeros(m, dtype=bool) if springs is None else springs.normal
         return data, JointStep(
             springy, a_n, a_t, gap, y0, bonded, springs, ground, sunk, stored, overlap, drift
@@ -264,12 +275,11 @@ class Joints:
         gap = self.gaps(rows, memory)
         area = np.maximum(rows.area, self.least_area)
         bonded = slots.bonded & ~memory.broken
-        tension = np.where(bonded, laws.tension[law] * area, 0.0)
-        a_n, a_t, springs = self.compliances(slots, area, tension)
+        cone = self.strengths(slots, bonded, area)
+        a_n, a_t, springs = self.compliances(slots, area, cone.tension)
         data = PairData(
-            rows.columns, rows.values, np.stack([gap, memory.stretch + moved], axis=1), laws.friction[law],
-            np.where(bonded, laws.cohesion[law] * area, 0.0), tension,
-            laws.cap[law] * area, a_n, a_t, laws.dilatancy[law], rows.valid & (gap <= speed),
+            rows.columns, rows.values, np.stack([gap, memory.stretch + moved], axis=1), cone, a_n, a_t,
+            laws.dilatancy[law], rows.valid & (gap <= speed),
         )  # fmt: skip
         springy = np.zeros(m, dtype=bool) if springs is None else springs.normal
         zero = np.zeros(m)
@@ -345,7 +355,7 @@ class Joints:
             raised, lost_n, lost_t = raised + lifted, lost_n + t[:, 0] * lifted, lost_t - t[:, 0] * lifted
         sunk = step.sunk + h * y[:, 0] - (raised - memory.raised)
         if self.any_cap:
-            yields = np.where(step.springy, -step.a_n * data.cap - sunk, -h * y[:, 0])
+            yields = np.where(step.springy, -step.a_n * data.cone.cap - sunk, -h * y[:, 0])
             squeezed = np.where(contact == 2, np.maximum(yields, 0.0), 0.0)
             crushing, crushed = crushing + squeezed, float((t[:, 0] * squeezed).sum())
         broken = memory.broken

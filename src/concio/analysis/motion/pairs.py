@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-import scipy.sparse as sp
 
 from concio.analysis.motion.joints import SAG, Joints, PairData
 from concio.analysis.motion.scheme import Scheme
@@ -17,6 +16,7 @@ from concio.contact.moving.rows import Rows
 from concio.contact.moving.search import ContactSearch
 from concio.contact.moving.slots import Slots
 from concio.problem.cone import Cone
+from concio.solvers.stepping.matrix import StepMatrix
 from concio.solvers.stepping.problem import StepProblem
 
 Array = np.ndarray
@@ -66,7 +66,7 @@ class PairMaker:
         key = self.slots.key
         if memory.key is not key:
             memory = memory.carried_to(key)
-        rows = search.rows(centre, turn, velocity, spin, np.append(strain, 0.0))
+        rows = search.rows(centre, turn, velocity, spin, np.append(strain, 0.0) if len(strain) else strain)
         return memory, rows, new
 
     def supports(self, turn: Array, shift: Array) -> PairData:
@@ -77,8 +77,8 @@ class PairMaker:
         zero, inf = np.zeros(k), np.full(k, np.inf)
         off = np.stack([dot(shift, held.normal), dot(shift, 1j * held.normal)], axis=1)
         return PairData(
-            held.points.columns, held.values(turn), off, zero, np.where(held.both, np.inf, 0.0), inf, inf, zero, zero,
-            zero, np.ones(k, dtype=bool),
+            held.points.columns, held.values(turn), off, Cone(zero, np.where(held.both, np.inf, 0.0), inf, inf), zero,
+            zero, zero, np.ones(k, dtype=bool),
         )  # fmt: skip
 
     def off_support(self, centre: Array, turn: Array, strain: Array, factors: Mapping[str, float]) -> Array:
@@ -99,13 +99,13 @@ class PairMaker:
         gap = gap + tied.plastic
         zero, every, inf = np.zeros(k), np.ones(k, dtype=bool), np.full(k, np.inf)
         data = PairData(
-            ties.columns, values, np.stack([gap, zero], axis=1), zero, zero, zero, ties.most,
+            ties.columns, values, np.stack([gap, zero], axis=1), Cone(zero, zero, zero, ties.most),
             1.0 / ties.stiffness, zero, zero, ~tied.broken,
         )  # fmt: skip
         tension = np.where(tied.broken, 0.0, np.minimum(np.maximum(-gap, 0.0) * ties.stiffness, ties.most))
         swings = (tension > 0) & (length > 0)
         swing = PairData(
-            ties.columns, across * swings[:, None, None], np.zeros((k, 2)), zero, zero, inf, inf,
+            ties.columns, across * swings[:, None, None], np.zeros((k, 2)), Cone(zero, zero, inf, inf),
             np.where(swings, length / np.where(swings, tension, 1.0), 1.0), zero, zero, every,
         )  # fmt: skip
         return data, gap, swing
@@ -131,31 +131,37 @@ def no_pairs(n: int) -> PairData:
     """Return no pairs, on n unknowns."""
     none = np.zeros(0)
     return PairData(
-        np.zeros((0, 3), dtype=int), np.zeros((0, 2, 3)), np.zeros((0, 2)), none, none, none, none, none, none, none,
-        np.zeros(0, dtype=bool),
+        np.zeros((0, 3), dtype=int), np.zeros((0, 2, 3)), np.zeros((0, 2)), Cone(none, none, none, none), none, none,
+        none, np.zeros(0, dtype=bool),
     )  # fmt: skip
 
 
-def assembled(matrix: sp.csr_array, b: Array, parts: Sequence[PairData], force: float, length: float) -> StepProblem:
+def assembled(
+    matrix: StepMatrix, b: Array, parts: Sequence[PairData], force: float, length: float
+) -> StepProblem:
     """Return the step problem of several kinds of pairs, one after the other."""
     parts = [part for part in parts if len(part.columns)] or list(parts[:1])
     if len(parts) == 1:
         p = parts[0]
-        columns, values = p.columns, p.values
-    else:
-        w, m, n = max(p.columns.shape[1] for p in parts), sum(len(p.columns) for p in parts), len(b)
-        columns, values, at = np.full((m, w), n), np.zeros((m, 2, w)), 0
-        for part in parts:
-            k, own = part.columns.shape
-            columns[at : at + k, :own], values[at : at + k, :, :own] = part.columns, part.values
-            at += k
+        return StepProblem(
+            matrix, b, p.columns, p.values, p.shift[:, 0], -p.shift[:, 1:], p.cone, p.a_n, p.a_t, p.dilatancy, p.active,
+            force, length,
+        )  # fmt: skip
+    w, m, n = max(p.columns.shape[1] for p in parts), sum(len(p.columns) for p in parts), len(b)
+    columns, values, at = np.full((m, w), n), np.zeros((m, 2, w)), 0
+    for part in parts:
+        k, own = part.columns.shape
+        columns[at : at + k, :own], values[at : at + k, :, :own] = part.columns, part.values
+        at += k
 
     def joined(name: str) -> Array:
-        arrays = [getattr(part, name) for part in parts]
-        return arrays[0] if len(arrays) == 1 else np.concatenate(arrays)
+        return np.concatenate([getattr(part, name) for part in parts])
+
+    def strength(name: str) -> Array:
+        return np.concatenate([getattr(part.cone, name) for part in parts])
 
     shift = joined("shift")
-    cone = Cone(joined("friction"), joined("cohesion"), joined("tension"), joined("cap"))
+    cone = Cone(strength("friction"), strength("cohesion"), strength("tension"), strength("cap"))
     return StepProblem(
         matrix, b, columns, values, shift[:, 0], -shift[:, 1:], cone, joined("a_n"), joined("a_t"), joined("dilatancy"),
         joined("active"), force, length,

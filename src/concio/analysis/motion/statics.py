@@ -31,6 +31,7 @@ from concio.contact.moving.reference import Reference
 from concio.model.stages import ControlPoint
 from concio.problem.tolerances import CERTIFIED
 from concio.solvers.algebra.sparse_factor import Engine, SingularMatrixError
+from concio.solvers.stepping.matrix import StepMatrix
 from concio.solvers.stepping.problem import StepProblem, StepSolution, StepStates
 from concio.solvers.stepping.solver import StepSolver
 
@@ -170,12 +171,12 @@ class Statics:
         self._matrices = [self._stiffness(share * self.gravity / self.width) for share in RESISTANCE]
         self._bare = self._stiffness(0.0)
 
-    def _stiffness(self, resistance: float) -> sp.csr_array:
+    def _stiffness(self, resistance: float) -> StepMatrix:
         matrices, n = self.reference.matrices, self.frames.n
         rows, columns, values = matrices.entries(resistance, 1.0)
         A = sp.csr_array((values, (rows, columns)), shape=(n, n))
         A.sum_duplicates()
-        return A
+        return StepMatrix(A)
 
     def look(self, state: MotionState, memory: Memory, moved: Array, multiplier: float) -> _Look:
         """Return pairs and forces where the bodies stand."""

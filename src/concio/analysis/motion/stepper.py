@@ -30,6 +30,7 @@ from concio.contact.moving.edges import as_complex, as_vectors
 from concio.contact.moving.reference import Reference
 from concio.contact.moving.rows import Rows
 from concio.solvers.algebra.sparse_factor import Engine
+from concio.solvers.stepping.matrix import StepMatrix
 from concio.solvers.stepping.problem import StepSolution, StepStates
 from concio.solvers.stepping.solver import StepSolver
 
@@ -89,9 +90,9 @@ class Stepper:
             own = slice(*disc.offsets[b : b + 2])
             self._movable[own] = reference.mass[own]
         self._inverse_mass = np.append(1.0 / np.where(reference.mass > 0, reference.mass, np.inf), 0.0)
-        self._matrices: dict[float, sp.csr_array] = {}
+        self._matrices: dict[float, StepMatrix] = {}
 
-    def matrix(self, h: float) -> sp.csr_array:
+    def matrix(self, h: float) -> StepMatrix:
         """Return M/h + theta^2 h K with damping (N, N)."""
         if h not in self._matrices:
             s, f, n = self.scheme, self.frames, self.frames.n
@@ -104,7 +105,7 @@ class Stepper:
             A.sum_duplicates()
             if len(self._matrices) > 20:
                 self._matrices.clear()
-            self._matrices[h] = A
+            self._matrices[h] = StepMatrix(A)
         return self._matrices[h]
 
     def located(self, state: MotionState) -> MotionState:

@@ -58,6 +58,9 @@ class MovingLoads:
         zero = np.zeros(disc.unknowns)
         names = tuple(dict.fromkeys(load.group for load in loads))
         self.groups = {g: GroupLoad(dead.get(g, zero), across.get(g, zero), follower.get(g, zero)) for g in names}
+        self.followers = any(p.follower.any() for p in self.groups.values())
+        """Whether any load turns with its body, and so has no potential."""
+        self._across = any(p.across.any() for p in self.groups.values())
         rigid = np.flatnonzero(disc.shape_of == RIGID)
         self.rigid, self.reach = rigid, disc.reach[rigid]
         self.first = disc.offsets[rigid]
@@ -82,12 +85,12 @@ class MovingLoads:
         f = dead.copy()
         t = turn[self.rigid]
         moment = self.first + 2
-        if any(p.across.any() for p in parts):
+        if self._across:
             across = _sum(size, [p.across for p in parts])
             f[moment] = t.real * dead[moment] + t.imag * across[moment]
         else:
             f[moment] = t.real * dead[moment]
-        if any(p.follower.any() for p in parts):
+        if self.followers:
             follower = _sum(size, [p.follower for p in parts])
             turned = t * (follower[self.first] + 1j * follower[self.first + 1])
             f[self.first] += turned.real
@@ -128,11 +131,6 @@ class MovingLoads:
         if len(self.x_of_node):
             work += float(dead[self.x_of_node] @ nodes.real + dead[self.x_of_node + 1] @ nodes.imag)
         return -work
-
-    @property
-    def followers(self) -> bool:
-        """Whether any load turns with its body, and so has no potential."""
-        return any(p.follower.any() for p in self.groups.values())
 
 
 def _sum(factors: list[float], vectors: list[Array]) -> Array:

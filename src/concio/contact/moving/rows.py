@@ -128,12 +128,12 @@ class RowMaker:
         arm_a, arm_b = point - centre[a], point - centre[b]
         values[:, 0, 0], values[:, 0, 1] = -x, -y
         values[:, 1, 0], values[:, 1, 1] = y, -x
-        values[:, 0, 2] = -(arm_a.real * y - arm_a.imag * x) / self.reach_a
-        values[:, 1, 2] = -dot(arm_a, normal) / self.reach_a
+        turned = np.conj(arm_a) * normal / self.reach_a
+        values[:, 0, 2], values[:, 1, 2] = -turned.imag, -turned.real
         values[:, 0, 3], values[:, 0, 4] = x, y
         values[:, 1, 3], values[:, 1, 4] = -y, x
-        values[:, 0, 5] = (arm_b.real * y - arm_b.imag * x) / self.reach_b
-        values[:, 1, 5] = dot(arm_b, normal) / self.reach_b
+        turned = np.conj(arm_b) * normal / self.reach_b
+        values[:, 0, 5], values[:, 1, 5] = turned.imag, turned.real
         imposed = np.zeros((m, 2))
         if velocity[self.moved].any() or spin[self.moved].any():
             for body, arm, sign in ((a, arm_a, -1.0), (b, arm_b, 1.0)):

@@ -103,39 +103,41 @@ class Toucher:
 
     def touch(self, placed: PlacedEdges) -> Touch:
         """Return the contact points of placed edges."""
-        f, q = len(self.a), len(self.corner)
-        point, normal = np.empty(2 * f + q, dtype=complex), np.empty(2 * f + q, dtype=complex)
-        gap, length = np.empty(2 * f + q), np.empty(f)
-        on_a, valid = np.ones(2 * f + q, dtype=bool), np.empty(2 * f + q, dtype=bool)
-        if f:
-            t_a, t_b = placed.tangent[self.a], placed.tangent[self.b]
-            p, q_far, q_near = placed.start[self.a], placed.start[self.b], placed.end[self.b]
-            t = t_a - t_b
-            t /= np.abs(t)
-            n_a, n_b = -1j * t_a, 1j * t_b  # both from a to b
-            a_end = self.length_a * dot(t, t_a)
-            b_start, b_end = dot(t, q_near - p), dot(t, q_far - p)
-            same = SAME * self.length_a
-            low = np.where(np.abs(b_start) > same, b_start > 0.0, self.inner[0])  # ends that are corners of b
-            high = np.where(np.abs(a_end - b_end) > same, b_end < a_end, self.inner[1])
-            self.inner[0], self.inner[1] = low, high
-            on_a[:f], on_a[f : 2 * f] = low, high
-            point[:f] = np.where(low, q_near, p)
-            point[f : 2 * f] = np.where(high, q_far, placed.end[self.a])
-            normal[:f], normal[f : 2 * f] = np.where(low, n_a, n_b), np.where(high, n_a, n_b)
-            gap[:f] = np.where(low, dot(n_a, q_near - p), dot(n_b, q_far - p))
-            gap[f : 2 * f] = np.where(high, dot(n_a, q_far - p), dot(n_b, q_far - placed.end[self.a]))
-            length[:] = np.where(high, b_end, a_end) - np.where(low, b_start, 0.0)
-            valid[:f] = valid[f : 2 * f] = length > self.shortest
-        if q:
-            x, t = placed.start[self.edge], placed.tangent[self.edge]
-            point[2 * f :] = placed.start[self.corner]
-            normal[2 * f :] = -1j * t
-            away = point[2 * f :] - x
-            gap[2 * f :] = dot(normal[2 * f :], away)
-            along = dot(t, away)
-            valid[2 * f :] = (along >= -self.slack) & (along <= self.length_edge + self.slack)
-        return Touch(point, normal, gap, on_a, length, valid)
+        faces = self._faces(placed)
+        if not len(self.corner):
+            return faces
+        x, t = placed.start[self.edge], placed.tangent[self.edge]
+        point, normal = placed.start[self.corner], -1j * t
+        away = point - x
+        gap, along = dot(normal, away), dot(t, away)
+        valid = (along >= -self.slack) & (along <= self.length_edge + self.slack)
+        ends = (faces.point, faces.normal, faces.gap, faces.on_a, faces.valid)
+        corners = (point, normal, gap, np.ones(len(valid), dtype=bool), valid)
+        point, normal, gap, on_a, valid = (np.concatenate(pair) for pair in zip(ends, corners, strict=True))
+        return Touch(point, normal, gap, on_a, faces.length, valid)
+
+    def _faces(self, placed: PlacedEdges) -> Touch:
+        """Return the contact points of edges that face each other, lower ends before upper ones."""
+        t_a, t_b = placed.tangent[self.a], placed.tangent[self.b]
+        p, q_far = placed.start[self.a], placed.start[self.b]
+        t = t_a - t_b
+        t /= np.abs(t)
+        corner_a = np.array([p, placed.end[self.a]])
+        corner_b = np.array([placed.end[self.b], q_far])
+        away = corner_b - p
+        end = self.length_a * dot(t, t_a)
+        inside = dot(t, away)  # how far inside edge a the corners of b are, from either end
+        inside[1] = end - inside[1]
+        inner = np.where(np.abs(inside) > SAME * self.length_a, inside > 0.0, self.inner)  # ends that are corners of b
+        self.inner[:] = inner
+        normal_a, normal_b = -1j * t_a, 1j * t_b  # both from a to b
+        gap = np.where(inner, dot(normal_a, away), dot(normal_b, q_far - corner_a))
+        length = end - np.where(inner, inside, 0.0).sum(axis=0)
+        valid = np.tile(length > self.shortest, 2)
+        return Touch(
+            np.where(inner, corner_b, corner_a).ravel(), np.where(inner, normal_a, normal_b).ravel(), gap.ravel(),
+            inner.ravel(), length, valid,
+        )  # fmt: skip
 
     def turning(self, touch: Touch, centre: Array, velocity: Array, spin: Array) -> tuple[Array, Array]:
         """Return what turning adds to the rates of gap and slip, per time (2 f + q,) each [m/s2].

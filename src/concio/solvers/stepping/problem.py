@@ -17,16 +17,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array, ContactProblem, Laws
-
-FEW = 40
-"""Unknowns up to which dense products are cheaper than everything around sparse ones."""
+from concio.solvers.stepping.matrix import FEW, StepMatrix
 
 DELTA = 1e-6
 """Compliance added to closed pairs in the factorised matrix, over the typical flexibility of a pair."""
@@ -38,13 +36,31 @@ GLUED = 1e6
 """Tensile strength of glued pairs over F, where a method needs a number for it."""
 
 
+class Errors(NamedTuple):
+    """What is left of the equations at a point.
+
+    Parameters
+    ----------
+    r_u : (N,) array
+        Forces out of balance.
+    y_n : (m,) array
+        Gaps, without what dilatancy takes.
+    y_t : (m, d-1) array
+        Slips.
+    """
+
+    r_u: Array
+    y_n: Array
+    y_t: Array
+
+
 @dataclass(frozen=True, eq=False)
 class StepProblem:
     """One step of a motion.
 
     Parameters
     ----------
-    matrix : (N, N) CSR array
+    matrix : StepMatrix
         A.
     b : (N,) array
     columns : (m, w) integer array
@@ -64,7 +80,7 @@ class StepProblem:
         F and U.
     """
 
-    matrix: sp.csr_array
+    matrix: StepMatrix
     b: Array
     columns: Array
     values: Array
@@ -99,15 +115,15 @@ class StepProblem:
         return np.asarray(np.isinf(self.cone.cohesion))
 
     @cached_property
-    def diagonal(self) -> Array:
-        """Diagonal of A (N,)."""
-        return np.asarray(self.matrix.diagonal())
+    def dilates(self) -> bool:
+        """Whether any pair opens as it slips."""
+        return bool(self.dilatancy.any())
 
     @cached_property
     def flexibility(self) -> Array:
         """Displacement of each pair under a unit force along each direction, roughly: C diag(A)^-1 C' (m, d)."""
-        inverse = np.append(1.0 / self.diagonal, 0.0)
-        return np.asarray(np.einsum("mdw,mw->md", self.values**2, inverse[self.columns]))
+        inverse = self.matrix.inverse_diagonal[self.columns]
+        return np.asarray(np.matmul(self.values * self.values, inverse[:, :, None])[:, :, 0])
 
     @cached_property
     def added(self) -> tuple[Array, Array]:
@@ -148,26 +164,28 @@ class StepProblem:
         total: Array = (self.rows[1] @ t.ravel())[: len(self.b)]
         return total
 
-    @cached_property
-    def times(self) -> Any:
-        """A as it multiplies fastest."""
-        return self.matrix.toarray() if len(self.b) <= FEW else self.matrix
-
-    @cached_property
+    @property
     def plain(self) -> bool:
         """Whether every pair has friction only: no strength without compression, no cap, nothing glued."""
-        cone = self.cone
-        return not (cone.cohesion.any() or cone.tension.any() or np.isfinite(cone.cap).any())
+        return self.cone.plain
 
     def relative(self, x: Array, t: Array) -> tuple[Array, Array]:
         """Return y_n (m,) without dilatancy and y_t (m, d-1)."""
         y = self.opening(x)
         return self.gap + y[:, 0] + self.a_n * t[:, 0], y[:, 1:] - self.origin + self.a_t[:, None] * t[:, 1:]
 
+    def errors(self, x: Array, t: Array) -> Errors:
+        """Return what is left of the equations at a point."""
+        return Errors(self.b + self.pull(t) - self.matrix.times @ x, *self.relative(x, t))
+
     def residual(self, x: Array, t: Array) -> tuple[float, Array]:
         """Return the worst relative violation of any equation, and that of the joint law of each pair (m,)."""
-        left = np.abs(self.times @ x - self.b - self.pull(t)).max(initial=0.0) / self.force
-        y_n, y_t = self.relative(x, t)
+        return self.violation(t, self.errors(x, t))
+
+    def violation(self, t: Array, errors: Errors) -> tuple[float, Array]:
+        """Return the residual of a point with forces t whose errors are known."""
+        left = largest(errors.r_u) / self.force
+        _, y_n, y_t = errors
         cone, t_n, t_t = self.cone, t[:, 0], t[:, 1:]
         if self.plain and self.dim == 2:
             y, along, force = y_t[:, 0], t[:, 1], self.force
@@ -177,7 +195,7 @@ class StepProblem:
             wrong = np.abs(along - np.minimum(np.maximum(trial, -strength), strength)) / force
             idle = np.maximum(np.abs(t_n), np.abs(along)) / force
             simple: Array = np.where(self.active, np.maximum(law, wrong), idle)
-            return float(max(left, simple.max(initial=0.0))), simple
+            return max(left, largest(simple)), simple
         glued = self.glued
         slip = np.abs(y_t[:, 0]) if self.dim == 2 else np.linalg.norm(y_t, axis=1)
         y_n = (y_n - np.where(cone.rough & ~glued, self.dilatancy * slip, 0.0)) / self.length
@@ -194,7 +212,7 @@ class StepProblem:
         law = np.maximum(law, (wrong[:, 0] if self.dim == 2 else np.linalg.norm(wrong, axis=1)) / self.force)
         idle = np.maximum(np.abs(t_n), np.abs(t_t).max(axis=1)) / self.force
         laws: Array = np.where(self.active, law, idle)
-        return float(max(left, laws.max(initial=0.0))), laws
+        return max(left, largest(laws)), laws
 
     def contact_problem(self) -> ContactProblem:
         """Return the same problem in the form every method takes, its active pairs only."""
@@ -225,9 +243,14 @@ class StepProblem:
             cap=cone.cap,
         )
         return ContactProblem(
-            K=self.matrix, f=self.b, C_n=C_n, C_t=C_t, gap=self.gap[pick], laws=laws, R=sp.csc_array((n, 0)),
+            K=self.matrix.sparse, f=self.b, C_n=C_n, C_t=C_t, gap=self.gap[pick], laws=laws, R=sp.csc_array((n, 0)),
             bodies=np.array([0, n]), slip_origin=self.origin[pick], load=self.force,
         )  # fmt: skip
+
+
+def largest(v: Array) -> float:
+    """Return the largest absolute value, zero of none."""
+    return float(np.abs(v).max()) if v.size else 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -248,6 +271,14 @@ class StepStates:
     def same(self, other: StepStates) -> bool:
         """Return whether all states are the same."""
         return bool((self.contact == other.contact).all() and (self.slip == other.slip).all())
+
+    def halting(self, before: StepStates) -> StepStates:
+        """Return these states with pairs sticking that would slide back after sliding forwards.
+
+        What slides one way in one round and the other way in the next sticks in nine answers of ten.
+        """
+        back = (self.contact > 0) & (before.contact > 0) & (self.slip * before.slip < 0)
+        return StepStates(self.contact, np.where(back, 0, self.slip).astype(np.int8))
 
 
 @dataclass(frozen=True, eq=False)

@@ -69,7 +69,6 @@ def settle(
         new = read_states(p, x, t)
         violated = (laws > SETTLED) & ((new.contact != states.contact) | (new.slip != states.slip))
         violated[chosen] = False
-        violated |= (laws > SETTLED) & ~violated & False
         added = np.flatnonzero(violated)
         if not added.size:
             break
@@ -120,8 +119,8 @@ def settle(
             updated = UpdatedFactor(factor, values, columns, Z, G, _diagonal(D_now[chosen] - D[chosen]))
         except np.linalg.LinAlgError:
             break
-        x1, t1, _ = solve_states(p, updated, settled, x, t, D_now)
-        residual, laws1 = p.residual(x1, t1)
+        x1, t1, errors = solve_states(p, updated, settled, x, t, D_now)
+        residual, laws1 = p.violation(t1, errors)
         if residual < found[3]:
             found = (x1, t1, now, residual)
         if residual < SETTLED:

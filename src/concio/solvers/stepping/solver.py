@@ -51,7 +51,7 @@ class StepSolver:
     def solve(self, p: StepProblem, states: StepStates, x: Array, t: Array) -> StepSolution:
         """Solve a step from the states of the one before and a point near the answer."""
         if self.factor is None:
-            self.factor = StepFactor(p.matrix, p.columns, self.engine)
+            self.factor = StepFactor(p.matrix.sparse, p.columns, self.engine)
         factor, begun = self.factor, self.factor.count
         best: StepSolution | None = None
 
@@ -67,15 +67,15 @@ class StepSolver:
             linear = Linear.of(p, states)
             D = linear.blocks(p)
             try:
-                factor.factorise(p.matrix, p.values, D)
-                x1, t1, _ = solve_states(p, factor, linear, x, t, D)
+                factor.factorise(p.matrix.sparse, p.values, D)
+                x1, t1, errors = solve_states(p, factor, linear, x, t, D)
             except SingularMatrixError:
                 break
-            residual, laws = p.residual(x1, t1)
+            residual, laws = p.violation(t1, errors)
             found = keep(x1, t1, states, residual, "same states" if not round_ else "active set")
             if residual < GOOD:
                 return self._count(found)
-            new = read_states(p, x1, t1)
+            new = read_states(p, x1, t1, errors).halting(states)
             changed = int(((laws > SETTLED) & ((new.contact != states.contact) | (new.slip != states.slip))).sum())
             seen.append(states)
             if changed <= FEW or round_ >= FLIPS or any(new.same(s) for s in seen):
@@ -91,8 +91,8 @@ class StepSolver:
     def response(self, p: StepProblem, states: StepStates, f: Array) -> Array:
         """Return the change of x (N,) under a change f (N,) of the right-hand side, in given states."""
         if self.factor is None:
-            self.factor = StepFactor(p.matrix, p.columns, self.engine)
-        self.factor.factorise(p.matrix, p.values, Linear.of(p, states).blocks(p))
+            self.factor = StepFactor(p.matrix.sparse, p.columns, self.engine)
+        self.factor.factorise(p.matrix.sparse, p.values, Linear.of(p, states).blocks(p))
         return self.factor.solve(f)
 
     def _count(self, found: StepSolution) -> StepSolution:

@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from concio.problem.contact_problem import Array
-from concio.solvers.stepping.problem import StepProblem, StepStates
+from concio.solvers.stepping.problem import Errors, StepProblem, StepStates, largest
 
 EXACT = 1e-13
 """Relative residual at which refinement stops."""
@@ -49,6 +49,8 @@ class Linear:
         Compliance added along the normal.
     soft_t : (m,) array
         Compliance along the tangent with what is added; one where a pair does not stick.
+    opens : bool
+        Whether any pair opens as it slips.
     """
 
     closed: Array
@@ -59,6 +61,7 @@ class Linear:
     open_wide: Array
     delta_n: Array
     soft_t: Array
+    opens: bool
 
     @classmethod
     def of(cls, p: StepProblem, states: StepStates) -> Linear:
@@ -72,8 +75,8 @@ class Linear:
             slips = rough & (states.slip != 0)
             drag = np.where(slips, -sigma * cone.friction, 0.0)
             return cls(
-                closed, stick, drag, zero, zero, p.dilatancy * sigma * slips, delta_n,
-                np.where(stick, p.a_t + delta_t, 1.0),
+                closed, stick, drag, zero, zero, p.dilatancy * sigma * slips if p.dilates else zero, delta_n,
+                np.where(stick, p.a_t + delta_t, 1.0), p.dilates,
             )  # fmt: skip
         closed = ((states.contact == 1) & p.active) | p.glued
         tension = np.where(p.glued | ~p.active, 0.0, cone.tension)
@@ -94,58 +97,63 @@ class Linear:
             p.dilatancy * sigma * slips,
             delta_n,
             np.where(stick, p.a_t + delta_t, 1.0),
+            p.dilates,
         )
 
     def blocks(self, p: StepProblem) -> Array:
         """Return D (m, 2, 2)."""
-        soft_n = p.a_n - self.open_wide * p.a_t * self.drag + self.delta_n
+        soft_n = p.a_n + self.delta_n
+        if self.opens:
+            soft_n = soft_n - self.open_wide * p.a_t * self.drag
         d_nn = np.where(self.closed, 1.0 / soft_n, 0.0)
-        d_tt = np.where(self.stick, 1.0 / self.soft_t, 0.0)
+        d_tn = self.drag * d_nn
         D = np.zeros((p.pairs, 2, 2))
-        D[:, 0, 0], D[:, 0, 1] = d_nn, -d_nn * self.open_wide
-        D[:, 1, 0], D[:, 1, 1] = self.drag * d_nn, d_tt - self.drag * d_nn * self.open_wide
+        D[:, 0, 0], D[:, 1, 0] = d_nn, d_tn
+        D[:, 1, 1] = np.where(self.stick, 1.0 / self.soft_t, 0.0)
+        if self.opens:
+            D[:, 0, 1] = -d_nn * self.open_wide
+            D[:, 1, 1] -= d_tn * self.open_wide
         return D
 
 
 def solve_states(
     p: StepProblem, factor: Factor, linear: Linear, x: Array, t: Array, D: Array
-) -> tuple[Array, Array, float]:
+) -> tuple[Array, Array, Errors]:
     """Solve the equations of given states by refinement from (x, t); the factor holds (nearly) their matrix.
 
     Returns
     -------
     x : (N,) array
     t : (m, 2) array
-    residual : float
-        Of the linear equations.
+    errors : Errors
+        At that point.
     """
     closed, stick, drag = linear.closed, linear.stick, linear.drag
     t_n = np.where(closed, t[:, 0], linear.held_n)
     t_t = np.where(stick, t[:, 1], drag * t_n + linear.pull)
     t = _side_by_side(t_n, t_t)
-    best, late = (x, t, np.inf), 0
+    stiff, opens = D[:, 0, 0], linear.opens
+    least, late, best = np.inf, 0, None
     for _ in range(ROUNDS):
-        r_u = p.b + p.pull(t) - p.times @ x
-        y_n, y_t = p.relative(x, t)
-        r_n = np.where(closed, -(y_n - linear.open_wide * y_t[:, 0]), 0.0)
-        r_t = np.where(stick, -y_t[:, 0], 0.0)
-        residual = max(
-            float(np.abs(r_u).max(initial=0.0)) / p.force,
-            float(np.abs(r_n).max(initial=0.0)) / p.length,
-            float(np.abs(r_t).max(initial=0.0)) / p.length,
-        )
-        late = late + 1 if residual > 0.3 * best[2] else 0
-        if residual < best[2]:
-            best = (x, t, residual)
-        if not residual > EXACT or late >= 2 or residual > 1e3 * best[2]:
+        errors = p.errors(x, t)
+        slip = errors.y_t[:, 0]
+        r_n = np.where(closed, linear.open_wide * slip - errors.y_n if opens else -errors.y_n, 0.0)
+        r_t = np.where(stick, -slip, 0.0)
+        residual = max(largest(errors.r_u) / p.force, max(largest(r_n), largest(r_t)) / p.length)
+        late = late + 1 if residual > 0.3 * least else 0
+        if best is None or residual < least:
+            best, least = (x, t, errors), residual
+        if not residual > EXACT or late >= 2 or residual > 1e3 * least:
             break
-        n0 = r_n * D[:, 0, 0]
+        n0 = r_n * stiff
         t0 = np.where(stick, r_t / linear.soft_t, drag * n0)
-        dx = factor.solve(r_u + p.pull(_side_by_side(n0, t0)))
+        dx = factor.solve(errors.r_u + p.pull(_side_by_side(n0, t0)))
         v = p.opening(dx)
-        dt_n = n0 - D[:, 0, 0] * (v[:, 0] - linear.open_wide * v[:, 1])
-        dt_t = np.where(stick, t0 - v[:, 1] / linear.soft_t, drag * dt_n)
+        v_n, v_t = v[:, 0], v[:, 1]
+        dt_n = n0 - stiff * (v_n - linear.open_wide * v_t if opens else v_n)
+        dt_t = np.where(stick, t0 - v_t / linear.soft_t, drag * dt_n)
         x, t = x + dx, t + _side_by_side(dt_n, dt_t)
+    assert best is not None
     return best
 
 
@@ -155,9 +163,9 @@ def _side_by_side(first: Array, second: Array) -> Array:
     return both
 
 
-def read_states(p: StepProblem, x: Array, t: Array) -> StepStates:
+def read_states(p: StepProblem, x: Array, t: Array, errors: Errors | None = None) -> StepStates:
     """Return the states that the natural map assigns to a point, each pair measured by its own flexibility."""
-    y_n, y_t = p.relative(x, t)
+    y_n, y_t = p.relative(x, t) if errors is None else errors[1:]
     stiff = 1.0 / np.where(p.flexibility > 0, p.flexibility, 1.0)
     cone = p.cone
     slip = y_t[:, 0]
