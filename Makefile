@@ -1,5 +1,6 @@
-# make demo: the paper's panel, from nothing to figures. make test: everything the project checks. Needs Python 3.11 or
-# later, make and pip. PYTHON=... chooses the interpreter, VENV=... the place of the environment.
+# make demo: the paper's panel, from nothing to figures. make test: linter, types and tests but the long ones, in some
+# minutes; make test-all: everything the project checks, as continuous integration does. Needs Python 3.11 or later, make
+# and pip. PYTHON=... chooses the interpreter, VENV=... the place of the environment.
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
@@ -39,12 +40,17 @@ lint: $(VENV)/.installed-dev
 	$(BIN)/mypy
 
 # Everything runs even where something fails, so that one run tells all; the tests come last and close with their count.
+SELECT ?= not long
 test: $(VENV)/.installed-dev
 	@status=0; \
 	$(BIN)/ruff check . || status=1; \
 	$(BIN)/mypy || status=1; \
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal || status=1; \
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m "$(SELECT)" || status=1; \
 	exit $$status
+
+.PHONY: test-all
+test-all:
+	$(MAKE) test SELECT="long or not long"
 
 # Small faults put into the core on purpose: those that once passed unseen must be seen, a new sample is printed.
 .PHONY: mutants
@@ -63,7 +69,7 @@ lowest:
 
 newest:
 	@test -n "$(NEWEST)" || { echo "no other Python was found: make newest NEWEST=/path/to/python"; exit 1; }
-	$(MAKE) test PYTHON=$(NEWEST) VENV=$(VENV)-newest
+	$(MAKE) test-all PYTHON=$(NEWEST) VENV=$(VENV)-newest
 
 docs: $(VENV)/.installed-docs
 	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html

@@ -24,7 +24,16 @@ def pages() -> list[Path]:
     return [p for p in found if FENCE.search(p.read_text(encoding="utf-8"))]
 
 
-@pytest.mark.parametrize("page", pages(), ids=lambda p: str(p.relative_to(DOCS)))
+LONG = {"howto/space.md", "howto/assessment.md", "howto/cells.md"}
+
+
+def named(page: Path) -> object:
+    """Return a page as a case of a test."""
+    name = page.relative_to(DOCS).as_posix()
+    return pytest.param(page, id=name, marks=[pytest.mark.long] * (name in LONG))
+
+
+@pytest.mark.parametrize("page", map(named, pages()))
 def test_page(page, tmp_path, monkeypatch):
     mpl.use("Agg")
     monkeypatch.chdir(tmp_path)

@@ -31,7 +31,7 @@ QUICK: dict[str, dict[str, int]] = {
 }
 """The iterative family, each with a patience that keeps the test short."""
 
-few = settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
+few = settings(max_examples=6, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
 
 
 @st.composite

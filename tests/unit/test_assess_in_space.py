@@ -112,6 +112,7 @@ def test_the_corner_of_two_walls_is_sought_whole_and_above() -> None:
     assert {c.kind for m in found.mechanisms for c in m.checks} == {"onset"}
 
 
+@pytest.mark.long
 def test_report_in_space() -> None:
     found = concio.assess(wall(), site=site(), levels=["SLV"], direction="-x")
     for language, said in (("en", ("towards -x", "step by step")), ("it", ("verso -x", "passo dopo passo"))):

@@ -155,6 +155,7 @@ def test_the_bounds_are_those_of_the_same_wall_seen_in_a_mirror():
     assert a == pytest.approx(b, rel=1e-7)
 
 
+@pytest.mark.long
 def test_the_cell_of_the_bond_is_found_or_asked_for():
     flemish = pushed(bond="flemish")
     own = concio.compare_with_continuum(flemish, elastic=False).cell.model
@@ -167,6 +168,7 @@ def test_the_cell_of_the_bond_is_found_or_asked_for():
     assert concio.compare_with_continuum(arch, cell, elastic=False).strength is not None
 
 
+@pytest.mark.long
 def test_what_is_carried_without_end_and_what_is_not_carried_at_all():
     """Pressure on a dry wall; a dry wall with a door, whose continuum has no lintel: proofs of both."""
     wall = concio.wall(length=2.0, height=1.5, block_size=(0.5, 0.25), block="rigid", friction=0.6, top_pressure=10.0)

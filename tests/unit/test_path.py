@@ -61,7 +61,7 @@ def test_events_are_named(exact):
 
 def test_steps_converge_to_the_exact_path(small, exact):
     errors = []
-    for n in (4, 16, 64):
+    for n in (4, 16):
         stages = [WEIGHT, Stage("push", {"live": 0.5}, steps=n)]
         found = run_path(small, stages, method="steps", solver="interior-point")
         assert found.complete
@@ -69,8 +69,8 @@ def test_steps_converge_to_the_exact_path(small, exact):
         assert found.energy_error <= 1e-9
         gap = found.steps[-1].state.displacement - exact.steps[-1].state.displacement
         errors.append(np.abs(gap).max() / np.abs(exact.steps[-1].state.displacement).max())
-    assert errors[2] < 0.5 * errors[0]
-    assert errors[2] < 2e-4
+    assert errors[1] < 0.5 * errors[0]
+    assert errors[1] < 2e-4
 
 
 def test_without_friction_the_step_size_does_not_matter():
@@ -139,6 +139,7 @@ def test_result_of_a_step(exact):
     assert result.reactions["ground"][0] == pytest.approx(0.5 * weight, rel=1e-9)
 
 
+@pytest.mark.long
 def test_limit_of_rigid_and_elastic_blocks_agree():
     size = {"length": 1.6, "height": 0.8, "block_size": (0.4, 0.2), "mesh_size": 0.2}
     found = [limit(wall(**size, horizontal=1.0, friction=0.65, block=kind)) for kind in ("rigid", "elastic")]
@@ -218,6 +219,7 @@ def test_a_stage_that_ends_where_it_begins(small):
     assert found.peak(1) == pytest.approx(1.0)
 
 
+@pytest.mark.long
 def test_a_support_that_sinks_breaks_the_grip_of_the_joint_above_it():
     """Redundant hard pairs forbid the motion until their self-stress has grown to the sliding strength.
 

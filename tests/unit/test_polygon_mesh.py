@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from concio.errors import GeometryError, InputError
+from concio.fem.mapped_mesh import _paired
 from concio.fem.polygon_mesh import mesh_polygon, mesh_quality
 from concio.kinematics.mass import signed_area
 from concio.model.interfaces.polygon_check import check_polygon, polygon_faults
@@ -133,3 +134,17 @@ def test_faults_of_an_outline_are_named_with_their_place(outline, kinds, place):
 def test_a_sound_outline_has_no_faults():
     assert polygon_faults(L_SHAPE) == ()
     assert polygon_faults(np.concatenate([L_SHAPE, L_SHAPE[:1]])) == ()
+
+
+def test_marks_without_a_partner_get_one_at_the_same_fraction():
+    """Unless lines would cross: then those that nothing holds are spread evenly between those that are."""
+    p, q = np.array([0.0, 0.2, 1.0]), np.array([0.0, 0.7, 1.0])
+    f, g = _paired(p, q, 1.0, 1.0, 1.0)
+    assert f == pytest.approx([0.0, 0.2, 0.7, 1.0])
+    assert g == pytest.approx([0.0, 0.2, 0.7, 1.0])
+    p, q = np.array([0.0, 0.30, 0.42, 1.0]), np.array([0.0, 0.40, 0.52, 1.0])
+    f, g = _paired(p, q, 1.0, 1.0, 0.3)
+    assert (np.diff(f) > 0).all()
+    assert (np.diff(g) > 0).all()
+    assert {0.30, 0.42} <= set(f.tolist())
+    assert {0.40, 0.52} <= set(g.tolist())

@@ -88,9 +88,9 @@ def plan_area(options: dict[str, object]) -> float:
 @pytest.mark.parametrize("name", list(WALLS))
 def test_bonds_fill_the_walls_and_lap(name: str) -> None:
     options, least, _ = WALLS[name]
-    model = concio.walls(height=1.2, **options, **RIGID)  # type: ignore[arg-type]
+    model = concio.walls(height=0.8, **options, **RIGID)  # type: ignore[arg-type]
     assembly = sound(model)
-    assert volume(model) == pytest.approx(1.2 * plan_area(options), rel=1e-9)
+    assert volume(model) == pytest.approx(0.8 * plan_area(options), rel=1e-9)
     length = options["block_size"][0]  # type: ignore[index]
     laps = [
         float(np.ptp(p.polygon, axis=0)[:2].min())
@@ -179,8 +179,9 @@ def test_domes(bond: str, oculus: float, rise: float | None) -> None:
     top = np.arcsin(0.5 * oculus / r)
     exact = 2 * np.pi / 3 * ((r + 0.5) ** 3 - r**3) * (np.cos(top) - np.cos(low))
     assert volume(model) == pytest.approx(exact, rel=0.09)
-    fine = concio.dome(span=8, ring=0.5, courses=24, blocks=60, bond="stack", oculus=oculus, rise=rise, **RIGID)
-    assert volume(fine) == pytest.approx(exact, rel=0.004)
+    if bond == "stack":  # chords three times shorter leave a ninth of the error
+        fine = concio.dome(span=8, ring=0.5, courses=3 * n, blocks=3 * m, oculus=oculus, rise=rise, bond=bond, **RIGID)
+        assert volume(fine) - exact == pytest.approx((volume(model) - exact) / 9, rel=0.1)
 
 
 def test_a_dome_with_a_lantern_on_spreading_springers() -> None:
@@ -295,7 +296,8 @@ def test_what_generators_in_space_refuse(build: Callable[[], Model], words: str)
         build()
 
 
-KINDS = ("walls", "tower", "barrel", "dome", "cloister_vault", "cross_vault", "drums", "arch_on_piers", "arcade")
+LARGE = ("walls", "tower", "barrel", "dome", "cloister_vault", "cross_vault")
+KINDS = (*(pytest.param(kind, marks=pytest.mark.long) for kind in LARGE), "drums", "arch_on_piers", "arcade")
 
 
 @pytest.mark.parametrize("kind", KINDS)

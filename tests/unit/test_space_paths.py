@@ -37,6 +37,7 @@ def test_limit_of_an_extruded_wall_is_that_of_the_plane() -> None:
         concio.limit(concio.extrude(WALL, THICK), path=True)
 
 
+@pytest.mark.long
 def test_what_lies_between_the_steps_and_the_bound_is_put_on_in_one_step() -> None:
     model = concio.extrude(concio.wall(length=2.0, height=1.0, block="rigid", horizontal=0.2), THICK)
     found = concio.limit(model, search=False)

@@ -148,6 +148,7 @@ def test_figures_of_a_model_in_space() -> None:
     assert plot_space_model(tower(), view="side").get_xlabel() == "y [m]"
 
 
+@pytest.mark.long
 def test_the_report_of_a_mechanism_in_space_is_one_offline_file() -> None:
     result = moving(tower(), {"top": ((0, 0, 1.0), (0, 0, 0))})
     data = space_view_data([result], ["collapse"])

@@ -35,7 +35,7 @@ group = "live"
 @pytest.mark.parametrize("design", ["monte-carlo", "latin-hypercube", "sobol"])
 def test_minimum_of_two_uniforms(design: str) -> None:
     """mu in (.3, .7), s in (.2, .6): P(min < .4) = 0.625, mean 0.371875, variance 0.009729818."""
-    n = 4096
+    n = 1024
     found = concio.study(formula, VARIABLES, "multiplier", design, size=n, seed=3)
     values = found.values("multiplier")
     sd = math.sqrt(0.009729818)
@@ -48,10 +48,10 @@ def test_minimum_of_two_uniforms(design: str) -> None:
 
 def test_sobol_indices_of_the_minimum() -> None:
     """First 0.113817 (mu), 0.761526 (s); total 0.238474, 0.886183."""
-    found = concio.study(formula, VARIABLES, "multiplier", "saltelli", size=1024).sensitivity("multiplier")
+    found = concio.study(formula, VARIABLES, "multiplier", "saltelli", size=512).sensitivity("multiplier")
     assert found.kind == "Sobol"
-    assert found.first == pytest.approx([0.113817, 0.761526], abs=0.01)
-    assert found.total == pytest.approx([0.238474, 0.886183], abs=0.01)
+    assert found.first == pytest.approx([0.113817, 0.761526], abs=0.015)
+    assert found.total == pytest.approx([0.238474, 0.886183], abs=0.015)
 
 
 def test_models_of_a_function_say_the_same_as_the_formula() -> None:

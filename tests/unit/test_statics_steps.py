@@ -1,0 +1,80 @@
+"""What statics at large displacements is made of: small frictional problems, slips of turned bodies, moved supports."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import concio
+from concio.analysis.motion.pairs import relative
+from concio.analysis.motion.scheme import Scheme
+from concio.analysis.motion.statics import Statics
+from concio.analysis.motion.stepper import at_rest
+from concio.contact.moving.reference import Reference
+from concio.problem.cone import Cone
+from concio.solvers.stepping.small import solve_small
+from motion_models import G, standing
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_small_problems_obey_the_joint_law(seed):
+    """y = q + W t with normals opened by dilatancy, pressed together where crushed; friction against the slip."""
+    rng = np.random.default_rng(seed)
+    v = int(rng.integers(1, 5))
+    B = rng.normal(size=(2 * v, 2 * v + 1))
+    W, q = B @ B.T, rng.normal(size=2 * v) - np.tile([0.8, 0.0], v)
+    mu = rng.uniform(0.2, 0.8, v)
+    tension = rng.uniform(0.0, 0.2, v) * (rng.random(v) < 0.5)
+    cohesion = mu * tension + rng.uniform(0.0, 0.3, v)
+    cap = np.where(rng.random(v) < 0.5, rng.uniform(0.05, 0.4, v), np.inf)
+    dilatancy = rng.uniform(0.1, 0.9, v) * mu
+    forces, pivots = solve_small(W, q, Cone(mu, cohesion, tension, cap), dilatancy)
+    assert forces is not None
+    assert pivots > 0
+    t_n, t_t = forces.T
+    y_n, y_t = (q + W @ forces.ravel()).reshape(v, 2).T
+    y_n = y_n - dilatancy * np.abs(y_t)
+    small = 1e-9
+    assert (t_n >= -tension - small).all()
+    assert (t_n <= cap + small).all()
+    assert (np.abs(t_t) <= cohesion + mu * t_n + small).all()
+    assert (np.minimum(y_n, t_n + tension) <= small).all()
+    assert np.abs(y_n[(t_n > -tension + small) & (t_n < cap - small)]).max(initial=0.0) <= small
+    assert (y_n[t_n < cap - small] >= -small).all()
+    slides = np.abs(y_t) > small
+    assert t_t[slides] == pytest.approx((-np.sign(y_t) * (cohesion + mu * t_n))[slides], abs=small)
+
+
+def test_a_turned_block_slips_by_what_its_points_move_along_the_joint():
+    """First order from the rows, the rest from finite rotations: together the chord of each point."""
+    reference = Reference.of(standing(0.4, 1.2), G)
+    statics = Statics(reference, Scheme(), {}, (), np.array([1.0, 0.0]))
+    rest = at_rest(reference)
+    look = statics.look(rest, rest.memory, np.zeros(0), 0.0)
+    before = statics._moved(rest, np.array([2e-4, 1e-4, 5e-4]), look)
+    look = statics.look(before, look.memory, np.zeros(0), 0.0)
+    x = np.array([0.03, -0.02, 0.4])
+    after = statics._moved(before, x, look)
+    w = after.rotation[1] - before.rotation[1]
+    assert abs(w) > 0.2
+    turn = np.array([[np.cos(w), -np.sin(w)], [np.sin(w), np.cos(w)]])
+    arm = look.point - before.centre[1]
+    chord = after.centre[1] - before.centre[1] + arm @ turn.T - arm
+    tangent = np.column_stack([-look.normal[:, 1], look.normal[:, 0]])
+    exact = (chord * tangent).sum(1)
+    first = relative(look.data.columns, look.data.values, x)[:, 1]
+    assert np.abs(exact - first).max() > 0.01
+    assert first + statics._swung(look, before, after) == pytest.approx(exact, abs=1e-12)
+    assert not statics._swung(look, before, before).any()
+
+
+def test_a_support_moves_by_the_multiplier_times_the_factor_of_its_group():
+    model = standing(1.0, 0.5, friction=0.2)
+    pull = concio.Support("pull", "block", directions="x", displacement=(0.03, 0.0), group="live")
+    load = concio.Load("weight", (0.01, 0.0), bodies=("block",), group="live")
+    model = replace(model, supports=(pull,), loads=(*model.loads, load))
+    found = concio.push(model, live="live", control="load", step=0.25, until=0.5, factors={"live": 2.0})
+    assert found.multiplier[-1] == pytest.approx(0.5)
+    assert found.centre[-1, 1, 0] - found.centre[0, 1, 0] == pytest.approx(0.5 * 2.0 * 0.03, rel=1e-6)
