@@ -47,25 +47,31 @@ def test_small_problems_obey_the_joint_law(seed):
     assert t_t[slides] == pytest.approx((-np.sign(y_t) * (cohesion + mu * t_n))[slides], abs=small)
 
 
-def test_a_turned_block_slips_by_what_its_points_move_along_the_joint():
-    """First order from the rows, the rest from finite rotations: together the chord of each point."""
-    reference = Reference.of(standing(0.4, 1.2), G)
-    statics = Statics(reference, Scheme(), {}, (), np.array([1.0, 0.0]))
-    rest = at_rest(reference)
+def test_turned_blocks_slip_by_what_their_points_move_along_the_joint():
+    """First order from the rows, the rest from finite rotations: together the chords of the points of both sides."""
+    stack = concio.column(width=0.4, height=1.2, blocks=2, block="rigid", friction=0.5)
+    statics = Statics(Reference.of(stack, G), Scheme(), {}, (), np.array([1.0, 0.0]))
+    rest = at_rest(statics.reference)
     look = statics.look(rest, rest.memory, np.zeros(0), 0.0)
-    before = statics._moved(rest, np.array([2e-4, 1e-4, 5e-4]), look)
+    before = statics._moved(rest, np.array([2e-4, 1e-4, 5e-4, 1e-4, 0.0, -2e-4]), look)
     look = statics.look(before, look.memory, np.zeros(0), 0.0)
-    x = np.array([0.03, -0.02, 0.4])
+    x = np.array([0.03, -0.02, 0.2, -0.01, 0.04, -0.3])
     after = statics._moved(before, x, look)
-    w = after.rotation[1] - before.rotation[1]
-    assert abs(w) > 0.2
-    turn = np.array([[np.cos(w), -np.sin(w)], [np.sin(w), np.cos(w)]])
-    arm = look.point - before.centre[1]
-    chord = after.centre[1] - before.centre[1] + arm @ turn.T - arm
+
+    def chord(body):
+        w = after.rotation[body] - before.rotation[body]
+        arm = look.point - before.centre[body]
+        turned = np.column_stack([np.cos(w) * arm[:, 0] - np.sin(w) * arm[:, 1], np.sin(w) * arm[:, 0]])
+        turned[:, 1] += np.cos(w) * arm[:, 1]
+        return after.centre[body] - before.centre[body] + turned - arm
+
+    slots = statics.maker.slots
+    assert np.abs((after.rotation - before.rotation)[1:]).min() > 0.1
     tangent = np.column_stack([-look.normal[:, 1], look.normal[:, 0]])
-    exact = (chord * tangent).sum(1)
+    exact = ((chord(slots.body_b) - chord(slots.body_a)) * tangent).sum(1)
     first = relative(look.data.columns, look.data.values, x)[:, 1]
-    assert np.abs(exact - first).max() > 0.01
+    assert len(exact) == 4
+    assert np.abs(exact - first).min() > 1e-4
     assert first + statics._swung(look, before, after) == pytest.approx(exact, abs=1e-12)
     assert not statics._swung(look, before, before).any()
 
