@@ -145,6 +145,7 @@ def test_elastic_blocks_are_as_strong_as_rigid_ones():
     assert [r.multiplier for r in found.rays] == pytest.approx([exact.distance(r.direction) for r in found.rays])
 
 
+@pytest.mark.long
 def test_coulomb_numbers_stand_beside_the_bound():
     """Dry bond under vertical pressure: the path reaches the bound of shear; towers part without friction's help."""
     cell = concio.cell(block="rigid", block_size=(0.4, 0.175), friction=0.65)

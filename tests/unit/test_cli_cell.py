@@ -69,6 +69,7 @@ def test_json_is_one_object(dry):
     assert data["moduli"]["certificate"]["worst"] < 1e-8
 
 
+@pytest.mark.long
 def test_out_holds_tables_that_a_finite_element_program_can_read(dry):
     code, out, _ = run("cell", dry, "--out", "result", "--direction", "xx=1", "--stress", "yy=-100", "--no-coulomb",
                        "--stage", "stress yy=-100")  # fmt: skip

@@ -31,6 +31,7 @@ def wall(tmp_path, monkeypatch):
     return "wall.toml"
 
 
+@pytest.mark.long
 def test_blocks_and_continuum_are_printed_and_drawn_side_by_side(wall, tmp_path):
     code, out, _ = run("continuum", wall, "--halve", "1", "--out", "twin", "--mesh-size", "40 cm")
     assert code == 0

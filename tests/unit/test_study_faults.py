@@ -48,14 +48,10 @@ def same_rows(one: concio.StudyResult, other: concio.StudyResult) -> bool:
     return told(one.rows) == told(other.rows)
 
 
-@pytest.mark.parametrize("executor", EXECUTORS[1:])
-def test_rows_are_the_same_whatever_the_executor(executor: str) -> None:
-    assert same_rows(study(formula, executor), study(formula, "serial"))
-
-
 @pytest.mark.parametrize("executor", EXECUTORS)
-def test_a_run_that_raises_is_a_row(executor: str) -> None:
+def test_rows_are_the_same_whatever_the_executor_and_a_run_that_raises_is_one(executor: str) -> None:
     found = study(raising, executor)
+    assert same_rows(found, study(raising, "serial"))
     bad = strong(found)
     assert [row.verdict == "raised" for row in found.rows] == bad.tolist()
     assert "ZeroDivisionError: friction beyond belief" in found.failures[0].message
@@ -78,6 +74,7 @@ def test_a_run_that_hears_no_alarm_is_ended_with_its_process() -> None:
     assert [row.verdict for row in few.rows] == ["done", "time_limit", "done"]
 
 
+@pytest.mark.long
 def test_a_run_that_takes_its_worker_with_it_is_a_row() -> None:
     few = concio.study(
         dying, VARIABLES, "multiplier", np.array([[0.4, 0.3], [0.65, 0.3], [0.5, 0.3], [0.55, 0.3]]), workers=2
@@ -85,7 +82,7 @@ def test_a_run_that_takes_its_worker_with_it_is_a_row() -> None:
     assert [row.verdict for row in few.rows] == ["done", "worker_lost", "done", "done"]
 
 
-@pytest.mark.parametrize("executor", EXECUTORS[1:])
+@pytest.mark.parametrize("executor", ["processes", pytest.param("dask", marks=pytest.mark.long)])
 def test_a_lost_worker_loses_no_row(executor: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CONCIO_TEST_MARKS", str(tmp_path))
     table = np.array([[0.4, 0.3], [0.65, 0.3], [0.5, 0.3], [0.55, 0.25], [0.35, 0.3]])
