@@ -27,9 +27,12 @@ from concio.model.generate.panel import Base
 from concio.problem.contact_problem import ContactProblem
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.methods import find
+from concio.solvers.states.settle import Settler
 
 WALLS = ((30, 14, 0.30), (30, 14, 0.40), (30, 14, 0.43), (30, 14, 0.44), (50, 40, 0.30), (50, 40, 0.34))
 PANELS = ((10, 10, 0.0, 1.0), (20, 20, 0.0, 1.0), (10, 10, 0.02, 1.0), (20, 20, 0.02, 0.6))
+
+SMALL = ((3, 3), (5, 5), (4, 8))
 
 CLOSE = (0.36, 0.37, 0.38, 0.39, 0.40)
 """Shares of the weight that the wall of 2,020 blocks does not reach by loading (decision 0006)."""
@@ -113,11 +116,25 @@ def report(name: str, problem: ContactProblem, methods: list[tuple[str, dict[str
 
 
 def second_solve() -> None:
-    """Print what the second solve of the 3 x 3 panel takes: everything imported, nothing kept."""
-    problem = panel(3, 3, 0.0, 0.6)
-    find("interior-point")(problem)
-    best = min(timed(lambda: find("interior-point")(problem)) for _ in range(5))
-    print(f"panel 3 x 3, second solve: {1e3 * best:.1f} ms")
+    """Print what the second solve of small panels takes (everything imported, nothing kept), and what of it is where.
+
+    Beside it: settling the states of the pairs at once, from pairs that stick, instead of iterating.
+    """
+    for courses, blocks in SMALL:
+        problem = panel(courses, blocks, 0.0, 0.6)
+        solution = find("interior-point")(problem)
+        s = scale(problem)
+        u, sticking = np.zeros(len(s.f)), np.tile((1.0, 0.0), (s.pairs, 1))
+        whole = [lambda p=problem: find("interior-point")(p), lambda p=problem: scale(p)]
+        settler = [lambda s=s, u=u, t=sticking: Settler(s).settle(s, u, t)]
+        best, scaling, settling = (1e3 * min(timed(work) for _ in range(20)) for work in whole + settler)
+        one = 1e3 * min(yardsticks(problem)[1] for _ in range(20))
+        found = "" if settler[0]().settled else ", without an answer"
+        print(
+            f"panel {courses} x {blocks}, second solve: {best:.1f} ms, {solution.factorisations} factorisations of "
+            f"{one:.2f} ms, scaling and ordering {scaling:.1f} ms; settled from sticking pairs: {settling:.1f} ms"
+            + found
+        )
 
 
 def main() -> None:
