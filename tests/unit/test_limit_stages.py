@@ -60,6 +60,20 @@ def test_small_models_have_their_path_followed_unasked(wall: concio.Model) -> No
     assert limits.limit(slender, path=False).steps is None
 
 
+def test_a_collapse_state_is_not_told_as_what_is_carried() -> None:
+    """A block that topples at its load; beside it the words for one that would move at half of that."""
+    slender = concio.wall(length=0.5, height=1.0, block_size=(0.5, 1.0), friction=0.9, horizontal=0.5, block="rigid")
+    found = limits.limit(slender)
+    text = "\n".join(limit_lines(found))
+    assert "it can begin to move at 1 times the load of 'live', and nothing holds beyond" in text
+    state = found.collapse_state
+    assert state is not None
+    lower = replace(found, collapse_state=replace(state, multiplier=0.5))
+    assert any("begin to move at 0.5, and nothing holds beyond 1 times" in line for line in limit_lines(lower))
+    unknown = replace(found, collapse_state=None)
+    assert any("it collapses as the load grows at 1 times" in line for line in limit_lines(unknown))
+
+
 @pytest.mark.parametrize(("friction", "expected"), [(0.9, 0.5), (0.3, 0.3)])
 def test_load_steps_come_close_to_what_a_block_carries_and_not_beyond(friction: float, expected: float) -> None:
     """A block of 0.5 x 1 m topples at half its weight, or slides at its friction, whichever is less."""

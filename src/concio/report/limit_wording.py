@@ -175,10 +175,21 @@ def short_lines(found: LimitResult) -> list[str]:
     lines = []
     low, bound = found.bracket
     if math.isfinite(low) and math.isfinite(bound):
-        lost = found.collapse_state is None or low < found.collapse_state.multiplier
-        least = " (carried; more was not shown)" if lost and not found.collapse_shown else ""
-        load = f"times the load of '{named(found)}'"
-        lines.append(f"  in short             between {low:.6g}{least} and {bound:.6g} {load}")
+        lines.append(f"  in short             {_in_short(found, low, bound)}")
     if found.lent_compliance:
         lines.append("  rigid joints         were followed with a vanishing compliance, as the limit of stiff joints")
     return lines
+
+
+def _in_short(found: LimitResult, low: float, bound: float) -> str:
+    """Return what the two numbers of the bracket say together, each as what it is."""
+    load = f"times the load of '{named(found)}'"
+    if found.collapse_state is not None and low == found.collapse_state.multiplier:
+        word = "it can begin to move"
+    elif found.collapse_shown:
+        word = "it collapses as the load grows"
+    else:
+        return f"between {low:.6g} (carried; more was not shown) and {bound:.6g} {load}"
+    if math.isclose(low, bound, rel_tol=1e-6):
+        return f"{word} at {bound:.6g} {load}, and nothing holds beyond"
+    return f"{word} at {low:.6g}, and nothing holds beyond {bound:.6g} {load}"
