@@ -222,7 +222,7 @@ def test_a_table_of_return_periods_gives_the_period_of_the_capacity() -> None:
     assert pytest.approx(30.0 * (outcome.a_g / 0.05) ** 2, rel=1e-9) == outcome.T_R
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=5, deadline=None)
 @given(st.floats(2.0, 9.0), st.floats(0.3, 0.9))
 def test_a_wall_alone_topples_at_its_slenderness(height: float, thickness: float) -> None:
     from seismic_walls import courses, ground
@@ -246,7 +246,7 @@ def test_a_wall_alone_topples_at_its_slenderness(height: float, thickness: float
         ({"control": ("ground", (0.0, 0.0))}, "is fixed"),
         ({"control": ("wall", (0.0, 0.0))}, "no body called 'wall'"),
         ({"levels": ["SLX"]}, "no limit state 'SLX'"),
-        ({"levels": ["SLO"]}, "no limit state 'SLO'"),
+        ({"levels": ["SLO"]}, "hazard of SLO is not given"),
         ({"levels": []}, "no limit state to check"),
         ({"knowledge": "LC4"}, "no level of knowledge 'LC4'"),
         ({"confidence": 0.9}, "at least 1"),
@@ -340,31 +340,29 @@ def test_courses_that_crush_tend_to_the_monolithic_wall_from_below(n: int) -> No
     assert found[-1] < closed
 
 
-@pytest.mark.long
-def test_thirty_compliant_courses_tend_to_the_monolithic_wall_from_below() -> None:
+def test_compliant_courses_tend_to_the_monolithic_wall_from_below() -> None:
     """Pushed at large displacements, a wall whose joints give peaks below alpha_0, the nearer the stiffer they are."""
     peaks = []
     for stiffness in (3e6, 1e7):
         model = replace(
-            overturning(30), laws={"joint": JointLaw(0.8, normal_stiffness=stiffness, tangential_stiffness=stiffness)}
+            overturning(12), laws={"joint": JointLaw(0.8, normal_stiffness=stiffness, tangential_stiffness=stiffness)}
         )  # fmt: skip
-        control = concio.ControlPoint("c30", (0.0, 6.0), (-1.0, 0.0))
+        control = concio.ControlPoint("c12", (0.0, 6.0), (-1.0, 0.0))
         peaks.append(concio.push(pushed(model, [-1.0]), live=(EARTHQUAKE,), control=control, until=0.06).peak)
     closed = 27.42 / 271.2
     assert peaks[0] < peaks[1] < closed
     assert closed - peaks[1] == pytest.approx((closed - peaks[0]) * 0.3, rel=0.35)  # like one over the stiffness
 
 
-@pytest.mark.long
 def test_a_wall_with_a_door_is_assessed() -> None:
     model = concio.wall(
-        length=3.0, height=2.0, block_size=(0.5, 0.25), friction=0.6, block="rigid",
-        openings=[{"x": 1.0, "y": 0.0, "width": 1.0, "height": 1.5, "lintel": 0.25}],
+        length=2.0, height=1.25, block_size=(0.5, 0.25), friction=0.6, block="rigid",
+        openings=[{"x": 0.75, "y": 0.0, "width": 0.5, "height": 0.75, "lintel": 0.25}],
     )  # fmt: skip
     worst = concio.assess(model, site=site(), direction="right", levels=["SLV"]).worst
     assert worst is not None
     assert worst.found.flow == "Coulomb"
     assert worst.multiplier < worst.found.associated.multiplier
-    assert len(worst.mechanics.blocks) > 2
-    assert worst.followed.kind == "steps"
+    assert len(worst.mechanics.blocks) >= 2
+    assert worst.followed.reason == "falls"
     assert worst.complete

@@ -9,11 +9,12 @@ import typer
 
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
+from concio.cli.progress import progress_bar
 from concio.cli.run import File, Json, Quiet
 
 if TYPE_CHECKING:
     from concio.analysis.seismic.assessment import Assessment
-    from concio.analysis.seismic.variations import TieForce
+    from concio.analysis.seismic.variations import TieForce, Variation
 
 
 @guarded
@@ -40,15 +41,19 @@ def assess(
     if out is not None:
         check_directory(out)
     asked = read_asked(file)
-    found = concio.assess(asked.model, **asked.arguments)
-    tie = (
-        tie_force(asked.model, asked.size_tie, largest=asked.largest_tie, **asked.arguments) if asked.size_tie else None
-    )
+    tie: TieForce | None = None
+    with progress_bar(shown=not (json or quiet)) as progress:
+        found = concio.assess(asked.model, progress=progress, **asked.arguments)
+        if asked.size_tie:
+            arguments = {**asked.arguments, "progress": progress}
+            tie = tie_force(asked.model, asked.size_tie, largest=asked.largest_tie, **arguments)
+        varied: tuple[Variation, ...] = ()
+        if asked.sensitivity and out is not None:
+            varied = variations(found, progress=progress)
     told: dict[str, Any] = {"status": "solved", **found.summary()}
     if tie is not None:
         finite = tie.force if tie.force < float("inf") else None
         told["tie_force"] = {"tie": tie.tie, "force": finite, "zeta_E": tie.reached}
-    varied = variations(found) if asked.sensitivity and found.worst is not None and out is not None else ()
     written: list[str] = []
     if out is not None:
         from concio.cli.assess_files import write_assessment

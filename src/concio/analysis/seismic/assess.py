@@ -24,8 +24,9 @@ from concio.analysis.seismic.sequence import Sequence, follow_in_steps
 from concio.analysis.seismic.site import STRONG, Site
 from concio.arguments import closest, strict
 from concio.contact.assembly import Assembly, assemble
-from concio.errors import InputError, NoEquilibriumError
+from concio.errors import InputError, NoEquilibriumError, SolverError
 from concio.model.model import Model, Tie, require_model
+from concio.problem.solution import Progress, ProgressCallback
 
 Array = np.ndarray
 Control = tuple[str, tuple[float, ...]]
@@ -56,6 +57,7 @@ def assess(
     limits: Mapping[str, float] | None = None,
     curve: Literal["followed", "straight"] = "followed",
     free_standing: Mapping[str, FreeStanding | Mapping[str, Any]] | None = None,
+    progress: ProgressCallback | None = None,
 ) -> Assessment:
     """Find the local mechanisms of a model and check them against the demand of a site.
 
@@ -91,6 +93,8 @@ def assess(
         For the names of mechanisms ("weakest of all" is the one sought among all motions) that are parapets,
         chimneys, gables, free to vibrate: :class:`~concio.analysis.seismic.free_standing.FreeStanding` or its
         arguments, ``{"kind": "cantilever", "E": 900e3}``. Their curve begins with an elastic branch.
+    progress : callable, optional
+        Told of each mechanism that is sought and followed.
 
     Raises
     ------
@@ -98,6 +102,8 @@ def assess(
         Something is not known to the code or not in the model; the control point lies on no body.
     NoEquilibriumError
         The model does not stand without an earthquake.
+    SolverError
+        The callback asked to stop.
     """
     require_model(model)
     if model.periods is not None:
@@ -141,8 +147,11 @@ def assess(
     if control is not None:
         _check_control(model, control)
     chosen = {name: None if name == EVERY else chosen_bodies(model, name, words) for name, words in sought.items()}
+    steps = 2 * len(chosen) * len(assemblies)
     for name, moving in chosen.items():
         for way, (push, assembly) in assemblies.items():
+            done = 2 * (len(made) + len(locked))
+            _tell(progress, done, steps, f"{name}, push {way}: sought")
             try:
                 found = find(assembly, push.groups, moving, push.sign)
             except NoEquilibriumError as error:
@@ -150,6 +159,7 @@ def assess(
             if found.locked or found.multiplier > LARGEST:
                 locked.append(NoMechanism(name, way, found.multiplier))
                 continue
+            _tell(progress, done + 1, steps, f"{name}, push {way}: followed")
             made.append(
                 _examined(
                     assembly, found, push.groups, push.sign, name=name, way=way, site=site, levels=wanted,
@@ -165,6 +175,12 @@ def assess(
     return Assessment(
         model, site, wanted, tuple(made), tuple(locked), knowledge, factor, reason, curve, tuple(notes), arguments
     )
+
+
+def _tell(progress: ProgressCallback | None, done: int, steps: int, what: str) -> None:
+    if progress is not None and progress(Progress("assessment", done, 1.0 - done / steps, what)):
+        msg = "the assessment was stopped on request"
+        raise SolverError(msg, hint="nothing was written")
 
 
 def _one_of(what: str, word: str, known: tuple[str, ...]) -> None:

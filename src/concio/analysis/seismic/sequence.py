@@ -23,6 +23,7 @@ from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, carried
 from concio.analysis.seismic.placed import Contacts, Placed, Stated, on_blocks, problem_of, stated
 from concio.kinematics.rigid import motions
 from concio.model.model import Tie
+from concio.problem.tolerances import CHECKED
 from concio.solvers.statics.collapse_search import find_collapse_state
 from concio.solvers.statics.collapse_state import certify_collapse
 from concio.solvers.statics.limit import associated_limit
@@ -141,6 +142,8 @@ class Sequence:
             bound = associated_limit(replace(problem, laws=laws), live)
             if bound.mechanism is None or not np.isfinite(bound.multiplier):
                 return None
+            if bound.residual > CHECKED:  # not even what is dead is carried with this strength
+                break
             found = certify_collapse(problem, live, bound.mechanism.velocity, 0)
             if found is not None:
                 break

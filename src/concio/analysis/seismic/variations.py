@@ -9,11 +9,13 @@ from typing import Any
 
 from scipy.optimize import brentq
 
-from concio.analysis.seismic.assess import assess
+from concio.analysis.seismic.assess import EVERY, assess
 from concio.analysis.seismic.assessment import Assessment
+from concio.analysis.seismic.directions import Direction
 from concio.arguments import closest, strict
 from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
+from concio.problem.solution import ProgressCallback
 
 ENOUGH = 1e-4
 """Relative accuracy of a tie force."""
@@ -109,14 +111,14 @@ def tie_force(model: Model, tie: str, *, zeta: float = 1.0, largest: float | Non
 
 @dataclass(frozen=True)
 class Variation:
-    """An assessment with one property of all joints changed.
+    """The weakest mechanism with one property of all joints changed.
 
     Parameters
     ----------
     what : {"friction", "strength"}
     factor : float
     multiplier, zeta : float
-        alpha_0 of the weakest mechanism and zeta_E; ``nan`` where the model does not stand, ``inf`` without mechanism.
+        alpha_0 and zeta_E of that mechanism; ``nan`` where the model does not stand, ``inf`` without mechanism.
     """
 
     what: str
@@ -125,9 +127,19 @@ class Variation:
     zeta: float
 
 
-def variations(found: Assessment) -> tuple[Variation, ...]:
-    """Return how the weakest mechanism changes with the friction and, where joints crush, with their strength."""
-    result = []
+def variations(found: Assessment, progress: ProgressCallback | None = None) -> tuple[Variation, ...]:
+    """Return how the weakest mechanism changes with the friction and, where joints crush, with their strength.
+
+    It alone is sought again: with its name, under its push.
+    """
+    result: list[Variation] = []
+    worst = found.worst
+    if worst is None:
+        return ()
+    asked = dict(found.arguments)
+    asked["mechanisms"] = {k: v for k, v in (asked["mechanisms"] or {}).items() if k == worst.name}
+    asked["free_standing"] = {k: v for k, v in (asked["free_standing"] or {}).items() if k in (EVERY, worst.name)}
+    asked["direction"] = _way_of(found, worst.direction)
     crush = any(law.compressive_strength is not None for law in found.model.laws.values())
     for what, factors in SHARES.items():
         if what == "strength" and not crush:
@@ -135,13 +147,22 @@ def variations(found: Assessment) -> tuple[Variation, ...]:
         for factor in factors:
             model = replace(found.model, laws=_changed(found.model, what, factor))
             try:
-                other = assess(model, site=found.site, **found.arguments)
+                other = assess(model, site=found.site, progress=progress, **asked)
             except NoEquilibriumError:
                 result.append(Variation(what, factor, math.nan, math.nan))
                 continue
-            alpha = other.worst.multiplier if other.worst is not None else math.inf
-            result.append(Variation(what, factor, alpha, other.zeta))
+            same = [m for m in other.mechanisms if m.name == worst.name]
+            alpha = same[0].multiplier if same else math.inf
+            result.append(Variation(what, factor, alpha, same[0].zeta if same else math.inf))
     return tuple(result)
+
+
+def _way_of(found: Assessment, name: str) -> Direction | None:
+    """Return the direction of a push of an assessment as it is asked for."""
+    if len({m.direction for m in found.mechanisms} | {n.direction for n in found.locked}) == 1:
+        asked: Direction | None = found.arguments["direction"]
+        return asked
+    return tuple(float(v) for v in name.strip("()").split(",")) if name.startswith("(") else name
 
 
 def _changed(model: Model, what: str, factor: float) -> Mapping[str, Any]:

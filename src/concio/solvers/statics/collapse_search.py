@@ -41,6 +41,11 @@ STILL, PATIENCE = {2: 1e-9, 3: 1e-5}, 3
 """A start is done where the multiplier changes by less than ``STILL`` in ``PATIENCE`` iterations in a row; in space,
 where slips turn as they please, it never quite comes to stand."""
 
+SETTLED = 5e-3
+"""In space motions are tried only once the multiplier changes by less than this in an iteration, relative: a programme
+that finds no forces for a motion costs twice the one that found the motion. Where that leaves no state at all, the
+motions passed over are tried from the last back to the first."""
+
 SAME = {2: 1e-9, 3: 1e-3}
 """States whose multipliers differ by less, relative, count as one."""
 
@@ -151,6 +156,7 @@ class _Search:
         """Iterate from a sliding strength (m,); return False where the callback asked to stop."""
         problem, zero = self.problem, np.zeros(self.problem.pairs)
         last, still = np.inf, 0
+        before, passed = len(self.states), list[Array]()
         for count in range(most):
             note = Progress("collapse states", self.programmes, 0.0, f"start {start}, programme {count + 1}")
             if self.progress is not None and self.progress(note):
@@ -159,14 +165,19 @@ class _Search:
             found = associated_limit(replace(problem, laws=laws), self.live)
             self.programmes += 1
             if not np.isfinite(found.multiplier) or found.mechanism is None:
-                return True
+                break
             change = abs(found.multiplier - last) / max(1.0, abs(last))
-            self.certify(found.mechanism.velocity)
+            if problem.dim == 2 or change <= SETTLED:
+                self.certify(found.mechanism.velocity)
+            else:
+                passed.append(found.mechanism.velocity)
             still = still + 1 if change <= STILL[problem.dim] else 0
             if still >= PATIENCE:
-                return True
+                break
             last = found.multiplier
             strength = (1 - self.average) * strength + self.average * problem.cone.strength(found.normal_force)
+        while passed and len(self.states) == before:
+            self.certify(passed.pop())
         return True
 
     def certify(self, velocity: Array) -> None:
