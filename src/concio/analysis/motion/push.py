@@ -148,7 +148,7 @@ def push(
     begun = clock.perf_counter()
     start = statics.balance(at_rest(reference), 0.0)
     if not start.found:
-        msg = "the structure does not stand before it is pushed"
+        msg = "the structure does not stand before it is pushed" + _what_moves(reference, start)
         hint = "see 'concio run' for its collapse; the factors of dead loads may be meant otherwise"
         raise NoEquilibriumError(msg, hint=hint)
     run = _Push(reference, statics, chosen, step, until, float(smallest), progress)
@@ -167,6 +167,18 @@ def push(
         notes=tuple(run.notes), seconds=clock.perf_counter() - begun,
         lent_compliance=statics.maker.joints.lent if len(reference.rigid) else 0.0, end=run.states[-1],
     )  # fmt: skip
+
+
+def _what_moves(reference: Reference, found: Balanced) -> str:
+    """Return the name of the block that moves away most, and how many others go with it."""
+    size = np.abs(found.moved)
+    offsets = reference.disc.offsets
+    away = {b: float(size[offsets[b] : offsets[b + 1]].max()) for b in reference.free.tolist()}
+    first = max(away, key=away.__getitem__)
+    others = sum(v > 0.1 * away[first] for v in away.values()) - 1
+    if not away[first] > 0:
+        return ""
+    return f": '{reference.model.bodies[first].name}' moves away" + (f", and {others} others" if others else "")
 
 
 def _control(control: object) -> tuple[ControlPoint | None, bool]:
