@@ -18,6 +18,7 @@ import argparse
 import resource
 import sys
 import time
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -92,8 +93,20 @@ def limits(name: str, built: Built, *, clarabel: bool) -> None:
         by_clarabel(name, problem, built.live)
 
 
-def by_clarabel(name: str, problem: ContactProblem, live: np.ndarray) -> None:
-    """Print the same of Clarabel's answer, rechecked from the original arrays."""
+@dataclass(frozen=True)
+class ClarabelLimit:
+    """Clarabel's associated multiplier, with what forces leave, how far the motion is from admissible, and the gap."""
+
+    multiplier: float
+    forces: float
+    violation: float
+    gap: float
+    seconds: float
+    status: str
+
+
+def clarabel_limit(problem: ContactProblem, live: np.ndarray) -> ClarabelLimit:
+    """Return Clarabel's answer, rechecked from the original arrays."""
     import clarabel
 
     m, r = problem.pairs, problem.rigid_motions
@@ -122,9 +135,17 @@ def by_clarabel(name: str, problem: ContactProblem, live: np.ndarray) -> None:
     t_n, t_t = x[:m], x[m:-1].reshape(m, 2)
     left = static_residual(problem, problem.f + x[-1] * live, t_n, t_t)
     upper, mechanism = kinematic_bound(problem, live, float(x[-1]), problem.R @ z[:r])
+    violation = mechanism.violation
+    return ClarabelLimit(float(x[-1]), left, violation, abs(upper - x[-1]), seconds, str(found.status))
+
+
+def by_clarabel(name: str, problem: ContactProblem, live: np.ndarray) -> None:
+    """Print the same of Clarabel's answer."""
+    found = clarabel_limit(problem, live)
     print(
-        f"{name:26s}{len(problem.bodies) - 1:7d}{m:9d}  clarabel  {x[-1]:.9f}  forces {left:.0e}, mechanism"
-        f" {mechanism.violation:.0e}, gap {abs(upper - x[-1]):.0e}, {seconds:.2f} s, '{found.status}'",
+        f"{name:26s}{len(problem.bodies) - 1:7d}{problem.pairs:9d}  clarabel  {found.multiplier:.9f}  forces"
+        f" {found.forces:.0e}, mechanism {found.violation:.0e}, gap {found.gap:.0e}, {found.seconds:.2f} s,"
+        f" '{found.status}'",
         flush=True,
     )
 

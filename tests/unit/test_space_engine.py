@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.linalg import null_space
 
 import concio
 from concio.kinematics.rigid import rotation_matrix
@@ -14,9 +15,11 @@ from concio.problem.solution import Departure, Status
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.interior.cone_iteration import ConeIteration, NewtonStep
 from concio.solvers.interior.cone_run import ConeRun
+from concio.solvers.interior.newton_finish import states_of
+from concio.solvers.interior.redundant_forces import least_forces
 from concio.solvers.methods import find
 from concio.solvers.motion.cone_release import at_once
-from concio.solvers.states.reading import Finished
+from concio.solvers.states.reading import Finished, natural_residual
 from concio.solvers.statics.limit import associated_limit
 from space_problems import barrel, dome, wall
 
@@ -54,13 +57,33 @@ def test_turning_the_structure_in_space_changes_nothing(elastic: bool) -> None:
     turned = find("auto")(wall(3, 3, leaves=2, direction=(0.6, 0.8, 0.0), turned=TURN, **options).at(0.15))
     assert there.solved
     assert turned.solved
-    if elastic:  # forces of redundant pairs at corners are not unique, displacements are
+    if elastic:
         moved = (there.displacement.reshape(-1, 3) @ TURN.T).ravel()
         assert relative(turned.displacement, moved) < 1e-9
-        return
     assert relative(turned.normal_force, there.normal_force) < 1e-9
     size = [np.linalg.norm(a.friction_force, axis=1) for a in (turned, there)]
     assert relative(*size) < 1e-9
+
+
+def test_forces_of_redundant_pairs_are_the_least_of_all() -> None:
+    """Any self-stress that the laws allow may be added; the answer does not change by it, and no other is smaller."""
+    problem = wall(3, 3, leaves=2, elastic=True, direction=(0.6, 0.8, 0.0)).at(0.15)
+    s = scale(problem)
+    found = find("interior-point")(problem)
+    u, t = s.bring(found.displacement, found.normal_force, found.friction_force)
+    inside = np.flatnonzero((t[:, 0] > 0.02) & (np.linalg.norm(t[:, 1:], axis=1) < 0.9 * 0.6 * t[:, 0]))
+    idle = null_space(s.C[(3 * inside[:, None] + np.arange(3)).ravel()].T.toarray())
+    assert idle.shape[1] >= 3
+    rng = np.random.default_rng(2)
+    norm = float((t * t / s.share[:, None]).sum())
+    for _ in range(3):
+        other = t.copy()
+        other[inside] += 1e-3 * (idle @ rng.standard_normal(idle.shape[1])).reshape(-1, 3)
+        error, _ = natural_residual(s, u, other)
+        assert error < 1e-11
+        assert float((other**2 / s.share[:, None]).sum()) > norm
+        point = Finished(u, other, states_of(s, u, other), error, 0, np.zeros(0, dtype=int))
+        assert np.abs(least_forces(s, point).t - t).max() < 1e-9 * np.abs(t).max()
 
 
 def test_every_joint_law_in_space() -> None:

@@ -223,7 +223,7 @@ def _unknowns(model: Model, body: Body | Polyhedron, size: float) -> float:
 def _target_size(model: Model, body: Body | Polyhedron) -> float:
     size = body.mesh_size or model.mesh_size
     if size is None:
-        size = float(np.ptp(body.vertices, axis=0).max()) / (4 if body.dim == 2 else 2)
+        size = body.length / 2 if isinstance(body, Polyhedron) else float(np.ptp(body.vertices, axis=0).max()) / 4
     if not (0 < size < np.inf):
         msg = f"mesh size {size:g} must be positive and finite"
         raise InputError(msg, where=f"block '{body.name}'")

@@ -8,7 +8,7 @@ the grid becomes one, so that contact begins and ends with an element wherever t
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -54,10 +54,31 @@ def mesh_solid(body: Polyhedron, size: float, refinement: int, marks: Sequence[M
     grid = body.grid if body.grid is not None else hexahedron(body)
     if grid is not None:
         return _grid_mesh(grid, size, refinement, marks)
-    sweep = None if simplices else prism_of(body)
+    own, axes = _own_frame(body)
+    within = [Mark(m.face, _rounded((m.polygon - body.vertices[0]) @ axes.T, body.length)) for m in marks]
+    sweep = None if simplices else prism_of(own)
     if sweep is not None:
-        return _prism_mesh(body, sweep, size, refinement, marks)
-    return tetrahedra(body, size / refinement, [m.polygon for m in marks])
+        points, cells = _prism_mesh(own, sweep, size, refinement, within)
+    else:
+        points, cells = tetrahedra(own, size / refinement, [m.polygon for m in within])
+    return points @ axes + body.vertices[0], cells
+
+
+def _own_frame(body: Polyhedron) -> tuple[Polyhedron, Array]:
+    """Return a body in a frame of its own, and the axes (3, 3) of that; a body that is turned gets the same mesh."""
+    normal = body.normals[0]
+    first = body.vertices[body.faces[0][1]] - body.vertices[body.faces[0][0]]
+    first = first - (first @ normal) * normal
+    first /= np.linalg.norm(first)
+    axes = np.array([first, np.cross(normal, first), normal])
+    return replace(body, vertices=_rounded((body.vertices - body.vertices[0]) @ axes.T, body.length)), axes
+
+
+def _rounded(points: Array, length: float) -> Array:
+    """Return points without the rounding that came of turning them: which of equal meshes is made depends on it."""
+    unit = float(2.0 ** (np.floor(np.log2(length)) - 42))
+    rounded: Array = unit * np.round(points / unit)
+    return rounded
 
 
 def hexahedron(body: Polyhedron) -> Array | None:

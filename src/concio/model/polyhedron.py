@@ -158,6 +158,14 @@ class Polyhedron:
         return float(np.cbrt(self.volume))
 
     @cached_property
+    def length(self) -> float:
+        """Greatest extent along any of its edges, that of a box its longest side; it turns with the body [m]."""
+        edges = self.vertices[self.topology.edges[:, 1]] - self.vertices[self.topology.edges[:, 0]]
+        along = edges / np.linalg.norm(edges, axis=1)[:, None]
+        parts = np.array_split(along, len(along) // 99 + 1)
+        return max(float(np.ptp(self.vertices @ part.T, axis=0).max()) for part in parts)
+
+    @cached_property
     def face_areas(self) -> Array:
         """Areas of the faces (f,) [m2]."""
         areas: Array = np.linalg.norm(self.topology.area_vectors(self.vertices), axis=1)

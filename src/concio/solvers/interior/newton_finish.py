@@ -17,8 +17,6 @@ bodies do no harm: their equations are consistent. Converges quadratically from 
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from concio.problem.contact_problem import Array
@@ -27,6 +25,7 @@ from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.second_order_cone import times
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
+from concio.solvers.interior.redundant_forces import least_forces
 from concio.solvers.states.reading import Finished, natural_residual, sizes
 
 DELTA = 1e-6
@@ -44,11 +43,8 @@ STALE = 6
 UNDECIDED = 1e-10
 """Violation of its law from which on a pair counts as undecided."""
 
-REFINEMENTS = 8
+REFINEMENTS = 40
 """Largest number of times a direction is refined."""
-
-RETURNS = 40
-"""Largest number of refinements of forces that are sought from nothing."""
 
 
 def states_of(s: Scaled, u: Array, t: Array) -> PairStates:
@@ -95,7 +91,7 @@ def finish(
     rounds : int
         Largest number of Newton steps.
     least : bool
-        Whether forces that are not unique are those of a vanishing compliance; otherwise those near to the point.
+        Whether forces that are not unique are the least of all; otherwise those near to the point.
     """
     error, laws = natural_residual(s, u, t)
     best, stale, solves = (u, t, error, laws), 0, 0
@@ -114,61 +110,7 @@ def finish(
             break
     u, t, error, laws = best
     found = Finished(u, t, states_of(s, u, t), error, solves, np.flatnonzero(laws > UNDECIDED))
-    return of_vanishing_compliance(s, found) if least and error <= EXACT else found
-
-
-def of_vanishing_compliance(s: Scaled, found: Finished) -> Finished:
-    """Return an exact answer with the forces its hard pairs have as a compliance of theirs vanishes.
-
-    Where pairs are redundant (corners) their forces are not unique, and Newton's method ends somewhere, depending on
-    the frame even. Refinement of the linear equations of the states found, from no forces at all, ends at those of a
-    compliance spread in proportion to one over the areas, as in the plane; displacements are the same.
-    """
-    states = found.states
-    stick = states.closed & ~states.slips & s.rough
-    hard = (s.compliance == 0.0) & np.column_stack([states.closed, *[stick] * (s.dim - 1)])
-    if not hard.any():
-        return found
-    soft = s.compliance + (DELTA / s.share)[:, None]
-    drag = -s.cone.friction[:, None] * states.direction
-    lift = s.dilatancy[:, None] * states.direction
-    normal = soft[:, 0] - (lift * drag * soft[:, 1:]).sum(axis=1)
-    stiff = np.where(states.closed & (normal > 0), 1.0 / np.where(normal > 0, normal, 1.0), 0.0)
-    D = np.zeros((s.pairs, s.dim, s.dim))
-    D[:, 0, 0], D[:, 0, 1:], D[:, 1:, 0] = stiff, -stiff[:, None] * lift, stiff[:, None] * drag
-    D[:, 1:, 1:] = -stiff[:, None, None] * drag[:, :, None] * lift[:, None, :]
-    for k in range(1, s.dim):
-        D[stick, k, k] = 1.0 / soft[stick, k]
-
-    def of_states(t: Array) -> Array:
-        t_n = np.where(states.open, 0.0, np.where(states.crushed, s.cone.cap, t[:, 0]))
-        t_t = np.where(stick[:, None], t[:, 1:], -states.direction * s.cone.strength(t_n)[:, None])
-        return np.column_stack([t_n, t_t])
-
-    try:
-        s.factor.factorise(D, LOOSE)
-    except SingularMatrixError:
-        return found
-    u, t, least = found.u, of_states(np.zeros_like(found.t)), np.inf
-    force, length = sizes(found.u, found.t)
-    best = u, t
-    for _ in range(RETURNS):
-        y = s.position(u, t)
-        y[:, 0] = np.where(states.closed, y[:, 0] - (lift * y[:, 1:]).sum(axis=1), 0.0)
-        y[~stick, 1:] = 0.0
-        left = s.imbalance(u, t)
-        worst = max(float(np.abs(left).max(initial=0.0)) / force, float(np.abs(y).max(initial=0.0)) / length)
-        if not worst < least or worst < 1e-16:
-            break
-        least, best = worst, (u, t)
-        pushed = times(D, y)
-        du = s.factor.solve(-left - s.pull(pushed))
-        u, t = u + du, of_states(t - pushed - times(D, s.along(du)))
-    u, t = best
-    error, laws = natural_residual(s, u, t)
-    if error > max(found.error, EXACT):
-        return found
-    return replace(found, u=u, t=t, error=error, solves=found.solves + 1, undecided=np.flatnonzero(laws > UNDECIDED))
+    return least_forces(s, found) if least and error <= EXACT else found
 
 
 def _newton(s: Scaled, u: Array, t: Array, rho: float) -> tuple[Array, Array] | None:
@@ -196,7 +138,7 @@ def _newton(s: Scaled, u: Array, t: Array, rho: float) -> tuple[Array, Array] | 
         e1 = r_u - s.elastic(du) + s.pull(dt)
         e2 = r_t - times(B, s.along(du)) - times(H, dt)
         worst = max(float(np.abs(e1).max(initial=0.0)), float(np.abs(e2).max(initial=0.0)))
-        if not worst < 0.5 * least:
+        if not worst < least:
             break
         least, kept = worst, (du, dt)
         if worst < 1e-15:
