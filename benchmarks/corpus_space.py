@@ -103,6 +103,7 @@ def main() -> None:
     arguments = parser.parse_args()
     table: dict[str, Counter[str]] = {family: Counter() for family in FAMILIES}
     strategies: Counter[str] = Counter()
+    work: dict[str, int] = {}
     left, seconds, wrong = [], 0.0, 0
     for k in range(arguments.first, arguments.first + arguments.count):
         family = FAMILIES[k % len(FAMILIES)]
@@ -115,7 +116,9 @@ def main() -> None:
         if verdict in DECIDED and not proven(problem, solution):
             verdict, wrong = "WRONG", wrong + 1
         table[family][verdict] += 1
-        strategies[str(solution.info.get("strategy", "none"))] += 1
+        by = str(solution.info.get("strategy", "none"))
+        strategies[by] += 1
+        work[by] = max(work.get(by, 0), solution.factorisations)
         if arguments.list or verdict not in DECIDED:
             line = f"#{k} {family} {note} pairs {problem.pairs} {verdict} {spent:.2f} s"
             print(line, flush=True)
@@ -130,7 +133,9 @@ def main() -> None:
     count = sum(total.values())
     decided = sum(total[n] for n in DECIDED)
     print(f"{'all':16s}" + "".join(f"{total[n]:16d}" for n in names))
-    print("\nby strategy: " + ", ".join(f"{name} {n}" for name, n in strategies.most_common()))
+    print(f"\n{'strategy':32s}{'decides':>8s}{'most factorisations':>21s}")
+    for name, n in strategies.most_common():
+        print(f"{name:32s}{n:8d}{work[name]:21d}")
     print(f"{decided} of {count} decided ({100 * decided / count:.2f} %), {wrong} wrong, {seconds:.0f} CPU s in all")
     for line, trace in left:
         print(line + "\n    " + "\n    ".join(trace))

@@ -59,7 +59,8 @@ UNASKED_WORK = 40_000
 """Linear programmes times pairs of that search where it is not asked for: some five seconds."""
 
 UNASKED_IN_SPACE = 1_500
-"""Up to this number of pairs in space the least load that was not reached is put on in one step unasked."""
+"""Up to this number of pairs in space collapse states are searched for unasked, and the least load that was not reached
+is put on in one step: beyond, the few programmes of some seconds end far from a state."""
 
 Found = Literal["bound", "friction", "steps", "collapse state", "in one step", "path"]
 """The numbers of a limit load, in the order in which they are found: the quick ones first."""
@@ -93,7 +94,7 @@ def limit(
         :data:`UNASKED_IN_SPACE` pairs: a motion may prove that it is not carried.
     search : bool, optional
         Whether collapse states are searched for; by default where ``path`` is not False, and then only as long as the
-        other numbers take.
+        other numbers take; in space up to :data:`UNASKED_IN_SPACE` pairs.
     friction : bool
         Whether the smallest friction is found that carries the load as given.
     progress : callable, optional
@@ -161,7 +162,10 @@ def limit_stages(
         raise InputError(msg, hint="load steps are followed instead: leave path out")
     exact = path if path is not None else dead.dim == 2 and dead.pairs <= LARGEST_PATH
     stepped = steps if steps is not None else path is None and not exact
-    searched, top = search if search is not None else path is not False, found.associated
+    quick = dead.dim == 2 or dead.pairs <= UNASKED_IN_SPACE
+    searched, top = bool(search) or (search is None and path is not False and quick), found.associated
+    if search is None and path is not False and not quick:
+        found = replace(found, search=f"not tried unasked: {dead.pairs:,} contact pairs in space; ask for the search")
 
     def seek(note: ProgressCallback) -> tuple[CollapseState | None, str]:
         work = WORK_OF_ALL if search else UNASKED_WORK
@@ -179,7 +183,7 @@ def limit_stages(
             found = replace(found, collapse_state=state, search=said)
             yield "collapse state", found
     if found.steps is not None and dead.dim == 3 and found.steps.failed < bound:
-        if steps or dead.pairs <= UNASKED_IN_SPACE:
+        if steps or quick:
             tell("the least load not reached, in one step")
             found = replace(found, steps=in_one_step(dead, load, found.steps, progress=progress))
         yield "in one step", found

@@ -33,7 +33,7 @@ FIRST = 1 / 4
 START = (10.0,)
 """Starting points of the interior point: a step that needs others is halved instead."""
 
-CONE_STARTS = cone_run.STARTS[:2]
+CONE_STARTS = 2
 """The same in space."""
 
 

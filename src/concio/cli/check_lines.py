@@ -61,9 +61,11 @@ def check_lines(
     scale, symbol = units.factor("length")
     sizes = np.ptp(np.vstack([body.vertices for body in model.bodies]), axis=0)
     kind = f"plane {model.plane}" if model.dim == 2 else "in space"
+    deforms = any(body.kind == "elastic" for body in model.bodies)
     lines = [
         model.title or "model without a title",
-        f"size         {' x '.join(number(scale * v, 4) for v in sizes)} {symbol}, {kind}, elements {model.element}",
+        f"size         {' x '.join(number(scale * v, 4) for v in sizes)} {symbol}, {kind}"
+        + (f", elements {model.element}" if deforms else ""),
         *_bodies(model, float(sizes.max()), every=every),
     ]
     if model.periods is not None:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from concio.analysis.result import Result
+    from concio.model.model import Model
 
 ROWS = 250
 """Longest table; of longer ones the rows that matter most are shown."""
@@ -152,6 +153,12 @@ def _verdict(result: Result) -> str:
     return verdict_html(v, certificate_sentence(result), checked)
 
 
+def _elements(model: Model) -> str:
+    """Return what bodies are made of; rigid ones have no elements."""
+    words = model.element if any(body.kind == "elastic" for body in model.bodies) else "none: no body deforms"
+    return f"{words}, plane {model.plane}" if model.dim == 2 else words
+
+
 def _model(result: Result) -> str:
     model, units = result.model, result.model.report
     fixed = len(model.bodies) - len(model.free_bodies)
@@ -159,7 +166,7 @@ def _model(result: Result) -> str:
         ("bodies", f"{len(model.free_bodies)}, and {fixed} fixed"),
         ("joints", f"{len(result.assembly.detection.interfaces)} with {len(result.assembly.pairs)} contact pairs"),
         ("unknowns", f"{result.assembly.disc.unknowns:,}"),
-        ("elements", f"{model.element}, plane {model.plane}" if model.dim == 2 else model.element),
+        ("elements", _elements(model)),
         ("contact", ", ".join(f"{n:,} {name}" for name, n in result.assembly.pairs.contact_model.items())),
     ]
     for name, material in model.materials.items():

@@ -73,9 +73,8 @@ class BlockFactor:
         columns = [np.tile(u, (1, u.shape[1])).ravel() for _, _, u in groups]
         coo = K.tocoo()
         identity = np.arange(n)
-        pattern = Pattern.of(
-            np.concatenate([coo.row, identity, *rows]), np.concatenate([coo.col, identity, *columns]), n, engine
-        )
+        entries = np.concatenate([coo.row, identity, *rows]), np.concatenate([coo.col, identity, *columns])
+        pattern = Pattern.of(*entries, n, engine, _together(C.shape[0] // max(pairs, 1), bodies))
         slots = np.split(pattern.slot, np.cumsum([coo.nnz, n, *(r.size for r in rows)]))
         self._base = np.bincount(slots[0], weights=coo.data, minlength=pattern.nnz).astype(float)
         self._diagonal = slots[1]
@@ -84,6 +83,7 @@ class BlockFactor:
         ]
         self.pattern = pattern
         self.numeric = OrderedFactor(pattern, PIVOT)
+        self._made = [0]  # shared with all that share the pattern
         self.D: Array | None = None
         self.diagonal: Array | float | None = None
 
@@ -101,6 +101,11 @@ class BlockFactor:
     def count(self) -> int:
         """Number of factorisations made."""
         return self.numeric.count
+
+    @property
+    def made(self) -> int:
+        """Number of factorisations made by this and by all that share its pattern."""
+        return self._made[0]
 
     def with_diagonal(self, diagonal: Array) -> BlockFactor:
         """Return a factor of K + diag(diagonal) that shares ordering and pattern; each keeps factors of its own."""
@@ -128,12 +133,18 @@ class BlockFactor:
             data += np.bincount(clique.slot, weights=block.ravel(), minlength=data.size)
         data[self._diagonal] += diagonal
         self.D = self.diagonal = None
+        self._made[0] += 1
         self.numeric.factorise(data)
         self.D, self.diagonal = D, diagonal
 
     def solve(self, b: Array) -> Array:
         """Return the solution for the last matrix factorised; ``b`` is (N,) or (N, k)."""
         return self.numeric.solve(b)
+
+
+def _together(d: int, bodies: Array) -> int:
+    """Return how many consecutive unknowns belong to one node, or to one body where all are rigid ones in space."""
+    return SMALL_BODY if d == 3 and bool((np.diff(bodies) == SMALL_BODY).all()) else d
 
 
 def _groups(C: sp.csr_array, pairs: int, bodies: Array) -> list[tuple[Array, Array, Array]]:

@@ -18,7 +18,7 @@ from concio.problem.contact_problem import Array
 
 def times(A: Array, x: Array) -> Array:
     """Return the products of matrices (m, d, d) and vectors (m, d)."""
-    product: Array = np.matmul(A, x[:, :, None])[:, :, 0]
+    product: Array = np.einsum("kij,kj->ki", A, x)  # half the time of a product of stacks
     return product
 
 

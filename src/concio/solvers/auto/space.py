@@ -24,7 +24,7 @@ from concio.problem.solution import Departure, ProgressCallback, Solution
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.auto.strategies import Strategy, first_answer, moves_away, statics, where_it_ends
-from concio.solvers.interior.cone_run import STARTS, ConeRun
+from concio.solvers.interior.cone_run import ConeRun, starts_for
 from concio.solvers.interior.engine import at_rest
 from concio.solvers.motion.cone_release import associated_state, at_once, release
 from concio.solvers.states.reading import Finished
@@ -37,7 +37,7 @@ def usual_starts(run: ConeRun) -> Solution | None:
 
 def other_starts(run: ConeRun) -> Solution | None:
     """Interior point from the starts that are left."""
-    return _from(run, 2, len(STARTS))
+    return _from(run, 2, None)
 
 
 def released_in_single_steps(run: ConeRun) -> Solution | None:
@@ -97,8 +97,8 @@ def let_go(problem: ContactProblem, u: Array, progress: ProgressCallback | None 
     return where_it_ends(run, partial(_released, run), u)
 
 
-def _from(run: ConeRun, first: int, last: int) -> Solution | None:
-    for start in STARTS[first:last]:
+def _from(run: ConeRun, first: int, last: int | None) -> Solution | None:
+    for start in starts_for(run.scaled)[first:last]:
         found = run.from_start(start)
         if found is not None:
             return run.solution(found)

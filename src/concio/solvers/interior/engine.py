@@ -236,7 +236,7 @@ class Run:
         point = found or self.best
         work: dict[str, Any] = {
             "iterations": self.iterations,
-            "factorisations": s.factor.count,
+            "factorisations": s.factor.made,
             "trace": tuple(self.trace),
             "info": {"history": tuple(self.history), "engine": s.factor.engine, "ordering": s.factor.ordering},
         }

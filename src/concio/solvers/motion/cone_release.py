@@ -20,7 +20,7 @@ from concio.problem.contact_problem import Array
 from concio.problem.solution import Departure
 from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
-from concio.solvers.interior.cone_run import STARTS, ConeRun, Start
+from concio.solvers.interior.cone_run import STARTS, ConeRun, Start, starts_for
 from concio.solvers.interior.newton_finish import finish
 from concio.solvers.motion.cone_departure import departure
 from concio.solvers.states.reading import Finished
@@ -46,6 +46,10 @@ LONG = 1e-5
 FAILURES = 12
 """Largest number of steps that may fail."""
 
+WORK, MOST_WORK, LEAST_WORK = 4e6, 3000, 300
+"""Factorisations times unknowns and pairs after which no further step is made, and the factorisations that are allowed
+at most and at least: what is undecided by then is told so. Half a minute to a minute."""
+
 
 def at_once(run: ConeRun) -> Finished | Departure | None:
     """Make single steps from rest, ever longer; return the rest or the motion without end that one shows, or None.
@@ -60,10 +64,11 @@ def at_once(run: ConeRun) -> Finished | Departure | None:
     e = FIRST
     last: Finished | None = None
     ended: Finished | Departure | None = None
-    while e >= LEAST and ended is None:
+    allowed = _allowed(s)
+    while e >= LEAST and ended is None and s.factor.made < allowed:
         step = s.step_from(rest, e)
         found = None if last is None else _newton(step, (GROWTH * last.u, last.u), last.t)
-        found = found or _inner(run, step, STARTS[:1])
+        found = found or _inner(run, step, starts_for(step)[:1])
         if found is None:
             break
         ended = _rest(run, found) or (departure(s, found.u, found.t, e * found.u) if e <= LONG else None)
@@ -89,7 +94,8 @@ def release(run: ConeRun, u: Array | None = None) -> Finished | Departure | None
     before = e
     here: Finished | None = None
     ended: Finished | Departure | None = None
-    while taken + failures < MOST and failures < FAILURES:
+    allowed = _allowed(s)
+    while taken + failures < MOST and failures < FAILURES and s.factor.made < allowed:
         moved = _solve(run, s.step_from(u, e), here, before / e)
         if moved is None:
             failures, good = failures + 1, 0
@@ -107,6 +113,11 @@ def release(run: ConeRun, u: Array | None = None) -> Finished | Departure | None
     return ended
 
 
+def _allowed(s: Scaled) -> int:
+    """Return the count of factorisations beyond which no further step is made."""
+    return s.factor.made + int(np.clip(WORK / (len(s.f) + s.pairs), LEAST_WORK, MOST_WORK))
+
+
 def _rest(run: ConeRun, now: Finished) -> Finished | None:
     """Return the certified equilibrium next to a step, if there is one."""
     rest = finish(run.scaled, now.u, now.t, rounds=6)
@@ -116,7 +127,7 @@ def _rest(run: ConeRun, now: Finished) -> Finished | None:
 def _solve(run: ConeRun, step: Scaled, here: Finished | None, longer: float) -> Finished | None:
     """Solve one step, so much longer than the last one: by Newton's method from that, then from nothing."""
     found = None if here is None else _newton(step, (longer * here.u, here.u, 0.0 * here.u), here.t)
-    return found or _inner(run, step, STARTS)
+    return found or _inner(run, step, starts_for(step))
 
 
 def _newton(step: Scaled, guesses: tuple[Array, ...], t: Array) -> Finished | None:
