@@ -1,8 +1,10 @@
 """Pulses of the ground that overturn a free-standing block.
 
-A study draws half-sine pulses of many amplitudes and frequencies and shakes a block 0.2 x 1.5 m with each. The line is
-the closed form of the linear equation of rocking, in which a block overturns without an impact if and only if its state
-lies above a ray when the pulse ends. Nothing of rocking is told to the program: it knows two corners with friction.
+A study draws 300 half-sine pulses of many amplitudes and frequencies and shakes a block 0.2 x 1.5 m with each. The full
+line is the closed form of the linear equation of rocking, in which a block overturns without an impact if and only if
+its state lies above a ray when the pulse ends; the dotted one is Housner's well-known shortcut, up to 55 % higher;
+below an amplitude of g alpha nothing lifts. Nothing of rocking is told to the program: it knows two corners with
+friction.
 """
 
 from __future__ import annotations
@@ -46,11 +48,11 @@ def threshold(frequency: float) -> float:
     return 1.0 / brentq(left_over, 1e-6, 1 - 1e-12)
 
 
-def main(figure: Path | None = None, size: int = 60) -> dict[str, float]:
+def main(figure: Path | None = None, size: int = 300) -> dict[str, float]:
     """Run the study, print, draw into ``figure`` where given; return the numbers that the tests look at."""
     variables = [
         concio.variable("frequency", "uniform", low=0.8, high=5.0),
-        concio.variable("amplitude", "uniform", low=1.0, high=3.5),
+        concio.variable("amplitude", "uniform", low=0.8, high=3.5),
     ]
     found = concio.study(shaken, variables, "rotation", size=size, seed=3)
     frequency, amplitude = found.values("frequency"), found.values("amplitude")
@@ -66,11 +68,14 @@ def main(figure: Path | None = None, size: int = 60) -> dict[str, float]:
         drawn, ax = plt.subplots(figsize=(7.6, 4.8), layout="constrained")
         line = np.linspace(0.8, 5.0, 200)
         ax.plot(line, [threshold(w) for w in line], color="#333333", label="closed form, no impact")
+        ax.plot(line, np.sqrt(1 + line**2), color="#333333", ls=":", label="Housner's shortcut")
+        ax.axhline(1.0, color="#999999", lw=0.8, label="uplift")
         for fallen, marker, word in ((True, "x", "overturns"), (False, "o", "stays")):
             ax.plot(frequency[overturned == fallen], amplitude[overturned == fallen], marker, ms=4, label=word)
+        ax.set_ylim(0.7, 3.6)
         ax.set_xlabel("frequency of the pulse over p")
         ax.set_ylabel("amplitude over g alpha")
-        ax.legend()
+        ax.legend(loc="upper left")
         drawn.savefig(figure)
     return {"wrong": wrong, "overturned": int(overturned.sum()), "runs": len(found)}
 

@@ -224,3 +224,34 @@ main()
     assert 0 < kept.end.time < 1
     assert len(kept.steps) == len(kept.steps.reaction)
     assert concio.dynamics(kept.model, duration=0.01, start=kept.end).certified
+
+
+def damaged(path, change) -> None:
+    """Write a motion anew with its head and arrays changed."""
+    with np.load(path) as archive:
+        head = json.loads(str(archive["head"]))
+        arrays = {name: archive[name] for name in archive.files if name != "head"}
+    change(head, arrays)
+    np.savez(path, head=np.array(json.dumps(head)), **arrays)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda _, a: a.pop("end.centre"), "damaged: KeyError"),
+        (lambda _, a: a.update({"end.centre": a["end.centre"].astype(str)}), "'end.centre' does not hold numbers"),
+        (lambda _, a: a.update({"end.memory.key": a["end.memory.key"] + 0.5}), "memory.key' does not hold integers"),
+        (lambda _, a: a.update({"end.spin": a["end.spin"][:-1]}), r"'end.spin' has the shape \(1,\), not \(2\)"),
+        (lambda _, a: a.update({"end.velocity": a["end.velocity"] * np.nan}), "velocity' holds what no motion has"),
+        (lambda _, a: a.update({"steps.how": a["steps.how"] + 99}), "names methods that are not there"),
+        (lambda h, _: h["values"].pop("end"), "damaged: TypeError"),
+        (lambda h, _: h["values"].update(end=None), "'end' is missing"),
+        (lambda h, _: h["values"]["ending"].update(name="__class__"), "damaged: KeyError"),
+        (lambda h, _: h["values"].update(gravity="much"), "'gravity' is not what it must be"),
+    ],
+)  # fmt: skip
+def test_what_is_damaged_is_refused(tmp_path, shaken, change, words):
+    path = concio.save_motion(shaken, tmp_path / "motion.npz")
+    damaged(path, change)
+    with pytest.raises(concio.InputError, match=words):
+        concio.load_motion(path)

@@ -106,3 +106,27 @@ def test_velocities_and_displacements_of_peer_are_read_in_cm(tmp_path, suffix, q
     assert record.quantity == quantity
     assert record.step == 0.01
     assert record.values == pytest.approx(unit * np.array([1.0, -2.0, 3.0, 0.0]))
+
+
+@pytest.mark.parametrize(
+    ("suffix", "units", "count", "step", "words"),
+    [
+        (".at2", "VELOCITY TIME SERIES IN UNITS OF CM/S", "3", "0.01", "in cm/s, the name of the file acceleration"),
+        (".vt2", "VELOCITY TIME SERIES IN UNITS OF FURLONG", "3", "0.01", "'FURLONG', which is not known"),
+        (".at2", "ACCELERATION TIME SERIES IN UNITS OF G", "9" * 5000, "0.01", "the head has no 'NPTS"),
+        (".at2", "ACCELERATION TIME SERIES IN UNITS OF G", "3", "1e308", "at most 60 s"),
+    ],
+)  # fmt: skip
+def test_hostile_heads_of_peer_files(tmp_path, suffix, units, count, step, words):
+    path = tmp_path / f"record{suffix}"
+    path.write_text(f"PEER\nevent\n{units}\nNPTS= {count}, DT= {step} SEC\n0.1 0.2 0.1\n", encoding="ascii")
+    with pytest.raises(concio.InputError, match=words):
+        concio.read_record(path)
+
+
+def test_a_file_too_large_for_a_record(tmp_path):
+    path = tmp_path / "record.txt"
+    with path.open("wb") as file:
+        file.truncate(300_000_000)
+    with pytest.raises(concio.InputError, match="300 MB: that is no record"):
+        concio.read_record(path)

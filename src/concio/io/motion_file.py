@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import json
 import zipfile
+import zlib
+from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -15,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from concio.analysis.motion.dynamics_result import DynamicsResult, Ending
-from concio.analysis.motion.energy import EnergyBalance
+from concio.analysis.motion.energy import NAMES, EnergyBalance
 from concio.analysis.motion.history import Shots, Steps
 from concio.analysis.motion.joint_events import JointEvent
 from concio.analysis.motion.push_result import PushEnding, PushResult
@@ -24,18 +26,52 @@ from concio.analysis.motion.state import Memory, MotionState, TieMemory
 from concio.arguments import strict
 from concio.errors import InputError
 from concio.files import whole_file
+from concio.io.motion_check import check_array, check_arrays
 from concio.model.file.reading import loads
 from concio.model.file.writing import dumps
 from concio.model.stages import ControlPoint
 
 FORMAT, VERSION = "concio motion", 2
+
+MOST_BYTES = 8_000_000_000
+"""What a file may unpack to."""
+
+
+def _number(v: object) -> bool:
+    return isinstance(v, int | float) and bool(np.isfinite(v))
+
+
+def _words(v: object) -> bool:
+    return isinstance(v, tuple) and all(isinstance(w, str) for w in v)
+
+
+def _all(kind: type) -> Callable[[object], bool]:
+    return lambda v: isinstance(v, tuple) and all(isinstance(part, kind) for part in v)
+
+
+PLAIN: dict[str, Callable[[object], bool]] = {
+    "gravity": _number, "seconds": _number, "lent_compliance": _number,
+    "reactions_of": _words, "notes": _words, "live": _words,
+    "points": _all(ControlPoint), "events": _all(JointEvent),
+    "scheme": lambda v: isinstance(v, Scheme),
+    "control": lambda v: v is None or isinstance(v, ControlPoint),
+    "joints": lambda v: isinstance(v, tuple) and all(_words(pair) and len(pair) == 2 for pair in v),
+    "factors": lambda v: isinstance(v, dict) and all(isinstance(k, str) and _number(f) for k, f in v.items()),
+    "steps": lambda v: isinstance(v, Steps) and _words(v.methods),
+}  # fmt: skip
+"""What is no array, and how to tell whether it is what it must be."""
+
+UNREADABLE = (
+    ValueError, KeyError, OSError, EOFError, zipfile.BadZipFile, zlib.error, NotImplementedError, RecursionError,
+    MemoryError, RuntimeError,
+)  # fmt: skip
 _PARTS = {
     c.__name__: c
     for c in (
-        Shots, Steps, EnergyBalance, Scheme, Memory, TieMemory, MotionState, ControlPoint, JointEvent, Ending,
-        PushEnding,
+        Shots, Steps, EnergyBalance, Scheme, Memory, TieMemory, MotionState, ControlPoint, JointEvent,
     )
 }
+_ENDINGS: dict[str, type[Ending] | type[PushEnding]] = {"Ending": Ending, "PushEnding": PushEnding}
 
 
 @strict
@@ -83,22 +119,70 @@ def load_motion(path: Path | str) -> PushResult | DynamicsResult:
         msg = "there is no such file"
         raise InputError(msg, where=str(path), hint="give a file that save_motion, push or shake wrote: motion.npz")
     try:
+        with zipfile.ZipFile(path) as packed:
+            size = sum(entry.file_size for entry in packed.infolist())
+        if size > MOST_BYTES:
+            msg = f"the file unpacks to {size / 1e9:,.0f} GB, more than any motion"
+            raise InputError(msg, where=str(path), hint=f"{MOST_BYTES / 1e9:.0f} GB at most are read")
         with np.load(path, allow_pickle=False) as archive:
             head = json.loads(str(archive["head"]))
             arrays = {name: archive[name] for name in archive.files if name != "head"}
-    except (ValueError, KeyError, OSError, EOFError, zipfile.BadZipFile):
+    except UNREADABLE:
         head, arrays = {}, {}
     if not isinstance(head, dict) or head.get("format") != FORMAT:
         msg = "this file holds no motion"
         raise InputError(msg, where=str(path), hint="give a file that save_motion, push or shake wrote: motion.npz")
-    if head["format_version"] != VERSION:
-        msg = f"the file has version {head['format_version']}, this program reads {VERSION}"
+    if head.get("format_version") != VERSION:
+        msg = f"the file has version {head.get('format_version')}, this program reads {VERSION}"
         raise InputError(msg, where=str(path), hint="write it anew")
-    model = loads(head["model"], name=f"{path}, model")
-    values = {name: _unpacked(value, arrays) for name, value in head["values"].items()}
-    kind = PushResult if head["kind"] == "PushResult" else DynamicsResult
-    made: PushResult | DynamicsResult = kind(model=model, **values)
+    try:
+        model = loads(head["model"], name=f"{path}, model")
+        values = {name: _unpacked(value, arrays) for name, value in head["values"].items()}
+        kind = {"PushResult": PushResult, "DynamicsResult": DynamicsResult}[head["kind"]]
+        made: PushResult | DynamicsResult = kind(model=model, **values)
+        _check(made, str(path))
+    except InputError:
+        raise
+    except (KeyError, TypeError, AttributeError, ValueError, IndexError, RecursionError) as fault:
+        msg = f"damaged: {type(fault).__name__}, {str(fault)[:100]}"
+        raise InputError(msg, where=str(path), hint="write the file anew") from None
     return made
+
+
+def _check(made: PushResult | DynamicsResult, where: str) -> None:
+    """Refuse a motion whose parts are not what they must be."""
+    for name in made.__dataclass_fields__:
+        if name in PLAIN and not PLAIN[name](getattr(made, name)):
+            msg = f"damaged: '{name}' is not what it must be"
+            raise InputError(msg, where=where, hint="write the file anew")
+    if not isinstance(made.ending, Ending if isinstance(made, DynamicsResult) else PushEnding):
+        msg = "damaged: how the motion ended is not told"
+        raise InputError(msg, where=where, hint="write the file anew")
+    for name, kind in (("end", MotionState), *((("shots", Shots), ("steps", Steps), ("energy", EnergyBalance))
+                       if isinstance(made, DynamicsResult) else ())):  # fmt: skip
+        if type(getattr(made, name)) is not kind:
+            msg = f"damaged: '{name}' is missing"
+            raise InputError(msg, where=where, hint="write the file anew")
+    end = made.end
+    parts = type(end.memory) is Memory and type(end.ties) is TieMemory
+    if not (parts and isinstance(end.time, float) and np.isfinite(end.time)):
+        msg = "damaged: the state at the end is not whole"
+        raise InputError(msg, where=where, hint="write the file anew")
+    sizes = {"B": len(made.model.bodies), "reactions": len(made.reactions_of)}
+    if isinstance(made, DynamicsResult):
+        sizes |= {"points": len(made.points), "joints": len(made.joints)}
+        steps = made.steps
+        check_arrays(made, sizes, where)
+        if set(made.energy.values) != set(NAMES):
+            msg = "damaged: the energy balance is not whole"
+            raise InputError(msg, where=where, hint="write the file anew")
+        for name, energy in made.energy.values.items():
+            check_array(energy, ["f", "shots"], sizes, where, f"energy.{name}")
+        if len(steps.how) and not 0 <= steps.how.min() <= steps.how.max() < len(steps.methods):
+            msg = "damaged: 'steps.how' names methods that are not there"
+            raise InputError(msg, where=where, hint="write the file anew")
+    else:
+        check_arrays(made, sizes, where)
 
 
 def _packed(value: Any, place: str, arrays: dict[str, Any]) -> Any:
@@ -126,7 +210,7 @@ def _unpacked(value: Any, arrays: dict[str, Any]) -> Any:
         return tuple(_unpacked(v, arrays) for v in value["tuple"])
     if "mapping" in value:
         return {k: _unpacked(v, arrays) for k, v in value["mapping"].items()}
+    if value["kind"] in _ENDINGS:
+        return _ENDINGS[value["kind"]][value["name"]]
     part = _PARTS[value["kind"]]
-    if "name" in value:
-        return getattr(part, value["name"])
     return part(**{k: _unpacked(v, arrays) for k, v in value["fields"].items()})

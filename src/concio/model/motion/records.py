@@ -38,7 +38,11 @@ LARGEST = 5.0
 UNEVEN = 1e-3
 """Share by which steps of time may differ."""
 
-_HEAD = re.compile(r"NPTS\s*=?\s*(\d+)\s*,?\s*DT\s*=?\s*([0-9.EeDd+-]+)", re.IGNORECASE)
+MOST_BYTES = 200_000_000
+"""Size of a file from which on it is no record of ground motion: days of samples."""
+
+_HEAD = re.compile(r"NPTS\s*=?\s*(\d{1,15})\s*,?\s*DT\s*=?\s*([0-9.EeDd+-]+)", re.IGNORECASE)
+_UNITS = re.compile(r"UNITS OF\s+([A-Z0-9/*^]+)", re.IGNORECASE)
 _NUMBER = re.compile(r"^\s*[-+]?(\d|\.\d)")
 _SEPARATOR = re.compile(r"[,;\s]+")
 
@@ -59,13 +63,17 @@ def read_record(path: Path | str, *, unit: str | None = None, step: float | None
     Raises
     ------
     InputError
-        There is no such file; the unit is not known; the record has a gap or does not run forwards in time.
+        There is no such file; the unit is not known, or not what the name of the file says; the record has a gap or
+        does not run forwards in time.
     """
     path = Path(path)
     where = str(path)
     if not path.is_file():
         msg = "there is no such file"
         raise InputError(msg, where=where, hint="give the path of a record, such as record.at2")
+    if path.stat().st_size > MOST_BYTES:
+        msg = f"the file holds {path.stat().st_size / 1e6:,.0f} MB: that is no record of an earthquake"
+        raise InputError(msg, where=where, hint=f"cut it to what is needed, {MOST_BYTES / 1e6:.0f} MB at most")
     if unit is not None and unit not in UNITS:
         msg = f"unknown unit '{unit}' of a record"
         raise InputError(msg, where=where, hint="one of: " + ", ".join(UNITS))
@@ -77,12 +85,30 @@ def read_record(path: Path | str, *, unit: str | None = None, step: float | None
     head = _HEAD.search("\n".join(text.splitlines()[:6]))
     if suffix in PEER or (head is not None and unit is None and step is None):
         values, step = _peer(text, head, where)
-        unit = unit or PEER.get(suffix, "g")
+        unit = unit or _unit_of_peer(text, suffix, where)
     else:
         values, step = _columns(text, step, where)
         unit = unit or "m/s2"
     quantity, size = UNITS[unit]
     return Record(size * values, step, quantity, path.name)
+
+
+def _unit_of_peer(text: str, suffix: str, where: str) -> str:
+    """Return the unit that the head of a PEER file names, or the usual one of its kind."""
+    usual = PEER.get(suffix, "g")
+    named = _UNITS.search("\n".join(text.splitlines()[:6]))
+    if named is None:
+        return usual
+    word = named.group(1).lower()
+    other = {"cm/s/s": "cm/s2", "cm/sec2": "cm/s2", "cm/s**2": "cm/s2", "m/s/s": "m/s2", "cm/sec": "cm/s"}
+    unit = other.get(word, word)
+    if unit not in UNITS:
+        msg = f"the head names the unit '{named.group(1)}', which is not known"
+        raise InputError(msg, where=where, hint="give the unit: one of " + ", ".join(UNITS))
+    if UNITS[unit][0] != UNITS[usual][0]:
+        msg = f"the head says {UNITS[unit][0]} in {unit}, the name of the file {UNITS[usual][0]}"
+        raise InputError(msg, where=where, hint="give the unit, or the file another name")
+    return unit
 
 
 def attention(record: Record) -> str | None:
@@ -166,7 +192,7 @@ def _timed(rows: Array, where: str) -> tuple[Array, float]:
 
 def _float(word: str, where: str) -> float:
     try:
-        return float(word.replace("D", "E").replace("d", "e"))
+        return float(word.replace("D", "E").replace("d", "e").replace("_", "?"))
     except ValueError:
         msg = f"'{word}' is not a number"
         raise InputError(msg, where=where, hint="numbers have a decimal point: 0.01") from None

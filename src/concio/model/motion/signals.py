@@ -20,6 +20,9 @@ from concio.errors import InputError
 Array = np.ndarray
 Quantity = Literal["acceleration", "velocity", "displacement"]
 
+LONGEST = 60.0
+"""Time between samples at most [s]."""
+
 
 class Signal(Protocol):
     """One component of the motion of the ground."""
@@ -70,8 +73,8 @@ class Record:
             k = int(np.flatnonzero(~np.isfinite(values))[0])
             msg = f"sample {k + 1} is not a number: the record has a gap"
             raise InputError(msg, where=where, hint="fill the gap, or cut the record before it")
-        if not 0 < self.step < np.inf:
-            msg = f"the time between samples, {self.step:g} s, must be positive"
+        if not 0 < self.step <= LONGEST:
+            msg = f"the time between samples, {self.step:g} s, must be positive and at most {LONGEST:g} s"
             raise InputError(msg, where=where)
         if self.quantity not in ("acceleration", "velocity", "displacement"):
             msg = f"'{self.quantity}' is not acceleration, velocity or displacement"
