@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from concio.problem.pair_state import PairStates
 from concio.solvers.path.event_path import follow
 from concio.solvers.path.record import EventPath
 from concio.solvers.path.state import CLOSED, LinearPath, PathState, certify_step, elastic_energy
@@ -16,11 +17,9 @@ from rigid_walls import Assembly
 def at_rest(path: LinearPath, parameter: float = 0.0) -> PathState:
     """No displacement, no force, every pair touching."""
     m = path.problem.pairs
-    zero = np.zeros(m)
-    closed = np.full(m, CLOSED, dtype=np.int8)
-    return PathState(
-        parameter, np.zeros(path.problem.unknowns), zero, zero, closed, np.zeros(m, np.int8), zero, zero
-    )  # fmt: skip
+    zero, still = np.zeros(m), np.zeros((m, 1))
+    closed = PairStates(np.full(m, CLOSED, dtype=np.int8), still)
+    return PathState(parameter, np.zeros(path.problem.unknowns), zero, still, closed, still, zero)
 
 
 def weight_then(

@@ -10,6 +10,7 @@ import scipy.sparse as sp
 
 from concio.errors import InputError
 from concio.problem.contact_problem import ContactProblem, Laws
+from concio.problem.pair_state import PairStates
 from concio.solvers.path.event_path import follow
 from concio.solvers.path.record import Outcome
 from concio.solvers.path.state import CRUSHED, OPEN, LinearPath, PathState
@@ -148,7 +149,7 @@ def test_interrupted_path_continues_where_it_was():
 
 def test_moving_obstacle_does_work():
     """Pushing the ground under block 2 sideways drags it until friction is used up."""
-    path = replace(two_blocks(), load_rate=np.zeros(4), tangent_rate=np.array([0.0, 1.0]))
+    path = replace(two_blocks(), load_rate=np.zeros(4), tangent_rate=np.array([[0.0], [1.0]]))
     found = follow(path, standing(path), until=1.0)
     assert [(e.pair, e.kind) for e in found.events] == [(1, "slips")]
     # t points to -x: the ground moves to +x... the block follows by h2 / k2 while block 1 is held by its own friction
@@ -166,7 +167,7 @@ def test_gap_closes_and_opens_again():
         np.array([0, 2]),
     )  # fmt: skip
     path = LinearPath(problem, np.array([1.0, 0.0]))
-    start = replace(at_rest(path), contact=np.array([OPEN], np.int8))
+    start = replace(at_rest(path), states=PairStates.plane(np.array([OPEN]), np.zeros(1)))
     found = follow(path, start, until=2.0)
     assert [(e.parameter, e.kind) for e in found.events] == [(pytest.approx(0.5), "closes")]
     assert found.end.normal_force == pytest.approx([1.5])

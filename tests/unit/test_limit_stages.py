@@ -94,7 +94,7 @@ def test_every_load_step_is_certified_by_the_original_problem(wall: concio.Model
     assert told == list(steps.multipliers[1:])
     state = steps.state
     at = step_problem(LinearPath(dead, live), state, steps.carried)  # repeated at its own load it does not move
-    again = certify(at, state.displacement, state.normal_force, state.friction)
+    again = certify(at, state.displacement, state.normal_force, state.friction_force)
     assert again.equilibrium <= 1e-9
     assert again.cone <= 1e-9
     assert again.penetration <= 1e-9
@@ -119,7 +119,7 @@ def test_from_rest_the_path_is_a_ray(wall: concio.Model) -> None:
     assert walked.outcome is Outcome.REACHED
     scale = np.abs(end.displacement).max()
     np.testing.assert_allclose(walked.end.displacement, end.displacement, atol=1e-9 * scale)
-    half = certify(path.at(0.5), 0.5 * end.displacement, 0.5 * end.normal_force, 0.5 * end.friction)
+    half = certify(path.at(0.5), 0.5 * end.displacement, 0.5 * end.normal_force, 0.5 * end.friction_force)
     assert half.certified
     assert end.work == pytest.approx(walked.end.work, rel=1e-9)
     assert end.dissipation == pytest.approx(walked.end.dissipation, rel=1e-6, abs=1e-12 * end.work)

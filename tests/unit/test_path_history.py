@@ -47,7 +47,8 @@ def test_a_closed_joint_has_no_gap_after_slipping_forth_and_back(method):
         assert np.abs(contacts.gap[closed]).max(initial=0.0) <= 1e-12 * size
         assert contacts.gap.min() >= -1e-12 * size
         state = path.steps[step].state
-        one_way = kinematics(path.assembly.problem(path.steps[step].factors), u, state.normal_force, state.friction)
+        problem = path.assembly.problem(path.steps[step].factors)
+        one_way = kinematics(problem, u, state.normal_force, state.friction_force)
         shown.append(np.abs(one_way.gap[closed]).max(initial=0.0) / size)
     assert max(shown) > 1e-3  # slips did turn round
 

@@ -109,7 +109,7 @@ def test_energy_of_a_slip_in_two_directions() -> None:
     weight = float(-problem.f[2::6].sum())
     path = LinearPath(problem.with_loads(0.0 * problem.f), problem.f)
     state = at_rest(path.problem)
-    assert state.friction.shape == (problem.pairs, 2)
+    assert state.friction_force.shape == (problem.pairs, 2)
     u, t = np.zeros(problem.unknowns), np.zeros((problem.pairs, 2))
     n = np.full(problem.pairs, weight / problem.pairs)
     moved = 0.0

@@ -199,8 +199,7 @@ def _target(assembly: Assembly, factors: Mapping[str, float], stage: Stage) -> d
 def _linear(assembly: Assembly, start: Mapping[str, float], end: Mapping[str, float]) -> LinearPath:
     """Return the path of a stage: everything a problem holds is linear in the load factors."""
     a, b = assembly.problem(start), assembly.problem(end)
-    tangential = a.slip_origin - b.slip_origin
-    return LinearPath(a, b.f - a.f, b.gap - a.gap, tangential[:, 0] if a.dim == 2 else tangential, b.load - a.load)
+    return LinearPath(a, b.f - a.f, b.gap - a.gap, a.slip_origin - b.slip_origin, b.load - a.load)
 
 
 def _at_rest(path: LinearPath) -> PathState:

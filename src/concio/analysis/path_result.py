@@ -233,7 +233,7 @@ class PathResult:
         chosen = self.steps[step]
         problem, state = self.assembly.problem(chosen.factors), chosen.state
         problem = weakened(problem, state.broken)
-        judged = judge(problem, state.displacement, state.normal_force, state.friction, method="path")
+        judged = judge(problem, state.displacement, state.normal_force, state.friction_force, method="path")
         status = Status.SOLVED if chosen.certificate.certified else Status.GAVE_UP
         moved = path_kinematics(LinearPath(problem, np.zeros(problem.unknowns)), state)
         solution = replace(judged, kinematics=moved, certificate=chosen.certificate, status=status)

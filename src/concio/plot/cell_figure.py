@@ -50,7 +50,8 @@ def plot_cell_state(path: CellPath, step: int = -1, ax: Axes | None = None, *, s
     Axes
     """
     result, chosen = path.result(step), path.steps[step]
-    state = np.where(chosen.state.contact == 0, 0, np.where(chosen.state.sliding != 0, 2, 1))
+    pairs = chosen.state.states
+    state = np.where(pairs.open, 0, np.where(pairs.slips, 2, 1))
     words = ", ".join(f"{v:+.3g}" for v in chosen.stress)
     title = f"{path.stages[chosen.stage].name}, at {chosen.parameter:.3g} of its way"
     return _draw(

@@ -33,6 +33,7 @@ from concio.errors import InputError, SolverError
 from concio.model.model import Model
 from concio.problem.certificate import imbalance
 from concio.problem.contact_problem import ContactProblem
+from concio.problem.pair_state import PairStates
 from concio.problem.tolerances import CHECKED
 from concio.representation import short_repr
 from concio.solvers.path.state import CLOSED, OPEN, STICK, LinearPath
@@ -260,12 +261,12 @@ def homogenise(
     u, t_n, t_t = np.zeros((problem.unknowns, 3)), np.zeros((m, 3)), np.zeros((m, 3))
     nothing = np.zeros(problem.unknowns)
     for k, name in enumerate(STRAINS):
-        path = LinearPath(problem, nothing, normal[:, k], tangential[:, k])
-        found = state_rates(path, contact, sliding)
+        path = LinearPath(problem, nothing, normal[:, k], tangential[:, k, None])
+        found = state_rates(path, PairStates.plane(contact, sliding))
         if found.residual > CONTRADICTION:
             msg = f"the joints allow no {name}: rigid blocks on hard joints do not deform, and have no moduli"
             raise InputError(msg, hint="give the joints stiffness, or make the blocks elastic")
-        u[:, k], t_n[:, k], t_t[:, k] = found.displacement, found.normal_force, found.friction_force
+        u[:, k], t_n[:, k], t_t[:, k] = found.displacement, found.normal_force, found.friction_force[:, 0]
     matrix = own.stress(t_n, t_t)
     certificate = _certify(own, problem, matrix, u, t_n, t_t, contact, sliding)
     if not certificate.certified:

@@ -32,7 +32,7 @@ from concio.problem.solution import ProgressCallback
 from concio.solvers.methods import find
 from concio.solvers.path.event_path import follow
 from concio.solvers.path.record import Outcome
-from concio.solvers.path.state import CLOSED, OPEN, LinearPath, PathState, elastic_energy, step_problem
+from concio.solvers.path.state import LinearPath, PathState, at_rest, elastic_energy, step_problem
 from concio.solvers.path.step_path import StepPath, follow_in_steps
 
 Array = np.ndarray
@@ -126,7 +126,7 @@ def strain_path(
             )
         lent = compliance
         loose = ~drive.strain
-        state = _at_rest(path) if state is None else _with_strains(state, strain[loose] * own.size)
+        state = at_rest(path.problem) if state is None else _with_strains(state, strain[loose] * own.size)
         found = _walk(path, state, stage, method, solver, max_events, progress, notes)
         first = len(steps) - 1 if steps else 0
         for before, after in zip((found.states[0], *found.states), found.states, strict=False):
@@ -136,7 +136,7 @@ def strain_path(
             moved = after.parameter * (drive.values - strain)
             here[drive.strain] += moved[drive.strain]
             here[loose] = after.displacement[path.problem.unknowns - int(loose.sum()) :] / own.size
-            forces = own.stress(after.normal_force, after.friction_force)
+            forces = own.stress(after.normal_force, after.friction_force[:, 0])
             base = _with_strains(after, np.zeros(0), int(loose.sum()))
             stored = elastic_energy(path.problem, after)
             steps.append(CellStep(number, after.parameter, here, forces, base, UNKNOWN, stored))
@@ -161,7 +161,7 @@ def _certified(
     any force is left, or the cell has come back to rest, the path is the measure (:data:`LEAST`).
     """
     sizes = [
-        scales(path.at(after.parameter), after.displacement, after.normal_force, after.friction)[0]
+        scales(path.at(after.parameter), after.displacement, after.normal_force, after.friction_force)[0]
         if after.normal_force.any() or after.friction_force.any()
         else 0.0
         for path, _, after in proofs
@@ -175,7 +175,7 @@ def _certified(
     for step, size, moved, (path, before, after) in zip(steps, sizes, lengths, proofs, strict=True):
         problem = step_problem(path, before, after.parameter)
         found = certify(
-            problem, after.displacement, after.normal_force, after.friction,
+            problem, after.displacement, after.normal_force, after.friction_force,
             total_load=max(size, LEAST * force), moved=max(moved, LEAST * length),
         )  # fmt: skip
         done.append(replace(step, certificate=found))
@@ -246,7 +246,7 @@ def _linear(cell: PeriodicCell, drive: Drive, strain: Array, stress: Array, lent
         msg = "the blocks are rigid and joints hard: a strain does not determine the forces"
         raise InputError(msg, hint="give the joints stiffness, make the blocks elastic, or give stresses alone")
     return (
-        LinearPath(path_problem, live, end.gap - problem.gap, (problem.slip_origin - end.slip_origin)[:, 0]),
+        LinearPath(path_problem, live, end.gap - problem.gap, problem.slip_origin - end.slip_origin),
         compliance,
     )
 
@@ -260,14 +260,6 @@ def _not_rigid(problem: ContactProblem, live: Array, lent: float) -> tuple[Conta
     tangential = np.where(law.tangential_compliance == 0, SHEAR_TO_NORMAL * lent, law.tangential_compliance)
     laws = replace(law, normal_compliance=normal, tangential_compliance=tangential)
     return replace(problem, laws=laws), lent
-
-
-def _at_rest(path: LinearPath) -> PathState:
-    """Return the state before anything acts: pairs without a gap touch, nothing carries force."""
-    problem = path.problem
-    zero = np.zeros(problem.pairs)
-    contact = np.where(problem.gap > 0, OPEN, CLOSED).astype(np.int8)
-    return PathState(0.0, np.zeros(problem.unknowns), zero, zero, contact, zero.astype(np.int8), zero, zero)
 
 
 def _with_strains(state: PathState, strains: Sequence[float] | Array, drop: int = 0) -> PathState:

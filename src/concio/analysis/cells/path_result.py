@@ -19,7 +19,7 @@ from concio.problem.certificate import Certificate
 from concio.problem.solution import Status, judge
 from concio.representation import short_repr
 from concio.solvers.path.record import Outcome
-from concio.solvers.path.state import CLOSED, OPEN, STICK, LinearPath, PathState, path_kinematics
+from concio.solvers.path.state import LinearPath, PathState, path_kinematics
 
 if TYPE_CHECKING:
     from concio.plot.cell_accessor import CellPathPlots
@@ -60,13 +60,8 @@ class CellStep:
     @property
     def counts(self) -> dict[str, int]:
         """How many pairs are open, slip or are crushed; the others are closed and stick."""
-        s = self.state
-        shut = s.contact != OPEN
-        return {
-            "open": int((~shut).sum()),
-            "slip": int((shut & (s.sliding != STICK) & (s.contact == CLOSED)).sum()),
-            "crushed": int((s.contact == 2).sum()),
-        }
+        s = self.state.states
+        return {"open": int(s.open.sum()), "slip": int((s.slips & s.closed).sum()), "crushed": int(s.crushed.sum())}
 
 
 @short_repr
@@ -129,8 +124,8 @@ class CellPath:
 
     def moduli(self, step: int = -1) -> Moduli:
         """Return the tangent moduli of the stretch of the path that ends at a step, joints in their states there."""
-        state = self.steps[step].state
-        return homogenise(self.cell, contact=state.contact, sliding=state.sliding)
+        states = self.steps[step].state.states
+        return homogenise(self.cell, contact=states.normal, sliding=states.sign)
 
     def result(self, step: int = -1) -> Result:
         """Return one step as a :class:`concio.Result`, its strain as load factors.
@@ -142,7 +137,7 @@ class CellPath:
         factors = {name: float(v) for name, v in zip(STRAINS, chosen.strain, strict=True)}
         state = chosen.state
         problem = self.cell.assembly.problem(factors)
-        judged = judge(problem, state.displacement, state.normal_force, state.friction, method="path")
+        judged = judge(problem, state.displacement, state.normal_force, state.friction_force, method="path")
         status = Status.SOLVED if chosen.certificate.certified else Status.GAVE_UP
         moved = path_kinematics(LinearPath(problem, np.zeros(problem.unknowns)), state)
         solution = replace(judged, kinematics=moved, certificate=chosen.certificate, status=status)

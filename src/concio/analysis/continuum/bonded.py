@@ -7,7 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from concio.contact.assembly import Assembly
-from concio.solvers.path.state import CLOSED, STICK, LinearPath
+from concio.problem.pair_state import Normal, PairStates
+from concio.solvers.path.state import LinearPath
 from concio.solvers.path.state_rates import state_rates
 
 Array = np.ndarray
@@ -22,9 +23,9 @@ def bonded_displacement(assembly: Assembly, factors: Mapping[str, float]) -> Arr
     None where there are none: supports that move apart tear blocks on hard joints.
     """
     problem = assembly.problem(factors)
-    path = LinearPath(problem, problem.f, problem.gap, -problem.slip_origin[:, 0])
+    path = LinearPath(problem, problem.f, problem.gap, -problem.slip_origin)
     m = problem.pairs
-    found = state_rates(path, np.full(m, CLOSED, dtype=np.int8), np.full(m, STICK, dtype=np.int8))
+    found = state_rates(path, PairStates.plane(np.full(m, Normal.CLOSED), np.zeros(m)))
     if found.residual > LEFT:
         return None
     u: Array = assembly.supported.T @ found.displacement

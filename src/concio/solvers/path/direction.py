@@ -17,7 +17,7 @@ import numpy as np
 from concio.problem.contact_problem import Array
 from concio.solvers.path.equations import PathEquations
 from concio.solvers.path.rate_lcp import lemke
-from concio.solvers.path.rates import Rates, Values, critical, rates, restore, wrong
+from concio.solvers.path.rates import Rates, Values, critical, holds, rates, restore, wrong
 from concio.solvers.path.state import CLOSED, CRUSHED, OPEN, STICK
 
 ROUNDS_ALL, ROUNDS_ONE = 6, 60
@@ -177,7 +177,7 @@ def by_lemke(
     B[n + sets[1], pick[1]] = -1.0
     for i, sign in ((2, 1.0), (3, -1.0)):
         B[n + m + sets[i], pick[i]] = sign
-        B[n + sets[i], pick[i]] += d["psi"][sets[i]] * closed[sets[i]]
+        B[n + sets[i], pick[i]] += d.dilatancy[sets[i]] * closed[sets[i]]
     X, residual = equations.solve(np.column_stack([unit, B]))
     if residual > TRUE:
         blocked = self_stress(equations, X[:, 0]) is not None
@@ -188,7 +188,7 @@ def by_lemke(
     if not np.isfinite(X).all():
         return None, others, blocked
     t_n, t_t = X[n : n + m], X[n + m : -1]
-    mu = d["mu"][:, None]
+    mu = d.cone.friction[:, None]
     W = np.vstack(
         [t_n[sets[0]], -t_n[sets[1]], (mu * t_n + t_t)[sets[2]], (mu * t_n - t_t)[sets[3]]]
     )  # fmt: skip
@@ -207,8 +207,7 @@ def by_lemke(
         contact[sets[1][moved[pick[1]]]] = CRUSHED
         sliding[sets[2][moved[pick[2]]]] = 1
         sliding[sets[3][moved[pick[3]]]] = -1
-        spare = d["c"] - d["mu"] * d["T"] > 1e-12 * (1.0 + d["c"])
-        sliding = np.where((contact == OPEN) & ~spare, 1, sliding)
+        sliding = np.where((contact == OPEN) & ~holds(d.cone, contact), 1, sliding)
         restore(equations, contact, sliding)
         found = consistent(equations, unit)
         if found is not None:

@@ -64,7 +64,7 @@ class PathEquations:
 
     def __init__(self, scaled: Scaled, contact: Array, sliding: Array, control: Array) -> None:
         problem = scaled.path.problem
-        self.scaled, self.data = scaled, scaled.arrays
+        self.scaled, self.data = scaled, scaled.data
         self.n, self.m = problem.unknowns, problem.pairs
         self.size = self.n + 2 * self.m + 1
         self.C_n, self.C_t = sp.csr_array(problem.C_n), sp.csr_array(problem.C_t)
@@ -84,13 +84,13 @@ class PathEquations:
         if self.contact[k] != CLOSED:
             return np.array([n + k]), np.ones(1)
         rows, values = self._row(self.C_n, k)
-        columns, entries = [rows, np.array([n + k, self.size - 1])], [values, np.array([d["a_n"][k], d["x_rate"][k]])]
+        columns, entries = [rows, np.array([n + k, self.size - 1])], [values, np.array([d.a_n[k], d.gap_rate[k]])]
         sigma = self.sliding[k]
-        if d["psi"][k] > 0 and sigma != STICK:
+        if d.dilatancy[k] > 0 and sigma != STICK:
             rows, values = self._row(self.C_t, k)
-            factor = -d["psi"][k] * sigma
+            factor = -d.dilatancy[k] * sigma
             columns += [rows, np.array([n + m + k, self.size - 1])]
-            entries += [factor * values, factor * np.array([d["a_t"][k], d["t_rate"][k]])]
+            entries += [factor * values, factor * np.array([d.a_t[k], d.tangent_rate[k]])]
         return np.concatenate(columns), np.concatenate(entries)
 
     def tangential_row(self, k: int) -> tuple[Array, Array]:
@@ -100,9 +100,9 @@ class PathEquations:
             rows, values = self._row(self.C_t, k)
             return (
                 np.concatenate([rows, [n + m + k, self.size - 1]]),
-                np.concatenate([values, [d["a_t"][k], d["t_rate"][k]]]),
+                np.concatenate([values, [d.a_t[k], d.tangent_rate[k]]]),
             )
-        return np.array([n + k, n + m + k]), np.array([self.sliding[k] * d["mu"][k], 1.0])
+        return np.array([n + k, n + m + k]), np.array([self.sliding[k] * d.cone.friction[k], 1.0])
 
     @staticmethod
     def _row(matrix: sp.csr_array, k: int) -> tuple[Array, Array]:
@@ -126,21 +126,21 @@ class PathEquations:
         one, closed, stick = np.ones(m), self.contact == CLOSED, self.sliding == STICK
         sigma = self.sliding.astype(float)
         keep_n, keep_t = sp.diags_array(closed.astype(float)), sp.diags_array(stick.astype(float))
-        tilt = np.where(closed, d["psi"] * sigma, 0.0)
-        column_n = np.where(closed, d["x_rate"], 0.0) - tilt * d["t_rate"]
-        column_t = np.where(stick, d["t_rate"], 0.0)
+        tilt = np.where(closed, d.dilatancy * sigma, 0.0)
+        column_n = np.where(closed, d.gap_rate, 0.0) - tilt * d.tangent_rate
+        column_t = np.where(stick, d.tangent_rate, 0.0)
         blocks = [
-            [self.K, -self.C_n.T, -self.C_t.T, sp.csr_array(-d["g"][:, None])],
+            [self.K, -self.C_n.T, -self.C_t.T, sp.csr_array(-d.load_rate[:, None])],
             [
                 keep_n @ self.C_n - sp.diags_array(tilt) @ self.C_t,
-                sp.diags_array(np.where(closed, d["a_n"], one)),
-                sp.diags_array(-tilt * d["a_t"]),
+                sp.diags_array(np.where(closed, d.a_n, one)),
+                sp.diags_array(-tilt * d.a_t),
                 sp.csr_array(column_n[:, None]),
             ],
             [
                 keep_t @ self.C_t,
-                sp.diags_array(sigma * d["mu"]),
-                sp.diags_array(np.where(stick, d["a_t"], one)),
+                sp.diags_array(sigma * d.cone.friction),
+                sp.diags_array(np.where(stick, d.a_t, one)),
                 sp.csr_array(column_t[:, None]),
             ],
         ]
@@ -289,7 +289,7 @@ class PathEquations:
         row = np.zeros(self.size)
         columns, entries = self._row(self.C_t, k)
         row[columns] = entries
-        row[self.n + self.m + k], row[-1] = self.data["a_t"][k], self.data["t_rate"][k]
+        row[self.n + self.m + k], row[-1] = self.data.a_t[k], self.data.tangent_rate[k]
         return row
 
     def opening_of(self, k: int) -> Array:
@@ -297,7 +297,7 @@ class PathEquations:
         row = np.zeros(self.size)
         columns, entries = self._row(self.C_n, k)
         row[columns] = entries
-        row[self.n + k], row[-1] = self.data["a_n"][k], self.data["x_rate"][k]
+        row[self.n + k], row[-1] = self.data.a_n[k], self.data.gap_rate[k]
         return row
 
     # -- right-hand sides and values ------------------------------------------------------------------------------
@@ -309,12 +309,12 @@ class PathEquations:
         """
         d, n, m = self.data, self.n, self.m
         b = np.zeros(self.size)
-        b[:n] = d["f"]
+        b[:n] = d.load
         sigma = self.sliding.astype(float)
-        slip = slip + d["x_t"]
-        closed = -(d["x"] + offset) - d["psi"] * sigma * slip
-        b[n : n + m] = np.select([self.contact == OPEN, self.contact == CRUSHED], [-d["T"], d["N"]], closed)
-        b[n + m : -1] = np.where(self.sliding == STICK, slip, -sigma * d["c"])
+        slip = slip + d.origin
+        closed = -(d.gap + offset) - d.dilatancy * sigma * slip
+        b[n : n + m] = np.select([self.contact == OPEN, self.contact == CRUSHED], [-d.cone.tension, d.cone.cap], closed)
+        b[n + m : -1] = np.where(self.sliding == STICK, slip, -sigma * d.cone.cohesion)
         b[-1] = given
         return b
 
@@ -322,6 +322,6 @@ class PathEquations:
         """Return x_n + C_n u + a_n t_n and C_t u - x_t + a_t t_t + tau x_t', scaled, of an answer or of a rate."""
         d, n, m = self.data, self.n, self.m
         u, t_n, t_t, tau = x[:n], x[n : n + m], x[n + m : -1], x[-1]
-        opening = self.C_n @ u + d["a_n"] * t_n + tau * d["x_rate"]
-        slip = self.C_t @ u + d["a_t"] * t_t + tau * d["t_rate"]
-        return (opening, slip) if rate else (opening + d["x"], slip - d["x_t"])
+        opening = self.C_n @ u + d.a_n * t_n + tau * d.gap_rate
+        slip = self.C_t @ u + d.a_t * t_t + tau * d.tangent_rate
+        return (opening, slip) if rate else (opening + d.gap, slip - d.origin)

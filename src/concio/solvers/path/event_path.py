@@ -23,7 +23,7 @@ from concio.errors import InputError
 from concio.problem.contact_problem import Array
 from concio.problem.solution import Progress, ProgressCallback
 from concio.solvers.path.direction import LARGEST_VERTEX, find_direction
-from concio.solvers.path.events import PairStates, changes
+from concio.solvers.path.events import Moment, changes
 from concio.solvers.path.near_forces import solve_near
 from concio.solvers.path.point import PathPoint
 from concio.solvers.path.rates import (
@@ -47,6 +47,7 @@ from concio.solvers.path.state import (
     PathState,
     certify_step,
     plastic_position,
+    sizes,
     state_of,
     step_problem,
 )
@@ -110,7 +111,7 @@ class _Follower(PathPoint):
         for corner in range(max_events):
             self.settle()
             v = values(self.equations, self.x, self.slip, self.offset)
-            old = PairStates.of(self.equations)
+            old = Moment.of(self.equations)
             found, runaway = self.direction(v, known)
             if found is not None:
                 named = self.name_events(old, len(states) - 1)
@@ -186,13 +187,13 @@ class _Follower(PathPoint):
         self.restarts, self.restarted = self.restarts + 1, found.state.parameter
         return found
 
-    def name_step(self, old: PairStates, beyond: Beyond, states: list[PathState]) -> list[Event]:
+    def name_step(self, old: Moment, beyond: Beyond, states: list[PathState]) -> list[Event]:
         """Name a finite step after the pair that moves most in it, and what changed in it."""
         (n0, t0), (n1, t1) = (plastic_position(self.path, s) for s in states[-2:])
-        most = int(np.argmax(np.abs(n1 - n0) + np.abs(t1 - t0)))
+        most = int(np.argmax(np.abs(n1 - n0) + sizes(t1 - t0)))
         parameter, given, step = float(self.x[-1]), self.given() * self.unit, len(states) - 1
         first = Event(parameter, given, most, "jumps" if beyond.jump else "restarts", 0, step)
-        return [first, *changes(old, PairStates.of(self.equations), parameter, given, step)]
+        return [first, *changes(old, Moment.of(self.equations), parameter, given, step)]
 
     def direction(self, v: Values, known: Rates | None) -> tuple[Rates | None, Array | None]:
         """Find the way on: under the control; failing that, past a snap-back, driven by a pair that wants to move.
@@ -228,7 +229,7 @@ class _Follower(PathPoint):
         """
         e = self.equations
         d = e.data
-        unit = float(np.abs(d["f"]).sum()) / (float(np.abs(d["g"]).sum()) or np.inf) or abs(self.until)
+        unit = float(np.abs(d.load).sum()) / (float(np.abs(d.load_rate).sum()) or np.inf) or abs(self.until)
         before = (e.contact.copy(), e.sliding.copy())
         for share in (1e-3, 1e-5):
             parameter = self.state.parameter + share * unit * sense
@@ -239,7 +240,7 @@ class _Follower(PathPoint):
                 continue
             u, t_n, t_t = solution.displacement, solution.normal_force, solution.friction_force
             guess = state_of(self.path, parameter, u, t_n, t_t, before=self.state)
-            restore(e, *admissible(e, v, guess.contact, guess.sliding))
+            restore(e, *admissible(e, v, guess.states.normal, guess.states.sign))
             found, _ = find_direction(e, v, None, sense, vertex=False)
             if found is not None:
                 return found
@@ -261,7 +262,7 @@ class _Follower(PathPoint):
         rows.extend(e.sliding[k] * e.slip_of(int(k)) for k in slipping[np.argsort(-speed)][:5])
         return rows
 
-    def last_events(self, v: Values, direction: Array | None, old: PairStates, step: int) -> list[Event]:
+    def last_events(self, v: Values, direction: Array | None, old: Moment, step: int) -> list[Event]:
         """Name what the pairs at their bounds were about to do where the path ends."""
         if direction is None:
             return []
@@ -269,8 +270,8 @@ class _Follower(PathPoint):
             self.equations.set_state(k, contact, sliding)
         return self.name_events(old, step)
 
-    def name_events(self, old: PairStates, step: int) -> list[Event]:
-        return changes(old, PairStates.of(self.equations), float(self.x[-1]), self.given() * self.unit, step)
+    def name_events(self, old: Moment, step: int) -> list[Event]:
+        return changes(old, Moment.of(self.equations), float(self.x[-1]), self.given() * self.unit, step)
 
     def finish(self, states: list[PathState], events: list[Event], outcome: Outcome, last: Array | None) -> EventPath:
         n = self.equations.n

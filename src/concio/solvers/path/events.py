@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.problem.contact_problem import Array
+from concio.problem.pair_state import PairStates
 from concio.solvers.path.equations import PathEquations
 from concio.solvers.path.rates import grips
 from concio.solvers.path.record import Event
@@ -23,44 +24,43 @@ NORMAL = {
 
 
 @dataclass(frozen=True, eq=False)
-class PairStates:
-    """States of all pairs at a moment, each (m,).
+class Moment:
+    """States of all pairs at a moment.
 
     Parameters
     ----------
-    contact, sliding : integer arrays
-    grip : boolean array
+    states : PairStates
+    grip : (m,) boolean array
         Which pairs can carry friction.
     """
 
-    contact: Array
-    sliding: Array
+    states: PairStates
     grip: Array
 
     @classmethod
-    def of(cls, equations: PathEquations) -> PairStates:
+    def of(cls, equations: PathEquations) -> Moment:
         """Copy the present states."""
-        return cls(equations.contact.copy(), equations.sliding.copy(), grips(equations))
+        return cls(PairStates.plane(equations.contact.copy(), equations.sliding), grips(equations))
 
 
-def changes(old: PairStates, new: PairStates, parameter: float, control: float, step: int) -> list[Event]:
+def changes(old: Moment, new: Moment, parameter: float, control: float, step: int) -> list[Event]:
     """Return the events that lead from one set of states to another.
 
     Parameters
     ----------
-    old, new : PairStates
+    old, new : Moment
     parameter, control : float
         Where it happens.
     step : int
         Index of the state of the path.
     """
     found = []
-    for k in np.flatnonzero((old.contact != new.contact) | (old.sliding != new.sliding)):
-        was, now = int(old.contact[k]), int(new.contact[k])
+    for k in np.flatnonzero(old.states.differ(new.states)):
+        was, now = int(old.states.normal[k]), int(new.states.normal[k])
         if was != now:
             found.append(Event(parameter, control, int(k), NORMAL.get((was, now), "changes"), 0, step))
-        side = int(new.sliding[k]) if new.grip[k] else 0
-        before = int(old.sliding[k]) if old.grip[k] else 0
+        side = int(new.states.sign[k]) if new.grip[k] else 0
+        before = int(old.states.sign[k]) if old.grip[k] else 0
         if side != before and new.grip[k]:
             kind = "slips" if side != STICK else "sticks"
             if not (kind == "sticks" and was != now):

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from concio.problem.contact_problem import Array
+from concio.problem.pair_state import PairStates
 from concio.solvers.path.equations import PathEquations
-from concio.solvers.path.rates import Rates, Values, grips
+from concio.solvers.path.rates import Rates, Values, grips, holds
 from concio.solvers.path.scaling import Scaled
 from concio.solvers.path.state import CLOSED, CRUSHED, OPEN, STICK, LinearPath, PathState, certify_step, energy_of_step
 
@@ -31,12 +32,9 @@ EXACT = 1e-12
 
 
 def states_in_use(path: LinearPath, state: PathState) -> tuple[Array, Array]:
-    """Return the contact and sliding states (m,) of a state; pairs without grip count as slipping."""
-    law = path.problem.laws
-    spare = law.cohesion - law.friction * law.tension
-    rough = (law.friction > 0) | (law.cohesion > 0)
-    contact, sliding = state.contact.astype(np.int8), state.sliding.astype(np.int8)
-    return contact, np.where(~rough | ((contact == OPEN) & (spare <= 0)), 1, sliding).astype(np.int8)
+    """Return normal states (m,) of a state and signs of its slips (m,); pairs without grip count as slipping."""
+    contact = state.states.normal.astype(np.int8)
+    return contact, np.where(holds(path.problem.cone, contact), state.states.sign, 1).astype(np.int8)
 
 
 class PathPoint:
@@ -65,7 +63,7 @@ class PathPoint:
         else:
             self.control[: functional.size] = functional
         self.equations = PathEquations(self.scaled, contact, sliding, self.control)
-        self.slip, self.offset = start.slip / self.scaled.length, start.offset / self.scaled.length
+        self.slip, self.offset = start.slip[:, 0] / self.scaled.length, start.offset / self.scaled.length
         self.x = self.unknowns(start)
         self.until = until / self.unit
         self.sense = 1.0 if self.until >= self.given() else -1.0
@@ -98,14 +96,14 @@ class PathPoint:
         e = self.equations
         opening, position = e.positions(self.x)
         moving = e.sliding != STICK
-        offset = self.offset - np.where(moving, e.data["psi"] * np.abs(position - self.slip), 0.0)
-        exact = (e.contact == CRUSHED) | ((e.contact == CLOSED) & moving & (e.data["psi"] > 0))
+        offset = self.offset - np.where(moving, e.data.dilatancy * np.abs(position - self.slip), 0.0)
+        exact = (e.contact == CRUSHED) | ((e.contact == CLOSED) & moving & (e.data.dilatancy > 0))
         return np.where(moving, position, self.slip), np.where(exact, -opening, offset)
 
     def unknowns(self, state: PathState) -> Array:
         """Return the scaled unknowns (size,) of a state."""
         force, length = self.scaled.force, self.scaled.length
-        forces = np.concatenate([state.normal_force, state.friction_force]) / force
+        forces = np.concatenate([state.normal_force, state.friction_force[:, 0]]) / force
         return np.concatenate([state.displacement / length, forces, [state.parameter]])
 
     def go_to(self, state: PathState) -> PathState:
@@ -117,11 +115,11 @@ class PathPoint:
         contact, sliding = states_in_use(self.path, state)
         self.equations.set_states(contact, sliding, lent=FIRM)
         self.x = self.unknowns(state)
-        self.slip, self.offset = state.slip / length, state.offset / length
+        self.slip, self.offset = state.slip[:, 0] / length, state.offset / length
         self.put_on_equations()
         self.equations.set_states(contact, sliding)
         exact = self.record()
-        exact = replace(exact, contact=state.contact, sliding=state.sliding)
+        exact = replace(exact, states=state.states)
         if certify_step(self.path, before, exact).worst > certify_step(self.path, before, state).worst + EXACT:
             self.x, exact = self.unknowns(state), state
         self.state = exact
@@ -161,10 +159,9 @@ class PathPoint:
             parameter=float(self.x[-1]),
             displacement=np.where(dust, 0.0, u) * length,
             normal_force=self.x[n : n + m] * force,
-            friction_force=self.x[n + m : -1] * force,
-            contact=e.contact.copy(),
-            sliding=e.sliding.copy(),
-            slip=slip * length,
+            friction_force=self.x[n + m : -1, None] * force,
+            states=PairStates.plane(e.contact.copy(), e.sliding),
+            slip=slip[:, None] * length,
             offset=offset * length,
         )
         work, dissipation = energy_of_step(self.path, self.state, after)

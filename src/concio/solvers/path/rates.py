@@ -21,6 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array
 from concio.solvers.path.equations import PathEquations
 from concio.solvers.path.state import CLOSED, CRUSHED, OPEN, STICK
@@ -90,25 +91,27 @@ class Rates:
     calm: float
 
 
+def holds(cone: Cone, contact: Array) -> Array:
+    """Return which pairs (m,) can carry friction in normal states: an open one needs strength left at its tension."""
+    return np.where(contact == OPEN, cone.spare > 0, cone.rough)
+
+
 def grips(equations: PathEquations) -> Array:
     """Return which pairs (m,) can carry friction in their present normal state."""
-    d = equations.data
-    spare = d["c"] - d["mu"] * d["T"] > 1e-12 * (1.0 + d["c"])
-    rough = (d["mu"] > 0) | (d["c"] > 0)
-    return np.where(equations.contact == OPEN, spare, rough)
+    return holds(equations.data.cone, equations.contact)
 
 
 def values(equations: PathEquations, x: Array, slip: Array, offset: Array) -> Values:
     """Return the distances from the bounds at the point x (size,), with slip and offset (m,) scaled."""
     d, n, m = equations.data, equations.n, equations.m
     opening, position = equations.positions(x)
-    gap = opening + offset - d["psi"] * np.abs(position - slip)
+    gap = opening + offset - d.dilatancy * np.abs(position - slip)
     t_n, t_t = x[n : n + m], x[n + m : -1]
-    strength = d["c"] + d["mu"] * t_n
+    strength = d.cone.cohesion + d.cone.friction * t_n
     length = max(float(np.abs(x[:n]).max(initial=0.0)), 1e-3)
     force = max(float(np.abs(x[n:-1]).max(initial=0.0)), 1e-3)
     return Values(
-        gap, t_n + d["T"], d["N"] - t_n, strength + t_t, strength - t_t, ZERO * length, ZERO * force
+        gap, t_n + d.cone.tension, d.cone.cap - t_n, strength + t_t, strength - t_t, ZERO * length, ZERO * force
     )  # fmt: skip
 
 
@@ -117,7 +120,7 @@ def rates(equations: PathEquations, direction: Array, creep: Array | None = None
     d, n, m = equations.data, equations.n, equations.m
     opening, slip = equations.positions(direction, rate=True)
     t_n, t_t = direction[n : n + m], direction[n + m : -1]
-    gap = opening - d["psi"] * np.abs(slip)
+    gap = opening - d.dilatancy * np.abs(slip)
     moving = float(np.abs(direction[:n]).max(initial=0.0))
     loading = float(np.abs(direction[n:-1]).max(initial=0.0))
     still = max(STILL * moving, ROUNDING * loading)
@@ -129,14 +132,14 @@ def rates(equations: PathEquations, direction: Array, creep: Array | None = None
     away, along = away + equations.lent * t_n, along + equations.lent * t_t
     away = np.where((np.abs(gap) <= still) & (np.abs(away) > small), away, 0.0)
     along = np.where((np.abs(slip) <= still) & (np.abs(along) > small), along, 0.0)
-    plus, minus = d["mu"] * t_n + t_t, d["mu"] * t_n - t_t
+    plus, minus = d.cone.friction * t_n + t_t, d.cone.friction * t_n - t_t
     return Rates(direction, creep, away, along, gap, slip, t_n, plus, minus, still, calm)
 
 
 def wrong(equations: PathEquations, v: Values, r: Rates) -> list[tuple[float, int, int, int]]:
     """Return (size of the violation, pair, contact, sliding): states that the rates contradict, and better ones."""
     contact, sliding, grip = equations.contact, equations.sliding, grips(equations)
-    rough = (equations.data["mu"] > 0) | (equations.data["c"] > 0)
+    rough = equations.data.cone.rough
     zero, still, calm = v.force_zero, r.still, r.calm
     found: list[tuple[float, int, int, int]] = []
 
@@ -165,15 +168,13 @@ def wrong(equations: PathEquations, v: Values, r: Rates) -> list[tuple[float, in
 
 def admissible(equations: PathEquations, v: Values, contact: Array, sliding: Array) -> tuple[Array, Array]:
     """Return the states (m,) wished for wherever the present point allows them, the present states elsewhere."""
-    d, now = equations.data, equations.contact
+    now = equations.contact
     free, shut, full = v.force <= v.force_zero, v.gap <= v.gap_zero, v.room <= v.force_zero
     allowed = np.select([contact == OPEN, contact == CRUSHED], [free, full], shut | (now == CRUSHED))
     contact = np.where(allowed, contact, now).astype(np.int8)
     touch = np.select([sliding > 0, sliding < 0], [v.plus <= v.force_zero, v.minus <= v.force_zero], True)
     sliding = np.where(touch, sliding, equations.sliding)
-    spare = d["c"] - d["mu"] * d["T"] > 1e-12 * (1.0 + d["c"])
-    grip = np.where(contact == OPEN, spare, (d["mu"] > 0) | (d["c"] > 0))
-    return contact, np.where(grip, sliding, 1).astype(np.int8)
+    return contact, np.where(holds(equations.data.cone, contact), sliding, 1).astype(np.int8)
 
 
 def restore(equations: PathEquations, contact: Array, sliding: Array) -> None:
@@ -185,7 +186,7 @@ def restore(equations: PathEquations, contact: Array, sliding: Array) -> None:
 def critical(equations: PathEquations, v: Values) -> tuple[Array, Array, Array, Array]:
     """Return where (m,) pairs are at their bounds: touching without force, at the cap, at +, at - sliding strength."""
     d = equations.data
-    grip = (d["mu"] > 0) | (d["c"] > 0)
+    grip = d.cone.rough
     normal = (v.gap <= v.gap_zero) & (v.force <= v.force_zero) & (equations.contact != CRUSHED)
     cap = (v.room <= v.force_zero) & (equations.contact != OPEN)
     touching = grip & (normal | (equations.contact != OPEN) | grips(equations))

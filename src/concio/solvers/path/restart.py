@@ -172,7 +172,7 @@ def moves_freely(path: LinearPath, point: PathState, velocity: Array) -> bool:
     stiff = float(np.abs(problem.K.diagonal()).max(initial=0.0))
     if stiff and float(np.abs(problem.K @ v).max()) > FREE * stiff:
         return False
-    force, length = scales(path.at(point.parameter), point.displacement, point.normal_force, point.friction)
+    force, length = scales(path.at(point.parameter), point.displacement, point.normal_force, point.friction_force)
     opening, _ = plastic_position(path, point)
     w_n, w_t = problem.C_n @ v, problem.C_t @ v
     touching = opening + point.offset <= 1e-9 * length
@@ -181,7 +181,7 @@ def moves_freely(path: LinearPath, point: PathState, velocity: Array) -> bool:
     lifted = w_n - np.where(rough, law.dilatancy * np.abs(w_t), 0.0)
     carried = point.normal_force + law.tension > 1e-9 * force
     crushed = law.cap - point.normal_force <= 1e-9 * force
-    resisting = np.abs(point.friction_force + np.sign(w_t) * strength) > 1e-9 * force
+    resisting = np.abs(point.friction_force[:, 0] + np.sign(w_t) * strength) > 1e-9 * force
     wrong = touching & (lifted < -FREE) & ~crushed
     wrong |= carried & (lifted > FREE)
     wrong |= rough & carried & (np.abs(w_t) > FREE) & resisting

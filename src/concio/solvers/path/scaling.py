@@ -7,8 +7,38 @@ from functools import cached_property
 
 import numpy as np
 
+from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array
 from concio.solvers.path.state import LinearPath
+
+
+@dataclass(frozen=True, eq=False)
+class ScaledData:
+    """What the equations of a plane path are made of, in scaled units.
+
+    Parameters
+    ----------
+    cone : Cone
+    dilatancy : (m,) array
+    a_n, a_t : (m,) arrays
+        Compliances.
+    gap, origin : (m,) arrays
+        x_n and x_t at parameter 0.
+    gap_rate, tangent_rate : (m,) arrays
+        Their movement for each unit of the parameter.
+    load, load_rate : (N,) arrays
+    """
+
+    cone: Cone
+    dilatancy: Array
+    a_n: Array
+    a_t: Array
+    gap: Array
+    origin: Array
+    gap_rate: Array
+    tangent_rate: Array
+    load: Array
+    load_rate: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,22 +73,13 @@ class Scaled:
         return cls(path, force, length)
 
     @cached_property
-    def arrays(self) -> dict[str, Array]:
-        """Laws, rates and gaps in scaled units, by name."""
-        problem, law = self.path.problem, self.path.problem.laws
+    def data(self) -> ScaledData:
+        """Laws, rates and gaps in scaled units."""
+        path, problem, law = self.path, self.path.problem, self.path.problem.laws
         soft = self.force / self.length
-        return {
-            "mu": law.friction,
-            "psi": law.dilatancy,
-            "c": law.cohesion / self.force,
-            "T": law.tension / self.force,
-            "N": law.cap / self.force,
-            "a_n": law.normal_compliance * soft,
-            "a_t": law.tangential_compliance * soft,
-            "x": problem.gap / self.length,
-            "x_t": problem.slip_origin[:, 0] / self.length,
-            "x_rate": self.path.gap_rate / self.length,
-            "t_rate": self.path.tangent_rate / self.length,
-            "f": problem.f / self.force,
-            "g": self.path.load_rate / self.force,
-        }
+        return ScaledData(
+            problem.cone.in_units(self.force), law.dilatancy, law.normal_compliance * soft,
+            law.tangential_compliance * soft, problem.gap / self.length, problem.slip_origin[:, 0] / self.length,
+            path.gap_rate / self.length, path.tangent_rate[:, 0] / self.length, problem.f / self.force,
+            path.load_rate / self.force,
+        )  # fmt: skip

@@ -20,14 +20,15 @@ import numpy as np
 from concio.errors import InputError
 from concio.problem.certificate import Certificate, Kinematics, certify, scales
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.pair_state import Normal, PairStates
 from concio.problem.solution import Solution
 from concio.representation import short_repr
 
-OPEN, CLOSED, CRUSHED = 0, 1, 2
+OPEN, CLOSED, CRUSHED = int(Normal.OPEN), int(Normal.CLOSED), int(Normal.CRUSHED)
 """Normal states of a pair: at its tensile strength and free to open; in contact; at its cap."""
 
 STICK = 0
-"""Tangential state of a pair; +1 and -1 slip in that direction."""
+"""Sign of the slip of a plane pair that does not slip; +1 and -1 slip in that direction."""
 
 
 @short_repr
@@ -42,7 +43,7 @@ class LinearPath:
     load_rate : (N,) array
         Loads added for each unit of the parameter [kN].
     gap_rate : (m,) array, optional
-    tangent_rate : (m,) array, in space (m, 2), optional
+    tangent_rate : (m, d-1) array, optional
         Normal and tangential movement of side b against side a that does not come from u [m].
     total_rate : float, optional
         Total load added for each unit of the parameter [kN], where ``load_rate`` holds more than loads; default: the
@@ -57,8 +58,7 @@ class LinearPath:
 
     def __post_init__(self) -> None:
         m, n = self.problem.pairs, self.problem.unknowns
-        tangential = (m,) if self.problem.dim == 2 else (m, self.problem.dim - 1)
-        for name, shape in (("load_rate", (n,)), ("gap_rate", (m,)), ("tangent_rate", tangential)):
+        for name, shape in (("load_rate", (n,)), ("gap_rate", (m,)), ("tangent_rate", (m, self.problem.dim - 1))):
             value = np.asarray(getattr(self, name), dtype=float)
             if not value.size:
                 value = np.zeros(shape)
@@ -69,7 +69,7 @@ class LinearPath:
 
     def moved(self, parameter: float) -> float:
         """Return how far obstacles have moved at a value of the parameter [m]."""
-        rates = np.abs(self.gap_rate).max(initial=0.0), size_of(self.tangent_rate).max(initial=0.0)
+        rates = np.abs(self.gap_rate).max(initial=0.0), sizes(self.tangent_rate).max(initial=0.0)
         return abs(parameter) * float(max(rates))
 
     def at(self, parameter: float) -> ContactProblem:
@@ -79,7 +79,7 @@ class LinearPath:
             f=self.problem.f + parameter * self.load_rate,
             load=0.0 if self.total_rate is None else max(self.problem.load + parameter * self.total_rate, 0.0),
             gap=self.problem.gap + parameter * self.gap_rate,
-            slip_origin=self.problem.slip_origin - parameter * self.tangent_rate.reshape(self.problem.pairs, -1),
+            slip_origin=self.problem.slip_origin - parameter * self.tangent_rate,
         )
 
 
@@ -95,13 +95,11 @@ class PathState:
         u [m].
     normal_force : (m,) array
         t_n [kN].
-    friction_force : (m,) array, in space (m, 2)
+    friction_force : (m, d-1) array
         t_t [kN].
-    contact : (m,) integer array
-        OPEN, CLOSED or CRUSHED.
-    sliding : (m,) integer array
-        STICK, +1 or -1, in space +1 whatever the direction; without meaning where an open pair has no strength.
-    slip : (m,) array, in space (m, 2)
+    states : PairStates
+        Of the pairs; the direction is without meaning where an open pair has no strength.
+    slip : (m, d-1) array
         s, slip accumulated up to now [m].
     offset : (m,) array
         o, crushing less dilatancy accumulated up to now [m].
@@ -115,8 +113,7 @@ class PathState:
     displacement: Array
     normal_force: Array
     friction_force: Array
-    contact: Array
-    sliding: Array
+    states: PairStates
     slip: Array
     offset: Array
     work: float = 0.0
@@ -124,31 +121,29 @@ class PathState:
     broken: Array | None = None
 
     @property
-    def friction(self) -> Array:
-        """Friction forces as (m, d-1) [kN]."""
-        return self.friction_force.reshape(len(self.normal_force), -1)
+    def contact(self) -> Array:
+        """OPEN, CLOSED or CRUSHED, (m,) integers."""
+        return self.states.normal
 
 
 def at_rest(problem: ContactProblem) -> PathState:
     """Return the state before any load: nothing carries force, pairs without a gap touch."""
     m = problem.pairs
-    zero, tangential = np.zeros(m), np.zeros(m if problem.dim == 2 else (m, problem.dim - 1))
-    contact = np.where(problem.gap > 0, OPEN, CLOSED).astype(np.int8)
-    return PathState(
-        0.0, np.zeros(problem.unknowns), zero, tangential, contact, np.zeros(m, dtype=np.int8), tangential, zero
-    )
+    zero, still = np.zeros(m), np.zeros((m, problem.dim - 1))
+    states = PairStates(np.where(problem.gap > 0, OPEN, CLOSED).astype(np.int8), still)
+    return PathState(0.0, np.zeros(problem.unknowns), zero, still, states, still, zero)
 
 
-def size_of(tangential: Array) -> Array:
-    """Return the sizes (m,) of tangential quantities (m,) or (m, d-1)."""
-    sizes: Array = np.abs(tangential) if tangential.ndim == 1 else np.linalg.norm(tangential, axis=1)
-    return sizes
+def sizes(tangential: Array) -> Array:
+    """Return the sizes (m,) of tangential quantities (m, d-1)."""
+    found: Array = np.abs(tangential[:, 0]) if tangential.shape[1] == 1 else np.linalg.norm(tangential, axis=1)
+    return found
 
 
 def elastic_energy(problem: ContactProblem, state: PathState) -> float:
     """Return the energy stored in bodies and compliant joints [kN m]."""
     u, law = state.displacement, problem.laws
-    sheared = law.tangential_compliance @ size_of(state.friction_force) ** 2
+    sheared = law.tangential_compliance @ sizes(state.friction_force) ** 2
     joints = law.normal_compliance @ state.normal_force**2 + sheared
     return 0.5 * float(u @ (problem.K @ u) + joints)
 
@@ -159,8 +154,7 @@ def plastic_position(path: LinearPath, state: PathState) -> tuple[Array, Array]:
     u, tau = state.displacement, state.parameter
     opening = problem.gap + tau * path.gap_rate + problem.C_n @ u + law.normal_compliance * state.normal_force
     slip = (problem.C_t @ u).reshape(problem.slip_origin.shape) - problem.slip_origin
-    slip = slip + law.tangential_compliance[:, None] * state.friction
-    return opening, slip.reshape(state.friction_force.shape) + tau * path.tangent_rate
+    return opening, slip + law.tangential_compliance[:, None] * state.friction_force + tau * path.tangent_rate
 
 
 def path_kinematics(path: LinearPath, state: PathState) -> Kinematics:
@@ -170,9 +164,9 @@ def path_kinematics(path: LinearPath, state: PathState) -> Kinematics:
     """
     opening, slip = plastic_position(path, state)
     law = path.problem.laws
-    crushed = state.offset + law.dilatancy * size_of(slip)
+    crushed = state.offset + law.dilatancy * sizes(slip)
     crushing = np.where(path.problem.cone.capped, np.maximum(crushed, 0.0), 0.0)
-    return Kinematics(opening + state.offset, slip.reshape(len(opening), -1), crushing)
+    return Kinematics(opening + state.offset, slip, crushing)
 
 
 def energy_of_step(path: LinearPath, before: PathState, after: PathState) -> tuple[float, float]:
@@ -210,9 +204,9 @@ def exceeded(path: LinearPath, state: PathState, tolerance: float = 1e-9) -> Arr
     the next.
     """
     law = path.problem.laws
-    force, _ = scales(path.at(state.parameter), state.displacement, state.normal_force, state.friction)
+    force, _ = scales(path.at(state.parameter), state.displacement, state.normal_force, state.friction_force)
     torn = (law.tension > 0) & (state.normal_force + law.tension <= tolerance * force)
-    sheared = (law.cohesion > 0) & (state.sliding != STICK) & (state.contact != OPEN)
+    sheared = (law.cohesion > 0) & state.states.slips & ~state.states.open
     was = np.zeros(path.problem.pairs, dtype=bool) if state.broken is None else state.broken
     result: Array = was | torn | sheared
     return result
@@ -232,14 +226,14 @@ def step_problem(path: LinearPath, before: PathState, parameter: float) -> Conta
     """
     problem = weakened(path.at(parameter), before.broken)
     _, position = plastic_position(path, before)
-    origin = problem.slip_origin + position.reshape(problem.slip_origin.shape)
-    return replace(problem, gap=problem.gap + before.offset, slip_origin=origin)
+    return replace(problem, gap=problem.gap + before.offset, slip_origin=problem.slip_origin + position)
 
 
 def certify_step(path: LinearPath, before: PathState, after: PathState) -> Certificate:
     """Certify a state as the answer of the one-step problem that starts from ``before``."""
     problem = step_problem(path, before, after.parameter)
-    return certify(problem, after.displacement, after.normal_force, after.friction, moved=path.moved(after.parameter))
+    moved = path.moved(after.parameter)
+    return certify(problem, after.displacement, after.normal_force, after.friction_force, moved=moved)
 
 
 def state_of(
@@ -258,7 +252,7 @@ def state_of(
     ----------
     path : LinearPath
     parameter : float
-    u, t_n, t_t : arrays (N,), (m,), (m,) or (m, d-1)
+    u, t_n, t_t : arrays (N,), (m,), (m, d-1)
     before : PathState, optional
         Last converged state; its work and dissipation are carried on, and slip directions are measured from it.
     tolerance : float
@@ -266,21 +260,22 @@ def state_of(
     """
     problem = path.problem if before is None else weakened(path.problem, before.broken)
     law = problem.laws
-    t_t = np.asarray(t_t, dtype=float).reshape(path.tangent_rate.shape)
-    force, length = scales(path.at(parameter), u, t_n, t_t.reshape(problem.pairs, -1))
+    force, length = scales(path.at(parameter), u, t_n, t_t)
     contact = np.where(t_n + law.tension > tolerance * force, CLOSED, OPEN)
     contact = np.where(law.cap - t_n <= tolerance * force, CRUSHED, contact).astype(np.int8)
-    zero = np.zeros(problem.pairs)
-    state = PathState(parameter, u, t_n, t_t, contact, zero.astype(np.int8), np.zeros_like(t_t), zero)
+    zero, still = np.zeros(problem.pairs), np.zeros_like(t_t)
+    state = PathState(parameter, u, t_n, t_t, PairStates(contact, still), still, zero)
     opening, position = plastic_position(path, state)
-    start = plastic_position(path, before)[1] if before is not None else np.zeros_like(t_t)
-    used = size_of(t_t) >= problem.cone.strength(t_n) - tolerance * force
-    moved = size_of(position - start) > tolerance * length
-    side = np.where(t_t > 0, -1, 1) if problem.dim == 2 else 1
-    sliding = np.where(used & moved, side, STICK).astype(np.int8)
+    start = plastic_position(path, before)[1] if before is not None else still
+    used = sizes(t_t) >= problem.cone.strength(t_n) - tolerance * force
+    moved = sizes(position - start) > tolerance * length
+    against = -t_t / np.where(sizes(t_t) > 0, sizes(t_t), 1.0)[:, None]
+    against[:, 0] = np.where(against.any(axis=1), against[:, 0], 1.0)  # any way where there is no friction to oppose
+    direction = np.where((used & moved)[:, None], against, 0.0)
     carried = before.offset if before is not None else zero
     plastic = (contact != OPEN) & ((law.dilatancy > 0) | np.isfinite(law.cap))
-    state = replace(state, sliding=sliding, slip=position, offset=np.where(plastic, -opening, carried))
+    offset = np.where(plastic, -opening, carried)
+    state = replace(state, states=PairStates(contact, direction), slip=position, offset=offset)
     if before is None:
         return state
     work, dissipation = energy_of_step(path, before, state)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from concio.problem.contact_problem import Array
+from concio.problem.pair_state import PairStates
 from concio.solvers.path.equations import PathEquations
 from concio.solvers.path.scaling import Scaled
 from concio.solvers.path.state import LinearPath
@@ -20,7 +21,8 @@ class StateRates:
     ----------
     displacement : (N,) array
         [m].
-    normal_force, friction_force : (m,) arrays
+    normal_force : (m,) array
+    friction_force : (m, 1) array
         [kN].
     residual : float
         What the linear equations leave, relative to the largest displacement; not small where the states admit no
@@ -33,14 +35,13 @@ class StateRates:
     residual: float
 
 
-def state_rates(path: LinearPath, contact: Array, sliding: Array) -> StateRates:
+def state_rates(path: LinearPath, states: PairStates) -> StateRates:
     """Return the rates of a path whose pairs keep their states.
 
     Parameters
     ----------
     path : LinearPath
-    contact, sliding : (m,) integer arrays
-        As in :class:`concio.solvers.path.state.PathState`.
+    states : PairStates
     """
     scaled = Scaled.of(path)
     driven = float(max(np.abs(path.gap_rate).max(initial=0.0), np.abs(path.tangent_rate).max(initial=0.0)))
@@ -52,8 +53,8 @@ def state_rates(path: LinearPath, contact: Array, sliding: Array) -> StateRates:
     n, m = path.problem.unknowns, path.problem.pairs
     control = np.zeros(n + 2 * m + 1)
     control[-1] = 1.0
-    equations = PathEquations(replace(scaled, path=slow), contact, sliding, control)
+    equations = PathEquations(replace(scaled, path=slow), states.normal, states.sign, control)
     x, residual = equations.solve(control)
     length, force = scaled.length * unit, scaled.force * unit
     size = max(1.0, float(np.abs(x[:n]).max(initial=0.0)))  # not the forces: contradictory states drive them up
-    return StateRates(x[:n] * length, x[n : n + m] * force, x[n + m : -1] * force, residual / size)
+    return StateRates(x[:n] * length, x[n : n + m] * force, x[n + m : -1, None] * force, residual / size)

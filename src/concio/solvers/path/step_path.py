@@ -103,7 +103,7 @@ def follow_in_steps(
         after = state_of(
             path, parameter, solution.displacement, solution.normal_force, solution.friction_force, before=before
         )
-        changed = np.flatnonzero((before.contact != after.contact) | (before.sliding != after.sliding))
+        changed = np.flatnonzero((before.contact != after.contact) | (_side(before) != _side(after)))
         if (
             refine
             and len(states) > 1
@@ -143,6 +143,11 @@ def _broken(path: LinearPath, before: PathState, after: PathState) -> tuple[Path
     return replace(after, broken=broken), np.flatnonzero(broken & ~was)
 
 
+def _side(state: PathState) -> Array:
+    """Return the sign of the slip of plane pairs, in space 1 where a pair slips, whatever the direction (m,)."""
+    return state.states.sign if state.slip.shape[1] == 1 else state.states.slips.astype(np.int8)
+
+
 def _named(before: PathState, after: PathState, k: int, step: int) -> list[Event]:
     found = []
     was, now = int(before.contact[k]), int(after.contact[k])
@@ -150,8 +155,8 @@ def _named(before: PathState, after: PathState, k: int, step: int) -> list[Event
     if was != now:
         kind = kinds.get((was, now), "recovers" if was == CRUSHED else "changes")
         found.append(Event(after.parameter, after.parameter, k, kind, 0, step))
-    side = int(after.sliding[k])
-    if now != OPEN and side != int(before.sliding[k]):
+    side = int(_side(after)[k])
+    if now != OPEN and side != int(_side(before)[k]):
         kind = "sticks" if side == STICK else "slips"
         found.append(Event(after.parameter, after.parameter, k, kind, side, step))
     return found
