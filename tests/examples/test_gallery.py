@@ -124,6 +124,15 @@ def check_facade_strip(found):
     assert found["alpha"] == pytest.approx(stable / push, abs=1e-9)
 
 
+def check_facade_with_return(found):
+    assert 0.125 < found["alpha"] < found["bound"]  # alone it would topple at thickness over height
+    assert found["first"] == pytest.approx(found["alpha"])
+    assert found["most"] <= found["alpha"] * (1 + 1e-9)
+    assert 0.2 < found["end"] < 0.5
+    assert found["zeta"] < 1
+    assert found["turns"]
+
+
 LONG = {"04_settlement", "25_fragility_of_a_pillar"}
 NAMES = sorted(p.stem for p in EXAMPLES.glob("[0-9]*.py"))
 SMALLER = {

@@ -21,6 +21,8 @@ Array = np.ndarray
 
 ENLARGED = 0.10
 """Largest motion in the picture of a mechanism, over the size of the model."""
+TINTS = ("#E9E2D3", "#CFE0EA", "#EBD3C8", "#D6E3C6", "#DFD3E8", "#F1E4AE")
+"""Colours of macro-blocks, in turn."""
 ASIDE, LIFT = 0.6, 0.45
 """Angles of the eye from the way of falling, in plan, and above the horizontal [rad]."""
 
@@ -45,8 +47,9 @@ def mechanism_in_space(mechanism: LocalMechanism, ax: Axes | None = None) -> Axe
     along = mechanism.linkage.control[2]
     view = _view(along)
     free = block_colours(model)
+    tints = {b: TINTS[block % len(TINTS)] for b, block in mechanics.of_body.items()}
     colours = [
-        colour if body.kind == "fixed" else style.BLOCK if b in mechanics.of_body else "#FFFFFF"
+        colour if body.kind == "fixed" else tints.get(b, "#FFFFFF")
         for b, (body, colour) in enumerate(zip(model.bodies, free, strict=True))
     ]
     ax, picture = draw_solids(shown, colours, view, ax, scale, "")

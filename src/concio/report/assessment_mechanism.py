@@ -23,9 +23,10 @@ def mechanism_html(t: Texts, m: LocalMechanism, place: int, used: str) -> str:
     back = t.say("set_back_text", values="; ".join(backs)) if backs else ""
     if not m.in_one_plane:
         back += " " + t.say("not_one_plane", clause=m.site.rules.clause("one_plane"))
+    drawn = "figure_mechanism_3d" if m.assembly.model.dim == 3 else "figure_mechanism"
     return (
         f'<section class=mechanism id="m{place}"><h2>{escape(title)}</h2>'
-        f"{t.figure(mechanism_figure(m), 'figure_mechanism', 'tall')}<p>{said} {control} {back}</p>"
+        f"{t.figure(mechanism_figure(m), drawn, 'tall')}<p>{said} {control} {back}</p>"
         f"{_chain(t, m)}{_quantities(t, m)}{_curve(t, m, used)}{_checks(t, m)}</section>"
     )
 
@@ -98,6 +99,8 @@ def _curve(t: Texts, m: LocalMechanism, used: str) -> str:
     if m.followed.reason != "falls":
         reason = w["reason_" + m.followed.reason.replace(" ", "_")]
         text += " " + t.say("curve_cut", d=t.n(m.followed.end), reason=reason)
+    if m.followed.reduced < 1.0:
+        text += " " + t.say("curve_reduced", ratio=t.n(m.followed.reduced))
     if m.branch is not None:
         e = m.branch
         kind = w.get("kind_" + e.kind, e.kind)
@@ -114,10 +117,10 @@ def _curve(t: Texts, m: LocalMechanism, used: str) -> str:
     for level, v in m.limits.items():
         rule = rules.tables["levels"][level]
         formula = f"{t.n(rule['period'])} &pi; &radic;(d/a)"
-        rows.append([level, t.n(v.d, 6), escape(w[v.why]) + (f" {t.n(rule['share'])}" * (v.why == "share")),
-                     t.n(v.a, 6), f"{formula} = {t.n(v.T, 6)}", t.n(v.xi),
-                     escape(rules.clause("limits"))])  # fmt: skip
-    table = t.table([w[k] for k in ("level", "d", "set_by", "a", "T", "xi", "clause")], rows) if rows else ""
+        rows.append([level, escape(w[v.why]) + (f" {t.n(rule['share'])}" * (v.why == "share")),
+                     escape(rules.clause("limits")), t.n(v.d, 6), t.n(v.a, 6), f"{formula} = {t.n(v.T, 6)}",
+                     t.n(v.xi)])  # fmt: skip
+    table = t.table([w[k] for k in ("level", "set_by", "clause", "d", "a", "T", "xi")], rows, 3) if rows else ""
     return f"{head}<p>{text}</p><div class=pair>{pictures}</div>{difference}<h3>{t.say('limits_text')}</h3>{table}"
 
 

@@ -165,8 +165,10 @@ class AssessmentReport(Texts):
         deep = "" if model.dim == 3 else "; ".join(sorted({self.n(b.thickness) for b in model.outlines}))
         deep = w["thickness_text"].format(thickness=deep) if deep else ""
         free = len(model.free_bodies)
+        still = len(model.bodies) - free
+        fixed = self.say("one_fixed") if still == 1 else self.say("several_fixed", n=str(still))
         text = self.say(
-            "model_text", title=model.title or w["model"], free=str(free), fixed=str(len(model.bodies) - free),
+            "model_text", title=model.title or w["model"], free=str(free), fixed=fixed,
             joints=str(joints), friction=frictions, strength=strength, thickness=deep,
         )  # fmt: skip
         rows = []

@@ -86,7 +86,8 @@ def read_asked(path: str | os.PathLike[str]) -> Asked:
     try:
         place = _site(site, path.parent)
     except InputError as error:
-        raise InputError(error.what, where=f"{name}, [site]", hint=error.hint) from None
+        where = ", ".join(filter(None, (f"{name}, [site]", error.where)))
+        raise InputError(error.what, where=where, hint=error.hint) from None
     return Asked(
         model, _arguments(asked, place), asked.size_tie, asked.largest_tie, asked.sensitivity, anchors,
         Head(**asked.report.model_dump()),

@@ -273,7 +273,7 @@ def _examined(
     if all(site.rules.tables["levels"][level]["kind"] == "onset" for level in levels):
         followed = followed if followed.points else not_followed("not asked")
     elif not followed.points or followed.end < BARELY * model.size:
-        steps = follow_in_steps(sequence)
+        steps = follow_in_steps(sequence, alpha)
         followed = steps if steps.end >= BARELY * model.size else not_followed(steps.reason)
     motion = motion / float(carried(motion[block], at - mechanics.blocks[block].centre) @ along)
     chain = Chain(

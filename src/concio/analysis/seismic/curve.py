@@ -57,6 +57,8 @@ class CapacityCurve:
         [kN]; none for a straight line.
     points : tuple of Point
         The configurations; none for a straight line.
+    reduced : float
+        Factor by which multipliers were reduced so that the curve begins at alpha_0 and never rises above it.
     """
 
     kind: Literal["followed", "steps", "straight"]
@@ -67,6 +69,7 @@ class CapacityCurve:
     broken: tuple[float, ...] = ()
     tie_force: Array | None = None
     points: tuple[Point, ...] = ()
+    reduced: float = 1.0
 
     @property
     def ends(self) -> bool:

@@ -39,6 +39,9 @@ MOST = 150
 TRIES = 12
 """Programmes in search of a collapse state of one configuration."""
 
+SAME = 1e-6
+"""Relative difference below which multipliers are the same."""
+
 CLOSED = 1e-6
 """Contacts nearer than this share of the size of the mechanism are closed."""
 
@@ -205,8 +208,15 @@ class Sequence:
         return float((gap[coming] / -rate[coming]).min(initial=np.inf))
 
 
-def follow_in_steps(sequence: Sequence) -> CapacityCurve:
+def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
     """Follow a mechanism until its multiplier vanishes.
+
+    Parameters
+    ----------
+    sequence : Sequence
+    onset : float
+        alpha_0. Forces of sliding joints are not unique, and with frozen strength the search comes from above: where it
+        meets states above alpha_0 though no tie pulls, all multipliers are reduced by alpha_0 over the largest.
 
     Returns
     -------
@@ -255,7 +265,12 @@ def follow_in_steps(sequence: Sequence) -> CapacityCurve:
             break
     if reason not in ("far", "falls"):  # what may still stand beyond does not count
         d, alpha, ties = [*d, end], [*alpha, 0.0], [*ties, ties[-1]]
-    return CapacityCurve("steps", np.array(d), np.array(alpha), end, reason, tuple(broken), np.array(ties))
+    largest = max(alpha)
+    ratio = onset / largest if not sequence.ties and largest > onset * (1.0 + SAME) else 1.0
+    alpha[0] = min(alpha[0], onset) if ratio == 1.0 else largest
+    return CapacityCurve(
+        "steps", np.array(d), ratio * np.array(alpha), end, reason, tuple(broken), np.array(ties), reduced=ratio
+    )
 
 
 def _breaks(sequence: Sequence, before: State, after: State) -> bool:
