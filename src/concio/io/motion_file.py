@@ -49,11 +49,15 @@ def _all(kind: type) -> Callable[[object], bool]:
     return lambda v: isinstance(v, tuple) and all(isinstance(part, kind) for part in v)
 
 
+def _event(v: object) -> bool:
+    return isinstance(v, JointEvent) and _words(v.bodies) and len(v.bodies) == 2
+
+
 PLAIN: dict[str, Callable[[object], bool]] = {
     "gravity": _number, "seconds": _number, "lent_compliance": _number,
     "reactions_of": _words, "notes": _words, "live": _words,
     "points": _all(ControlPoint),
-    "events": lambda v: _all(JointEvent)(v) and all(_words(e.bodies) and len(e.bodies) == 2 for e in v),
+    "events": lambda v: isinstance(v, tuple) and all(_event(e) for e in v),
     "scheme": lambda v: isinstance(v, Scheme),
     "control": lambda v: v is None or isinstance(v, ControlPoint),
     "joints": lambda v: isinstance(v, tuple) and all(_words(pair) and len(pair) == 2 for pair in v),

@@ -5,7 +5,7 @@ r"""Flight, sliding, bouncing, and structures pushed over.
 * A block that falls from h on its flat foot with restitution e comes to rest after infinitely many impacts at
   :math:`\sqrt{2h/g}\,(1 + e)/(1 - e)`, having travelled :math:`h (1 + e^2)/(1 - e^2)`: a scheme of steps must end.
 * In flight nothing but weight acts: momentum, angular momentum and energy are those of the throw.
-* A disc thrown at v slides until it rolls, at 2/3 v (angular momentum about a point of the ground): a polygon of 120
+* A disc thrown at v slides until it rolls, at 2/3 v (angular momentum about a point of the ground): a polygon of 240
   sides, which loses a little at each.
 * Painleve's rod, sliding on its tip at tan q = 2 with friction 2, has no acceleration under rigid Coulomb friction, or
   two; impulses it has in every step.
@@ -147,8 +147,8 @@ def rows() -> list[Row]:
     ]
     for word, off in zip(("momentum", "angular momentum", "energy"), flight(), strict=True):
         found.append(Row(f"spinning box in flight: {word}, relative error", 0.0, off, 1e-12, "rounding"))
-    rolls, error = rolling(120)
-    sides = "a polygon of 120 sides: each of its impacts takes something"
+    rolls, error = rolling(240)
+    sides = "a polygon of 240 sides: each of its impacts takes something"
     found += [
         Row("disc thrown at 3 m/s: velocity when it rolls", 2.0, rolls, 0.02, sides, "m/s"),
         Row("disc: energy balance", 0.0, error, 1e-9, "rounding"),
