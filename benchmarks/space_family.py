@@ -1,12 +1,13 @@
 """The engine in space on walls, barrels and domes of growing size, against one sparse factorisation, in one run.
 
-    python benchmarks/space_family.py [--large] [--elastic] [--close] [--limit] [--clarabel] [--fast]
+    python benchmarks/space_family.py [--large] [--elastic] [--close] [--limit] [--clarabel] [--fast] [--only NAME]
 
 Blocks of running bond, domes and barrels (tests/space_problems.py), friction 0.6, own weight and a share of the
 associated limit of a horizontal load. Rigid blocks have joints with stiffness; elastic ones 2 x 2 x 2 hexahedra.
 Times are CPU seconds; the yardstick is one factorisation of K + C'DC of the same problem on the engine's own ordering,
 so that ratios do not depend on the machine. The growth exponent is that of CPU time over the number of blocks from one
-row of a family to the next; memory is the largest resident set so far.
+row of a family to the next; memory is the largest resident set so far, so that one family alone (``--only``) shows
+its own.
 
 ``--close`` adds 0.97 and 0.99 of the associated limit, ``--limit`` the cone programme of that limit itself, which
 ``--clarabel`` (an optional package) solves as well, its answer rechecked from the same arrays.
@@ -159,6 +160,7 @@ def main() -> None:
     parser.add_argument("--limit", action="store_true", help="the associated limits instead")
     parser.add_argument("--clarabel", action="store_true", help="with --limit: Clarabel beside it")
     parser.add_argument("--fast", action="store_true", help="engine pardiso (extra: fast)")
+    parser.add_argument("--only", metavar="NAME", help="one family alone, such as 'wall, elastic'")
     arguments = parser.parse_args()
     stiff = {"kn": 1e3}
     families: dict[str, list[Built]] = {
@@ -173,6 +175,10 @@ def main() -> None:
     if arguments.elastic:
         sizes = [(10, 10), (22, 23), (31, 32)][: 3 if arguments.large else 2]
         families["wall, elastic"] = [wall(*size, elastic=True, mesh=(2, 2, 2)) for size in sizes]
+    if arguments.only is not None:
+        if arguments.only not in families:
+            parser.error(f"--only: '{arguments.only}' is none of: " + "; ".join(families))
+        families = {arguments.only: families[arguments.only]}
     if arguments.limit:
         for name, cases in families.items():
             for case in cases:

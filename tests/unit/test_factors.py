@@ -55,6 +55,15 @@ def test_block_factor_solves_with_unsymmetric_blocks(engine: Engine, d: int) -> 
     held.factorise(D, 0.5)
     wanted = np.linalg.solve(matrix + 0.5 * np.eye(n), b)
     np.testing.assert_allclose(held.solve(b), wanted, rtol=1e-10, atol=1e-12)
+    assert (factor.count, held.count, factor.made, held.made) == (2, 1, 3, 3)
+
+
+@pytest.mark.parametrize(("kinds", "together"), [([9, 12, 6, 9], 3), ([6, 6, 6, 6, 6], 6)])
+def test_nodes_and_rigid_bodies_in_space_are_ordered_as_wholes(kinds: list[int], together: int) -> None:
+    """In twos three displacements of a node are torn apart, which costs a third more time."""
+    K, C, ranges = blocks(np.random.default_rng(5), kinds, 12, 3)
+    order = BlockFactor(K, C, 12, ranges).pattern.order.reshape(-1, together)
+    assert (order == order[:, :1] // together * together + np.arange(together)).all()
 
 
 def test_pairs_between_the_same_rigid_bodies_are_one_clique() -> None:

@@ -53,6 +53,16 @@ def test_numbers_come_one_by_one_and_each_keeps_those_before(wall: concio.Model,
     assert f"carried up to {last.carried:.6g} at least" in text
 
 
+def test_large_models_in_space_are_searched_on_request_only(monkeypatch) -> None:
+    monkeypatch.setattr(limits, "UNASKED_IN_SPACE", 0)
+    plane = concio.column(width=0.5, height=1.0, blocks=2, block="rigid", friction=0.6, horizontal=0.1)
+    model = concio.extrude(plane, 0.4)
+    assert "not tried unasked" in limits.limit(model, steps=False).search
+    asked = limits.limit(model, steps=False, search=True)
+    assert "not tried" not in asked.search
+    assert asked.collapse_state is not None
+
+
 def test_small_models_have_their_path_followed_unasked(wall: concio.Model) -> None:
     slender = concio.wall(length=0.5, height=1.0, block_size=(0.5, 1.0), friction=0.9, horizontal=0.3, block="rigid")
     assert limits.limit(slender).coulomb == pytest.approx(0.5 / 0.3, rel=1e-6)

@@ -14,11 +14,12 @@ from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Departure, Status
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.interior.cone_iteration import ConeIteration, NewtonStep
-from concio.solvers.interior.cone_run import ConeRun
+from concio.solvers.interior.cone_run import STARTS, ConeRun, starts_for
 from concio.solvers.interior.newton_finish import states_of
 from concio.solvers.interior.redundant_forces import least_forces
 from concio.solvers.methods import find
-from concio.solvers.motion.cone_release import at_once
+from concio.solvers.motion import cone_release
+from concio.solvers.motion.cone_release import at_once, release
 from concio.solvers.states.reading import Finished, natural_residual
 from concio.solvers.statics.limit import associated_limit
 from space_problems import barrel, dome, wall
@@ -143,6 +144,24 @@ def test_single_long_steps_from_rest_show_the_motion_that_never_ends() -> None:
     assert moves.certified
     rests = at_once(ConeRun(scale(built.at(0.5 * limit))))
     assert isinstance(rests, Finished)
+
+
+def test_letting_go_ends_after_the_work_that_is_allowed(monkeypatch) -> None:
+    built = wall(4, 6, **STIFF)
+    limit = associated_limit(built.problem, built.live).multiplier
+    monkeypatch.setattr(cone_release, "MOST_WORK", 1)
+    monkeypatch.setattr(cone_release, "LEAST_WORK", 1)
+    for follow, said in ((at_once, "single steps down to a resistance of 1e-02, no end"), (release, "1 steps of slow")):
+        run = ConeRun(scale(built.at(0.995 * limit)))
+        assert follow(run) is None
+        assert said in run.trace[-1]
+
+
+def test_stiff_joints_start_from_nearby_and_hard_ones_from_far() -> None:
+    """Both orders hold the same starts; the first one differs."""
+    soft, hard = starts_for(scale(wall(2, 2, **STIFF).problem)), starts_for(scale(wall(2, 2, elastic=True).problem))
+    assert set(soft) == set(hard) == set(STARTS)
+    assert (soft[0].length, hard[0].length) == (10.0, 100.0)
 
 
 def test_newton_direction_solves_the_linearised_equations() -> None:

@@ -98,6 +98,7 @@ VERDICTS: dict[Status, Verdict] = {
         "near collapse, and where blocks jam. Nothing below is an answer.",
         (
             "Do not rely on this structure under these loads: treat it as one that may slide.",
+            "'concio limit' bounds them from both sides: what certified load steps carry, and what nothing carries.",
             "Follow the loads from zero with 'concio path': the path shows where equilibrium is lost.",
             "Solve with another method, for example --method lemke, or with a slightly smaller load.",
         ),
