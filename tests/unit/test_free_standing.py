@@ -14,6 +14,7 @@ from concio import JointLaw, Load, Model, Rigid
 from concio.analysis.seismic.code import find_code
 from concio.analysis.seismic.free_standing import FreeStanding
 from concio.errors import InputError
+from concio.report.assessment_page import AssessmentReport
 from seismic_walls import HAZARD, courses, ground, site
 
 E, W, L, T = 0.9e6, 18.0, 3.0, 0.3
@@ -80,6 +81,18 @@ def test_the_onset_is_felt_at_the_own_period_and_the_displacement_between_both()
     # spectra of the code grow with the period, so the largest between T_0 and T_SLV is that at T_SLV
     assert demand["SLV", "displacement"].demand == pytest.approx(plain["SLV", "displacement"].demand)
     assert demand["SLV", "displacement"].least < plain["SLV", "displacement"].least
+
+
+def test_the_report_shows_the_branch_with_its_clauses() -> None:
+    found = concio.assess(
+        parapet(), site=site(building={"height": 6.5, "storeys": 2, "base": -6.5}), direction="left",
+        free_standing={"weakest of all": {"kind": "cantilever", "E": E}},
+    )  # fmt: skip
+    text = AssessmentReport(found, language="it").html()
+    for words in ("ramo elastico", "mensola", "[C8.7.1.7]", "[C8.7.1.9]", "snellezza"):
+        assert words in text
+    assert found.worst is not None
+    assert found.worst.level == pytest.approx(6.5)
 
 
 def test_what_is_not_given_is_taken_from_the_blocks_that_move() -> None:
