@@ -275,9 +275,9 @@ def own_verdict(problem: ContactProblem) -> list[str]:
 def clarabel_rows() -> list[list[str]]:
     """Return rows of the associated limit by the own cone programme and by Clarabel, with both proofs rechecked."""
     cases: dict[str, Built] = {
-        "wall 8 x 6": wall(8, 6, mesh=(1, 1, 1)), "wall 16 x 12": wall(16, 12, mesh=(1, 1, 1)),
-        "wall 32 x 25": wall(32, 25, mesh=(1, 1, 1)),
-        "wall 32 x 25 out of plane": wall(32, 25, mesh=(1, 1, 1), direction=(0.0, 1.0, 0.0)),
+        "wall 8 x 6": wall(8, 6), "wall 16 x 12": wall(16, 12),
+        "wall 32 x 25": wall(32, 25),
+        "wall 32 x 25 out of plane": wall(32, 25, direction=(0.0, 1.0, 0.0)),
         "barrel 19 x 20": barrel(19, 20), "barrel 24 x 40": barrel(24, 40), "dome 6 x 16": dome(6, 16),
         "dome 12 x 32": dome(12, 32),
     }  # fmt: skip
@@ -302,7 +302,7 @@ def clarabel_rows() -> list[list[str]]:
 
 
 def siconos_rows(limit: float) -> list[list[str]]:
-    """Return rows of elastic walls, every unknown on a soft spring, by the engine and by three solvers of Siconos."""
+    """Return rows of elastic walls, every unknown on a soft spring, by the engine and by two solvers of Siconos."""
     rows = []
     installed = Path(SYSTEM_PYTHON).exists() and run([SYSTEM_PYTHON, "-c", "import siconos.numerics"], limit)[0] == 0
     for name, built in {"wall 4 x 4": wall(4, 4, elastic=True), "wall 10 x 10": wall(10, 10, elastic=True),
@@ -326,7 +326,7 @@ def siconos_rows(limit: float) -> list[list[str]]:
         data: dict[str, Any] = {"f": problem.f, "gap": problem.gap, "friction": problem.laws.friction}
         for key, matrix in (("K", problem.K), ("C", C)):
             data |= {f"{key}_{part}": getattr(matrix, part) for part in ("data", "indices", "indptr", "shape")}
-        for way, tolerance in (("admm", "1e-6"), ("admm", "1e-10"), ("nsgs", "1e-6"), ("newton", "1e-10")):
+        for way, tolerance in (("admm", "1e-6"), ("admm", "1e-10"), ("newton", "1e-10")):
             with tempfile.TemporaryDirectory() as folder:
                 given, got = Path(folder) / "problem.npz", Path(folder) / "answer.npz"
                 np.savez(given, **data)
@@ -386,7 +386,8 @@ are."""
 SICONOS = """Elastic walls and a dome of hexahedra under half of their associated limit. Siconos wants a definite
 stiffness, so every unknown has a spring of 1e-6 of the mean diagonal of K, for the engine too. "Certificate" is the
 worst entry for the tool's own displacements and forces, "du" the largest difference of a displacement from the
-engine's, over the largest. Its Newton method, as it is called here, stops at once; other settings were not sought."""
+engine's, over the largest. Its Newton method, as it is called here, stops at once; other settings were not sought. Its
+Gauss-Seidel method, which condenses first, did not end within a minute of the clock on any of the three."""
 
 
 def main() -> None:

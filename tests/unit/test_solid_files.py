@@ -141,6 +141,8 @@ HOSTILE = {
     "nothing": ("# empty", "holds no blocks"),
     "nan": (obj_of(CUBE).replace("v 1.0 1.0 1.0", "v nan 1.0 1.0"), "not finite"),
     "flat": (obj_of(CUBE * [1, 1, 0]), "block 'c': "),
+    "tiny": (obj_of(CUBE * 1e-5), "shorter than 1e-05 m"),
+    "an edge for a face": (obj_of(CUBE) + "\nf 1 2", "line 16: a face has 2 vertices"),
 }
 
 
@@ -173,6 +175,32 @@ def test_a_million_vertices_are_refused_in_a_sentence(tmp_path: Path) -> None:
     assert "vertices are more than the 20,000 a block may have" in " ".join((out + err).split())
 
 
+def test_faces_that_share_no_vertex_are_one_block(tmp_path: Path) -> None:
+    """3DFACEs, and meshes that give each face vertices of its own, are put together where these coincide."""
+    ezdxf = pytest.importorskip("ezdxf")
+    for closed in (True, False):
+        document = ezdxf.new()
+        for face in BOX if closed else BOX[:5]:
+            document.modelspace().add_3dface([tuple(CUBE[v]) for v in face], dxfattribs={"layer": "stone"})
+        document.saveas(tmp_path / "faces.dxf")
+        if closed:
+            model = concio.model_from_solids(tmp_path / "faces.dxf", block="rigid", unit="m")
+            assert [(b.name, b.volume) for b in model.bodies] == [("stone", pytest.approx(1.0))]
+        else:
+            with pytest.raises(GeometryError, match="block 'stone': the surface is open"):
+                concio.model_from_solids(tmp_path / "faces.dxf", block="rigid", unit="m")
+
+
+def test_a_block_that_touches_nothing_is_told(tmp_path: Path) -> None:
+    text = obj_of(CUBE) + "\n" + obj_of(CUBE + np.array([0, 0, 5.0]), [tuple(v + 8 for v in f) for f in BOX], "high")
+    path = bad(tmp_path, text)
+    path.write_text(path.read_text().replace("[materials", "[solids]\nground = true\n[materials"))
+    code, out, _ = run("check", path)
+    assert code == 0
+    assert "attention    'high' touches nothing that stands: it falls" in out
+    assert "'c' touches" not in out
+
+
 def test_compas_and_json_that_is_none(tmp_path: Path) -> None:
     block = {"vertex": {str(k): dict(zip("xyz", p, strict=True)) for k, p in enumerate(CUBE.tolist())}}
     block["face"] = {str(k): [str(v) for v in f] for k, f in enumerate(BOX)}  # type: ignore[assignment]
@@ -185,6 +213,9 @@ def test_compas_and_json_that_is_none(tmp_path: Path) -> None:
     del whole["data"]["graph"]["node"]["4"]["block"]["data"]["vertex"]["3"]  # type: ignore[index]
     path.write_text(json.dumps(whole))
     with pytest.raises(InputError, match="a face or a vertex lacks '3'"):
+        concio.model_from_solids(path, block="rigid")
+    path.write_text(json.dumps({"vertices": CUBE.tolist(), "faces": [[0, 1], [2], []]}))
+    with pytest.raises(InputError, match="face 1 has 2 vertices"):
         concio.model_from_solids(path, block="rigid")
 
 

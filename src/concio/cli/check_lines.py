@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
 
 from concio.contact.assembly import Assembly
 from concio.contact.load_faces import covered, line_tolerance, loaded_faces
@@ -34,7 +36,7 @@ def check_facts(model: Model, detection: Detection) -> dict[str, Any]:
         **({} if model.periods is None else {"periods": [list(p) for p in model.periods]}),
         "near_misses": [m.sentence for m in detection.near_misses],
         "overlaps": [o.sentence for o in detection.overlaps],
-        "attention": list(implausible(model)),
+        "attention": [*implausible(model), *_loose(model, detection)],
         "drawing_faults": list(_noted(model, "faults")),
         "left_out": list(_noted(model, "left_out")),
         "moved": list(_noted(model, "moved")),
@@ -95,7 +97,8 @@ def check_lines(
         lines.append(f"tie          {tie.name}: {tie.body_a} to {tie.body_b or 'a fixed point'}")
     geometry = [f"overlap      {o.sentence}" for o in detection.overlaps if o.sentence not in fault]
     geometry += [f"near miss    {m.sentence}" for m in detection.near_misses]
-    findings = [f"attention    {sentence}" for sentence in (*implausible(model), *_noted(model, "faults"))] + geometry
+    noticed = (*implausible(model), *_loose(model, detection), *_noted(model, "faults"))
+    findings = [f"attention    {sentence}" for sentence in noticed] + geometry
     lines += _drawing(model, every=every)
     shown = findings if every else findings[:MOST_LINES]
     lines += shown
@@ -151,6 +154,27 @@ def _interfaces(model: Model, detection: Detection) -> list[str]:
                 f"such bodies, or a later rule decides it"
             )
     return lines or ["joints       none: no two bodies touch"]
+
+
+def _loose(model: Model, detection: Detection) -> list[str]:
+    """Return a sentence on the blocks from which no joint, tie or support leads to anything that stands."""
+    number = {body.name: k for k, body in enumerate(model.bodies)}
+    ground = len(model.bodies)
+    links = [(i.a, i.b) for i in detection.interfaces]
+    links += [(number[tie.body_a], number.get(tie.body_b, ground)) for tie in model.ties]
+    links += [(number[support.body], ground) for support in model.supports]
+    links += [(k, ground) for k, body in enumerate(model.bodies) if body.kind == "fixed"]
+    if model.periods is not None or not detection.interfaces:
+        return []
+    a, b = np.array(links).T
+    graph = sp.coo_array((np.ones(len(links)), (a, b)), shape=(ground + 1, ground + 1))
+    part = connected_components(graph, directed=False)[1]
+    loose = [body.name for k, body in enumerate(model.bodies) if part[k] != part[ground]]
+    if not loose:
+        return []
+    first = ", ".join(f"'{name}'" for name in loose[:3]) + (f" and {len(loose) - 3:,} more" if len(loose) > 3 else "")
+    words = ("touches nothing that stands: it falls", "touch nothing that stands: they fall")[len(loose) > 1]
+    return [f"{first} {words}; are all of them where they should be?"]
 
 
 def _torsion(model: Model, detection: Detection, contact_model: Mapping[str, int]) -> list[str]:
@@ -211,7 +235,8 @@ def _drawing(model: Model, *, every: bool) -> list[str]:
     if moved and every:
         lines += [f"moved        {sentence}" for sentence in moved]
     elif moved:
-        lines.append(f"moved        {len(moved):,} corners that nearly met (--all lists every one)")
+        what = "corners that nearly met" if model.dim == 2 else "repairs"
+        lines.append(f"moved        {len(moved):,} {what} (--all lists every one)")
     return lines
 
 

@@ -67,10 +67,15 @@ def _mesh(points: Any, faces: Any, name: str, fixed: bool, where: str) -> Shape:
         at = [[v["x"], v["y"], v["z"]] if isinstance(v, dict) else v for v in table.values()]
         loops = faces.values() if isinstance(faces, dict) else faces
         found = [[number[str(v)] for v in loop] for loop in loops]
-        return Shape(name, "", np.array(at, dtype=float).reshape(-1, 3), found, fixed)
+        points_at = np.array(at, dtype=float).reshape(-1, 3)
     except KeyError as error:
         msg = f"a face or a vertex lacks {error}"
         raise InputError(msg, where=place, hint="vertices need x, y, z; faces name vertices that are there") from None
     except (TypeError, ValueError, OverflowError):
         msg = "vertices or faces are not lists of numbers"
         raise InputError(msg, where=place) from None
+    short = next((k for k, loop in enumerate(found, 1) if len(loop) < 3), None)
+    if short is not None:
+        msg = f"face {short} has {len(found[short - 1])} vertices, which bound nothing"
+        raise InputError(msg, where=place, hint="a face needs three vertices or more")
+    return Shape(name, "", points_at, found, fixed)

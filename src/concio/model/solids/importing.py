@@ -176,7 +176,7 @@ def _parted(shape: Shape, metres: float, within: float) -> list[tuple[Shape, Arr
         return [(shape, points, tuple(map(tuple, shape.faces)))]
     own = tuple(map(tuple, shape.faces))
     parts = _connected(points, own)
-    if not within and all(topology(faces, ()).fault is None for _, faces in parts if len(faces) > 3):
+    if not within and all(len(faces) > 3 and topology(faces, ()).fault is None for _, faces in parts):
         return [(shape, *part) for part in parts]
     size = float(np.ptp(points, axis=0).max())
     return [(shape, *part) for part in _connected(*welded(points, own, max(within, 1e-9 * size)))]
@@ -235,10 +235,11 @@ def _check_unit(blocks: Sequence[Array], scene: Scene, unit: str | None, metres:
     if SMALL <= usual <= LARGE:
         return
     stated = "the file says so" if scene.metres else "the file does not say its unit, metres were assumed"
-    guess = next((name for name, m in (("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254), ("m", 1.0), ("km", 1e3))
-                  if 0.05 <= usual / metres * m <= 5), "mm")  # fmt: skip
-    msg = f"half of the blocks are longer than {usual:,.4g} m ({stated})"
-    raise InputError(msg, where=where, hint=f"give the unit of length: unit = '{guess}'?")
+    guess = next((name for name, m in (("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254), ("m", 1.0))
+                  if 0.05 <= usual / metres * m <= 5), None)  # fmt: skip
+    msg = f"half of the blocks are {'longer' if usual > LARGE else 'shorter'} than {usual:,.4g} m ({stated})"
+    asked = f"unit = '{guess}'?" if guess else "unit = 'mm', or whatever it is, 'm' if it is right"
+    raise InputError(msg, where=where, hint=f"give the unit of length: {asked}")
 
 
 def _meaning(shape: Shape, meanings: Mapping[str, str], table: Mapping[str, Any]) -> str:

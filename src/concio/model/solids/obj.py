@@ -37,6 +37,9 @@ def read_obj(path: Path) -> Scene:
                 if any(not 1 <= abs(v) <= len(points) for v in loop):
                     msg = f"line {number}: a face uses a vertex that is not there: there are {len(points)} so far"
                     raise InputError(msg, where=str(path))
+                if len(loop) < 3:
+                    msg = f"line {number}: a face has {len(loop)} vertices, which bound nothing"
+                    raise InputError(msg, where=str(path), hint="delete the line: points and edges are no faces")
                 key = (object_name, group)
                 groups.setdefault(key, []).append([v - 1 if v > 0 else len(points) + v for v in loop])
                 layers.setdefault(key, layer)

@@ -52,7 +52,8 @@ def read_rhino(path: Path) -> Scene:
             points += [(v.X, v.Y, v.Z) for v in mesh.Vertices]
             for f in range(len(mesh.Faces)):
                 loop = list(dict.fromkeys(mesh.Faces[f]))
-                faces.append([start + v for v in loop])
+                if len(loop) > 2:
+                    faces.append([start + v for v in loop])
             start = len(points)
         shapes.append(Shape(name, layer, np.array(points, dtype=float).reshape(-1, 3), faces))
     check_size(sum(len(s.points) for s in shapes), str(path))
