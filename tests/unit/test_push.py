@@ -9,6 +9,7 @@ import pytest
 
 import concio
 from concio.analysis.motion.push_result import PushEnding
+from concio.solvers.stepping.solver import StepSolver
 from models import box, model_of, weight
 from motion_models import standing
 
@@ -197,6 +198,35 @@ def test_a_tie_that_breaks_leaves_the_block_alone():
     found = concio.push(tied(1e5, yield_force=1.0, break_elongation=0.02))
     assert found.capacity == pytest.approx(0.1, rel=1e-6)
     assert found.end.ties.broken.all()
+
+
+def test_a_block_that_hangs_straight_on_a_stiff_tie_stretches_it():
+    """Its foot is pulled away until it hangs in line with the tie: from then on the load is the tension."""
+    k, W = 1e5, 4.0
+    found = concio.push(tied(k), step=0.02, until=0.46)
+    assert found.ending is PushEnding.REACHED
+    assert found.certified
+    slope = np.diff(found.multiplier) / np.diff(found.displacement)
+    assert slope[-1] == pytest.approx(k / W, rel=1e-2)
+
+
+def test_steps_that_nothing_solves_end_a_push_in_words(monkeypatch):
+    """From the sixtieth problem on no answer moves anything: the curve until there is kept, and few more are tried."""
+    solve, asked = StepSolver.solve, []
+
+    def fails(self, p, states, x, t):
+        found = solve(self, p, states, x, t)
+        asked.append(found)
+        return found if len(asked) < 60 else replace(found, x=np.zeros_like(found.x), residual=1e-6)
+
+    monkeypatch.setattr(StepSolver, "solve", fails)
+    curve = concio.push(standing(0.2, 1.0))
+    assert curve.ending is PushEnding.NO_EQUILIBRIUM
+    assert curve.certified
+    assert len(curve) > 5
+    theta = -curve.rotation_of("block")
+    assert curve.multiplier[1:] == pytest.approx(np.tan(SLENDER - theta[1:]), abs=1e-8)
+    assert 60 < len(asked) < 200
 
 
 @pytest.mark.parametrize(("cap", "most"), [(50.0, 0.1195), (200.0, 0.180)])

@@ -102,13 +102,27 @@ class PairMaker:
             ties.columns, values, np.stack([gap, zero], axis=1), Cone(zero, zero, zero, ties.most),
             1.0 / ties.stiffness, zero, zero, ~tied.broken,
         )  # fmt: skip
-        tension = np.where(tied.broken, 0.0, np.minimum(np.maximum(-gap, 0.0) * ties.stiffness, ties.most))
+        tension = self._tension(gap, tied)
         swings = (tension > 0) & (length > 0)
         swing = PairData(
             ties.columns, across * swings[:, None, None], np.zeros((k, 2)), Cone(zero, zero, inf, inf),
             np.where(swings, length / np.where(swings, tension, 1.0), 1.0), zero, zero, every,
         )  # fmt: skip
         return data, gap, swing
+
+    def tie_turning(self, centre: Array, turn: Array, strain: Array, tied: TieMemory, gap: Array, n: int) -> Array:
+        """Return the stiffness with which tight ties resist that rigid bodies turn, on the diagonal (n,) [kN/m].
+
+        Nothing where the bodies stand either; without it iterations swing about the equilibrium of a body that hangs.
+        """
+        tension = self._tension(gap, tied)
+        columns, stiffness = self.ties.turning(centre, turn, np.append(strain, 0.0), tension)
+        return np.bincount(columns, stiffness, n + 1)[:n]
+
+    def _tension(self, gap: Array, tied: TieMemory) -> Array:
+        """Return the tension of ties (k,) of given gaps [kN]."""
+        ties = self.ties
+        return np.where(tied.broken, 0.0, np.minimum(np.maximum(-gap, 0.0) * ties.stiffness, ties.most))
 
 
 def yielding(reference: Reference) -> Array:

@@ -51,6 +51,9 @@ LOAD_STEP = 0.05
 LOCKED = 1e4
 """Multiplier above which a structure locks."""
 
+MOST_FAILED = 20
+"""Attempts without an equilibrium, since the last step as long as that asked for, after which it is not followed."""
+
 CREEPING = 1e-2
 """Steps over that asked for which, one after the other, lead nowhere; :data:`MOST_CREEPING` of them are enough."""
 
@@ -275,7 +278,7 @@ class _Push:
 
     def by_displacement(self) -> PushEnding:
         """Let the controlled displacement grow."""
-        step, creeping = FIRST * self.step, 0
+        step, creeping, failed = FIRST * self.step, 0, 0
         while len(self.states) < MOST_POINTS:
             here, d, load = self.states[-1], self.displacement[-1], self.multiplier[-1]
             if d >= self.until * (1 - 1e-12):
@@ -283,10 +286,11 @@ class _Push:
             wanted = min(step, self.until - d)
             found = self.statics.balance(here, load, target=wanted)
             if not found.found:
-                step *= 0.5
-                if step < SMALLEST * self.step:
+                step, failed = 0.5 * step, failed + 1
+                if step < SMALLEST * self.step or failed > MOST_FAILED:
                     return PushEnding.NO_EQUILIBRIUM
                 continue
+            failed = 0 if wanted >= self.step else failed
             if found.multiplier > LOCKED:
                 return PushEnding.LOCKED
             if found.multiplier <= self.smallest < load:

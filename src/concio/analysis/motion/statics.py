@@ -64,6 +64,9 @@ Joints of an arch add up: ten times as much costs its peak one or two hundredths
 MOST = 80
 """Iterations after which no equilibrium was found."""
 
+UNSOLVED = 3
+"""Step problems that no method solves, after which no equilibrium was found either: each costs as much as a hundred."""
+
 STILL = 1e-10
 """Displacement over the width of a body below which nothing moves any more."""
 
@@ -72,6 +75,9 @@ CONTROLLED = 1e-10
 
 ROUNDING = 1e-13
 """Error of that displacement over the width of a body that is none."""
+
+REACHED = 1e-6
+"""Relative error of that displacement where the iterations end."""
 
 FAR = 0.5
 """Displacement in one equilibrium, over the width of a body, beyond which the structure moves away."""
@@ -124,6 +130,7 @@ class _Look:
     measure: Array
     internal: Array
     parts: tuple[PairData, PairData, PairData, PairData]
+    turning: Array
     point: Array
     normal: Array
 
@@ -163,6 +170,7 @@ class Statics:
         self.frames = Frames(reference, scheme)
         self.maker = PairMaker(reference, scheme, sag)
         self.solver = StepSolver(engine)
+        self._unsolved = 0
         self.control = None if control is None else Followed.of(reference, control)
         self.width = self.maker.width
         self.gravity = reference.gravity
@@ -196,7 +204,10 @@ class Statics:
         if f.elastic:
             internal = -f.stiffness(strain) - f.turned(f.stiffness(strain), strain)
         supports = maker.supports(turn, off)
-        ties, _, swings = maker.tie_pairs(centre, turn, strain, state.ties)
+        ties, gap, swings = maker.tie_pairs(centre, turn, strain, state.ties)
+        turning = np.zeros(0)
+        if len(maker.ties):
+            turning = maker.tie_turning(centre, turn, strain, state.ties, gap, f.n)
         measure = self._mean(unit) if self.control is None else self.control.rate(f.n, turn)
         return _Look(
             turn,
@@ -209,6 +220,7 @@ class Statics:
             measure,
             internal,
             (data, supports, ties, swings),
+            turning,
             rows.point,
             rows.normal,
         )
@@ -244,6 +256,8 @@ class Statics:
         b = look.dead + multiplier * look.live + look.internal
         force = float(np.abs(look.dead + multiplier * look.live).sum()) or 1.0
         matrix = self._bare if bare else self._matrices[level]
+        if look.turning.any() and not bare:
+            matrix = StepMatrix(matrix.sparse + sp.diags_array(look.turning, format="csr"))
         return assembled(matrix, b, look.parts, force, 1e-3 * self.width)
 
     def balance(
@@ -267,7 +281,7 @@ class Statics:
         contact = slip = None
         t_last: Array | None = None
         done, found, iterations, first = 0.0, None, 0, self._at(state)
-        level, last = USUAL, np.zeros(f.n)
+        level, last, self._unsolved = USUAL, np.zeros(f.n), 0
         for iteration in range(1, most + 1):
             look = self.look(here, begun, slid, multiplier)
             begun, m = look.memory, len(look.memory.key)
@@ -280,7 +294,7 @@ class Statics:
             else:
                 states.contact[:m], states.slip[:m] = begun.contact, begun.slip
             t = t_last if t_last is not None and len(t_last) == count else np.zeros((count, 2))
-            found = self.solver.solve(p, states, np.zeros(f.n), t)
+            found = self._solved(p, states, np.zeros(f.n), t)
             if target is not None:
                 multiplier, found = self._controlled(look, multiplier, found, target - done, level)
             x = found.x
@@ -291,7 +305,7 @@ class Statics:
             moved = moved + x
             size = float(np.abs(x).max(initial=0.0))
             iterations = iteration
-            if size < STILL * self.width:
+            if size < STILL * self.width or self._unsolved > UNSOLVED:
                 break
             along = float(x @ last)
             if iteration > 2 and along < -SWINGING * float(last @ last):
@@ -302,7 +316,16 @@ class Statics:
             if float(np.abs(moved).max()) > FAR * self.width + abs(target or 0.0):
                 break
         assert found is not None
-        return self._judged(here, begun, slid, multiplier, found, moved, iterations)
+        answer = self._judged(here, begun, slid, multiplier, found, moved, iterations)
+        if target is not None and abs(target - done) > REACHED * (abs(target) + STILL * self.width):
+            return replace(answer, found=False)  # an equilibrium, but at another displacement
+        return answer
+
+    def _solved(self, p: StepProblem, states: StepStates, x: Array, t: Array) -> StepSolution:
+        """Return the solution of a step problem, and count it if it is none."""
+        found = self.solver.solve(p, states, x, t)
+        self._unsolved += not found.residual <= CERTIFIED
+        return found
 
     def _controlled(
         self, look: _Look, multiplier: float, found: StepSolution, wanted: float, level: int
@@ -314,7 +337,7 @@ class Statics:
         p = self.problem(look, multiplier, level)
         for _ in range(40):
             error = wanted - float(measure @ found.x)
-            if abs(error) <= CONTROLLED * abs(wanted) + size:
+            if abs(error) <= CONTROLLED * abs(wanted) + size or self._unsolved > UNSOLVED:
                 break
             low, high = (multiplier, high) if error > 0 else (low, multiplier)
             try:
@@ -328,7 +351,7 @@ class Statics:
                 break
             multiplier = trial
             p = self.problem(look, multiplier, level)
-            found = self.solver.solve(p, found.states, found.x, found.t)
+            found = self._solved(p, found.states, found.x, found.t)
         return multiplier, found
 
     def _moved(self, state: MotionState, x: Array, look: _Look) -> MotionState:

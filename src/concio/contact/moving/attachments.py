@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.contact.factors import load_factor
-from concio.contact.moving.edges import as_complex
+from concio.contact.moving.edges import as_complex, dot
 from concio.contact.moving.points import NOWHERE, MaterialPoints
 from concio.contact.supports import points_held
 from concio.fem.discretisation import FIXED
@@ -158,3 +158,18 @@ class Ties:
         gap = -self.prestress / self.stiffness - (length - self.length)
         nothing = np.zeros_like(row)
         return np.stack([row, nothing], axis=1), np.stack([across, nothing], axis=1), gap, length
+
+    def turning(self, centre: Array, turn: Array, strain: Array, tension: Array) -> tuple[Array, Array]:
+        """Return unknowns (2k,) and stiffness (2k,) with which tight ties resist that rigid bodies turn [kN/m].
+
+        Tension T at an arm r from the centroid has the moment r x T, which grows by r . T as the body turns away.
+        """
+        span = self.b.positions(centre, turn, strain) - self.a.positions(centre, turn, strain)
+        length = np.abs(span)
+        force = tension * span / np.where(length > 0, length, 1.0)
+        columns, stiffness = [], []
+        for end, pull in ((self.a, force), (self.b, -force)):
+            arm = turn[np.maximum(end.body, 0)] * end.arm
+            columns.append(end.columns[:, 2])
+            stiffness.append(np.maximum(dot(arm, pull), 0.0) / np.where(end.reach > 0, end.reach, 1.0) ** 2)
+        return np.concatenate(columns), np.concatenate(stiffness)
