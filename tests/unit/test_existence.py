@@ -11,6 +11,7 @@ import scipy.sparse as sp
 from concio.problem.contact_problem import ContactProblem, Laws
 from concio.solvers.statics.existence import find_mechanism, statically_admissible
 from concio.solvers.statics.mechanism import mechanism_from, polish, proves, verify_mechanism
+from concio.solvers.statics.programme import StaticProgramme
 from concio.solvers.statics.sufficient import sufficient_condition
 from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, running_bond, wall
 
@@ -179,3 +180,37 @@ def test_polish_restores_the_active_pairs():
     rough = exact.velocity + 1e-8 * np.random.default_rng(0).standard_normal(p.unknowns)
     assert not proves(p, verify_mechanism(p, rough))
     assert proves(p, verify_mechanism(p, polish(p, rough)))
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_polish_is_the_nearest_motion_whose_active_pairs_are_exact(dim):
+    """Against a dense least-squares projection: two sliding pairs, two that stick, two that open freely."""
+    rng = np.random.default_rng(dim)
+    m, s, n = 6, dim - 1, 24
+    R = np.linalg.qr(rng.standard_normal((n, n - 4)))[0]
+    exact = R @ rng.standard_normal(n - 4)
+    C_n, C_t = rng.standard_normal((m, n)), rng.standard_normal((m, s, n))
+    for row in (*C_n[2:4], *C_t[2:4].reshape(-1, n)):
+        row -= (row @ exact) / (exact @ exact) * exact
+    C_n *= np.where(C_n @ exact < 0, -1.0, 1.0)[:, None]
+    opens, slides = C_n @ exact, C_t @ exact
+    mu = opens / np.maximum(np.linalg.norm(slides, axis=1), 1e-9) * np.array([1, 1, 1, 1, 0.5, 0.5])
+    mu[2:4] = 0.7
+    bodies = np.array([0, n])
+    p = ContactProblem(
+        sp.csr_array((n, n)), np.ones(n), sp.csr_array(C_n), sp.csr_array(C_t.reshape(-1, n)), np.zeros(m),
+        Laws.coulomb(mu, m), sp.csc_array(R), bodies,
+    )  # fmt: skip
+    size = 1e4 / np.abs(exact).max()
+    rough = size * exact + 1e-6 * (R @ rng.standard_normal(n - 4))
+    scale = StaticProgramme(p).scale
+    w = C_t @ rough
+    active = [C_n[k] - mu[k] * (w[k] / np.linalg.norm(w[k])) @ C_t[k] for k in (0, 1)]
+    active += [row for k in (2, 3) for row in (C_n[k], *C_t[k])]
+    G, alpha = np.array(active) @ R / scale, (R.T @ rough) * scale
+    nearest = (R / scale) @ (alpha - np.linalg.pinv(G) @ (G @ alpha))
+    for width in (1e-6, 1e-7):
+        polished = polish(p, rough, width)
+        np.testing.assert_allclose(polished, nearest, rtol=0, atol=1e-10)
+    assert 1e-7 < np.abs(polished - rough).max() < 1e-3
+    np.testing.assert_array_equal(polish(p, rough, 1e-14), rough)  # none is that close to its cone

@@ -60,7 +60,7 @@ def test_frames_are_orthonormal_and_right_handed():
 @pytest.mark.parametrize("dim", [2, 3])
 def test_rigid_operator_is_the_small_rotation(dim):
     arm, reach = RNG.normal(size=(5, dim)), RNG.uniform(0.3, 2.0, 5)
-    motion = 1e-7 * RNG.normal(size=(5, motions(dim)))
+    motion = 1e-8 * RNG.normal(size=(5, motions(dim)))
     rotation = motion[:, dim:] / reach[:, None]
     rotation = rotation[:, 0] if dim == 2 else rotation
     moved = motion[:, :dim] + np.einsum("kij,kj->ki", rotation_matrix(rotation), arm) - arm
@@ -72,6 +72,18 @@ def test_rigid_operator_is_the_small_rotation(dim):
     np.testing.assert_allclose(
         (rigid_row(direction, arm, reach) * motion).sum(1), (direction * moved).sum(1), atol=1e-13
     )
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_rigid_operators_of_one_point_and_of_points_in_a_grid(dim):
+    rng = np.random.default_rng(dim)
+    arm, reach = rng.normal(size=(2, 4, dim)), rng.uniform(0.3, 2.0, (2, 4))
+    grid = rigid_operator(arm, reach)
+    assert grid.shape == (2, 4, dim, motions(dim))
+    for place in np.ndindex(2, 4):
+        one = rigid_operator(arm[place], reach[place])
+        assert one.shape == (dim, motions(dim))
+        np.testing.assert_array_equal(one, grid[place])
 
 
 @pytest.mark.parametrize("dim", [2, 3])

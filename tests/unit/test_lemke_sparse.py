@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from concio.contact.assembly import assemble
 from concio.errors import InputError, MethodError
 from concio.model.generate.panel import running_bond_panel
-from concio.problem.pair_state import PairStates
+from concio.problem.pair_state import PairState, PairStates
 from concio.problem.solution import Status, pair_states
 from concio.solvers.algebra.updated_factor import UpdatedFactor
 from concio.solvers.methods import find
@@ -83,6 +83,25 @@ def test_crushing_stops_at_the_cap() -> None:
     assert capped.normal_force.max() == pytest.approx(law.cap[0], rel=1e-12)
     assert capped.kinematics.crushing.max() > 0
     assert capped.normal_force[free.normal_force.argmax()] < free.normal_force.max()
+
+
+def test_crushed_pairs_let_go_along_the_path() -> None:
+    """From the states under a low cap to those under a high one, without another start to fall back on."""
+    problem = wall(2, 2, sides=True)
+    free = solve(problem)
+    low, high = (
+        replace(problem, laws=replace(problem.laws, cap=np.full(problem.pairs, share * free.normal_force.max())))
+        for share in (0.7, 2.0)
+    )
+    crushed = solve(low)
+    states = pair_states(low, crushed)
+    assert (states.code == PairState.CRUSHED).sum() > 0
+    start = crushed.displacement, crushed.normal_force, crushed.friction_force
+    warm = solve(high, start_states=states, start=start, tries=0)
+    assert warm.solved, warm.trace
+    assert warm.info["start"] == "given point"
+    assert warm.iterations > 0
+    np.testing.assert_allclose(warm.displacement, free.displacement, atol=1e-9 * np.abs(free.displacement).max())
 
 
 def test_warm_start_from_the_answer_needs_no_pivot() -> None:

@@ -7,11 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from concio.problem.solution import Mechanism
 from concio.solvers.statics import collapse_state
+from concio.solvers.statics import friction as least_friction
 from concio.solvers.statics import programme as statics
 from concio.solvers.statics.collapse_search import find_collapse_state
 from concio.solvers.statics.collapse_state import certify_collapse
-from concio.solvers.statics.existence import statically_admissible
+from concio.solvers.statics.existence import StaticState, statically_admissible
 from concio.solvers.statics.friction import smallest_friction
 from concio.solvers.statics.limit import associated_limit, kinematic_bound
 from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, semicircular_arch, wall
@@ -100,6 +102,39 @@ def test_smallest_friction_above_what_there_is():
     assert found.factor == pytest.approx(1.2, abs=1e-6)
     assert 1.2 - 1e-6 < found.below < 1.2 <= found.factor
     assert found.settled
+
+
+@pytest.fixture
+def only_verdicts(monkeypatch):
+    """Let verdicts be those of a table: holds at and above ``least``, nothing is known at ``silent``, no slope."""
+
+    def put(least, silent=()):
+        def verdict(problem):
+            factor = float(problem.laws.friction[0] / 0.5)
+            zero, none = np.zeros(problem.pairs), np.zeros(problem.unknowns)
+            holds = factor >= least
+            mechanism = None if holds or factor in silent else Mechanism(none, 1.0, 0.0)
+            return StaticState(holds, zero, zero[:, None], 0.0, none, mechanism)
+
+        monkeypatch.setattr(least_friction, "statically_admissible", verdict)
+
+    return put
+
+
+def test_least_friction_without_a_slope_is_bisected(only_verdicts):
+    a = block_on_incline(2.0, 0.5, 0.0)
+    only_verdicts(0.3217)
+    found = smallest_friction(a.problem(0.5, a.load(0, -1)), tolerance=1e-6)
+    assert found.below < 0.3217 <= found.factor < found.below + 1e-6
+    assert found.programmes <= 23  # 0, 1 and twenty halvings
+
+
+def test_least_friction_without_a_lower_proof_is_left_open(only_verdicts):
+    a = block_on_incline(2.0, 0.5, 0.0)
+    only_verdicts(0.5, silent=(0.0,))
+    found = smallest_friction(a.problem(0.5, a.load(0, -1)))
+    assert (found.factor, found.below, found.programmes) == (1.0, -np.inf, 2)
+    assert not found.settled
 
 
 def test_smallest_friction_of_a_thin_arch_is_bounded_by_proofs():

@@ -21,7 +21,9 @@ from concio.problem.contact_problem import Array, ContactProblem
 from concio.solvers.algebra.scaled import interleaved
 from concio.solvers.algebra.second_order_cone import determinant, times
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
-from concio.solvers.statics.cone_interior import PROXIMAL, ConeAnswer, ConeInterior, Pairs
+from concio.solvers.statics.cone_interior import ConeAnswer, maximise
+from concio.solvers.statics.cone_programme import ConeProgramme, Pairs
+from concio.solvers.statics.cone_step import PROXIMAL
 
 ROUNDING = 1e-14
 """Share of the total load that forces may leave unbalanced, or exceed strengths by, before they are balanced anew."""
@@ -104,7 +106,7 @@ class ConeStatics:
         self.force = float(np.abs(R.T @ load / self.scale).max(initial=0.0)) or 1.0
         motions = sp.csr_array(moved @ sp.diags_array(1.0 / self.scale))
         strengths = problem.cone.in_units(self.force)
-        self.programme = ConeInterior(Pairs(motions, strengths.shifted, _motions_of_bodies(problem)))
+        self.programme = ConeProgramme(Pairs(motions, strengths.shifted, _motions_of_bodies(problem)))
         self.shift = np.zeros((problem.pairs, problem.dim))
         self.shift[:, 0] = strengths.tension
 
@@ -168,7 +170,7 @@ class ConeStatics:
             above = a.multiplier + a.gap * max(1.0, abs(a.multiplier))  # what the motion does not exceed
             return carried or (a.dual < SETTLED and CLEAR * (above - a.multiplier) < size - above)
 
-        answer = it.solve(e, g / size, start=ones, stop=decided)
+        answer = maximise(it, e, g / size, start=ones, stop=decided)
         multiplier = answer.multiplier / size
         share = min(1.0 / multiplier, 1.0) if multiplier > 0 else 1.0
         t = (1.0 - share) * ones + share * answer.t
@@ -188,7 +190,7 @@ class ConeStatics:
         it = self.programme
         e, g = self.offset(self.problem.f), self.project(live)
         size = float(np.abs(g).max(initial=0.0))
-        answer = it.solve(e, g / size, stop=lambda a: a.multiplier > ENDLESS)
+        answer = maximise(it, e, g / size, stop=lambda a: a.multiplier > ENDLESS)
         if answer.multiplier > ENDLESS:
             return Bounds(np.inf, self.real(answer.t), np.inf, self.velocity(answer.v))
         multiplier = answer.multiplier / size
@@ -213,7 +215,7 @@ def _motions_of_bodies(problem: ContactProblem) -> Array:
     return np.concatenate([[0], np.flatnonzero(np.diff(body)) + 1, [r]]) if r else np.zeros(1, dtype=int)
 
 
-def _room(it: ConeInterior, t: Array) -> Array:
+def _room(it: ConeProgramme, t: Array) -> Array:
     """Return the inverse Hessian (m, d, d) of the barrier of the strengths: a step in its unit ball stays inside."""
     beta = it.strength(t)
     sized = np.maximum(determinant(beta), 0.0)

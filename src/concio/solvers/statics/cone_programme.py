@@ -1,0 +1,146 @@
+"""Second-order cone programmes of statics: the pairs, a point, and what its residuals are made of.
+
+Forces t inside the cones in balance with e + lambda g, with multipliers z of the half-lines t_n >= 0, eta of the cones
+beta = (c + mu t_n, t_t) and w of the caps t_n <= N; see :mod:`concio.solvers.statics.cone_interior`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+import scipy.sparse as sp
+
+from concio.problem.cone import Cone
+from concio.problem.contact_problem import Array
+from concio.problem.tolerances import SMOOTH
+from concio.solvers.algebra.block_factor import BlockFactor
+
+START = 3.0
+"""Size of slacks and multipliers at the start, the largest load on a block being one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pairs:
+    """Pairs of a cone programme.
+
+    Parameters
+    ----------
+    C : (m d, r) CSR array
+        Velocities of the pairs, d rows for each.
+    cone : Cone
+        Strengths of forces shifted so that t_n >= 0.
+    bodies : (B+1,) integer array
+        Motions of block k are ``bodies[k]:bodies[k+1]``.
+    """
+
+    C: sp.csr_array
+    cone: Cone
+    bodies: Array
+
+    @property
+    def count(self) -> int:
+        """Number m of pairs."""
+        return len(self.cone.cap)
+
+    @property
+    def dim(self) -> int:
+        """Space dimension d."""
+        return self.C.shape[0] // max(self.count, 1)
+
+
+@dataclass
+class Point:
+    """A point of the iteration, or a direction from one.
+
+    Parameters
+    ----------
+    t : (m, d) array
+        Shifted forces.
+    multiplier : float
+    v : (r,) array
+        Motion.
+    z : (m,) array
+        Multipliers of the half-lines.
+    eta : (m, d) array
+        Of the cones.
+    w : (m,) array
+        Of the caps.
+    """
+
+    t: Array
+    multiplier: float
+    v: Array
+    z: Array
+    eta: Array
+    w: Array
+
+    def moved(self, d: Point, primal: float, dual: float) -> Point:
+        """Return the point after the shares ``primal`` and ``dual`` of a direction."""
+        step = {"t": primal, "multiplier": primal}
+        return Point(
+            **{f.name: getattr(self, f.name) + step.get(f.name, dual) * getattr(d, f.name) for f in fields(self)}
+        )
+
+
+class ConeProgramme:
+    """The pairs of one programme with the pattern of their equations, ordered once.
+
+    Parameters
+    ----------
+    pairs : Pairs
+
+    Attributes
+    ----------
+    degenerate : bool
+        Whether the condensed matrix has lost its digits: directions then come from the system as a whole.
+    count : int
+        Number of complementarity products.
+    """
+
+    def __init__(self, pairs: Pairs) -> None:
+        self.pairs = pairs
+        self.C, self.Ct = pairs.C, sp.csr_array(pairs.C.T)
+        r = pairs.C.shape[1]
+        self.factor = BlockFactor(sp.csr_array((r, r)), pairs.C, pairs.count, pairs.bodies)
+        cone = pairs.cone
+        self.capped, self.rough = cone.capped, cone.rough
+        self.cap = np.where(self.capped, cone.cap, 0.0)
+        self.coulomb = self.rough & (cone.friction > SMOOTH)  # the others with friction have a constant strength
+        self.mu = np.where(self.coulomb, cone.friction, 0.0)
+        self.line = ~self.rough | (cone.cohesion > 0)  # where the cone itself does not keep t_n >= 0
+        self.degenerate = False
+        self.count = max(int(self.line.sum()) + 2 * int(self.rough.sum()) + int(self.capped.sum()), 1)
+
+    def rate(self, v: Array) -> Array:
+        """Return C v (m, d)."""
+        rates: Array = (self.C @ v).reshape(self.pairs.count, self.pairs.dim)
+        return rates
+
+    def strength(self, t: Array) -> Array:
+        """Return beta (m, d); (1, 0) where there is no cone."""
+        beta = t.copy()
+        beta[:, 0] = self.pairs.cone.cohesion + self.mu * t[:, 0]
+        beta[~self.rough] = 0.0
+        beta[~self.rough, 0] = 1.0
+        return beta
+
+    def pressed(self, z: Array, eta: Array, w: Array) -> Array:
+        """Return G'z (m, d): the velocities that multipliers stand for."""
+        rates = np.where(self.rough[:, None], eta, 0.0)
+        rates[:, 0] = self.mu * rates[:, 0] + np.where(self.line, z, 0.0) - np.where(self.capped, w, 0.0)
+        return rates
+
+    def gap(self, p: Point) -> float:
+        """Return the sum of the complementarity products."""
+        total = (p.t[:, 0] * p.z)[self.line].sum() + (self.strength(p.t) * p.eta)[self.rough].sum()
+        return float(total + ((self.cap - p.t[:, 0]) * p.w)[self.capped].sum())
+
+    def start(self, size: float = START) -> Point:
+        """Return a point far outside."""
+        m, d = self.pairs.count, self.pairs.dim
+        t, eta = np.zeros((m, d)), np.zeros((m, d))
+        t[:, 0] = np.where(self.capped, np.minimum(size, 0.5 * self.pairs.cone.cap), size)
+        eta[:, 0] = size
+        one = np.full(m, size)
+        return Point(t, 0.0, np.zeros(self.C.shape[1]), one, eta, one.copy())

@@ -1,0 +1,245 @@
+"""One step of the interior point on a cone programme of statics: Newton's equations, predictor and corrector.
+
+Where the digits are kept is told in :mod:`concio.solvers.statics.cone_interior`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as sla
+
+from concio.problem.contact_problem import Array
+from concio.solvers.algebra.second_order_cone import Scaling, divide, product, reach, times
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
+from concio.solvers.statics.cone_programme import ConeProgramme, Point
+
+SHARE = 0.99
+"""Share of the step to the boundary that is taken."""
+
+PROXIMAL = 1e-12
+"""Stiffness that keeps motions which no pair resists where they are, relative to a typical one; refined away."""
+
+LOST = 1e-11
+"""Residual of a refined direction, relative to the largest force, above which the condensed matrix has lost it."""
+
+PIVOTED = 60_000
+"""Largest number of force components for which the system is then solved as a whole, with pivoting."""
+
+REFINEMENTS = 6
+"""Largest number of times a direction is refined."""
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """Newton's equations at one point, factorised.
+
+    Parameters
+    ----------
+    it : ConeProgramme
+    p : Point
+    g : (r,) array
+        Load whose multiplier is sought.
+    rest : ((r,) array, (m, d) array, float)
+        Residuals of balance, of Cv = G'z and of g'v = 1.
+    beta : (m, d) array
+        Strengths.
+    scaling : Scaling
+        Of Nesterov and Todd.
+    F, squeeze : (m, d, d) array, (m, d) array
+        See :func:`_roots`.
+    border : (r,) array
+        The solution of C'DC x = g; empty where the condensed matrix has lost its digits.
+    """
+
+    it: ConeProgramme
+    p: Point
+    g: Array
+    rest: tuple[Array, Array, float]
+    beta: Array
+    scaling: Scaling
+    F: Array
+    squeeze: Array
+    border: Array
+
+    @classmethod
+    def at(cls, it: ConeProgramme, p: Point, g: Array, r_p: Array, r_d: Array, r_g: float) -> Step | None:
+        """Return the equations at a point; None where it has left the cones."""
+        beta = it.strength(p.t)
+        scaling = Scaling.of(beta, p.eta)
+        if scaling is None:
+            return None
+        F, squeeze = _roots(it, p, scaling)
+        D = np.matmul(F, F.transpose(0, 2, 1))
+        border = np.zeros(0)
+        if not it.degenerate:
+            try:
+                it.factor.factorise(D, PROXIMAL * min(1.0, float(np.median(D[:, 0, 0]))))
+                border = it.factor.solve(g)
+            except SingularMatrixError:
+                it.degenerate = True
+        return cls(it, p, g, (r_p, r_d, r_g), beta, scaling, F, squeeze, border)
+
+    def solve(self, b: Array) -> tuple[Array, float, Array] | None:
+        """Return (dt, d lambda, dv) of C'dt + g d lambda = -r_p, F'C dv + F^-1 dt = b, g'dv = r_g, refined so."""
+        it, g = self.it, self.g
+        r_p, _, r_g = self.rest
+        Ft = self.F.transpose(0, 2, 1)
+        dx, dv, dl = np.zeros_like(b), np.zeros_like(g), 0.0
+        kept: tuple[Array, float, Array] | None = None
+        e1, e2, e3, least = -r_p, b, r_g, np.inf
+        solver = self._pivoted if it.degenerate else self._condensed
+        while True:
+            least = np.inf
+            for _ in range(REFINEMENTS):
+                x, y, extra = solver(e1, e2, e3)
+                trial = dx + y, dv + x, dl + extra
+                dt = times(self.F, trial[0])
+                left = (
+                    -r_p - it.Ct @ dt.ravel() - g * trial[2],
+                    b - times(Ft, it.rate(trial[1])) - trial[0],
+                    r_g - float(g @ trial[1]),
+                )
+                worst = max(float(np.abs(left[0]).max()), float(np.abs(left[1]).max(initial=0.0)), abs(left[2]))
+                if not worst < 0.5 * least:
+                    break
+                (dx, dv, dl), (e1, e2, e3) = trial, left
+                least, kept = worst, (dt, dl, dv)
+                if worst < 1e-15:
+                    break
+            if it.degenerate or least < LOST * max(1.0, float(np.abs(self.p.t).max())) or dx.size > PIVOTED:
+                return kept
+            it.degenerate, solver = True, self._pivoted
+            dx, dv, dl = np.zeros_like(b), np.zeros_like(g), 0.0
+            e1, e2, e3, kept = -r_p, b, r_g, None
+
+    def _condensed(self, e1: Array, e2: Array, e3: float) -> tuple[Array, Array, float]:
+        """Solve by C'DC, the multiplier bordered: digits are lost where that matrix is worse than 1e16."""
+        it, g = self.it, self.g
+        x = it.factor.solve(it.Ct @ times(self.F, e2).ravel() - e1)
+        extra = (e3 - float(g @ x)) / float(g @ self.border)
+        x += extra * self.border
+        return x, e2 - times(self.F.transpose(0, 2, 1), it.rate(x)), extra
+
+    @cached_property
+    def _mixed(self) -> Any:
+        """Factors with pivoting of the system in dx, dv and the multiplier, whose condition is the square root."""
+        it, (m, d, _) = self.it, self.F.shape
+        roots = sp.bsr_array((self.F, np.arange(m), np.arange(m + 1)), shape=(m * d, m * d))
+        FC, g = sp.csr_array(sp.csr_array(roots.T) @ it.C), sp.csr_array(self.g[:, None])
+        loose = -PROXIMAL * sp.eye_array(self.g.size)
+        matrix = sp.block_array([[sp.eye_array(m * d), FC, None], [FC.T, loose, g], [None, g.T, None]], format="csc")
+        splu: Any = sla.splu
+        try:
+            return splu(sp.csc_matrix(matrix))
+        except RuntimeError:
+            return None
+
+    def _pivoted(self, e1: Array, e2: Array, e3: float) -> tuple[Array, Array, float]:
+        """Solve the whole system with pivoting."""
+        n = e2.size
+        right = np.concatenate([e2.ravel(), e1, [e3]])
+        x = np.full(right.size, np.nan) if self._mixed is None else self._mixed.solve(right)
+        return x[n:-1], x[:n].reshape(e2.shape), float(x[-1])
+
+    def direction(self, rc_z: Array, rc_t: Array, rc_w: Array) -> Point | None:
+        """Return the Newton direction for given right-hand sides of the products."""
+        it, p = self.it, self.p
+        rough, both = it.rough, it.coulomb
+        scaled = divide(self.scaling.point, rc_t)
+        eta = times(self.scaling.inverse, scaled)
+        of_line = np.where(it.line, rc_z / p.t[:, 0], 0.0)
+        room = np.where(it.capped, it.cap - p.t[:, 0], 1.0)
+        of_cap = np.where(it.capped, rc_w / room, 0.0)
+        rest = -self.rest[1]
+        rest[:, 0] += of_line - of_cap
+        rest[rough & ~both, 1:] += eta[rough & ~both, 1:]
+        # where F = G^-1 W squeeze, F'G' eta is taken from its scaled value, which loses nothing
+        b = times(self.F.transpose(0, 2, 1), rest)
+        b[both] += (scaled - self.squeeze * (self.squeeze * scaled).sum(axis=1, keepdims=True))[both]
+        found = self.solve(b)
+        if found is None:
+            return None
+        dt, dl, dv = found
+        dz = np.where(it.line, of_line - p.z / p.t[:, 0] * dt[:, 0], 0.0)
+        dw = np.where(it.capped, of_cap + p.w / room * dt[:, 0], 0.0)
+        # velocities follow from the motion, whose rounding is small; M d beta would cancel
+        moved = it.rate(dv) + self.rest[1]
+        d_eta = np.zeros_like(dt)
+        d_eta[:, 1:] = moved[:, 1:]
+        d_eta[:, 0] = np.where(both, (moved[:, 0] - dz + dw) / np.where(both, it.mu, 1.0), 0.0)
+        tresca = rough & ~both
+        d_eta[tresca, 0] = (eta - times(self.scaling.M, self.of_strength(dt)))[tresca, 0]
+        d_eta[~rough] = 0.0
+        dz = np.where(~rough, moved[:, 0] + dw, dz)
+        return Point(dt, dl, dv, dz, d_eta, dw)
+
+    def of_strength(self, dt: Array) -> Array:
+        """Return d beta (m, d)."""
+        d_beta = dt.copy()
+        d_beta[:, 0] *= self.it.mu
+        d_beta[~self.it.rough] = 0.0
+        return d_beta
+
+    def longest(self, d: Point) -> tuple[float, float]:
+        """Return the longest primal and dual steps up to one that stay inside."""
+        it, p = self.it, self.p
+        primal, dual = reach(self.beta, self.of_strength(d.t)), reach(p.eta, d.eta)
+        room, less = (it.cap - p.t[:, 0])[it.capped], -d.t[it.capped, 0]
+        primal = min(primal, _line(p.t[it.line, 0], d.t[it.line, 0]), _line(room, less))
+        dual = min(dual, _line(p.z[it.line], d.z[it.line]), _line(p.w[it.capped], d.w[it.capped]))
+        return min(1.0, primal), min(1.0, dual)
+
+    def mehrotra(self, gap: float) -> Point | None:
+        """Return the next point."""
+        it, p, point = self.it, self.p, self.scaling.point
+        t_n, room = p.t[:, 0], it.cap - p.t[:, 0]
+        d = self.direction(-t_n * p.z, -product(point, point), -room * p.w)
+        if d is None:
+            return None
+        a = self.longest(d)
+        after = it.gap(p.moved(d, *a))
+        tau = gap / it.count * min(1.0, max((after / gap) ** 3, 1e-6))
+        d_beta = self.of_strength(d.t)
+        rc_t = -product(point, point)
+        rc_t -= product(times(self.scaling.W, d.eta), times(self.scaling.inverse, d_beta))
+        rc_t[:, 0] += 2.0 * tau
+        d = self.direction(tau - t_n * p.z - d.t[:, 0] * d.z, rc_t, tau - room * p.w + d.t[:, 0] * d.w)
+        if d is None:
+            return None
+        primal, dual = self.longest(d)
+        return p.moved(d, min(1.0, SHARE * primal), min(1.0, SHARE * dual))
+
+
+def _roots(it: ConeProgramme, p: Point, scaling: Scaling) -> tuple[Array, Array]:
+    """Return F (m, d, d) with F F' = (G'M G)^-1, and s (m, d) with F = G^-1 W (I - s s') for pairs with friction.
+
+    From the scaling itself: inverting M would lose its small values.
+    """
+    d, both = it.pairs.dim, it.coulomb
+    own = np.where(it.line, p.z / p.t[:, 0], 0.0) + np.where(it.capped, p.w / (it.cap - p.t[:, 0]), 0.0)
+    F = np.zeros((it.pairs.count, d, d))
+    F[both] = scaling.W[both]
+    F[both, 0, :] /= it.mu[both, None]
+    v = F[:, 0, :].copy()
+    size = np.where(both, (v * v).sum(axis=1), 1.0)
+    less = (1.0 - 1.0 / np.sqrt(1.0 + own * size)) / size
+    squeeze = np.where(both[:, None], np.sqrt(less)[:, None] * v, 0.0)
+    F -= times(F, squeeze)[:, :, None] * squeeze[:, None, :]
+    F[both, 0, :] = (v / np.sqrt(1.0 + own * size)[:, None])[both]  # the same, without cancellation at a cap
+    F[~both, 0, 0] = 1.0 / np.sqrt(own[~both])
+    tresca = it.rough & ~both
+    if tresca.any():
+        M = scaling.M[tresca, 1:, 1:]
+        F[tresca, 1:, 1:] = np.linalg.inv(np.linalg.cholesky(M)).transpose(0, 2, 1)
+    return F, squeeze
+
+
+def _line(x: Array, dx: Array) -> float:
+    """Return the step at which the first entry of x + step dx reaches zero."""
+    down = dx < 0
+    return float(np.min(-x[down] / dx[down], initial=np.inf))
