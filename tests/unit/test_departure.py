@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -22,7 +23,7 @@ from concio.solvers.algebra.scaled import scale
 from concio.solvers.interior.engine import Run
 from concio.solvers.methods import find
 from concio.solvers.motion.departure import departure, verify_departure
-from concio.solvers.motion.release import release
+from concio.solvers.motion.release import MOST, release
 
 BRICK = Elastic(E=1e6, nu=0.2, unit_weight=20.0)
 
@@ -175,6 +176,26 @@ def test_what_stands_comes_to_rest() -> None:
         u, t_n, t_t = run.scaled.restore(ended.u, ended.t)
         assert concio.problem.certificate.certify(problem, u, t_n, t_t).certified
         np.testing.assert_allclose(u, whole.displacement, rtol=0, atol=1e-8 * np.abs(u).max())
+        told = re.fullmatch(r"release: (\d+) steps of slow motion, 0 failed, comes to rest", run.trace[-1])
+        assert told is not None, run.trace
+        assert 1 <= int(told[1]) < MOST
+
+
+@pytest.mark.parametrize("lift", [0.1, 1.0])
+def test_a_block_is_carried_clear_of_what_it_leaves(lift: float) -> None:
+    """A block lifted off the ground and thrown aside, from a place deep within it, one corner deeper than the other."""
+    bodies = (box("ground", -1.0, -0.2, 4.0, 0.2, "fixed"), box("block", 1.0, 0.0, 0.8, 0.2, "rigid"))
+    loads = (Load("weight", (1.0, lift)),)
+    problem = concio.assemble(
+        Model(bodies, {"brick": Rigid(unit_weight=20.0)}, {"joint": JointLaw(0.3)}, loads=loads)
+    ).problem()
+    m = problem.pairs
+    states = PairStates.plane(np.full(m, Normal.OPEN), np.zeros(m))
+    motion = departure(scale(problem), states, np.array([0.0, 0.0, 50.0]), np.zeros((m, 2)))
+    assert motion is not None
+    assert motion.certified
+    np.testing.assert_allclose(motion.acceleration, [GRAVITY, lift * GRAVITY, 0.0], rtol=1e-9, atol=1e-9)
+    assert (problem.gap + problem.C_n @ motion.displacement >= -1e-9).all()
 
 
 def test_held_bodies_have_no_departure() -> None:
