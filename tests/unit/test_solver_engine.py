@@ -70,9 +70,11 @@ def engines_of(function: Callable[[], object], monkeypatch: pytest.MonkeyPatch) 
     seen: set[str] = set()
     order = Pattern.of.__func__
 
-    def watched(cls: type[Pattern], row: Array, column: Array, size: int, engine: str | None = None) -> Pattern:
+    def watched(
+        cls: type[Pattern], row: Array, column: Array, size: int, engine: str | None = None, group: int = 2
+    ) -> Pattern:
         seen.add(chosen_engine())
-        pattern: Pattern = order(cls, row, column, size, "superlu")
+        pattern: Pattern = order(cls, row, column, size, "superlu", group)
         return pattern
 
     with monkeypatch.context() as patch:
