@@ -32,6 +32,9 @@ from concio.solvers.states.settle import Settler
 WALLS = ((30, 14, 0.30), (30, 14, 0.40), (30, 14, 0.43), (30, 14, 0.44), (50, 40, 0.30), (50, 40, 0.34))
 PANELS = ((10, 10, 0.0, 1.0), (20, 20, 0.0, 1.0), (10, 10, 0.02, 1.0), (20, 20, 0.02, 0.6))
 
+HUGE = ((100, 100, 0.15), (317, 315, 0.15), (100, 100, 0.20), (500, 200, 0.20))
+"""Walls of 10,000 and of 100,000 blocks under the same share of their weight: how the time grows."""
+
 SMALL = ((3, 3), (5, 5), (4, 8))
 
 CLOSE = (0.36, 0.37, 0.38, 0.39, 0.40)
@@ -141,7 +144,7 @@ def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--large", action="store_true", help="also 10,050 blocks and the 40 x 40 panels")
-    parser.add_argument("--huge", action="store_true", help="also 100,000 blocks (takes a quarter of an hour)")
+    parser.add_argument("--huge", action="store_true", help="also 100,000 blocks (half an hour, 7 GB)")
     parser.add_argument("--fast", action="store_true", help="also with the engine 'pardiso' (extra: fast)")
     parser.add_argument("--lemke", action="store_true", help="also the pivoting methods on the small walls")
     parser.add_argument("--close", action="store_true", help="also what loading does not reach, and a jammed panel")
@@ -170,7 +173,8 @@ def main() -> None:
         for alpha in CLOSE:
             report(f"wall 50 x 40, {alpha:.2f}", wall(50, 40, alpha), [("auto", {})], motion=True)
     if arguments.huge:
-        report("wall 500 x 200, 0.20", wall(500, 200, 0.20), engine)
+        for units, courses, alpha in HUGE:
+            report(f"wall {units} x {courses}, {alpha:.2f}", wall(units, courses, alpha), engine)
 
 
 if __name__ == "__main__":
