@@ -197,6 +197,21 @@ def free_surface(assembly: Assembly, S: np.ndarray) -> np.ndarray:
     return f
 
 
+@pytest.mark.parametrize("element", ["H27", "T10"])
+def test_quadratic_blocks_of_a_corner_meet_pair_by_pair(element: str) -> None:
+    """Each node of the finer side enters hardly more than its own pair; with linear weights no method found an end."""
+    lines = [((0, 0), (0, 1)), ((0, 0), (1, 0))]
+    wall = concio.walls(
+        lines=lines, height=0.5, block_size=(0.5, 0.25, 0.25), friction=0.5, element=element, horizontal=1.0,
+        towards=(-1, 0),
+    )  # fmt: skip
+    result = concio.solve(wall, method="interior-point", factors={"live": 0.2})
+    assert result.status is concio.Status.SOLVED
+    pairs = result.assembly.pairs
+    ground = pairs.C_n[np.flatnonzero(pairs.body_a == pairs.body_a.min())]
+    assert np.asarray((ground > 1e-9).sum(axis=1) == 1).all()
+
+
 def test_matching_blocks_of_a_bond_share_their_nodes() -> None:
     blocks = [box("a", (0, 0, 0), (2, 1, 1)), box("b", (2, 0, 0), (4, 1, 1)), box("c", (1, 0, 1), (3, 1, 2))]
     pairs = concio.assemble(model(GROUND, *blocks)).pairs

@@ -7,9 +7,12 @@ displacement of pair j is
 .. math:: \frac{1}{w_j} \int \psi_j\,(u_b - u_a)\,dA , \qquad w_j = \int N_j\, dA .
 
 The facets of both sides and the patch are cut into each other as polygons, and the pieces integrated as triangles, so
-that any uniform pressure passes exactly. Quadratic facets count as linear ones between all their nodes: the functions
-of six-node triangles have no positive integral at the corners. Where the patch ends inside a facet the dual functions
-are those of the part that is covered; where hardly any is, the linear functions themselves take their place.
+that any uniform pressure passes exactly. Where the patch covers quadratic facets whole, N and psi are
+quadratic, so that pairs meet hardly more than the node they stand at. Those of six-node triangles have no integral at
+the corners: a fifth of those of the two sides is added there, which leaves all positive (Popp, Wohlmuth, Gee and Wall,
+SIAM J. Sci. Comput. 34, 2012). Quadratic facets that are covered in part count as linear ones between all their nodes.
+Where the patch ends inside a linear facet the dual functions are those of the part that is covered; where hardly any
+is, the linear functions themselves take their place.
 """
 
 from __future__ import annotations
@@ -28,6 +31,12 @@ Array = np.ndarray
 
 HARDLY = 1e-2
 """Share of a linear piece of a facet that must be covered for dual functions of its own."""
+
+POSITIVE = np.eye(6)
+"""Functions of a six-node triangle with positive integrals from those of its interpolation, column by column."""
+for _corner, _sides in ((0, (3, 5)), (1, (3, 4)), (2, (4, 5))):
+    POSITIVE[_sides, _corner] = 0.2
+POSITIVE[3:, 3:] *= 0.6
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +108,20 @@ def _covering(side: FaceSide, patch: shapely.Polygon) -> tuple[Array, Array, Arr
     return near[some], cells[near[some]], area[some]
 
 
+def _covered_whole(side: FaceSide, patch: shapely.Polygon) -> bool:
+    """Return whether the patch covers whole facets only."""
+    _, cells, area = _covering(side, patch)
+    return bool(np.abs(shapely.area(cells) - area).max(initial=0.0) <= 1e-6 * patch.area)
+
+
+def _quartered(triangles: Array) -> Array:
+    """Return each triangle (t, 3, 2) as the four that the middles of its sides make (4 t, 3, 2)."""
+    a, b, c = np.moveaxis(triangles, 1, 0)
+    p, q, r = (a + b) / 2, (b + c) / 2, (c + a) / 2
+    four = np.stack([np.stack(v, 1) for v in ((a, p, r), (p, b, q), (r, q, c), (p, q, r))], 1)
+    return np.reshape(four, (-1, 3, 2))
+
+
 def _nodes_in(side: FaceSide, patch: shapely.Polygon) -> int:
     return len(np.unique(side.mesh.nodes[_covering(side, patch)[0]]))
 
@@ -107,12 +130,9 @@ def _matching(a: FaceSide, b: FaceSide, patch: shapely.Polygon) -> PatchCoupling
     """Return node pairs where both sides cover the patch by whole facets with the same nodes."""
     if a.mesh.nodes.shape[1] != b.mesh.nodes.shape[1] or a.mesh.nodes.shape[1] == 6:
         return None
-    chosen = []
-    for side in (a, b):
-        number, cells, area = _covering(side, patch)
-        if np.abs(shapely.area(cells) - area).max(initial=0.0) > 1e-6 * patch.area:
-            return None
-        chosen.append(number)
+    if not all(_covered_whole(side, patch) for side in (a, b)):
+        return None
+    chosen = [_covering(side, patch)[0] for side in (a, b)]
     nodes_a, nodes_b = (np.unique(side.mesh.nodes[own]) for side, own in zip((a, b), chosen, strict=True))
     if len(chosen[0]) != len(chosen[1]) or len(nodes_a) != len(nodes_b):
         return None
@@ -136,8 +156,9 @@ def _matching(a: FaceSide, b: FaceSide, patch: shapely.Polygon) -> PatchCoupling
 
 def _mortar(slave: FaceSide, master: FaceSide | None, patch: shapely.Polygon) -> tuple[Array, Array, Side, Side | None]:
     """Return positions, areas, and the entries of slave and master."""
-    parts = slave.mesh.parts
-    corners = slave.flat[parts]
+    whole = slave.mesh.order == 2 and _covered_whole(slave, patch)
+    parts = slave.mesh.nodes if whole else slave.mesh.parts
+    corners = slave.corners if whole else slave.flat[parts]
     cells = shapely.polygons(corners)
     near = shapely.STRtree(cells).query(patch, predicate="intersects")
     near.sort()
@@ -153,26 +174,31 @@ def _mortar(slave: FaceSide, master: FaceSide | None, patch: shapely.Polygon) ->
         pieces, piece_part, piece_master = cut[some], piece_part[k[some]], m[some]
     triangles = [triangles_in(piece) for piece in pieces]
     count = np.array([len(t) for t in triangles], dtype=int)
-    points, weights = quadrature(np.concatenate(triangles))
+    cut_in = np.concatenate(triangles)
+    if whole:
+        cut_in, count = _quartered(cut_in), 4 * count
+    points, weights = quadrature(cut_in)
     each = points.shape[1]
     x, w = points.reshape(-1, 2), weights.ravel()
     part, of_master = (np.repeat(np.repeat(v, count), each) for v in (piece_part, piece_master))
 
     number, own_part = np.unique(part, return_inverse=True)
-    linear = functions(slave.mesh.corners, local_coordinates(corners[part], x))  # (n, c)
-    c = linear.shape[1]
+    c = parts.shape[1]
+    basis = functions(c, local_coordinates(corners[part], x))  # (n, c)
+    if c == 6:
+        basis = basis @ POSITIVE
     lumped, mass = np.zeros((len(number), c)), np.zeros((len(number), c, c))
-    np.add.at(lumped, own_part, w[:, None] * linear)
-    np.add.at(mass, own_part, w[:, None, None] * linear[:, :, None] * linear[:, None, :])
+    np.add.at(lumped, own_part, w[:, None] * basis)
+    np.add.at(mass, own_part, w[:, None, None] * basis[:, :, None] * basis[:, None, :])
     full = shapely.area(cells[number])
     dual = lumped[:, :, None] * np.linalg.inv(mass + 1e-300 * np.eye(c))
     dual[lumped.sum(1) < HARDLY * full] = np.eye(c)
-    psi = w[:, None] * np.einsum("nij,nj->ni", dual[own_part], linear)
+    psi = w[:, None] * np.einsum("nij,nj->ni", dual[own_part], basis)
 
     nodes, at_node = np.unique(parts[number], return_inverse=True)
     pair = at_node.reshape(len(number), c)[own_part]  # (n, c)
     area, position = np.zeros(len(nodes)), np.zeros((len(nodes), 2))
-    np.add.at(area, pair, w[:, None] * linear)
+    np.add.at(area, pair, w[:, None] * basis)
     np.add.at(position, pair, psi[:, :, None] * x[:, None])
     own = _entries(slave, part // (len(parts) // len(slave.mesh.nodes)), x, pair, psi, area)
     other = None if master is None else _entries(master, of_master, x, pair, psi, area)
