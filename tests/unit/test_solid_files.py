@@ -228,3 +228,28 @@ def test_files_with_solids(tmp_path: Path) -> None:
     assert [load.kind for load in model.loads] == ["weight"]
     with pytest.raises(InputError, match="solids_file is not"):
         concio.loads("[solids]\nunit = 'mm'\n[column]\nwidth = 1\nheight = 1\nblocks = 1")
+
+
+def test_a_file_whose_y_axis_points_up(tmp_path: Path) -> None:
+    shown = concio.model_from_solids(_stack(tmp_path, "up.obj", y_up=True), up="y", block="rigid")
+    stood = concio.model_from_solids(_stack(tmp_path, "stood.obj", y_up=False), block="rigid")
+    for a, b in zip(shown.polyhedra, stood.polyhedra, strict=True):
+        assert np.array_equal(a.vertices, b.vertices)
+        assert a.faces == b.faces
+    (tmp_path / "m.toml").write_text('solids_file = "up.obj"\n[solids]\nup = "y"\n[materials.block]\nkind = "rigid"\n'
+                                     "unit_weight = 20\n[joints.dry]\nfriction = 0.6\n")  # fmt: skip
+    assert np.array_equal(concio.load(tmp_path / "m.toml").polyhedra[1].vertices, stood.polyhedra[1].vertices)
+    with pytest.raises(InputError, match="up = 'x' is not 'y' or 'z'"):
+        concio.model_from_solids(tmp_path / "up.obj", up="x")  # type: ignore[arg-type]
+
+
+def _stack(folder: Path, name: str, *, y_up: bool) -> Path:
+    """Write two boxes that stand on each other, the lower fixed, with y or z upwards."""
+    lines = []
+    for k, word in enumerate(("ground", "block")):
+        corners = [(x, y, z) for z in (k, k + 1) for x, y in ((0, 0), (2, 0), (2, 3), (0, 3))]
+        lines += [f"o {word}"] + [f"v {x} {z} {-y}" if y_up else f"v {x} {y} {z}" for x, y, z in corners]
+        faces = ((4, 3, 2, 1), (5, 6, 7, 8), (1, 2, 6, 5), (2, 3, 7, 6), (3, 4, 8, 7), (4, 1, 5, 8))
+        lines += ["f " + " ".join(str(8 * k + i) for i in face) for face in faces]
+    (folder / name).write_text("\n".join(lines) + "\n")
+    return folder / name

@@ -53,6 +53,7 @@ class SolidsTable(Table):
 
     layers: dict[str, StrictStr] = Field(default_factory=dict)
     unit: StrictStr | None = None
+    up: Literal["y", "z"] = "z"
     mend: Length = 0.0
     on_fault: Literal["raise", "skip"] = "raise"
     ground: StrictBool = False

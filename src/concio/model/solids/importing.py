@@ -37,6 +37,8 @@ READERS: Mapping[str, Callable[[Path], Scene]] = {
 """Formats by the end of a name; a folder is read as one block for each of its STL or OBJ files."""
 FIXED = ("fixed", "ground", "support", "supports", "abutment", "abutments", "obstacle", "concio_fixed")
 """Layers and names that mean fixed bodies, in small letters."""
+Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+"""Turns y into z."""
 LARGE, SMALL = 50.0, 1e-3
 """Blocks larger or smaller than this are in another unit than the one assumed [m]."""
 SHOWN = 5
@@ -50,6 +52,7 @@ def model_from_solids(
     materials: Mapping[str, Elastic | Rigid] | None = None,
     layers: Mapping[str, str] | None = None,
     unit: str | None = None,
+    up: Literal["y", "z"] = "z",
     mend: float | str = 0.0,
     on_fault: Literal["raise", "skip"] = "raise",
     ground: bool = False,
@@ -68,6 +71,8 @@ def model_from_solids(
         "fixed", "ground", "support", "abutment" or "obstacle" are fixed without being named.
     unit : str, optional
         Unit of length; None takes that of the file, metres where it has none.
+    up : {"z", "y"}
+        Axis of the file that points upwards. "y", as many programs write OBJ, turns all a quarter round x.
     mend : float or str
         Vertices closer than this are put together, and faces that look inwards are turned outwards [m]. 0 mends
         nothing.
@@ -97,7 +102,12 @@ def model_from_solids(
     if on_fault not in ("raise", "skip"):
         msg = f"on_fault = {on_fault!r} is not 'raise' or 'skip'"
         raise InputError(msg, where=where)
+    if up not in ("y", "z"):
+        msg = f"up = {up!r} is not 'y' or 'z'"
+        raise InputError(msg, where=where)
     scene = read_scene(path)
+    if up == "y":
+        scene = replace(scene, shapes=tuple(replace(s, points=s.points @ Y_UP.T) for s in scene.shapes))
     metres = scene.metres or 1.0 if unit is None else quantity(f"1 {unit}", "length", where=f"{where}, unit")
     meanings, table = dict(layers or {}), {"block": options.base.block, **(materials or {})}
     words = [w for s in scene.shapes for w in (s.layer, s.name) if w]
@@ -136,7 +146,8 @@ def model_from_solids(
         raise GeometryError("; ".join(text for text, _ in faults[:SHOWN]) + more, where=where, hint=faults[0][1])
     if not pieces:
         msg = "the file holds no blocks" + (": all of them are fixed" if obstacles else "")
-        raise InputError(msg, where=where, hint="surfaces must be closed, one for each block")
+        hint = "look at 'layers', and at layers and names such as 'ground'" if obstacles else ""
+        raise InputError(msg, where=where, hint=hint or "surfaces must be closed, one for each block")
     if ground:
         obstacles.append(_slab(pieces, names))
     record = {
