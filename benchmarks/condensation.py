@@ -14,30 +14,15 @@ from dataclasses import replace
 import numpy as np
 import scipy.linalg as sl
 import scipy.sparse as sp
+from wall_family import wall_model
 
-import concio
+from concio.contact.assembly import assemble
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Solution, judge
 from concio.solvers.methods import find
 
 WALLS = ((10, 10, 2, 2), (10, 10, 4, 4), (10, 10, 8, 4), (10, 10, 8, 8), (10, 10, 16, 8), (20, 20, 8, 4))
 """Units, courses, elements of a block along and across."""
-
-
-def wall(units: int, courses: int, along: int, across: int) -> ContactProblem:
-    """Return a dry wall under its weight and a fifth of it sideways."""
-    model = concio.running_bond_panel(
-        courses=courses,
-        blocks=units,
-        block_size=(1.0, 0.5),
-        thickness=1.0,
-        block=concio.Elastic(E=1e5, nu=0.15, unit_weight=20.0),
-        friction=0.6,
-        side_walls=False,
-        horizontal=0.2,
-        elements_per_block=(along, across),
-    )
-    return concio.assemble(model).problem()
 
 
 def condense(problem: ContactProblem) -> tuple[ContactProblem, Callable[[Solution], Solution], int]:
@@ -98,7 +83,8 @@ def main() -> None:
     heads = ("unknowns", "condensed", "K entries", "condensed", "whole s", "cond. s")
     print(f"{'wall':16s}" + "".join(f"{head:>11s}" for head in heads))
     for size in WALLS:
-        problem = wall(*size)
+        units, courses, *elements = size
+        problem = assemble(wall_model(units, courses, 0.2, elements)).problem()
         begin = time.process_time()
         answer = solve(problem)
         middle = time.process_time()

@@ -41,7 +41,7 @@ CLOSE = (0.36, 0.37, 0.38, 0.39, 0.40)
 """Shares of the weight that the wall of 2,020 blocks does not reach by loading (decision 0006)."""
 
 
-def wall_model(units: int, courses: int, alpha: float) -> concio.Model:
+def wall_model(units: int, courses: int, alpha: float, elements: tuple[int, int] = (2, 2)) -> concio.Model:
     """Return the model of a wall of the family: ``units`` blocks long, horizontal share ``alpha``."""
     return concio.running_bond_panel(
         courses=courses,
@@ -52,7 +52,7 @@ def wall_model(units: int, courses: int, alpha: float) -> concio.Model:
         friction=0.6,
         side_walls=False,
         horizontal=alpha,
-        elements_per_block=(2, 2),
+        elements_per_block=elements,
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from concio.errors import InputError
 from concio.fem.body import Shape
 from concio.fem.constitutive import constitutive_matrix
 from concio.fem.edge_integral import edge_weights, lagrange, pieces
@@ -13,6 +14,7 @@ from concio.fem.mesh import is_rectangle, merged, mesh_body, tensor
 from concio.model.generate.spacing import subdivided
 from concio.model.materials import Elastic
 from concio.model.model import Body
+from concio.model.polyhedron import Polyhedron
 
 D = constitutive_matrix(Elastic(E=1.0, nu=0.0), "stress")
 TRAPEZIUM = np.array([(0, 0), (2, 0), (1.5, 1), (0.2, 1.0)])
@@ -80,3 +82,11 @@ def test_refinement_splits_each_element():
     none = [np.zeros(0)] * 4
     coarse, fine = (mesh_body(Body("b", outline), 0.5, k, none)[1] for k in (1, 3))
     assert len(fine) == 9 * len(coarse)
+
+
+@pytest.mark.parametrize("size", [0.0, -0.1, np.inf, np.nan])
+def test_a_size_of_elements_that_is_none_is_refused(size):
+    with pytest.raises(InputError, match=r"block 'a'.*mesh size"):
+        Body("a", TRAPEZIUM, mesh_size=size)
+    with pytest.raises(InputError, match=r"block 'a'.*mesh size"):
+        Polyhedron.box("a", (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), mesh_size=size)

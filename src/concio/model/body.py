@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal, get_args
 
 import numpy as np
 
@@ -81,9 +81,7 @@ class Body:
         if not (0 < self.thickness < math.inf):
             msg = f"thickness = {self.thickness:g} must be positive and finite"
             raise InputError(msg, where=where)
-        if self.kind not in ("elastic", "rigid", "fixed"):
-            msg = f"kind '{self.kind}' is not one of elastic, rigid, fixed"
-            raise InputError(msg, where=where)
+        check_kind_and_mesh(self.kind, self.mesh_size, where)
 
     @cached_property
     def moments(self) -> Moments:
@@ -119,6 +117,16 @@ class Body:
     def volume(self) -> float:
         """Area times thickness [m3]."""
         return self.area * self.thickness
+
+
+def check_kind_and_mesh(kind: str, mesh_size: float | None, where: str) -> None:
+    """Refuse a kind that no body has, and a size of elements that is none; for bodies in the plane and in space."""
+    if kind not in get_args(Kind):
+        msg = f"kind '{kind}' is not one of {', '.join(get_args(Kind))}"
+        raise InputError(msg, where=where)
+    if mesh_size is not None and not (0 < mesh_size < math.inf):
+        msg = f"mesh size {mesh_size:g} must be positive and finite"
+        raise InputError(msg, where=where)
 
 
 def called(word: str, body: Body | Polyhedron) -> bool:

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from concio.arguments import strict_class
-from concio.errors import GeometryError, InputError
+from concio.errors import GeometryError
 from concio.kinematics.mass import Moments, polyhedron_moments
+from concio.model.body import Kind, check_kind_and_mesh
 from concio.model.convex_pieces import ConvexPiece, convex_pieces
 from concio.model.polyhedron_check import require_sound
 from concio.model.topology import Loop, Topology, face_triangles, topology
-
-if TYPE_CHECKING:
-    from concio.model.model import Kind
 
 Array = np.ndarray
 
@@ -78,9 +75,7 @@ class Polyhedron:
     thickness: ClassVar[float] = 1.0
 
     def __post_init__(self) -> None:
-        if self.kind not in ("elastic", "rigid", "fixed"):
-            msg = f"kind '{self.kind}' is not one of elastic, rigid, fixed"
-            raise InputError(msg, where=f"block '{self.name}'")
+        check_kind_and_mesh(self.kind, self.mesh_size, f"block '{self.name}'")
         points = np.array(self.vertices, dtype=float)
         faces = _loops(self.faces, self.name)
         holes = tuple((int(face), loop) for (face, _), loop in
@@ -100,9 +95,6 @@ class Polyhedron:
                 raise GeometryError(msg, where=f"block '{self.name}'")
             grid.setflags(write=False)
             object.__setattr__(self, "grid", grid)
-        if self.mesh_size is not None and not (0 < self.mesh_size < math.inf):
-            msg = f"mesh size {self.mesh_size:g} must be positive and finite"
-            raise InputError(msg, where=f"block '{self.name}'")
 
     def __repr__(self) -> str:
         words = f"{len(self.vertices)} vertices, {len(self.faces)} faces, volume {self.volume:.4g} m3, {self.kind}"

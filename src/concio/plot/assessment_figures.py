@@ -15,6 +15,7 @@ from concio.analysis.seismic.applied import applied_forces
 from concio.display import number
 from concio.plot import style
 from concio.plot.assessment_in_space import mechanism_in_space, model_in_space
+from concio.plot.diagram import diagram_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,6 +27,8 @@ Words = Mapping[str, str]
 
 ENLARGED = 0.10
 """Largest motion in the picture of a mechanism, over the size of the model."""
+SMALL = (4.3, 3.2)
+"""Width and height of a diagram of capacity or demand [in]."""
 DEMAND = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)))
 
@@ -122,7 +125,7 @@ def _arrow(ax: Axes, start: Array, end: Array) -> None:
 
 def curve_figure(mechanism: LocalMechanism, words: Words, ax: Axes | None = None) -> Axes:
     """Draw alpha against the displacement of the control point: followed, and as a straight line."""
-    ax = _plain(ax)
+    ax = diagram_axes(ax, SMALL)
     followed = mechanism.followed
     ax.plot(followed.displacement, followed.multiplier, color=style.COMPRESSION.colour, lw=1.8,
             label=words[f"legend_{followed.kind}"])  # fmt: skip
@@ -144,7 +147,7 @@ def curve_figure(mechanism: LocalMechanism, words: Words, ax: Axes | None = None
 
 def demand_figure(mechanism: LocalMechanism, words: Words, ax: Axes | None = None) -> Axes:
     """Draw the capacity curves and the demand of each limit state in acceleration-displacement form."""
-    ax = _plain(ax)
+    ax = diagram_axes(ax, SMALL)
     for curve, colour, dash, word in (
         (mechanism.followed, style.INK, "-", f"legend_{mechanism.followed.kind}"),
         (mechanism.straight, style.INK, (0, (5, 2)), "legend_straight"),
@@ -184,28 +187,10 @@ def demand_figure(mechanism: LocalMechanism, words: Words, ax: Axes | None = Non
 
 def _drawing(box: Array) -> Axes:
     """Return axes of a figure as large as a drawing is in print, so that its letters keep their size."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     width, height = np.maximum(box[1] - box[0], 1e-9)
     tall = float(np.clip(6.0 * height / width, 1.5, 4.2))
     wide = float(np.clip(tall * width / height, 1.6, 6.2))
-    figure = Figure(figsize=(wide + 0.7, tall + 0.6), layout="constrained")
-    FigureCanvasAgg(figure)
-    axes: Axes = figure.add_subplot()
-    return axes
-
-
-def _plain(ax: Axes | None) -> Axes:
-    if ax is not None:
-        return ax
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(4.3, 3.2), layout="constrained")
-    FigureCanvasAgg(figure)
-    axes: Axes = figure.add_subplot()
-    return axes
+    return diagram_axes(None, (wide + 0.7, tall + 0.6))
 
 
 def _finish(ax: Axes, x: str, y: str) -> Axes:

@@ -9,11 +9,17 @@ import numpy as np
 from concio.arguments import strict
 from concio.errors import InputError
 from concio.plot import style
+from concio.plot.diagram import diagram_axes, dress_diagram
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from concio.analysis.continuum.halving import BlockHalving
+
+SIZE = (6.6, 4.4)
+"""Width and height of a new figure [in]."""
+
+ACROSS = "size of the blocks, over that of the largest"
 
 
 @strict
@@ -37,7 +43,7 @@ def plot_limit_by_size(halving: BlockHalving, ax: Axes | None = None) -> Axes:
     if not np.isfinite(load).any():
         msg = "there are no limit loads to draw"
         raise InputError(msg, hint="give the wall a load group 'live', or name one: live=...")
-    ax = _axes(ax)
+    ax = diagram_axes(ax, SIZE)
     size = 1.0 / table["times_smaller"]
     ax.axhspan(low if np.isfinite(low) else 0.0, high, color=style.NEIGHBOUR, lw=0, zorder=0)
     ax.axhline(high, color=style.TENSION.colour, ls=style.TENSION.dash, lw=1.3, zorder=1)
@@ -47,14 +53,13 @@ def plot_limit_by_size(halving: BlockHalving, ax: Axes | None = None) -> Axes:
     for s, v, n in zip(size, load, table["blocks"], strict=True):
         ax.annotate(f"{n} blocks", (s, v), (4, -13), textcoords="offset points", fontsize=8, color="#555555")
     ax.set_xlim(0.0, 1.12 * float(size.max()))
-    ax.set_ylabel("limit load multiplier (associated)", fontsize=9)
     blocks = style.Line(style.COMPRESSION.colour, "-", 1.6, "wall of blocks")
     above = style.Line(style.TENSION.colour, style.TENSION.dash, 1.3, f"continuum: at most {high:.4g} (a mechanism)")
     handles = [style.handle(blocks), style.handle(above)]
     if np.isfinite(low):
         below = style.Line(style.LOAD.colour, (0, (1.2, 1.2)), 1.5, f"continuum: at least {low:.4g} (stresses)")
         handles.append(style.handle(below))
-    _finish(ax, "Limit load as the blocks become smaller")
+    dress_diagram(ax, "Limit load as the blocks become smaller", ACROSS, "limit load multiplier (associated)")
     ax.legend(handles=handles, frameon=False, fontsize=8.5, loc="best")
     return ax
 
@@ -82,7 +87,7 @@ def plot_difference_by_size(halving: BlockHalving, ax: Axes | None = None) -> Ax
     if not np.isfinite(bonded).any():
         msg = f"there are no elastic answers to draw: {halving.comparisons[0].elastic_note}"
         raise InputError(msg, hint="make the blocks elastic, or give joints a stiffness")
-    ax = _axes(ax)
+    ax = diagram_axes(ax, SIZE)
     size = 1.0 / table["times_smaller"]
     looks = [(bonded, style.Line(style.COMPRESSION.colour, "-", 1.6, "blocks bonded: no joint opens or slips"))]
     if np.isfinite(own).any():
@@ -94,30 +99,8 @@ def plot_difference_by_size(halving: BlockHalving, ax: Axes | None = None) -> Ax
     ax.set(xscale="log", yscale="log")
     ax.set_xticks(size, [f"1/{n}" if n > 1 else "1" for n in halving.sizes])
     ax.xaxis.set_minor_locator(NullLocator())
-    ax.set_ylabel("difference from the continuum's displacements [-]", fontsize=9)
-    _finish(ax, "Displacements as the blocks become smaller")
+    up = "difference from the continuum's displacements [-]"
+    dress_diagram(ax, "Displacements as the blocks become smaller", ACROSS, up)
     slope = style.Line("#999999", ":", 0.9, "in proportion to the size")
     ax.legend(handles=[style.handle(look) for _, look in looks] + [style.handle(slope)], frameon=False, fontsize=8.5)
     return ax
-
-
-def _axes(ax: Axes | None) -> Axes:
-    if ax is not None:
-        return ax
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(6.6, 4.4), layout="constrained")
-    FigureCanvasAgg(figure)
-    axes: Axes = figure.add_subplot()
-    return axes
-
-
-def _finish(ax: Axes, title: str) -> None:
-    ax.set_xlabel("size of the blocks, over that of the largest", fontsize=9)
-    ax.set_title(title, loc="left", fontsize=11, fontweight="bold", color=style.INK)
-    ax.grid(color="#F0ECE4", lw=0.6)
-    ax.set_axisbelow(True)
-    ax.tick_params(labelsize=8)
-    for side in ("top", "right"):
-        ax.spines[side].set_visible(False)

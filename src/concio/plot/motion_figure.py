@@ -14,46 +14,22 @@ from concio.arguments import strict
 from concio.display import number
 from concio.errors import InputError
 from concio.plot import style
+from concio.plot.diagram import diagram_axes, dress_diagram, figure_of
 from concio.post.frames import Frame, box_of, frames, positions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 Array = np.ndarray
 
 FILMS = (".gif", ".mp4")
 """Films that can be written."""
 
+WIDE = (7.6, 4.4)
+"""Width and height of a diagram [in]."""
+
 BLOCKS = 4
 """Blocks whose rotations are drawn: those that turn most."""
-
-
-def _axes(ax: Axes | None, size: tuple[float, float] = (7.6, 4.4)) -> Axes:
-    if ax is not None:
-        return ax
-    return _figure(size).add_subplot()
-
-
-def _figure(size: tuple[float, float]) -> Figure:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=size, layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure
-
-
-def _dress(ax: Axes, title: str, x: str, y: str) -> Axes:
-    ax.set_xlabel(x, fontsize=9)
-    ax.set_ylabel(y, fontsize=9)
-    ax.tick_params(labelsize=8)
-    for side in ("top", "right"):
-        ax.spines[side].set_visible(False)
-    ax.grid(color="#E8E4DC", lw=0.6)
-    ax.set_axisbelow(True)
-    ax.set_title(title, loc="left", fontsize=11, fontweight="bold", color=style.INK)
-    return ax
 
 
 @strict
@@ -67,7 +43,7 @@ def plot_capacity(result: PushResult, ax: Axes | None = None, *, title: str = "C
         Where to draw; default a new figure.
     title : str
     """
-    ax = _axes(ax)
+    ax = diagram_axes(ax, WIDE)
     d, load = result.displacement, result.multiplier
     ax.plot(d, load, color=style.INK, lw=1.5)
     top = result.peak_step
@@ -81,7 +57,7 @@ def plot_capacity(result: PushResult, ax: Axes | None = None, *, title: str = "C
     ax.set_ylim(bottom=min(0.0, float(load.min())))
     ax.set_xlim(left=0.0)
     where = "mean displacement of the load" if result.control is None else f"displacement of '{result.control.body}'"
-    return _dress(ax, title, f"{where} [m]", "multiplier [-]")
+    return dress_diagram(ax, title, f"{where} [m]", "multiplier [-]")
 
 
 @strict
@@ -95,7 +71,7 @@ def plot_history(result: DynamicsResult, ax: Axes | None = None, *, title: str =
         Where to draw; default a new figure.
     title : str
     """
-    ax = _axes(ax)
+    ax = diagram_axes(ax, WIDE)
     turned = np.rad2deg(result.shots.rotation - result.shots.rotation[0])
     most = np.argsort(-np.abs(turned).max(axis=0), kind="stable")[:BLOCKS]
     for b in most.tolist():
@@ -103,7 +79,7 @@ def plot_history(result: DynamicsResult, ax: Axes | None = None, *, title: str =
             ax.plot(result.shots.time, turned[:, b], lw=1.2, label=result.model.bodies[b].name)
     if ax.lines:
         ax.legend(frameon=False, fontsize=8.5)
-    return _dress(ax, title, "time [s]", "rotation, anticlockwise [degrees]")
+    return dress_diagram(ax, title, "time [s]", "rotation, anticlockwise [degrees]")
 
 
 @strict
@@ -117,13 +93,13 @@ def plot_ground(result: DynamicsResult, ax: Axes | None = None, *, title: str = 
         Where to draw; default a new figure.
     title : str
     """
-    ax = _axes(ax, (7.6, 2.6))
+    ax = diagram_axes(ax, (7.6, 2.6))
     for k, word in enumerate(("horizontal", "vertical")):
         if result.ground[:, k].any():
             ax.plot(result.ground_time, result.ground[:, k] / result.gravity, lw=0.9, label=word)
     if ax.lines:
         ax.legend(frameon=False, fontsize=8.5)
-    return _dress(ax, title, "time [s]", "acceleration [g]")
+    return dress_diagram(ax, title, "time [s]", "acceleration [g]")
 
 
 @strict
@@ -137,7 +113,7 @@ def plot_energy(result: DynamicsResult, ax: Axes | None = None, *, title: str = 
         Where to draw; default a new figure.
     title : str
     """
-    ax = _axes(ax)
+    ax = diagram_axes(ax, WIDE)
     energy, time = result.energy, result.shots.time
     for name in NAMES:
         values = energy[name] - (energy[name][0] if name == "potential" else 0.0)
@@ -145,7 +121,7 @@ def plot_energy(result: DynamicsResult, ax: Axes | None = None, *, title: str = 
             ax.plot(time, values, lw=1.2, ls="--" if name == "input" else "-", label=name)
     if ax.lines:
         ax.legend(frameon=False, fontsize=8.5)
-    return _dress(ax, title, "time [s]", "energy [kN m]")
+    return dress_diagram(ax, title, "time [s]", "energy [kN m]")
 
 
 @strict
@@ -160,7 +136,7 @@ def plot_frame(result: PushResult | DynamicsResult, number: int = -1, ax: Axes |
     ax : Axes, optional
         Where to draw; default a new figure.
     """
-    ax = _axes(ax, (6.4, 5.2))
+    ax = diagram_axes(ax, (6.4, 5.2))
     at, words = positions(result)
     k = range(len(at))[number]
     standing = result.configuration(k)
@@ -223,7 +199,7 @@ def write_film(result: PushResult | DynamicsResult, path: Path | str, *, fps: in
     pictures = frames(result, most)
     box = box_of(pictures, result.model)
     wide, high = box[1] - box[0]
-    figure = _figure((6.4, float(np.clip(6.4 * high / wide + 0.8, 2.4, 8.0))))
+    figure = figure_of((6.4, float(np.clip(6.4 * high / wide + 0.8, 2.4, 8.0))))
     figure.set_layout_engine("none")
     ax = figure.add_axes((0.09, 0.09, 0.88, 0.8))
 

@@ -10,6 +10,7 @@ import numpy as np
 from concio.arguments import strict
 from concio.display import number
 from concio.plot import style
+from concio.plot.diagram import diagram_axes, dress_diagram
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -96,13 +97,7 @@ def plot_path(
     -------
     Axes
     """
-    if ax is None:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-
-        figure = Figure(figsize=(7.6, 4.8), layout="constrained")
-        FigureCanvasAgg(figure)
-        ax = figure.add_subplot()
+    ax = diagram_axes(ax, (7.6, 4.8))
     load, motion = np.asarray(curve.parameter, dtype=float), np.asarray(curve.control, dtype=float)
     ax.plot(motion, load, color=style.INK, lw=1.4, zorder=2)
     handles: list[Any] = []
@@ -127,14 +122,7 @@ def plot_path(
     if control_label.endswith("[m]") and np.abs(motion).max(initial=0.0) < SMALL:
         control_label = control_label.removesuffix("[m]") + "[mm]"
         ax.xaxis.set_major_formatter(lambda value, _: f"{1e3 * value:g}")
-    ax.set_xlabel(control_label, fontsize=9)
-    ax.set_ylabel(parameter_label, fontsize=9)
-    ax.tick_params(labelsize=8)
-    for side in ("top", "right"):
-        ax.spines[side].set_visible(False)
-    ax.grid(color="#E8E4DC", lw=0.6)
-    ax.set_axisbelow(True)
-    ax.set_title(title, loc="left", fontsize=11, fontweight="bold", color=style.INK)
+    dress_diagram(ax, title, control_label, parameter_label)
     if handles:
         ax.legend(handles=handles, frameon=False, fontsize=8.5, loc="lower right")
     return ax

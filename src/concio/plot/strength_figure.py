@@ -13,6 +13,7 @@ from concio.analysis.cells.tensors import stress_at
 from concio.arguments import strict
 from concio.contact.periodic import COMPONENTS
 from concio.plot import style
+from concio.plot.diagram import diagram_axes, plain_frame
 from concio.plot.moduli_figure import dress_polar, polar_axes
 
 if TYPE_CHECKING:
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
     from concio.analysis.cells.strength import StrengthDomain
 
 Array = np.ndarray
+
+SQUARE = (6.8, 6.2)
+"""Width and height of a new figure [in]."""
 
 DASHES = ("-", (0, (5, 2)), (0, (1.2, 1.2)), (0, (6, 1.5, 1.2, 1.5)), (0, (3, 1.2)))
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")
@@ -66,7 +70,7 @@ def plot_sections(
     third = 3 - a - b
     faces = domain.faces
     reach = typical(faces, domain.base) if reach is None else reach
-    ax = _square(ax)
+    ax = diagram_axes(ax, SQUARE)
     handles: list[Any] = []
     for k, value in enumerate(others):
         at = np.zeros(3)
@@ -123,7 +127,7 @@ def plot_biaxial(
     """
     faces = domain.faces
     reach = typical(faces, domain.base) if reach is None else reach
-    ax = _square(ax)
+    ax = diagram_axes(ax, SQUARE)
     handles = []
     for k, angle in enumerate(angles):
         first, second = stress_at(1.0, 0.0, np.deg2rad(angle)), stress_at(0.0, 1.0, np.deg2rad(angle))
@@ -244,29 +248,13 @@ def _exact(domain: StrengthDomain) -> str:
     )
 
 
-def _square(ax: Axes | None) -> Axes:
-    if ax is not None:
-        return ax
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(6.8, 6.2), layout="constrained")
-    FigureCanvasAgg(figure)
-    axes: Axes = figure.add_subplot()
-    return axes
-
-
 def _frame(ax: Axes, across: str, up: str) -> None:
     ax.axhline(0.0, color="#BBBBBB", lw=0.7, zorder=0.5)
     ax.axvline(0.0, color="#BBBBBB", lw=0.7, zorder=0.5)
     ax.set_aspect("equal", adjustable="datalim")
     ax.set_xlabel(across, fontsize=9)
     ax.set_ylabel(up, fontsize=9)
-    ax.tick_params(labelsize=8)
-    ax.grid(color="#F0ECE4", lw=0.6)
-    ax.set_axisbelow(True)
-    for side in ("top", "right"):
-        ax.spines[side].set_visible(False)
+    plain_frame(ax)
 
 
 def _title(ax: Axes, title: str, note: str) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from concio.display import number
 from concio.errors import InputError
 from concio.plot import style
+from concio.plot.diagram import diagram_axes, dress_diagram
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
     from concio.studies.study_result import Event, StudyResult
 
 Array = np.ndarray
+SIZE = (6.4, 4.2)
+"""Width and height of a new figure [in]."""
+
 JITTER = 0.04
 """Height by which points of yes and no are spread, so that they can be told apart."""
 
@@ -41,7 +45,7 @@ class StudyPlots:
         variable, output : str
         ax : Axes, optional
         """
-        ax = _axes(ax)
+        ax = diagram_axes(ax, SIZE)
         x, y = self.study.values(variable), self.study.values(output)
         known = np.isfinite(y)
         ax.plot(x[known], y[known], ls="none", marker="o", ms=3.2, mfc=style.COMPRESSION.colour, mec="none", alpha=0.6)
@@ -53,18 +57,18 @@ class StudyPlots:
         chosen = next((v for v in self.study.sample.variables if v.name == variable), None)
         if chosen is not None and chosen.distribution == "choice":
             ax.set_xticks(range(len(chosen.values)), [str(v) for v in chosen.values])
-        return _dress(ax, f"{output} over {variable}", self._label(variable), self._label(output))
+        return dress_diagram(ax, f"{output} over {variable}", self._label(variable), self._label(output))
 
     def histogram(self, output: str, ax: Axes | None = None, *, threshold: float | None = None) -> Axes:
         """Draw how the values of an output are distributed, with a threshold."""
-        ax = _axes(ax)
+        ax = diagram_axes(ax, SIZE)
         values = self.study.values(output)
         known = values[np.isfinite(values)]
         if len(known):
             ax.hist(known, bins="auto" if np.ptp(known) > 0 else 1, color=style.BLOCK, edgecolor=style.EDGE)
         if threshold is not None:
             ax.axvline(threshold, color=style.TENSION.colour, ls="--", lw=1.2)
-        return _dress(ax, f"{output}, {len(known)} runs", self._label(output), "runs")
+        return dress_diagram(ax, f"{output}, {len(known)} runs", self._label(output), "runs")
 
     def tornado(self, output: str, ax: Axes | None = None) -> Axes:
         """Draw what matters for an output, the most important variable on top.
@@ -72,7 +76,7 @@ class StudyPlots:
         Of a ``one-at-a-time`` sample: the output at the 5 and 95 per cent quantiles of each variable, others at their
         median. Of other samples: Sobol indices or rank correlations, as :meth:`StudyResult.sensitivity` finds them.
         """
-        ax = _axes(ax)
+        ax = diagram_axes(ax, SIZE)
         if self.study.sample.design == "one-at-a-time":
             return self._swings(output, ax)
         found = self.study.sensitivity(output)
@@ -92,7 +96,7 @@ class StudyPlots:
             ax.set_xlim(-1.05, 1.05)
             word = "rank correlation (Spearman)"
         ax.set_yticks(places, names)
-        return _dress(ax, f"What matters for {output}", word, "")
+        return dress_diagram(ax, f"What matters for {output}", word, "")
 
     def _swings(self, output: str, ax: Axes) -> Axes:
         values = self.study.values(output)
@@ -109,7 +113,7 @@ class StudyPlots:
         ax.axvline(float(middle), color=style.INK, lw=0.8)
         ax.set_yticks(places, names[order].tolist())
         ax.legend(frameon=False, fontsize=8, loc="lower right")
-        return _dress(ax, f"What matters for {output}", self._label(output), "")
+        return dress_diagram(ax, f"What matters for {output}", self._label(output), "")
 
     def fragility(
         self,
@@ -122,7 +126,7 @@ class StudyPlots:
         confidence: float = 0.95,
     ) -> Axes:
         """Draw the fragility curve of an event over a variable, its band, and the runs it was fitted to."""
-        ax = _axes(ax)
+        ax = diagram_axes(ax, SIZE)
         curve = self.study.fragility(intensity, event, below=below, above=above)
         x, y = self.study.values(intensity), self.study.event(event, below=below, above=above)
         at = np.linspace(max(float(x.min()), 1e-9 * float(x.max())), float(x.max()), 200)
@@ -134,36 +138,13 @@ class StudyPlots:
         spread = JITTER * (np.arange(len(x)) * 0.618034 % 1.0)
         ax.plot(x, np.where(y > 0, y - spread, y + spread), ls="none", marker="|", ms=4, color=style.INK, alpha=0.5)
         ax.legend(frameon=False, fontsize=8, loc="center right")
-        return _dress(ax, "Fragility", self._label(intensity), "probability")
+        return dress_diagram(ax, "Fragility", self._label(intensity), "probability")
 
     def _label(self, name: str) -> str:
         units = {v.name: v.unit for v in self.study.sample.variables}
         units |= {o.name: o.unit for o in self.study.outputs}
         unit = units.get(name, "")
         return f"{name} [{unit}]" if unit not in ("", "-") else name
-
-
-def _axes(ax: Axes | None) -> Axes:
-    if ax is not None:
-        return ax
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(6.4, 4.2), layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure.add_subplot()
-
-
-def _dress(ax: Axes, title: str, across: str, up: str) -> Axes:
-    ax.set_title(title, loc="left", fontsize=11, fontweight="bold", color=style.INK)
-    ax.set_xlabel(across, fontsize=9)
-    ax.set_ylabel(up, fontsize=9)
-    ax.tick_params(labelsize=8)
-    for side in ("top", "right"):
-        ax.spines[side].set_visible(False)
-    ax.grid(color="#E8E4DC", lw=0.6)
-    ax.set_axisbelow(True)
-    return ax
 
 
 def suitable(study: StudyResult) -> list[tuple[str, Axes, str]]:

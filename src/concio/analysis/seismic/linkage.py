@@ -103,7 +103,7 @@ class Linkage:
     def size(self) -> float:
         """Largest distance of a joint or a force from the first centre [m]."""
         points = [j.point for j in self.mechanics.joints] + [f.point for f in (*self.dead, *self.push)]
-        return float(np.abs(np.array(points) - self.mechanics.blocks[0].centre).max()) or 1.0
+        return self.mechanics.reach(points)
 
     @property
     def unknowns(self) -> int:

@@ -11,7 +11,7 @@ length N/(f w): there is its hinge, set back from the edge by N/(2 f w).
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -133,6 +133,10 @@ class Mechanics:
     def slides(self) -> bool:
         """Whether a joint with friction slides."""
         return any(j.kind == "roller" and j.friction > 0 for j in self.joints)
+
+    def reach(self, points: Sequence[Array]) -> float:
+        """Return the largest distance along an axis of points (d,) from the first centre, 1 where it is zero [m]."""
+        return float(np.abs(np.array(points) - self.blocks[0].centre).max()) or 1.0
 
     @property
     def level(self) -> float:

@@ -106,8 +106,7 @@ class Sequence:
     @cached_property
     def size(self) -> float:
         """Largest distance of a contact or a force from the first centre [m]."""
-        points = [*self.contacts.point, *(f.point for f in (*self.dead, *self.push))]
-        return float(np.abs(np.array(points) - self.mechanics.blocks[0].centre).max()) or 1.0
+        return self.mechanics.reach([*self.contacts.point, *(f.point for f in (*self.dead, *self.push))])
 
     def controlled(self, q: Placed) -> float:
         """Return the displacement of the control point [m]."""
