@@ -219,6 +219,11 @@ def test_rubble_is_repeatable_fills_the_wall_and_has_no_slivers():
         ),
         ("wall", {"length": 1, "height": 1, "openings": [{"x": 0.5}]}, "y is missing"),
         ("wall", {"length": 1e6, "height": 1e6}, "blocks are more than 500,000"),
+        (
+            "arch_on_piers",
+            {"span": 2e3, "ring": 0.3, "voussoirs": 25, "pier_width": 1, "pier_height": 3, "pier_courses": 6},
+            "blocks are more than 500,000",
+        ),
         ("wall", {"length": 1, "height": 1, "block": "wood"}, "is not a material"),
         ("wall", {"length": 1, "height": 1, "unit_weight": 0, "horizontal": 0.1}, "unit_weight is zero"),
         ("wall", {"length": "3 kN", "height": 1}, "is not a length"),

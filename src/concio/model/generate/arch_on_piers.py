@@ -16,7 +16,7 @@ import shapely.ops
 from concio.arguments import strict_with
 from concio.errors import InputError
 from concio.model.generate.arches import ring_outlines
-from concio.model.generate.arguments import Common, checked, choice, count, finite, not_negative, positive
+from concio.model.generate.arguments import Common, check_blocks, checked, choice, count, finite, not_negative, positive
 from concio.model.generate.masonry import Piece, assemble, numbered, rectangle
 from concio.model.model import Load, Model
 
@@ -103,6 +103,8 @@ def arch_on_piers(
         solid = shapely.union_all([shapely.Polygon(o) for o in arch])
         foot = float(joints[0][1, 1]) + h
         crown = float(solid.bounds[3])
+        rows = (crown - foot + over) / high
+        check_blocks(where, rows * (s + 2 * b) / long, "lengths are in m")
         levels = _levels(foot, crown, over, high)
         pieces += _spandrels(solid, levels, s / 2 + b, long)
         top = float(levels[-1])
