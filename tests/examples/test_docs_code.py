@@ -33,7 +33,7 @@ def named(page: Path) -> object:
     return pytest.param(page, id=name, marks=[pytest.mark.long] * (name in LONG))
 
 
-@pytest.mark.parametrize("page", map(named, pages()))
+@pytest.mark.parametrize("page", list(map(named, pages())))
 def test_page(page, tmp_path, monkeypatch):
     mpl.use("Agg")
     monkeypatch.chdir(tmp_path)
