@@ -72,7 +72,7 @@ newest:
 	$(MAKE) test-all PYTHON=$(NEWEST) VENV=$(VENV)-newest
 
 docs: $(VENV)/.installed-docs
-	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html
+	$(BIN)/sphinx-build -E -W --keep-going -b html docs docs/_build/html
 
 # Runs every validation case and every gallery example again and rewrites their pages in docs/.
 .PHONY: book
