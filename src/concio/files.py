@@ -50,7 +50,9 @@ def check_regular(path: Path, *, hint: str | None = None, pipes: bool = False) -
     return found.st_size
 
 
-def read_text(path: Path, *, hint: str | None = None, pipes: bool = False, too_large: str | None = None) -> str:
+def read_text(
+    path: Path, *, hint: str | None = None, pipes: bool = False, too_large: str | None = None, latin: bool = False
+) -> str:
     """Return a text file in UTF-8, without a byte order mark, with lines that end in a line feed.
 
     Parameters
@@ -62,6 +64,8 @@ def read_text(path: Path, *, hint: str | None = None, pipes: bool = False, too_l
         Whether a pipe will do.
     too_large : str, optional
         What to do where it is larger than :data:`LARGEST`.
+    latin : bool
+        Whether a text that is not UTF-8 is taken for Latin-1, in which every byte is a letter.
 
     Raises
     ------
@@ -82,6 +86,8 @@ def read_text(path: Path, *, hint: str | None = None, pipes: bool = False, too_l
     try:
         return raw.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
+        if latin:
+            return raw.decode("latin-1").replace("\r\n", "\n")
         line = raw[: error.start].count(b"\n") + 1
         msg = f"byte {error.start} (line {line}) is not UTF-8"
         raise InputError(msg, where=where, hint="save the file with the encoding UTF-8") from None

@@ -85,6 +85,73 @@ def test_binary_stl_and_a_folder_of_them(tmp_path: Path) -> None:
         concio.model_from_solids(folder, block="rigid")
 
 
+PLY_HEAD = """ply
+format {} 1.0
+comment by hand
+element vertex 16
+property float x
+property float y
+property double z
+property uchar red
+element edge 1
+property int vertex1
+element face 12
+property list uchar int vertex_indices
+property list uchar float texcoord
+end_header
+"""
+STACK = np.vstack([CUBE, CUBE + np.array([0, 0, 1])])
+TWO = [*BOX, *(tuple(v + 8 for v in face) for face in BOX)]
+
+
+def ply_text() -> str:
+    rows = [f"{x} {y} {z} 7" for x, y, z in STACK] + ["3"] + [f"4 {' '.join(map(str, f))} 2 0.5 1" for f in TWO]
+    return PLY_HEAD.format("ascii") + "\n".join(rows) + "\n"
+
+
+def ply_bytes(order: str) -> bytes:
+    sign = "<" if order == "little" else ">"
+    raw = PLY_HEAD.format(f"binary_{order}_endian").encode()
+    raw += b"".join(struct.pack(f"{sign}ffdB", *p, 7) for p in STACK) + struct.pack(f"{sign}i", 3)
+    return raw + b"".join(struct.pack(f"{sign}B4iB2f", 4, *f, 2, 0.5, 1) for f in TWO)
+
+
+def off_text(word: str = "OFF\n16 12 0") -> str:
+    rows = [f"{x} {y} {z} 9" for x, y, z in STACK] + [f"4 {' '.join(map(str, f))} 0.5 0.5 0.5" for f in TWO]
+    return f"{word}\n# a comment\n" + "\n".join(rows)
+
+
+SURFACES = {
+    "t.ply": ply_text().encode(), "l.ply": ply_bytes("little"), "b.ply": ply_bytes("big"),
+    "crlf.ply": ply_text().replace("\n", "\r\n").encode(), "o.off": off_text().encode(),
+    "c.off": off_text("COFF 16 12 24").encode(),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SURFACES)
+def test_ply_and_off(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_bytes(SURFACES[name])
+    model = concio.model_from_solids(tmp_path / name, block="rigid")
+    assert [(b.name, b.volume, len(b.faces)) for b in model.polyhedra] == [
+        (f"{name[:-4]}{end}", pytest.approx(1.0), 6) for end in ("", "-2")
+    ]
+    assert [p.area for p in detect(model).patches] == [pytest.approx(1.0)]
+    (tmp_path / name).write_bytes(SURFACES[name][: -60 if name[-1] == "y" else -150])
+    with pytest.raises(InputError, match=r"the file ends before|is no row of 'face'"):
+        concio.model_from_solids(tmp_path / name, block="rigid")
+
+
+def test_another_program_writes_what_is_read(tmp_path: Path) -> None:
+    mesh = trimesh.creation.icosphere(subdivisions=1)
+    for name, how in (("a.ply", "ascii"), ("b.ply", "binary"), ("c.off", None)):
+        mesh.export(tmp_path / name, **({"encoding": how} if how else {}))
+    model = concio.model_from_solids(tmp_path, block="rigid", layers={"a": "ignore"})
+    assert {b.name: b.volume for b in model.bodies} == {k: pytest.approx(mesh.volume, rel=1e-6) for k in "bc"}
+    (tmp_path / "none").mkdir()
+    with pytest.raises(InputError, match=r"holds no file that ends in \.stl"):
+        concio.model_from_solids(tmp_path / "none", block="rigid")
+
+
 def test_blocks_in_one_surface_are_parted(tmp_path: Path) -> None:
     text = obj_of(np.vstack([CUBE, CUBE + np.array([0, 0, 1])]), [*BOX, *(tuple(v + 8 for v in f) for f in BOX)])
     (tmp_path / "two.obj").write_text(text)

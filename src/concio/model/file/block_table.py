@@ -80,7 +80,7 @@ def read_blocks(path: str | Path) -> tuple[Body | Polyhedron, ...]:
     elif path.suffix.lower() == ".csv":
         rows, factor = _csv_rows(text, str(path)), 1.0
     else:
-        solid = path.suffix.lower() in (".obj", ".stl", ".3dm")
+        solid = path.suffix.lower() in (".obj", ".stl", ".ply", ".off", ".3dm", ".ifc")
         msg = f"a table of blocks ends in .json or .csv, not in '{path.suffix}'"
         hint = f"blocks in space: solids_file = '{path.name}'" if solid else ""
         raise InputError(msg, where=str(path), hint=hint)

@@ -48,7 +48,7 @@ class FileTable(Table):
     blocks_file: Name | None = None
     periods: tuple[Point, Point] | None = Field(None, description="the blocks are a cell that these vectors repeat")
     drawing: DrawingTable | None = None
-    solids_file: Name | None = Field(None, description="blocks in space: OBJ, STL, 3dm, DXF, COMPAS JSON")
+    solids_file: Name | None = Field(None, description="blocks: OBJ, STL, PLY, OFF, IFC, 3dm, DXF, COMPAS JSON")
     solids: SolidsTable | None = None
     extrusion: ExtrusionTable | None = None
     supports: list[SupportTable] = Field(default_factory=list)

@@ -62,7 +62,7 @@ def load(path: str | os.PathLike[str]) -> Model:
 
 def read_tables(path: Path) -> dict[str, Any]:
     """Return the tables of a TOML file as they stand in it; raises as :func:`load`."""
-    named = {".dxf": "blocks_file", **dict.fromkeys((".obj", ".stl", ".3dm"), "solids_file")}
+    named = {".dxf": "blocks_file", **dict.fromkeys((".obj", ".stl", ".ply", ".off", ".3dm", ".ifc"), "solids_file")}
     key = named.get(path.suffix.lower())
     if key is not None:
         msg = f"this is a drawing of blocks ({path.suffix}), not a model file"

@@ -54,12 +54,16 @@ def _shapes(entities: list[Any]) -> list[Shape]:
         kind, layer = entity.dxftype(), str(entity.dxf.get("layer", "0"))
         if kind == "3DFACE":
             corners = [tuple(v) for v in entity.wcs_vertices()]
-            loose.setdefault(layer, []).append([c for k, c in enumerate(corners) if c != corners[k - 1]])
+            loop = [c for k, c in enumerate(corners) if c != corners[k - 1]]
+            loose.setdefault(layer, []).extend([loop] if len(loop) > 2 else [])
         elif kind == "MESH" or (kind == "POLYLINE" and entity.is_poly_face_mesh):
             mesh = MeshBuilder.from_mesh(entity) if kind == "MESH" else MeshBuilder.from_polyface(entity)
             points = np.array([tuple(v) for v in mesh.vertices], dtype=float).reshape(-1, 3)
-            found.append(Shape(f"h{entity.dxf.get('handle', '')}", layer, points, [list(f) for f in mesh.faces]))
+            faces = [list(f) for f in mesh.faces if len(f) > 2]
+            found.append(Shape(f"h{entity.dxf.get('handle', '')}", layer, points, faces))
     for layer, loops in loose.items():
+        if not loops:
+            continue
         points = np.array([c for loop in loops for c in loop], dtype=float)
         ends = np.cumsum([0] + [len(loop) for loop in loops]).tolist()
         found.append(Shape(layer, layer, points, [list(range(p, q)) for p, q in pairwise(ends)]))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from fnmatch import fnmatchcase
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Literal, Unpack
 
@@ -21,9 +21,12 @@ from concio.model.model import Model
 from concio.model.polyhedron_check import MOST_VERTICES, polyhedron_faults
 from concio.model.solids.compas import read_compas
 from concio.model.solids.dxf3d import read_dxf_solids
+from concio.model.solids.ifc import read_ifc
 from concio.model.solids.obj import read_obj
+from concio.model.solids.off import read_off
+from concio.model.solids.ply import read_ply
 from concio.model.solids.rhino import read_rhino
-from concio.model.solids.shapes import Scene, Shape
+from concio.model.solids.shapes import FIXED, Scene, Shape
 from concio.model.solids.stl import read_stl
 from concio.model.surfaces import merged_faces, welded
 from concio.model.topology import Loop, topology
@@ -32,11 +35,12 @@ from concio.units import quantity
 Array = np.ndarray
 
 READERS: Mapping[str, Callable[[Path], Scene]] = {
-    ".obj": read_obj, ".stl": read_stl, ".json": read_compas, ".dxf": read_dxf_solids, ".3dm": read_rhino,
+    ".obj": read_obj, ".stl": read_stl, ".ply": read_ply, ".off": read_off, ".json": read_compas,
+    ".dxf": read_dxf_solids, ".3dm": read_rhino, ".ifc": read_ifc,
 }  # fmt: skip
-"""Formats by the end of a name; a folder is read as one block for each of its STL or OBJ files."""
-FIXED = ("fixed", "ground", "support", "supports", "abutment", "abutments", "obstacle", "concio_fixed")
-"""Layers and names that mean fixed bodies, in small letters."""
+"""Formats by the end of a name."""
+IN_FOLDERS = (".stl", ".obj", ".ply", ".off")
+"""A folder is read as one block, or more, for each of its files of these formats."""
 Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """Turns y into z."""
 LARGE, SMALL = 50.0, 1e-3
@@ -63,7 +67,8 @@ def model_from_solids(
     Parameters
     ----------
     path : str or Path
-        ``.obj``, ``.stl``, ``.3dm``, ``.dxf``, COMPAS ``.json``, or a folder of OBJ or STL files.
+        ``.obj``, ``.stl``, ``.ply``, ``.off``, ``.ifc``, ``.3dm``, ``.dxf``, COMPAS ``.json``, or a folder of files of
+        the first four.
     materials : mapping of name to material, optional
         A block takes the one that ``layers`` gives, else the one of its layer's own name, else ``block``.
     layers : mapping of str to str, optional
@@ -110,15 +115,15 @@ def model_from_solids(
         scene = replace(scene, shapes=tuple(replace(s, points=s.points @ Y_UP.T) for s in scene.shapes))
     metres = scene.metres or 1.0 if unit is None else quantity(f"1 {unit}", "length", where=f"{where}, unit")
     meanings, table = dict(layers or {}), {"block": options.base.block, **(materials or {})}
-    words = [w for s in scene.shapes for w in (s.layer, s.name) if w]
     for word, meaning in meanings.items():
-        if not any(fnmatchcase(w, word) for w in words):
+        if not any(s.answers(word) for s in scene.shapes):
             msg = f"there is no layer or block '{word}'"
-            raise InputError(msg, where=where, hint=closest(word, dict.fromkeys(words)))
+            known = dict.fromkeys(w for s in scene.shapes for w in s.words)
+            raise InputError(msg, where=where, hint=closest(word, known))
         if meaning not in ("fixed", "ignore") and meaning not in table:
             msg = f"layer '{word}' is to be '{meaning}', which is no material"
             raise InputError(msg, where=where, hint=closest(meaning, ("fixed", "ignore", *table)))
-    pieces, obstacles, faults, notes, ignored = [], [], [], [], []
+    pieces, obstacles, faults, notes, ignored = [], [], [], [], list(scene.left_out)
     names: dict[str, int] = {}
     parts = [part for shape in scene.shapes for part in _parted(shape, metres, within)]
     _check_unit([p for _, p, _ in parts], scene, unit, metres, where)
@@ -128,12 +133,16 @@ def model_from_solids(
         if meaning == "ignore":
             ignored.append(f"'{name}' was left out")
             continue
+        label = f"block '{name}'" + (f" ({shape.source})" if shape.source else "")
+        if shape.unreadable:
+            faults.append((f"{label}: {shape.unreadable[0]}", shape.unreadable[1]))
+            continue
         points, faces, turned = _outward(points, faces) if within else (points, faces, False)
         notes += [f"'{name}': its faces were turned outwards"] * turned
         sound = len(points) <= MOST_VERTICES and np.isfinite(points).all() and len(faces) > 3
         surface = merged_faces(points, faces) if sound else (points, faces, ())
         found = polyhedron_faults(*surface)
-        faults += [(f"block '{name}': {fault.sentence}", fault.hint) for fault in found]
+        faults += [(f"{label}: {fault.sentence}", fault.hint) for fault in found]
         if found:
             continue
         piece = SolidPiece(name, surface, layer=shape.layer, material=meaning)
@@ -159,7 +168,7 @@ def model_from_solids(
 
 
 def read_scene(path: Path) -> Scene:
-    """Return what a file, or a folder of OBJ or STL files, holds.
+    """Return what a file, or a folder of files, holds.
 
     Raises
     ------
@@ -167,7 +176,10 @@ def read_scene(path: Path) -> Scene:
         It cannot be read, or its format is not known.
     """
     if path.is_dir():
-        files = sorted(p for p in path.iterdir() if p.suffix.lower() in (".stl", ".obj"))
+        files = sorted(p for p in path.iterdir() if p.suffix.lower() in IN_FOLDERS)
+        if not files:
+            msg = "the folder holds no file that ends in " + ", ".join(IN_FOLDERS)
+            raise InputError(msg, where=str(path), hint="give the folder of the files, one for each block")
         scenes = [(p, READERS[p.suffix.lower()](p)) for p in files]
         return Scene(tuple(
             replace(s, name=p.stem if len(scene.shapes) == 1 else f"{p.stem}-{s.name}") for p, scene in scenes
@@ -175,8 +187,10 @@ def read_scene(path: Path) -> Scene:
         ))  # fmt: skip
     reader = READERS.get(path.suffix.lower())
     if reader is None:
-        msg = f"'{path.suffix}' is no format of solids"
-        raise InputError(msg, where=str(path), hint="one of " + ", ".join(READERS) + ", or a folder of .stl or .obj")
+        msg = f"'{path.suffix}' is no format of solids that is read"
+        packed = path.suffix.lower() in (".ifczip", ".ifcxml", ".ifcjson")
+        hint = "save it as .ifc (STEP physical file)" if packed else "one of " + ", ".join(READERS) + ", or a folder"
+        raise InputError(msg, where=str(path), hint=hint)
     return reader(path)
 
 
@@ -195,18 +209,24 @@ def _parted(shape: Shape, metres: float, within: float) -> list[tuple[Shape, Arr
 
 def _connected(points: Array, faces: tuple[Loop, ...]) -> list[tuple[Array, tuple[Loop, ...]]]:
     """Return the parts of a surface that share no vertex."""
-    if not faces:
-        return [(points, faces)]
-    rows = np.repeat(np.arange(len(faces)), [len(f) for f in faces])
-    columns = np.concatenate([np.array(f) for f in faces])
-    meets = sp.coo_array((np.ones(len(rows)), (rows, columns)), shape=(len(faces), len(points))).tocsr()
-    count, part = connected_components(meets @ meets.T, directed=False)
+    return [(points[list(used)], own) for used, own in _parts_of(faces)] if faces else [(points, faces)]
+
+
+@lru_cache(maxsize=256)
+def _parts_of(faces: tuple[Loop, ...]) -> list[tuple[tuple[int, ...], tuple[Loop, ...]]]:
+    """Return the vertices of each part, and its faces numbered by them: once for all blocks of one sort."""
+    sides = np.concatenate([np.array(f) for f in faces])
+    first = np.repeat([f[0] for f in faces], [len(f) for f in faces])
+    count = int(sides.max()) + 1
+    _, part = connected_components(sp.coo_array((np.ones(len(sides)), (first, sides)), shape=(count, count)))
+    own: dict[int, list[Loop]] = {}
+    for face in faces:
+        own.setdefault(int(part[face[0]]), []).append(face)
     found = []
-    for k in range(count):
-        own = [faces[f] for f in np.flatnonzero(part == k)]
-        used = np.unique(np.concatenate([np.array(f) for f in own]))
-        number = dict(zip(used.tolist(), range(len(used)), strict=True))
-        found.append((points[used], tuple(tuple(number[v] for v in f) for f in own)))
+    for loops in own.values():
+        used = sorted({v for loop in loops for v in loop})
+        number = {v: k for k, v in enumerate(used)}
+        found.append((tuple(used), tuple(tuple(number[v] for v in loop) for loop in loops)))
     return found
 
 
@@ -254,7 +274,7 @@ def _check_unit(blocks: Sequence[Array], scene: Scene, unit: str | None, metres:
 
 
 def _meaning(shape: Shape, meanings: Mapping[str, str], table: Mapping[str, Any]) -> str:
-    own = [m for word, m in meanings.items() if fnmatchcase(shape.layer, word) or fnmatchcase(shape.name, word)]
+    own = [meaning for word, meaning in meanings.items() if shape.answers(word)]
     if own:
         return own[-1]
     if shape.fixed or any(w.lower().rsplit("::", 1)[-1] in FIXED for w in (shape.layer, shape.name)):
