@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import argparse
 import ast
-import copy
 import os
 import random
 import shutil
@@ -24,10 +23,12 @@ import sys
 import tempfile
 import time
 import tomllib
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache
+from itertools import accumulate
 from pathlib import Path
 from queue import SimpleQueue
 
@@ -52,8 +53,8 @@ class Mutant:
     line : int
     old, new : str
         The smallest expression that changes.
-    text : str
-        The whole file with the change.
+    start : int
+        Where ``old`` begins in the file, in bytes.
     tests : tuple of str
         What should see it; those of its room where there are none.
     """
@@ -62,13 +63,19 @@ class Mutant:
     line: int
     old: str
     new: str
-    text: str
+    start: int
     tests: tuple[str, ...] = ()
 
     @property
     def key(self) -> str:
         """What names a mutant where lines move."""
         return f"{self.path}: {self.old} -> {self.new}"
+
+    def put_in(self, text: str) -> str:
+        """Return the text of its file with the change; an expression goes in with brackets, a named one as it is."""
+        raw, old = text.encode(), self.old.encode()
+        new = self.new if self.tests else f"({self.new})"
+        return (raw[: self.start] + new.encode() + raw[self.start + len(old) :]).decode()
 
 
 LIMITED = f"""
@@ -117,6 +124,8 @@ def mutants_of(path: Path) -> list[Mutant]:
     """Return all mutants of a file; messages, annotations and defaults of the module's constants are left alone."""
     text = path.read_text(encoding="utf-8")
     tree = ast.parse(text)
+    name, lines = path.relative_to(SOURCE).as_posix(), text.encode().split(b"\n")
+    begins = [0, *accumulate(len(line) + 1 for line in lines)]
     found = []
     inside: set[int] = set()
     for function in ast.walk(tree):
@@ -130,15 +139,11 @@ def mutants_of(path: Path) -> list[Mutant]:
         if id(node) not in inside or not hasattr(node, "lineno"):
             continue
         for changed in changes(node):
-            old = ast.get_source_segment(text, node)
-            if old is None or "\n" in old:
+            if node.lineno != node.end_lineno:
                 continue
-            new = ast.unparse(ast.fix_missing_locations(copy.deepcopy(changed)))
-            lines = text.split("\n")
             row, start, end = node.lineno - 1, node.col_offset, node.end_col_offset
-            raw = lines[row].encode()
-            lines[row] = (raw[:start] + f"({new})".encode() + raw[end:]).decode()
-            found.append(Mutant(path.relative_to(SOURCE).as_posix(), node.lineno, old, new, "\n".join(lines)))
+            old = lines[row][start:end].decode()
+            found.append(Mutant(name, node.lineno, old, ast.unparse(changed), begins[row] + start))
     return found
 
 
@@ -149,9 +154,9 @@ def named_mutants() -> list[Mutant]:
         text = (SOURCE / entry["path"]).read_text(encoding="utf-8")
         if text.count(entry["old"]) != 1:
             sys.exit(f"{entry['path']} holds {text.count(entry['old'])} times: {entry['old']}")
-        line = text[: text.index(entry["old"])].count("\n") + 1
-        text = text.replace(entry["old"], entry["new"])
-        found.append(Mutant(entry["path"], line, entry["old"], entry["new"], text, tuple(entry["tests"])))
+        before = text[: text.index(entry["old"])]
+        line, start = before.count("\n") + 1, len(before.encode())
+        found.append(Mutant(entry["path"], line, entry["old"], entry["new"], start, tuple(entry["tests"])))
     return found
 
 
@@ -165,7 +170,7 @@ def killed_by(mutant: Mutant, package: Path) -> str:
     """Return the test that sees a mutant, or nothing; ``package`` is a copy of the package to put it in."""
     target = package / mutant.path
     whole = target.read_text(encoding="utf-8")
-    target.write_text(mutant.text, encoding="utf-8")
+    target.write_text(mutant.put_in(whole), encoding="utf-8")
     try:
         test = first_failure(mutant.tests or tests_for(mutant.path), package)
     finally:
@@ -219,7 +224,7 @@ def main() -> int:
     kept = tomllib.loads(KEPT.read_text(encoding="utf-8")).get("kept", {}) if KEPT.exists() else {}
     print(f"{len(sample)} of {len(every)} mutants of {len(paths)} files, seed {chosen.seed}", flush=True)
     copies: SimpleQueue[Path] = SimpleQueue()
-    survivors, tried = [], 0
+    counts: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as folder:
         for k in range(chosen.jobs):
             copies.put(Path(shutil.copytree(SOURCE, Path(folder) / str(k) / "concio")))
@@ -240,11 +245,10 @@ def main() -> int:
                 print(
                     f"{word:10s} {mutant.path}:{mutant.line}  {mutant.old}  ->  {mutant.new}  {test or why}", flush=True
                 )
-                tried += test is not None
-                if word == "SURVIVED":
-                    survivors.append(mutant)
-    print(f"{tried - len(survivors)} of {tried} tried are seen or known to change nothing")
-    return 1 if survivors else 0
+                counts[word] += 1
+    told = ", ".join(f"{number} {word}" for word, number in counts.items())
+    print(f"{len(sample)} mutants: {told}")
+    return 1 if counts["SURVIVED"] else 0
 
 
 if __name__ == "__main__":

@@ -133,7 +133,16 @@ def check_facade_with_return(found):
     assert found["turns"]
 
 
-LONG = {"04_settlement", "25_fragility_of_a_pillar"}
+LONG = {
+    "04_settlement",  # quick: test_settle, test_path
+    "16_smaller_and_smaller_blocks",  # test_continuum, halving to the continuum's limit
+    "17_facade_strip",  # test_assess, the same wall with ties
+    "25_fragility_of_a_pillar",  # 24 here, the same motions
+    "33_tower_under_lateral_load",  # test_space_generators, test_collapse_in_space
+    "34_facade_with_return",  # test_assess_in_space, test_interlocked_corner
+}
+"""Examples of more than some four seconds, and the quick tests that show the same code at work."""
+
 NAMES = sorted(p.stem for p in EXAMPLES.glob("[0-9]*.py"))
 SMALLER = {
     "16_smaller_and_smaller_blocks": {"sizes": (1, 2, 4)},

@@ -38,7 +38,7 @@ few = settings(max_examples=6, deadline=None, suppress_health_check=[HealthCheck
 def walls(draw: st.DrawFn) -> ContactProblem:
     friction = draw(st.sampled_from([0.0, 0.2, 0.4, 0.6]))
     problem = wall(
-        draw(st.integers(1, 3)), draw(st.integers(1, 3)), mu=friction, sides=draw(st.booleans()),
+        draw(st.integers(1, 2)), draw(st.integers(1, 3)), mu=friction, sides=draw(st.booleans()),
         alpha=draw(st.sampled_from([0.0, 0.1, 0.3])) if friction > 0.3 else 0.0, top=draw(st.sampled_from([0.0, 2.0])),
     )  # fmt: skip
     m = problem.pairs

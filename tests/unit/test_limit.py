@@ -51,6 +51,16 @@ def test_unbounded_and_impossible():
     assert not lifted.checked
 
 
+def test_a_load_that_pushes_nothing_leaves_forces_of_the_shape_of_any_other_answer():
+    """A load along what the block cannot move to: of equal and opposite parts, which its stiffness takes."""
+    a = block_on_incline(0.4, 1.0, 0.0)
+    found = associated_limit(a.problem(0.5, a.load(0, -1)), np.zeros(a.load(1, 0).size))
+    pushed = associated_limit(a.problem(0.5, a.load(0, -1)), a.load(1, 0))
+    assert found.locked
+    assert found.normal_force.shape == pushed.normal_force.shape
+    assert found.friction_force.shape == pushed.friction_force.shape
+
+
 def test_negative_multiplier_when_the_dead_load_fails():
     """At 20 degrees and mu 0.3 the block needs a push up the plane; the least push counts as a negative multiplier."""
     angle = np.deg2rad(20)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ import scipy.sparse as sp
 
 from concio.errors import MethodError
 from concio.problem.contact_problem import ContactProblem, Laws
-from concio.problem.solution import Progress, Status
+from concio.problem.solution import Progress, Solution, Status
 from concio.solvers.iterative import (
     admm,
     alart_curnier,
@@ -151,6 +152,12 @@ def test_rigid_blocks(method: str) -> None:
     assert soft.displacement.any()
 
 
+@cache
+def of_a_wall(method: str) -> Solution:
+    """Return what a method says of a small wall that stands."""
+    return find(method)(wall(2, 2, alpha=0.2))
+
+
 @pytest.mark.parametrize("method", ALL)
 def test_units_do_not_matter(method: str) -> None:
     problem = wall(2, 2, alpha=0.2)
@@ -158,7 +165,7 @@ def test_units_do_not_matter(method: str) -> None:
     other = replace(
         problem, K=problem.K * (force / length), f=problem.f * force, C_n=problem.C_n, gap=problem.gap * length
     )
-    here, there = find(method)(problem), find(method)(other)
+    here, there = of_a_wall(method), find(method)(other)
     assert here.status is there.status
     np.testing.assert_allclose(
         there.displacement / length, here.displacement, atol=1e-10 * np.abs(here.displacement).max()
@@ -242,7 +249,7 @@ def test_progress_and_cancelling(method: str) -> None:
 
 @pytest.mark.parametrize("method", ALL)
 def test_records(method: str) -> None:
-    solution = find(method)(wall(2, 2, alpha=0.2))
+    solution = of_a_wall(method)
     history, work = solution.info["history"], solution.info["work"]
     assert len(history) == len(work) == solution.iterations
     assert (np.diff(work) >= 0).all()

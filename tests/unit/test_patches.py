@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from concio import InputError, Polyhedron
+from concio.model import convex_pieces
 from concio.model.interfaces.detect import Detection
 from concio.model.interfaces.patches import detect_patches
 from concio.model.surfaces import prism
-from solids import TURN, box, frame_block, l_block, turned
+from solids import TURN, box, frame_block, l_block, tetrahedron, turned
 
 A = box("a", (0, 0, 0), (1, 1, 1))
 C_SHAPE = np.array([[0, 0], [3, 0], [3, 1], [1, 1], [1, 2], [3, 2], [3, 3], [0, 3]], dtype=float)
@@ -140,6 +141,32 @@ def test_overlaps_are_told_with_their_depth(blocks: tuple[Polyhedron, ...], word
     assert re.search(words, overlap.sentence)
     assert overlap.depth >= 0.99 * depth
     assert not detection.patches
+
+
+def test_a_bar_through_a_body_of_too_many_pieces_overlaps_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A wheel with valleys, one along each half of the x axis: a bar through it, and bars that stand in the valleys."""
+    monkeypatch.setattr(convex_pieces, "MOST_PIECES", 10)
+    turns = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+    radius = np.where(np.arange(40) % 2, 1.0, 0.8)
+    wheel = prism_of(np.column_stack([radius * np.cos(turns), radius * np.sin(turns)]), 0.0, 1.0, "wheel")
+    assert wheel.pieces is None
+    (overlap,) = found(wheel, box("bar", (-0.4, -0.03, -3.0), (-0.3, 0.02, 1.4))).overlaps
+    assert overlap.depth == pytest.approx(0.5)
+    assert not found(wheel, box("right", (0.9, -2e-3, 0.2), (1.4, 2e-3, 0.3))).overlaps
+    assert not found(wheel, box("left", (-1.4, -2e-3, 0.2), (-0.9, 2e-3, 0.3))).overlaps
+
+
+def test_overlaps_are_found_among_bodies_of_several_shapes() -> None:
+    """Two of each shape, turned about: a pair is told whichever of them comes first."""
+    post = tetrahedron("post", np.array([[0.2, 0.2, 0.5], [0.6, 0.2, 0.5], [0.2, 0.5, 0.5], [0.3, 0.3, 1.5]]))
+    bar = box("bar", (0.9, 0.3, 0.2), (1.3, 0.7, 0.6))
+    far = l_block("far", low=0.2)
+    far = turned(far, np.eye(3), (1.2, 0.4, 0.0))
+    detection = found(A, post, bar, far)
+    told = {frozenset((o.a, o.b)) for o in detection.overlaps}
+    assert told == {frozenset(("a", "post")), frozenset(("a", "bar")), frozenset(("bar", "far"))}
+    again = found(far, bar, post, A)
+    assert {frozenset((o.a, o.b)) for o in again.overlaps} == told
 
 
 def test_blocks_side_by_side_do_not_overlap_however_they_stand() -> None:

@@ -29,7 +29,7 @@ horizontal = 1.0
 def column(kind: str) -> str:
     elastic = kind == "elastic"
     return TOPPLES.format(
-        kind=kind, modulus=', E = "20 GPa"' if elastic else "", mesh="mesh_size = 0.1" if elastic else ""
+        kind=kind, modulus=', E = "20 GPa"' if elastic else "", mesh="mesh_size = 0.2" if elastic else ""
     )
 
 

@@ -53,10 +53,10 @@ def test_turned_blocks_slip_by_what_their_points_move_along_the_joint():
     statics = Statics(Reference.of(stack, G), Scheme(), {}, (), np.array([1.0, 0.0]))
     rest = at_rest(statics.reference)
     look = statics.look(rest, rest.memory, np.zeros(0), 0.0)
-    before = statics._moved(rest, np.array([2e-4, 1e-4, 5e-4, 1e-4, 0.0, -2e-4]), look)
+    before = statics.moved(rest, np.array([2e-4, 1e-4, 5e-4, 1e-4, 0.0, -2e-4]), look)
     look = statics.look(before, look.memory, np.zeros(0), 0.0)
     x = np.array([0.03, -0.02, 0.2, -0.01, 0.04, -0.3])
-    after = statics._moved(before, x, look)
+    after = statics.moved(before, x, look)
 
     def chord(body):
         w = after.rotation[body] - before.rotation[body]
@@ -72,8 +72,8 @@ def test_turned_blocks_slip_by_what_their_points_move_along_the_joint():
     first = relative(look.data.columns, look.data.values, x)[:, 1]
     assert len(exact) == 4
     assert np.abs(exact - first).min() > 1e-4
-    assert first + statics._swung(look, before, after) == pytest.approx(exact, abs=1e-12)
-    assert not statics._swung(look, before, before).any()
+    assert first + statics.swung(look, before, after) == pytest.approx(exact, abs=1e-12)
+    assert not statics.swung(look, before, before).any()
 
 
 def test_a_support_moves_by_the_multiplier_times_the_factor_of_its_group():

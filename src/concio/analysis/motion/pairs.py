@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from concio.analysis.motion.joints import SAG, Joints, PairData
+from concio.analysis.motion.joint_step import PairData
+from concio.analysis.motion.joints import SAG, Joints
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.state import Memory, TieMemory
 from concio.contact.moving.attachments import Held, Ties

@@ -20,10 +20,12 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.analysis.motion.frames import Frames
-from concio.analysis.motion.joints import PairData
+from concio.analysis.motion.joint_memory import after_step
+from concio.analysis.motion.joint_step import JointAnswer, PairData
 from concio.analysis.motion.pairs import PairMaker, assembled, relative
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import Memory, MotionState, TieMemory
+from concio.analysis.motion.sunk import moved_apart
 from concio.analysis.motion.tie_bars import TieStep
 from concio.contact.moving.attachments import Ties
 from concio.contact.moving.edges import as_complex, as_vectors
@@ -162,9 +164,8 @@ class Stepper:
         x = theta * found.x + (1 - theta) * x0
         y = relative(rows.columns, rows.values, x) + rows.imposed
         memory_before = memory
-        memory, works = maker.joints.remember(
-            memory, joint, data, y, found.t[:m], found.states.contact[:m], found.states.slip[:m], h
-        )
+        answer = JointAnswer(y, found.t[:m], found.states.contact[:m], found.states.slip[:m])
+        memory, works = after_step(maker.joints, memory, joint, data, answer, h)
         works["input"] = h * float(ground @ x) - h * float((found.t[:m] * rows.imposed).sum())
         if len(maker.held):
             works["input"] += h * float((found.t[m:k] * relative(held.columns, held.values, x)).sum())
@@ -177,7 +178,7 @@ class Stepper:
             works["crushing"] += yielded
             works["drift"] += ties.drift
         end = joint.gap + h * y[:, 0] - 0.5 * h * joint.y0[:, 0] + memory.crushing - memory_before.crushing
-        apart = maker.joints.apart(data, joint, end, self._movable, slots.body_a, slots.body_b)
+        apart = moved_apart(data, joint, end, maker.joints.sag, self._movable, slots.body_a, slots.body_b)
         works["drift"] -= float(loads @ apart)
         if maker.joints.any_stiffness:
             works["overlap"] += float(memory_before.stored.sum()) - float(state.memory.stored.sum())

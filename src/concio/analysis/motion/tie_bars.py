@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from concio.analysis.motion.joints import PairData
+from concio.analysis.motion.joint_step import PairData
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.springs import RETURN
 from concio.analysis.motion.state import TieMemory

@@ -122,10 +122,9 @@ def _meeting(bodies: Sequence[Polyhedron], pairs: tuple[Array, Array], tolerance
     sort, stacks = _stacked(bodies, np.unique(np.concatenate([i, j])))
     apart = np.zeros(len(i), dtype=bool)
     for a, b in ((i, j), (j, i)):
-        code = sort[a] * (sort.max() + 1) + sort[b]
-        for kind in np.unique(code).tolist():
-            own = np.flatnonzero(code == kind)
-            first, second = stacks[int(sort[a[own[0]]])], stacks[int(sort[b[own[0]]])]
+        for p, q in np.unique(np.column_stack([sort[a], sort[b]]), axis=0).tolist():
+            own = np.flatnonzero((sort[a] == p) & (sort[b] == q))
+            first, second = stacks[p], stacks[q]
             for part in np.array_split(own, max(1, len(own) * first.vertices.shape[1] // 400_000)):
                 apart[part] |= first.keeps_apart(a[part], second, b[part], tolerance)
     return i[~apart], j[~apart]
@@ -223,7 +222,7 @@ def _sampled_depth(a: Polyhedron, b: Polyhedron) -> tuple[float, Array]:
         hp = first.vertices[p] @ second.normals.T - second.offsets
         hq = first.vertices[q] @ second.normals.T - second.offsets
         with np.errstate(divide="ignore", invalid="ignore"):
-            share = np.where(hp * hq < 0, hp / (hp - hq), 1.0)
+            share = np.where((hp < 0) != (hq < 0), hp / (hp - hq), 1.0)
         marks = np.sort(np.column_stack([np.zeros(len(p)), share, np.ones(len(p))]), axis=1)
         middle = 0.5 * (marks[:, :-1] + marks[:, 1:])
         some = np.diff(marks, axis=1) > 1e-9

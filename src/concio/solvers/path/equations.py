@@ -275,7 +275,7 @@ class PathEquations:
         lent[:n] = REGULAR
         lent[n : n + m] = np.where(self.contact == CLOSED, self.lent, 0.0)
         lent[n + m : -1] = np.where(self.sliding == STICK, self.lent, 0.0)
-        x = runaway / (float(np.abs(runaway).max()) or 1.0)
+        x = runaway
         for _ in range(INVERSE):
             y = self.approximate(lent * x)
             size = float(np.abs(y).max())

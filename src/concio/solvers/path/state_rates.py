@@ -25,8 +25,7 @@ class StateRates:
     friction_force : (m, 1) array
         [kN].
     residual : float
-        What the linear equations leave, relative to the largest displacement; not small where the states admit no
-        response.
+        What the linear equations leave, relative to the rate of the path; not small where the states admit no response.
     """
 
     displacement: Array
@@ -56,5 +55,4 @@ def state_rates(path: LinearPath, states: PairStates) -> StateRates:
     equations = PathEquations(replace(scaled, path=slow), states.normal, states.sign, control)
     x, residual = equations.solve(control)
     length, force = scaled.length * unit, scaled.force * unit
-    size = max(1.0, float(np.abs(x[:n]).max(initial=0.0)))  # not the forces: contradictory states drive them up
-    return StateRates(x[:n] * length, x[n : n + m] * force, x[n + m : -1, None] * force, residual / size)
+    return StateRates(x[:n] * length, x[n : n + m] * force, x[n + m : -1, None] * force, residual)

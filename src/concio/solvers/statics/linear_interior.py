@@ -235,8 +235,6 @@ def solve_interior(
             d = _direction(q, p, rest, border, tau - p.x * p.z - d.x * d.z, tau - p.s * p.w - d.s * d.w)
             primal_step, dual_step = (a if a == 1.0 else SHORT_OF_ONE * a for a in q.steps(p, d))
             p = p.moved(d, primal_step, dual_step)
-            p.s = np.where(q.capped, p.s, 1.0)
-            p.w = np.where(q.capped, p.w, 0.0)
     if kept is None:
         return None
     return LinearAnswer(*q.restore(kept), *best, iteration)

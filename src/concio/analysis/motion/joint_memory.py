@@ -1,0 +1,132 @@
+"""What contact pairs remember of a step or of an equilibrium, and the energy they took in it.
+
+The slip of a step is partly elastic (of compliant joints, their own or lent) and partly plastic; plastic slip opens
+joints that dilate and breaks brittle bonds. What presses a pair beyond its cap crushes it. The work of the forces goes,
+but for what the springs store, into friction, impacts, damping and crushing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from concio.analysis.motion.joint_step import JointAnswer, JointStep, PairData
+from concio.analysis.motion.joints import Joints
+from concio.analysis.motion.state import Memory
+
+Array = np.ndarray
+
+
+def after_step(
+    joints: Joints, memory: Memory, step: JointStep, data: PairData, found: JointAnswer, h: float
+) -> tuple[Memory, dict[str, float]]:
+    """Return what pairs remember after a step, and the energy they took by column [kN m].
+
+    Parameters
+    ----------
+    joints : Joints
+    memory : Memory
+        At the beginning.
+    step : JointStep
+    data : PairData
+    found : JointAnswer
+    h : float
+        [s].
+    """
+    y, t = found.motion, found.force
+    contact, slip = np.where(data.active, found.contact, 0), found.slip
+    lost_n, lost_t = -h * t[:, 0] * y[:, 0], -h * t[:, 1] * y[:, 1]
+    slid, stretch, stuck = _plastic_slip(memory, step, t, contact, slip, h * y[:, 1])
+    raised, damped = memory.raised, 0.0
+    if data.dilatancy.any():
+        lifted = data.dilatancy * np.abs(slid)
+        raised, lost_n, lost_t = raised + lifted, lost_n + t[:, 0] * lifted, lost_t - t[:, 0] * lifted
+    sunk = step.sunk + h * y[:, 0] - (raised - memory.raised)
+    crushing, squeezed, crushed = memory.crushing, np.zeros(len(t)), 0.0
+    if joints.any_cap:
+        yields = np.where(step.springy, -step.a_n * data.cone.cap - sunk, -h * y[:, 0])
+        squeezed = np.where(contact == 2, np.maximum(yields, 0.0), 0.0)
+        crushing, crushed = crushing + squeezed, float((t[:, 0] * squeezed).sum())
+    broken, stored = _broken(joints, memory, step, contact, slip), step.stored
+    if step.springs is not None:
+        springs, active = step.springs.broken(broken), data.active
+        away = np.maximum(sunk, joints.reach)  # what touches nothing is not pressed
+        sunk = np.where(active, sunk + squeezed, away)
+        after, before = springs.parts(sunk, stretch), step.springs.parts(step.sunk, memory.stretch)
+        stored = np.where(active, after[0] + after[1], 0.0)
+        lost_n = lost_n - np.where(active, after[0] - before[0], 0.0)
+        lost_t = lost_t - np.where(active, after[1] - before[1], 0.0)
+        if joints.scheme.stiffness_damping:
+            stuck = stuck & springs.shear
+            damped = float(lost_n[springs.normal].sum() + lost_t[stuck].sum())
+            lost_n, lost_t = np.where(springs.normal, 0.0, lost_n), np.where(stuck, 0.0, lost_t)
+    new = replace(
+        memory, contact=contact, slip=slip, force=t, stretch=stretch, crushing=crushing, raised=raised,
+        broken=broken, slid=memory.slid + slid, area=step.area, sunk=sunk, stored=stored,
+    )  # fmt: skip
+    works = {
+        "friction": float(lost_t.sum()),
+        "impact": float(lost_n.sum()) - crushed,
+        "damping": damped,
+        "crushing": crushed,
+        "overlap": step.overlap - float(memory.stored.sum()) if joints.any_stiffness else 0.0,
+        "drift": step.drift,
+    }
+    return new, works
+
+
+def after_equilibrium(
+    joints: Joints, memory: Memory, step: JointStep, data: PairData, found: JointAnswer
+) -> Memory:
+    """Return what pairs remember of an equilibrium.
+
+    Parameters
+    ----------
+    joints : Joints
+    memory : Memory
+        Of the last one.
+    step : JointStep
+    data : PairData
+    found : JointAnswer
+    """
+    y, t = found.motion, found.force
+    contact, slip = np.where(data.active, found.contact, 0), found.slip
+    touches = contact > 0
+    stretch = np.where(touches, -step.a_t * t[:, 1], 0.0)
+    slid = np.where(touches & (slip != 0), y[:, 1] - stretch, 0.0)
+    crushing = memory.crushing
+    if joints.any_cap:
+        depth = -(y[:, 0] + step.a_n * t[:, 0])
+        crushing = crushing + np.where(contact == 2, np.maximum(depth, 0.0), 0.0)
+    sunk = stored = np.zeros(len(t))
+    if step.springs is not None:
+        sunk = np.where(touches, -step.a_n * t[:, 0], np.maximum(y[:, 0], step.springs.longest))
+        stored = np.where(touches, step.springs.stored(sunk, stretch), 0.0)
+    return replace(
+        memory, contact=contact, slip=slip, force=t, stretch=stretch, crushing=crushing,
+        raised=memory.raised + data.dilatancy * np.abs(slid), broken=_broken(joints, memory, step, contact, slip),
+        slid=memory.slid + slid, area=step.area, sunk=sunk, stored=stored,
+    )  # fmt: skip
+
+
+def _plastic_slip(
+    memory: Memory, step: JointStep, t: Array, contact: Array, slip: Array, moved: Array
+) -> tuple[Array, Array, Array]:
+    """Divide what pairs moved along their tangent (m,): plastic slip, stretch at the end [m], and which only stretch.
+
+    A hard pair that is hit keeps no stretch: what an impact moves was never elastic.
+    """
+    soft = step.a_t > 0
+    hit = (contact > 0) & ~(memory.force[:, 0] > 0) & ~step.springy
+    stuck = soft & (slip == 0) & (contact > 0) & ~hit
+    stretch = np.where(stuck, memory.stretch + moved, np.where(soft & ~hit, -step.a_t * t[:, 1], 0.0))
+    slid = moved - np.where(soft, stretch - memory.stretch, 0.0)
+    return np.where((contact > 0) & (slip != 0), slid, 0.0), stretch, stuck
+
+
+def _broken(joints: Joints, memory: Memory, step: JointStep, contact: Array, slip: Array) -> Array:
+    """Return which joints (m,) have lost cohesion and tensile strength: brittle ones that opened or slipped."""
+    if not (joints.any_bond and joints.scheme.brittle):
+        return memory.broken
+    return np.asarray(memory.broken | (step.bonded & ((contact == 0) | (slip != 0))))

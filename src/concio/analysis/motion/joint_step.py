@@ -1,0 +1,90 @@
+"""The pairs of a step problem, and what is known of joints before it is solved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.analysis.motion.springs import Springs
+from concio.problem.cone import Cone
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class PairData:
+    """Pairs of a step problem; see :class:`concio.solvers.stepping.problem.StepProblem`.
+
+    ``shift`` (m, d) is what stands in the laws beside C v+: the gap, and minus the slip origin.
+    """
+
+    columns: Array
+    values: Array
+    shift: Array
+    cone: Cone
+    a_n: Array
+    a_t: Array
+    dilatancy: Array
+    active: Array
+
+
+@dataclass(frozen=True, eq=False)
+class JointStep:
+    """What is known of the joints before a step is solved.
+
+    Parameters
+    ----------
+    springy : (m,) boolean array
+        Pairs with a stiffness of their own.
+    a_n, a_t : (m,) arrays
+        Compliances, own or lent [m/kN].
+    gap : (m,) array
+        In the middle of the step, by constant velocities [m].
+    y0 : (m, d) array
+        Relative velocities at the beginning [m/s].
+    bonded : (m,) boolean array
+    springs : Springs or None
+        Those of compliant joints.
+    area : (m,) array
+        On which they stand [m2].
+    sunk, stored : (m,) arrays
+        Their deformation and energy at the beginning [m], [kN m].
+    overlap, drift : float
+        What their energy grew by since the end of the last step: because common areas have changed, and because the
+        gaps of turned bodies are not what straight motion makes them [kN m].
+    """
+
+    springy: Array
+    a_n: Array
+    a_t: Array
+    gap: Array
+    y0: Array
+    bonded: Array
+    springs: Springs | None
+    area: Array
+    sunk: Array
+    stored: Array
+    overlap: float = 0.0
+    drift: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class JointAnswer:
+    """What a step problem says of its contact pairs.
+
+    Parameters
+    ----------
+    motion : (m, d) array
+        Mean relative velocities in the step [m/s]; of an equilibrium, gaps without compliance and stretches with the
+        slip on the way to it [m].
+    force : (m, d) array
+        [kN].
+    contact, slip : (m,) integer arrays
+        State: 0 open, 1 closed, 2 crushed; sign of the slip.
+    """
+
+    motion: Array
+    force: Array
+    contact: Array
+    slip: Array

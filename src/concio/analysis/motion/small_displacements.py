@@ -1,0 +1,210 @@
+r"""Small displacements from where bodies stand, by which an equilibrium is looked for.
+
+From a configuration q the displacement x to equilibrium is that of
+
+.. math:: (K + \varepsilon M)\, x = f(q) + \lambda\, \ell(q) - K d + C(q)^T t,
+
+with the joint laws in gaps and slips. epsilon M resists motion
+(:mod:`concio.analysis.motion.resistance`), and vanishes with x.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from concio.analysis.motion.frames import Frames
+from concio.analysis.motion.joint_step import JointStep, PairData
+from concio.analysis.motion.pairs import PairMaker, assembled
+from concio.analysis.motion.resistance import RESISTANCE
+from concio.analysis.motion.scheme import Drive, Scheme
+from concio.analysis.motion.state import Memory, MotionState
+from concio.contact.factors import load_factor
+from concio.contact.moving.edges import as_complex, as_vectors, dot
+from concio.contact.moving.points import Followed
+from concio.contact.moving.reference import Reference
+from concio.model.stages import ControlPoint
+from concio.solvers.stepping.matrix import StepMatrix
+from concio.solvers.stepping.problem import StepProblem
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """What is found where the bodies stand.
+
+    Parameters
+    ----------
+    turn : (B,) complex array
+        Rotations of the bodies.
+    strain : (nodes,) complex array
+        Displacements of nodes in the frames of their bodies [m].
+    memory : Memory
+        With the keys of the pairs found.
+    new : bool
+        Whether the pairs are others than those of the last look.
+    data, joint : PairData, JointStep
+        Of contact.
+    dead, live : (N,) arrays
+        Loads that stay, and those of a multiplier of one [kN].
+    measure : (N,) array
+        Rate of the displacement that controls the load.
+    internal : (N,) array
+        Forces of the strains [kN].
+    parts : tuple of PairData
+        Contact, supports, ties, swinging of ties.
+    turning : (N,) array
+        Stiffness with which ties resist that bodies turn [kN/m]; empty without ties.
+    point, normal : (m, 2) arrays
+        Of the contact pairs.
+    """
+
+    turn: Array
+    strain: Array
+    memory: Memory
+    new: bool
+    data: PairData
+    joint: JointStep
+    dead: Array
+    live: Array
+    measure: Array
+    internal: Array
+    parts: tuple[PairData, PairData, PairData, PairData]
+    turning: Array
+    point: Array
+    normal: Array
+
+
+class SmallDisplacements:
+    """The problem of small displacements of a reference under dead and live loads.
+
+    Parameters
+    ----------
+    reference : Reference
+    scheme : Scheme
+    factors : mapping of str to float
+        Load factors; groups not named have 1.
+    live : tuple of str
+        Groups that the multiplier scales on top of their factors.
+    push : (2,) array, optional
+        Share of the weights that the multiplier lets act along this direction, where no group is live.
+    control : ControlPoint, optional
+        Whose displacement controls the load; otherwise the mean displacement on which the load works.
+    sag : float
+        Depth over the width of the bodies to which hard joints are sunk in.
+    """
+
+    def __init__(
+        self, reference: Reference, scheme: Scheme, factors: Mapping[str, float], live: tuple[str, ...],
+        push: Array | None, control: ControlPoint | None, sag: float,
+    ) -> None:  # fmt: skip
+        self.reference, self.factors, self.live, self.push = reference, dict(factors), live, push
+        self.frames = Frames(reference, scheme)
+        self.maker = PairMaker(reference, scheme, sag)
+        self.control = None if control is None else Followed.of(reference, control)
+        self.width, self.gravity = self.maker.width, reference.gravity
+        self.no_spin = np.zeros(len(reference.model.bodies))
+        self.no_velocity = self.no_spin.astype(complex)
+        self._matrices = [self._stiffness(share * self.gravity / self.width) for share in RESISTANCE]
+        self._bare = self._stiffness(0.0)
+
+    def _stiffness(self, resistance: float) -> StepMatrix:
+        matrices, n = self.reference.matrices, self.frames.n
+        rows, columns, values = matrices.entries(resistance, 1.0)
+        A = sp.csr_array((values, (rows, columns)), shape=(n, n))
+        A.sum_duplicates()
+        return StepMatrix(A)
+
+    def look(self, state: MotionState, memory: Memory, moved: Array, multiplier: float) -> Look:
+        """Return pairs and forces where the bodies stand."""
+        f, maker = self.frames, self.maker
+        centre, turn = as_complex(state.centre), np.exp(1j * state.rotation)
+        strain = as_complex(state.strain)
+        memory, rows, new = maker.contacts(memory, centre, turn, self.no_velocity, self.no_spin, strain)
+        slid = moved if len(moved) == len(memory.key) else np.zeros(len(memory.key))
+        data, joint = maker.joints.resting(rows, maker.slots, memory, slid, maker.search.skin)
+        factors = self.factors_at(multiplier)
+        off = maker.off_support(centre, turn, strain, factors) if len(maker.held) else np.zeros(0, dtype=complex)
+        dead = f.loads(Drive(np.zeros(2), np.zeros(2), {**self.factors, **dict.fromkeys(self.live, 0.0)}), turn)
+        unit = self.unit(turn)
+        internal = -f.stiffness(strain) - f.turned(f.stiffness(strain), strain) if f.elastic else np.zeros(f.n)
+        supports = maker.supports(turn, off)
+        ties, gap, swings = maker.tie_pairs(centre, turn, strain, state.ties)
+        turning = maker.tie_turning(centre, turn, strain, state.ties, gap, f.n) if len(maker.ties) else np.zeros(0)
+        measure = self.mean(unit) if self.control is None else self.control.rate(f.n, turn)
+        return Look(
+            turn, strain, memory, new, data, joint, dead, unit, measure, internal, (data, supports, ties, swings),
+            turning, rows.point, rows.normal,
+        )  # fmt: skip
+
+    def problem(self, look: Look, multiplier: float, level: int | None) -> StepProblem:
+        """Return the problem of the displacements to equilibrium at a multiplier, at a level of resistance.
+
+        Without a level nothing resists, and ties at rest do not swing: those are the equations themselves.
+        """
+        b = look.dead + multiplier * look.live + look.internal
+        force = float(np.abs(look.dead + multiplier * look.live).sum()) or 1.0
+        matrix = self._bare if level is None else self._matrices[level]
+        if look.turning.any() and level is not None:
+            matrix = StepMatrix(matrix.sparse + sp.diags_array(look.turning, format="csr"))
+        return assembled(matrix, b, look.parts, force, 1e-3 * self.width)
+
+    def moved(self, state: MotionState, x: Array, look: Look) -> MotionState:
+        """Return the state after a displacement x (N,) of the unknowns."""
+        f = self.frames
+        u, w = f.rigid_part(x, self.no_velocity, self.no_spin)
+        strain = look.strain
+        if f.elastic:
+            place = look.turn[f.body] * (f.arm + strain)
+            rate, v, spin = f.rate(f.nodal(x, look.turn), place, look.turn)
+            u[f.meshed], w[f.meshed] = v[f.meshed], spin[f.meshed]
+            strain = strain + rate
+        return replace(
+            state,
+            centre=as_vectors(as_complex(state.centre) + u),
+            rotation=state.rotation + w,
+            strain=as_vectors(strain),
+        )
+
+    def swung(self, look: Look, before: MotionState, after: MotionState) -> Array:
+        """Return what finite rotations add to the slips of an iteration, known to first order by the rows (m,)."""
+        w = after.rotation - before.rotation
+        if not w.any():
+            return np.zeros(len(look.memory.key))
+        slots, point, centre = self.maker.slots, as_complex(look.point), as_complex(before.centre)
+        beyond = np.exp(1j * w) - 1.0 - 1j * w
+        a, b = slots.body_a, slots.body_b
+        moved = beyond[b] * (point - centre[b]) - beyond[a] * (point - centre[a])
+        return dot(1j * as_complex(look.normal), moved)
+
+    def controlled_at(self, state: MotionState) -> float:
+        """Return the displacement of the point that controls the load [m]."""
+        if self.control is None:
+            return 0.0
+        return float(self.control.displacement(state.centre, state.rotation, state.strain).sum())
+
+    def mean(self, unit: Array) -> Array:
+        """Return the rate of the displacement on which a load works: its work over its size (N,)."""
+        f = self.frames
+        at = np.concatenate([f.x, f.node_x])
+        size = float(np.hypot(unit[at], unit[at + 1]).sum())
+        return unit / size if size > 0 else unit
+
+    def factors_at(self, multiplier: float) -> dict[str, float]:
+        """Return the load factors at a multiplier."""
+        return {**self.factors, **{g: multiplier * load_factor(self.factors, g) for g in self.live}}
+
+    def unit(self, turn: Array) -> Array:
+        """Return the load of a multiplier of one (N,) [kN]."""
+        f = self.frames
+        if self.live:
+            groups = self.reference.loads.groups
+            only = {g: (load_factor(self.factors, g) if g in self.live else 0.0) for g in groups}
+            return f.loads(Drive(np.zeros(2), np.zeros(2), only), turn)
+        if self.push is None:
+            return np.zeros(f.n)
+        return f.ground(Drive(-self.gravity * self.push, np.zeros(2), {}), turn)
