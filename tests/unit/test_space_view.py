@@ -141,6 +141,18 @@ def test_a_picture_shows_what_is_nearest() -> None:
     assert row[width // 2].tolist() == [0, 255, 0]
 
 
+def test_a_legend_explains_only_what_is_seen() -> None:
+    """The joint under a block that lifts is seen from the corner, and is hidden by both blocks from above."""
+    result = moving(tower(), {"top": ((0, 0, 1.0), (0, 0, 0))})
+    words = {}
+    for view in ("axonometry", "plan"):
+        figure = result.plot.mechanism(view=view).figure
+        told = [t.get_text() for legend in (*figure.legends, figure.axes[0].get_legend()) if legend
+                for t in legend.get_texts()]  # fmt: skip
+        words[view] = told
+    assert words == {"axonometry": ["opens"], "plan": []}
+
+
 def test_figures_of_a_model_in_space() -> None:
     for view in ("front", "axonometry"):
         axes = plot_space_model(tower(), view=view)

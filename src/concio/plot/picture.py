@@ -111,6 +111,12 @@ class Picture:
                 seen = depth >= self.depth[y, x] - slack
                 self.colour[y[seen], x[seen]] = _bytes(colour)
 
+    def points_of(self, colour: Any) -> int:
+        """Return on how many points a colour of areas is seen."""
+        from matplotlib.colors import to_rgb
+
+        return int((self.colour == _bytes(to_rgb(colour))).all(axis=2).sum())
+
     def image(self) -> Array:
         """Return the picture (h, w, 4) in bytes, rows from above, clear where there is nothing."""
         alpha = np.isfinite(self.depth) | (self.colour < 255).any(axis=2)

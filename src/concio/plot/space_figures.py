@@ -31,6 +31,8 @@ Array = np.ndarray
 View = Literal["front", "side", "plan", "axonometry"]
 WORDS = {0: "open", 2: "slips", 3: "crushed"}
 WORDS_OF_MECHANISMS = {0: "opens", 2: "slides", 3: "crushes"}
+SEEN = 50
+"""A colour on fewer points of a picture is not explained: nobody finds it."""
 NAMED = 60
 """Up to this many bodies get their names written."""
 
@@ -131,9 +133,9 @@ def plot_space(
     title = "Collapse mechanism" if mechanism else f"Displaced shape, {number(chosen)} times"
     factors = ", ".join(f"{group} = {number(factor)}" for group, factor in result.factors.items())
     note = f"loads {factors}" if factors else ""
-    ax, _ = draw_solids(shown, block_colours(result.model), view, ax, chosen, title, extra, note)
+    ax, picture = draw_solids(shown, block_colours(result.model), view, ax, chosen, title, extra, note)
     words = WORDS_OF_MECHANISMS if mechanism else WORDS
-    style.legend(ax, [style.patch(looks[k], words[k]) for k in looks if (state == k).any()])
+    style.legend(ax, [style.patch(looks[k], words[k]) for k in looks if picture.points_of(looks[k]) >= SEEN])
     return ax
 
 

@@ -46,7 +46,7 @@
   const STATES = ["open", "sticks", "slips", "is crushed"], STATE_LOOK = ["open", "stick", "slip", "crushed"];
   const view = {
     turn: -0.7, lift: 0.45, x: 0, y: 0, z: 0, distance: 1, scale: data.scale, step: data.steps.length - 1, colour: "none",
-    joints: data.mechanism, forces: false, crosses: false, solid: 1, cut: [1, 1, 1], picked: null, playing: false, phase: 1,
+    joints: true, forces: false, crosses: false, solid: 1, cut: [1, 1, 1], picked: null, playing: false, phase: 1,
   };
   const canvas = $("canvas");
   const gl = canvas.getContext("webgl", { antialias: true, preserveDrawingBuffer: true });
@@ -87,16 +87,18 @@
       float bright = mix(1.0, 0.62 + 0.38 * abs(dot(normalize(up), light)), lit);
       gl_FragColor = vec4(tone * bright, alpha);
     }`];
-  /* a line is a strip as wide as it is asked for, whatever the distance */
+  /* a line is a strip as wide as it is asked for, whatever the distance; it comes nearer to the eye by "pull" [m], so that
+     the edges of a block win over its own faces, and no edge farther away shines through them */
   const LINE = [`${HEAD} attribute vec3 point, move, other, other_move, colour; attribute float side;
-    uniform vec2 size; uniform float wide; uniform float pull; varying vec3 place, tone;
+    uniform vec2 size; uniform float wide; uniform float pull; uniform vec3 eye; varying vec3 place, tone;
     void main() {
       place = point + scale * move; tone = colour;
       vec4 p = matrix * vec4(place, 1.0), q = matrix * vec4(other + scale * other_move, 1.0);
       vec2 along = (q.xy / q.w - p.xy / p.w) * size;
       float far = length(along);
       vec2 across = far > 1e-9 ? vec2(-along.y, along.x) / far : vec2(0.0);
-      p.xy += across * side * wide / size * p.w; p.z -= pull * p.w; gl_Position = p;
+      vec4 nearer = matrix * vec4(place + pull * eye, 1.0);
+      p.xy += across * side * wide / size * p.w; if (nearer.w > 0.0) p.z = nearer.z / nearer.w * p.w; gl_Position = p;
     }`,
   `${HEAD} varying vec3 place, tone;
     void main() { if (any(greaterThan((place - cut_at) * cut_side, vec3(0.0)))) discard; gl_FragColor = vec4(tone, 1.0); }`];
@@ -300,15 +302,23 @@
     const lens = new Float32Array([f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far), 0]);
     return multiply(lens, look);
   }
+  /* all that is shown, moved as it is shown, fills the picture and stands in its middle */
   function fit() {
-    view.x = view.y = 0; view.z = 0;
-    const aspect = width / height, { right, up } = axes();
-    let w = 0, h = 0;
-    for (let i = 0; i < 8; i++) {
-      const p = [0, 1, 2].map((c) => (i >> c & 1 ? data.high : data.low)[c]);
-      w = Math.max(w, Math.abs(p[0] * right[0] + p[1] * right[1])); h = Math.max(h, Math.abs(p[0] * up[0] + p[1] * up[1] + p[2] * up[2]));
+    const { right, up, back } = axes(), n = bodies.point.length, s = view.scale;
+    const along = (i, d) => (bodies.point[i] + s * step.move[i]) * d[0] + (bodies.point[i + 1] + s * step.move[i + 1]) * d[1] + (bodies.point[i + 2] + s * step.move[i + 2]) * d[2];
+    const middle = [right, up].map((d) => {
+      let low = Infinity, high = -Infinity;
+      for (let i = 0; i < n; i += 3) { const v = along(i, d); low = Math.min(low, v); high = Math.max(high, v); }
+      return (low + high) / 2;
+    });
+    [view.x, view.y, view.z] = [0, 1, 2].map((c) => middle[0] * right[c] + middle[1] * up[c]);
+    const aspect = width / height;
+    let far = 0;
+    for (let i = 0; i < n; i += 3) {
+      const reach = Math.max(Math.abs(along(i, right) - middle[0]) / aspect, Math.abs(along(i, up) - middle[1]));
+      far = Math.max(far, along(i, back) + 2.4 * 1.06 * reach);
     }
-    view.distance = 2.4 * Math.max(w / aspect, h) * 1.04 + 0.3 * Math.hypot(...[0, 1, 2].map((c) => data.high[c] - data.low[c]));
+    view.distance = far || data.size;
   }
 
   /* drawing */
@@ -317,7 +327,7 @@
     return {
       matrix: camera(), scale: view.scale * view.phase, size: [width, height],
       cut_at: [0, 1, 2].map((c) => data.low[c] + view.cut[c] * (data.high[c] - data.low[c])), cut_side: view.cut.map((v) => (v < 1 ? 1 : 0)),
-      light: [0, 1, 2].map((c) => 0.8 * back[c] + 0.6 * up[c]),
+      light: [0, 1, 2].map((c) => 0.8 * back[c] + 0.6 * up[c]), eye: back,
     };
   };
   const draw = () => { if (!waiting) { waiting = true; requestAnimationFrame(() => { waiting = false; render(); }); } };
@@ -332,7 +342,7 @@
     if (glass) { gl.enable(gl.BLEND); gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA); gl.depthMask(false); }
     if (view.solid > 0) { gl.enable(gl.POLYGON_OFFSET_FILL); gl.polygonOffset(1.5, 2); paint(solid, blocks, { ...u, alpha: view.solid, lit: 1 }); gl.disable(gl.POLYGON_OFFSET_FILL); }
     if (glass) { gl.depthMask(true); gl.disable(gl.BLEND); }
-    paint(line, edges, { ...u, wide: count > 1500 ? 0.8 : 1.3, pull: 2e-4 });
+    paint(line, edges, { ...u, wide: count > 1500 ? 0.8 : 1.3, pull: 2e-3 * typical });
     triad();
   }
   function triad() {
