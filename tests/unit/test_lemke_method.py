@@ -63,7 +63,7 @@ FILES = sorted(CORPUS.glob("*.dat")) if CORPUS.is_dir() else []
 
 
 @pytest.mark.skipif(not FILES, reason="LCP corpus not found: set CONCIO_LCP_CORPUS to its directory")
-@pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", FILES, ids=[p.stem for p in FILES])
 def test_corpus_is_solved_or_excluded_by_proof(path: Path) -> None:
     problem = read_corpus(path)
     if solution(problem) is not None:

@@ -21,6 +21,7 @@ from concio.plot.figures import TITLES, suitable_figures, write_figures
 from concio.plot.path_figure import plot_path
 from concio.post.crosses import crosses
 from concio.post.force_lines import force_chains, joint_forces
+from concio.post.frames import Frame, box_of
 from concio.post.joint_lines import joint_lines
 from concio.post.mechanism import mechanism_states
 from concio.post.motion import body_motions
@@ -384,3 +385,14 @@ def test_display_scale_is_round(largest: float, size: float, scale: float) -> No
     assert display_scale(largest, size) == pytest.approx(scale)
 
 
+
+
+def test_the_frame_of_a_film_holds_what_moves_in_every_picture():
+    model = on_ground(box("block", 0, 1, 0, 2))
+    pictures = []
+    for k in (0.0, 3.0):
+        rings = tuple((b.outline + np.array([k * (b.kind != "fixed"), 0.0]),) for b in model.bodies)
+        pictures.append(Frame(len(pictures), k, "", rings))
+    low, high = box_of(pictures, model)
+    assert low == pytest.approx([-0.32, -0.32])  # 8 hundredths of the larger side beyond what moves
+    assert high == pytest.approx([4.32, 2.32])

@@ -13,6 +13,7 @@ from concio.contact.assembly import Assembly
 from concio.contact.patch_points import corner_points, spread_points
 from concio.fem.constitutive import principal_in_space, solid_matrix
 from concio.fem.elements import SOLID_FAMILIES
+from concio.fem.tetrahedra import GOOD, shape_of, tetrahedra
 from concio.kinematics.frames import tangents
 from concio.model.interfaces.patches import Patch
 from concio.model.surfaces import from_grid
@@ -342,3 +343,25 @@ def test_a_fine_grid_is_meshed_as_it_is() -> None:
     assembly = concio.assemble(model(GROUND, block, mesh_size=1.0))
     assert assembly.disc.unknowns == 3 * 11**3
     assert len(assembly.pairs) == 11**2
+
+
+def test_a_load_along_a_line_is_shared_by_the_nodes_on_it() -> None:
+    """Three linear elements of one length: a sixth, two thirds and a sixth of each length's load, node by node."""
+    block = box("a", (0, 0, 0), (3, 1, 1), mesh_size=1.0)
+    load = Load("traction", (0.0, 0.0, -7.0), edge=((0, 0, 1), (3, 0, 1)), bodies=("a",))
+    assembly = concio.assemble(model(GROUND, block, loads=(load,), element="H8"))
+    nodes, force = assembly.disc.nodes(1), assembly.load().reshape(-1, 3)
+    on = np.flatnonzero((nodes[:, 1] == 0) & (nodes[:, 2] == 1))
+    on = on[np.argsort(nodes[on, 0])]
+    assert nodes[on, 0] == pytest.approx([0, 1, 2, 3])
+    assert force[on, 2] == pytest.approx([-3.5, -7.0, -7.0, -3.5])
+    assert force.sum(0) == pytest.approx([0, 0, -21.0])
+
+
+@pytest.mark.parametrize(("block", "size"), [(frame_block("f"), 0.6), (l_block("l"), 0.35)])
+def test_slivers_of_a_mesh_of_tetrahedra_are_taken_away(block: Polyhedron, size: float) -> None:
+    """The points of these meshes alone leave flat tetrahedra; moved a little, they leave none."""
+    points, cells = tetrahedra(block, size)
+    shape = shape_of(points, cells)
+    assert shape.min() > GOOD
+    assert shape.max() <= 1.0

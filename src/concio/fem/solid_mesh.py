@@ -127,7 +127,7 @@ def _spans(marks: Array, lengths: Array, size: float, refinement: int) -> Array:
     marks = marks[keep]
     found = [marks[:1]]
     for a, b in pairwise(marks.tolist()):
-        span = (b - a) * lengths[min(int(0.5 * (a + b)), len(lengths) - 1)]
+        span = (b - a) * lengths[int(0.5 * (a + b))]
         parts = max(1, int(np.ceil(span / size - 1e-6))) * refinement
         found.append(a + (b - a) * np.arange(1, parts + 1) / parts)
     return np.concatenate(found)

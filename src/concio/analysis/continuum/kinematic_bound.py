@@ -98,7 +98,7 @@ def kinematic_bound(
         return nothing
     worthless = result.status == 3  # no live load is needed: find a mechanism on which the live load does no work
     if worthless:
-        b, bounds = 0.0 * b, np.vstack([np.tile([-1.0, 1.0], (2 * n, 1)), bounds[2 * n :]])
+        b, bounds = np.zeros_like(b), np.vstack([np.tile([-1.0, 1.0], (2 * n, 1)), bounds[2 * n :]])
         result = optimise(cost, (sp.csc_array(A), b), bounds, method="highs")
     if result.status != 0:
         msg = f"the linear programme of the continuum's upper bound stopped: {result.message}"

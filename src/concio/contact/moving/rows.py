@@ -135,9 +135,9 @@ class RowMaker:
         turned = np.conj(arm_b) * normal / self.reach_b
         values[:, 0, 5], values[:, 1, 5] = turned.imag, turned.real
         imposed = np.zeros((m, 2))
-        if velocity[self.moved].any() or spin[self.moved].any():
-            for body, arm, sign in ((a, arm_a, -1.0), (b, arm_b, 1.0)):
-                v = np.where(self.moved[body], velocity[body] + 1j * spin[body] * arm, 0.0)
+        if velocity[self.moved].any():
+            for body, sign in ((a, -1.0), (b, 1.0)):  # fixed bodies never turn
+                v = np.where(self.moved[body], velocity[body], 0.0)
                 imposed[:, 0] += sign * dot(normal, v)
                 imposed[:, 1] += sign * dot(1j * normal, v)
         if slots.side_a is not None and slots.side_b is not None:

@@ -320,11 +320,10 @@ def _points_on_faces(
 ) -> tuple[Array, Array]:
     """Return for which pairs a vertex or the middle of an edge of ``a`` lies inside a face of ``b``, and where."""
     sort, stacks = _stacked(bodies, np.unique(np.concatenate([a, b])))
-    code = sort[a] * (sort.max() + 1) + sort[b]
     numbers, places = [np.zeros(0, dtype=int)], [np.zeros((0, 3))]
-    for kind in np.unique(code).tolist():
-        own = np.flatnonzero(code == kind)
-        first, second = stacks[int(sort[a[own[0]]])], stacks[int(sort[b[own[0]]])]
+    for p, q in np.unique(np.column_stack([sort[a], sort[b]]), axis=0).tolist():
+        own = np.flatnonzero((sort[a] == p) & (sort[b] == q))
+        first, second = stacks[p], stacks[q]
         for part in np.array_split(own, max(1, len(own) * first.points.shape[1] // 200_000)):
             mine, theirs = first.rows(a[part]), second.rows(b[part])
             height = np.einsum("kvd,kfd->kvf", first.points[mine], second.normals[theirs])

@@ -7,16 +7,11 @@ s+ = 2 mu p, s- = 2 mu q, plain Coulomb friction reads
     K u - C^T t = f, \qquad y - C u - a t = x, \qquad y_t = y^+ - y^-, \qquad p, q, y_n, y^+, y^- \ge 0,
 
 with, of each pair, p = 0 or y+ = 0; q = 0 or y- = 0; p = q = 0 or y_n = 0 (smooth pairs: t_n = p alone). A
-*relaxation* fixes some of these columns at zero and drops the alternatives not yet chosen. Multiplying equilibrium by
-u shows that every state obeys the convex inequality
+*relaxation* fixes some of these columns at zero and drops the alternatives not yet chosen.
 
-.. math:: u^T K u - f^T u + x^T t + t^T a t = t^T y \le 0 ,
-
-the last because t_t y_t <= 0; its tangents are added where the linear programme violates it.
-
-Proof that a relaxation is empty (Farkas): multipliers z, w of the two sets of equations and lambda >= 0 of the
-tangents such that the coefficients of the combination vanish for u and are not positive for every column that may be
-positive, while its right-hand side is positive. The columns fixed at zero with a positive coefficient are the
+Proof that a relaxation is empty (Farkas): multipliers z, w of the two sets of equations such that the coefficients of
+the combination vanish for u and are not positive for every column that may be positive, while its right-hand side is
+positive. The columns fixed at zero with a positive coefficient are the
 *reasons*: as long as they stay fixed no state exists. The linear programme is solved with u eliminated; the multipliers
 it returns are lifted to the original equations, and the combination is formed again from K, C, f, x. It is believed
 only if what rounding left of the coefficients that must vanish could not make up for the right-hand side unless some
@@ -28,7 +23,6 @@ costs are drawn once, so that it does not stall, and are not perturbed by the so
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import Any
 
 import highspy
@@ -45,10 +39,22 @@ REACH = 1e7
 SIGNIFICANT = 1e-10
 """Coefficients of fixed columns below this share of the largest are left out of the reasons."""
 
+OPTIONS: tuple[tuple[str, Any], ...] = (
+    ("output_flag", False),
+    ("presolve", "off"),
+    ("solver", "simplex"),
+    ("simplex_strategy", 1),
+    ("threads", 1),
+    ("simplex_iteration_limit", 3000),
+    ("dual_simplex_cost_perturbation_multiplier", 0.0),
+    ("primal_feasibility_tolerance", 1e-9),
+    ("dual_feasibility_tolerance", 1e-9),
+)
+"""Of HiGHS: the dual simplex method from the last basis, its costs as they are."""
 
-@dataclass(eq=False)
+
 class Relaxation:
-    """The linear programme of a plane problem with plain friction, its cuts, and its solver.
+    """The linear programme of a plane problem with plain friction, and its solver.
 
     Parameters
     ----------
@@ -57,76 +63,55 @@ class Relaxation:
     Attributes
     ----------
     reduction : Reduction
-    m, k : int
-        Number of pairs and of rough pairs; the columns are p (m), q (k), y_n (m), y+ (k), y- (k), then alpha (r).
-    solves, cuts : int
-        Linear programmes solved and tangents added.
+    m, k, n : int
+        Number of pairs, of rough pairs and of columns that may be fixed: p (m), q (k), y_n (m), y+ (k), y- (k).
+    K, C, x, a, load : arrays
+        Of the problem, scaled; rows of normal directions first, then those of rough tangents.
+    B, Y : (m + k, m + k) and (m + k, m + 2 k) arrays
+        Forces t = B (p, q) and relative displacements y = Y (y_n, y+, y-).
+    solves : int
+        Linear programmes solved.
     """
 
-    problem: ContactProblem
-    reduction: Reduction = field(init=False)
-    solves: int = 0
-    cuts: int = 0
-    doubtful: int = 0
-
-    def __post_init__(self) -> None:
-        red = self.reduction = reduce(self.problem)
+    def __init__(self, problem: ContactProblem) -> None:
+        red = self.reduction = reduce(problem)
         self.m, self.k = red.pairs, int(red.rough.size)
-        m, k, r = self.m, self.k, red.G.shape[1]
-        c = m + k
-        self.n = 2 * m + 3 * k
+        self.n = 2 * self.m + 3 * self.k
+        order = np.concatenate([2 * np.arange(self.m), 2 * red.rough + 1])
         system = red.system
-        order = np.concatenate([2 * np.arange(m), 2 * red.rough + 1])
         self.K, self.C = sp.csr_array(system.s.K), sp.csr_array(system.C[order])
         self.x, self.a, self.load = system.x.ravel()[order], system.a.ravel()[order], system.load
-        self.R = sp.csc_array(self.problem.R)
-        rows, each = np.arange(k), np.arange(m)
-        B = np.zeros((c, c))
-        B[each, each] = 1.0
-        B[red.rough, m + rows] = 1.0
-        B[m + rows, red.rough] = red.mu
-        B[m + rows, m + rows] = -red.mu
-        self.B = B
-        Y = np.zeros((c, m + 2 * k))
-        Y[each, each] = 1.0
-        Y[m + rows, m + rows] = 1.0
-        Y[m + rows, m + k + rows] = -1.0
-        self.Y = Y
+        self.R = sp.csc_array(problem.R)
+        self.B, self.Y = _forces_of(red), _displacements_of(red)
         reach = np.abs(red.G).max(axis=0, initial=0.0)
         self.unit = np.where(reach > 0, 1.0 / np.where(reach > 0, reach, 1.0), 1.0)
-        G = red.G * self.unit
-        A = np.block([[-red.F @ B, Y, -G], [G.T @ B, np.zeros((r, m + 2 * k)), np.zeros((r, r))]])
-        b = np.concatenate([red.y0, -red.e0 * self.unit])
-        A[np.abs(A) < 1e-14 * np.abs(A).max(initial=1.0)] = 0.0
-        self.tangents: list[tuple[Array, Array, float]] = []
-        solver: Any = highspy.Highs  # its stubs leave out the constructor and getDualRay
-        self.highs = highs = solver()
-        for name, value in (
-            ("output_flag", False),
-            ("presolve", "off"),
-            ("solver", "simplex"),
-            ("simplex_strategy", 1),
-            ("threads", 1),
-            ("simplex_iteration_limit", 3000),
-            ("dual_simplex_cost_perturbation_multiplier", 0.0),
-            ("primal_feasibility_tolerance", 1e-9),
-            ("dual_feasibility_tolerance", 1e-9),
-        ):
-            highs.setOptionValue(name, value)
-        lp = highspy.HighsLp()
-        lp.num_col_, lp.num_row_ = self.n + r, c + r
-        lp.col_cost_ = np.concatenate([np.random.default_rng(0).uniform(0.5, 1.5, self.n), np.zeros(r)])
-        lp.col_lower_ = np.concatenate([np.zeros(self.n), np.full(r, -np.inf)])
-        lp.col_upper_ = np.full(self.n + r, np.inf)
-        lp.row_lower_ = lp.row_upper_ = b
-        sparse = sp.csc_array(A)
-        lp.a_matrix_.format_ = highspy.MatrixFormat.kColwise
-        lp.a_matrix_.start_, lp.a_matrix_.index_, lp.a_matrix_.value_ = sparse.indptr, sparse.indices, sparse.data
-        highs.passModel(lp)
-        self.index = np.arange(self.n, dtype=np.int32)
+        self.highs = self._solver()
         self.zeros = np.zeros(self.n)
         self.fixed = np.zeros(self.n, dtype=bool)
         self.bases: list[tuple[Array, highspy.HighsBasis]] = []
+        self.solves = 0
+
+    def _solver(self) -> Any:
+        """Return HiGHS with the programme whose columns are all free to be positive; rigid motions come last."""
+        red, m, k, r = self.reduction, self.m, self.k, self.R.shape[1]
+        G = red.G * self.unit
+        A = np.block([[-red.F @ self.B, self.Y, -G], [G.T @ self.B, np.zeros((r, m + 2 * k)), np.zeros((r, r))]])
+        A[np.abs(A) < 1e-14 * np.abs(A).max(initial=1.0)] = 0.0
+        sparse = sp.csc_array(A)
+        lp = highspy.HighsLp()
+        lp.num_row_, lp.num_col_ = A.shape
+        lp.col_cost_ = np.concatenate([np.random.default_rng(0).uniform(0.5, 1.5, self.n), np.zeros(r)])
+        lp.col_lower_ = np.concatenate([np.zeros(self.n), np.full(r, -np.inf)])
+        lp.col_upper_ = np.full(self.n + r, np.inf)
+        lp.row_lower_ = lp.row_upper_ = np.concatenate([red.y0, -red.e0 * self.unit])
+        lp.a_matrix_.format_ = highspy.MatrixFormat.kColwise
+        lp.a_matrix_.start_, lp.a_matrix_.index_, lp.a_matrix_.value_ = sparse.indptr, sparse.indices, sparse.data
+        solver: Any = highspy.Highs  # its stubs leave out the constructor and getDualRay
+        highs = solver()
+        for name, value in OPTIONS:
+            highs.setOptionValue(name, value)
+        highs.passModel(lp)
+        return highs
 
     def solve(self, fixed: Array) -> Point | Empty | None:
         """Solve with columns ``fixed`` (n,) at zero; None where the solver or its proof is not to be trusted."""
@@ -147,7 +132,6 @@ class Relaxation:
             self.highs.setOptionValue("dual_simplex_cost_perturbation_multiplier", 1.0)
             found = self._attempt(fixed)
             self.highs.setOptionValue("dual_simplex_cost_perturbation_multiplier", 0.0)
-            self.doubtful += found is None
         if isinstance(found, Point):
             self.bases.append((self.fixed, self.highs.getBasis()))
         return found
@@ -172,18 +156,11 @@ class Relaxation:
         """Form the combination of the original equations that ``ray`` suggests; None where it proves nothing."""
         c, r = self.m + self.k, self.R.shape[1]
         red = self.reduction
-        w, v, share = ray[:c], -ray[c : c + r] * self.unit, np.maximum(-ray[c + r :], 0.0)
+        w, v = ray[:c], -ray[c : c + r] * self.unit
         z = red.flexible @ w + self.R @ v
         d_u, d_t = -(self.C.T @ w), -self.a * w
         right = w @ self.x
         size = np.abs(w) @ np.abs(self.x)
-        for weight, (u_h, t_h, energy) in zip(share, self.tangents, strict=True):
-            if weight:
-                z = z + weight * (2.0 * (u_h - self.R @ (self.R.T @ u_h)) - red.u0)
-                d_u = d_u - weight * (2.0 * (self.K @ u_h) - self.load)
-                d_t = d_t - weight * (self.x + 2.0 * self.a * t_h)
-                right -= weight * energy
-                size += weight * abs(energy)
         d_u = d_u + self.K @ z
         d_t = d_t - self.C @ z
         right += z @ self.load
@@ -196,27 +173,25 @@ class Relaxation:
             return None
         return Empty(np.flatnonzero(reasons), right / left if left else np.inf)
 
-    def displacement(self, point: Point) -> Array:
-        """Return u (N,), scaled, of a point."""
-        red = self.reduction
-        u: Array = red.u0 + red.flexible @ point.t + self.R @ point.alpha
-        return u
 
-    def excess(self, point: Point) -> float:
-        """Return t'y of a point, which no state has positive."""
-        return float(point.t @ (self.Y @ point.columns[self.m + self.k :]))
+def _forces_of(red: Reduction) -> Array:
+    """Return the matrix B (m + k, m + k) of t = B (p, q): t_n = p + q, t_t = mu (p - q)."""
+    m, k = red.pairs, int(red.rough.size)
+    rows, each = np.arange(k), np.arange(m)
+    B = np.zeros((m + k, m + k))
+    B[each, each] = 1.0
+    B[red.rough, m + rows] = 1.0
+    B[m + rows, red.rough] = red.mu
+    B[m + rows, m + rows] = -red.mu
+    return B
 
-    def cut(self, point: Point) -> None:
-        """Add the tangent at a point to the energy inequality."""
-        red, c = self.reduction, self.m + self.k
-        u, t = self.displacement(point), point.t
-        stress = self.K @ u
-        energy = float(u @ stress + t @ (self.a * t))
-        row_t = red.flexible.T @ (2.0 * stress - self.load) + self.x + 2.0 * self.a * t
-        row = np.concatenate([row_t @ self.B, np.zeros(self.n - c), -red.e0 * self.unit])
-        right = energy - float((2.0 * stress - self.load) @ red.u0)
-        used = np.flatnonzero(row).astype(np.int32)
-        self.bases.clear()
-        self.highs.addRow(-np.inf, right, used.size, used, row[used])
-        self.tangents.append((u, t, energy))
-        self.cuts += 1
+
+def _displacements_of(red: Reduction) -> Array:
+    """Return the matrix Y (m + k, m + 2 k) of y = Y (y_n, y+, y-): y_t = y+ - y-."""
+    m, k = red.pairs, int(red.rough.size)
+    rows, each = np.arange(k), np.arange(m)
+    Y = np.zeros((m + k, m + 2 * k))
+    Y[each, each] = 1.0
+    Y[m + rows, m + rows] = 1.0
+    Y[m + rows, m + k + rows] = -1.0
+    return Y

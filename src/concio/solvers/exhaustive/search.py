@@ -117,33 +117,39 @@ class Search:
     def run(self, progress: ProgressCallback | None, time_limit: float, node_limit: float) -> Solution:
         """Search until decided or a limit is reached."""
         begin = time.perf_counter()
-
-        def info() -> dict[str, Any]:
-            spent = time.perf_counter() - begin
-            return {
-                "nodes": self.nodes,
-                "leaves": self.leaves,
-                "depth": self.depth,
-                "time": spent,
-                "reach": self.reach,
-                "doubtful": self.doubts,
-                "programmes": self.lp.solves,
-            }
-
         for answer in self.steps():
+            spent = time.perf_counter() - begin
             if answer is not None:
-                return judge(self.problem, *answer, method="exhaustive", iterations=self.nodes, info=info())
-            status = Status.UNDECIDED
-            if self.nodes % REPORT == 1 and progress is not None:
-                message = f"{self.leaves} combinations of states excluded"
-                status = (
-                    Status.CANCELLED if progress(Progress("exhaustive", self.nodes, self.worst, message)) else status
-                )
-            late = time.perf_counter() - begin > time_limit or self.nodes >= node_limit
-            if late or status is Status.CANCELLED:
-                return failed(self.problem, status, method="exhaustive", iterations=self.nodes, info=info())
+                return judge(self.problem, *answer, method="exhaustive", iterations=self.nodes, info=self.info(spent))
+            if self.cancelled(progress):
+                return self.without_answer(Status.CANCELLED, spent)
+            if spent > time_limit or self.nodes >= node_limit:
+                return self.without_answer(Status.UNDECIDED, spent)
         status = Status.UNDECIDED if self.doubts else Status.NO_COULOMB_STATE
-        return failed(self.problem, status, method="exhaustive", iterations=self.nodes, info=info())
+        return self.without_answer(status, time.perf_counter() - begin)
+
+    def cancelled(self, progress: ProgressCallback | None) -> bool:
+        """Tell every few nodes how far the search is; return whether it is asked to end."""
+        if progress is None or self.nodes % REPORT != 1:
+            return False
+        message = f"{self.leaves} combinations of states excluded"
+        return bool(progress(Progress("exhaustive", self.nodes, self.worst, message)))
+
+    def without_answer(self, status: Status, spent: float) -> Solution:
+        """Return the end of a search that met no equilibrium, after so many seconds."""
+        return failed(self.problem, status, method="exhaustive", iterations=self.nodes, info=self.info(spent))
+
+    def info(self, spent: float) -> dict[str, Any]:
+        """Return what the search cost, after so many seconds, and up to where its proofs hold."""
+        return {
+            "nodes": self.nodes,
+            "leaves": self.leaves,
+            "depth": self.depth,
+            "time": spent,
+            "reach": self.reach,
+            "doubtful": self.doubts,
+            "programmes": self.lp.solves,
+        }
 
     def steps(self) -> Iterator[tuple[Any, Any, Any] | None]:
         """Yield None after each node, or (u, t_n, t_t) of an equilibrium; end where nothing is left to try."""
@@ -185,12 +191,7 @@ class Search:
                 found = self.lp.solve(questions.fixed(clauses.trail))
                 if not isinstance(found, Point):
                     return
-                force, gap = questions.products(found.columns)
-                worst = np.argsort(-np.minimum(force, gap), kind="stable")
-                worst = worst[np.minimum(force, gap)[worst] > ZERO]
-                order = [2 * int(q) + int(side) for q in worst for side in (force[q] < gap[q], force[q] >= gap[q])][
-                    ::-1
-                ]
+                order = self.violated(found)
                 if not order:
                     return
             literal = order.pop()
@@ -210,6 +211,17 @@ class Search:
                 return
             clauses.back(0)
             found, order = None, []
+
+    def violated(self, found: Point) -> list[int]:
+        """Return both answers of each question that a point violates as literals, the worst last, its likelier one too.
+
+        The likelier answer keeps the larger of force and gap.
+        """
+        force, gap = self.questions.products(found.columns)
+        least = np.minimum(force, gap)
+        worst = np.argsort(-least, kind="stable")
+        worst = worst[least[worst] > ZERO]
+        return [2 * int(q) + int(side) for q in worst for side in (force[q] < gap[q], force[q] >= gap[q])][::-1]
 
     def excluded(self, found: Empty) -> Clause:
         """Return the clause that a proof of emptiness teaches: one of its reasons must not hold."""

@@ -15,7 +15,8 @@ from concio.problem.solution import Progress, ProgressCallback, Solution, Status
 from concio.solvers.algebra.scaled import Scaled, require_plane, scale
 from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.interior.homotopy import walk
-from concio.solvers.interior.interior_point import EARLY, START, InteriorPoint, Iterate
+from concio.solvers.interior.interior_point import EARLY, START, InteriorPoint
+from concio.solvers.interior.iterate import Iterate
 from concio.solvers.states.reading import Finished, read_states
 from concio.solvers.states.settle import ROUNDS, TOGETHER, Settler
 

@@ -11,7 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from concio.solvers.interior.interior_point import InteriorPoint, Iterate
+from concio.solvers.interior.interior_point import InteriorPoint
+from concio.solvers.interior.iterate import Iterate
 
 LEVEL = 1e-2
 """Mean product at which the walk stays, scaled units."""

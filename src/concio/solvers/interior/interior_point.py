@@ -10,11 +10,11 @@ s- = c + mu t_n - t_t, and the slip parts y+ and y-, all of equations (5), (16),
     y^+ - y^- &= C_t u - s + a_t t_t, &
     t_n y_n &= s^+ y^+ = s^- y^- = q\,p = \tau \to 0, \qquad q = N - t_n .
 
-Newton's equations of a pair are a 2 x 2 system; eliminated, they leave :math:`(K + C^T D C)\,\delta u = r`, sparse and
-of one pattern, regular although K is singular. Steps follow Mehrotra's predictor and corrector, then up to
-:data:`CORRECTORS` of Gondzio's centrality correctors, each of which costs one back-substitution and stays only if it
-lengthens the step. The dilatancy used is :math:`\bar d = d + \theta(\mu - d)`: theta = 0 is the problem itself,
-theta = 1 associated flow, which is convex; :mod:`concio.solvers.interior.homotopy` walks from one to the other.
+Each iteration solves Newton's equations (:mod:`concio.solvers.interior.newton_equations`). Steps follow Mehrotra's
+predictor and corrector, then up to :data:`CORRECTORS` of Gondzio's centrality correctors, each of which costs one
+back-substitution and stays only if it lengthens the step. The dilatancy used is :math:`\bar d = d + \theta(\mu - d)`:
+theta = 0 is the problem itself, theta = 1 associated flow, which is convex; :mod:`concio.solvers.interior.homotopy`
+walks from one to the other.
 
 What the iteration returns is a point close to a solution, or nothing; the exact finish makes it exact.
 
@@ -28,7 +28,7 @@ J. Gondzio, Multiple centrality corrections in a primal-dual method for linear p
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -36,7 +36,8 @@ import numpy as np
 from concio.problem.contact_problem import Array
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
-from concio.solvers.states.given import LOOSE, times
+from concio.solvers.interior.iterate import Iterate, Residuals
+from concio.solvers.interior.newton_equations import Newton
 
 START = 10.0
 """Size of slacks and multipliers at the start, in scaled units."""
@@ -55,82 +56,6 @@ OUTLIER = 10.0
 
 EARLY = "states hardly change"
 """Why a run ends whose caller finds its point good enough to be finished."""
-
-
-@dataclass(frozen=True, eq=False)
-class Iterate:
-    """A point strictly inside (every slack and multiplier positive), or a direction.
-
-    Parameters
-    ----------
-    u : (N,) array
-    t_t : (m,) array
-    slack : (4, m) array
-        Rows t_n, s+, s- and q; q belongs to capped pairs and is one elsewhere.
-    dual : (4, m) array
-        Rows y_n, y+, y- and p, the partners of the slacks; p is one where q is.
-    """
-
-    u: Array
-    t_t: Array
-    slack: Array
-    dual: Array
-
-    @property
-    def t_n(self) -> Array:
-        """Shifted normal forces (m,)."""
-        return np.asarray(self.slack[0])
-
-    @property
-    def t(self) -> Array:
-        """Forces of the pairs (m, 2)."""
-        return np.stack([self.slack[0], self.t_t], axis=1)
-
-    def products(self) -> Array:
-        """Return the four complementarity products of each pair, (4, m)."""
-        products: Array = self.slack * self.dual
-        return products
-
-    def moved(self, d: Iterate, step: float) -> Iterate:
-        """Return the point a step further along d."""
-        return Iterate(
-            self.u + step * d.u, self.t_t + step * d.t_t, self.slack + step * d.slack, self.dual + step * d.dual
-        )
-
-    def longest(self, d: Iterate, share: float = 1.0) -> float:
-        """Return ``share`` of the step along d to the boundary, at most 1."""
-        falls = min(float((d.slack / self.slack).min(initial=0.0)), float((d.dual / self.dual).min(initial=0.0)))
-        return 1.0 if -falls <= share else share / -falls
-
-    def recentred(self, level: float) -> Iterate:
-        """Return the point with products below ``level`` raised to it by the smaller factor."""
-        grow = np.maximum(level / np.maximum(self.products(), 1e-300), 1.0)
-        smaller = self.slack < self.dual
-        return replace(
-            self,
-            slack=np.where(smaller, self.slack * grow, self.slack),
-            dual=np.where(smaller, self.dual, self.dual * grow),
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class Residuals:
-    """What the linear equations leave: equilibrium (N,), and of each pair (m,) gap, slip, s+, s- and cap."""
-
-    u: Array
-    n: Array
-    t: Array
-    p: Array
-    m: Array
-    q: Array
-
-    def size(self, force: float, length: float) -> float:
-        """Return the largest, forces relative to ``force`` and lengths to ``length``."""
-        forces, lengths = (self.u, self.p, self.m, self.q), (self.n, self.t)
-        return max(
-            *(float(np.abs(v).max(initial=0.0)) / force for v in forces),
-            *(float(np.abs(v).max(initial=0.0)) / length for v in lengths),
-        )
 
 
 @dataclass(frozen=True)
@@ -196,65 +121,6 @@ class Stopping:
         if near and merit > self.WORSE * self.best:
             return "ran away"
         return "no progress" if self.since >= self.PATIENCE[near] else ""
-
-
-class Newton:
-    """Newton's equations at a point: eliminated, factorised, and solved for one right-hand side after another.
-
-    Parameters
-    ----------
-    s : Scaled
-    z : Iterate
-    rest : Residuals
-    dilatancy : (m,) array
-
-    Raises
-    ------
-    SingularMatrixError
-        There is no direction: the path turns back, or the matrix cannot be factorised.
-    """
-
-    def __init__(self, s: Scaled, z: Iterate, rest: Residuals, dilatancy: Array) -> None:
-        self.s, self.z, self.rest, self.dilatancy = s, z, rest, dilatancy
-        rough, capped, mu = s.rough, s.cone.capped, s.cone.friction
-        # how stiff each law is: dual over slack, zero where the law is not there
-        self.ratio = z.dual / z.slack
-        self.ratio[1:3, ~rough] = 0.0
-        self.ratio[3, ~capped] = 0.0
-        opens, plus, minus, crush = self.ratio
-        h_nn = opens + s.compliance[:, 0] + crush + dilatancy * mu * (plus + minus)
-        lean = plus - minus
-        h_tt = np.where(rough, plus + minus + s.compliance[:, 1], 1.0)
-        det = h_nn * h_tt - dilatancy * lean * mu * lean
-        if not det.all():
-            msg = "the equations of a pair are singular"
-            raise SingularMatrixError(msg)
-        self.D = np.empty((s.pairs, 2, 2))
-        self.D[:, 0, 0], self.D[:, 0, 1] = h_tt / det, -dilatancy * lean / det
-        self.D[:, 1, 0], self.D[:, 1, 1] = -mu * lean / det, np.where(rough, h_nn / det, 0.0)
-        s.factor.factorise(self.D, LOOSE)
-
-    def direction(self, change: Array) -> Iterate:
-        """Return the direction that changes the products by ``change`` (4, m), to first order."""
-        s, z, r, mu = self.s, self.z, self.rest, self.s.cone.friction
-        rough, capped = s.rough, s.cone.capped
-        # dual parts: d dual = change / slack - ratio d slack, with ds+ = mu dt_n + dt_t + r+, ..., dq = r_q - dt_n
-        free = change / z.slack
-        free[1:3, ~rough] = 0.0
-        free[3, ~capped] = 0.0
-        plus, minus = free[1] - self.ratio[1] * r.p, free[2] - self.ratio[2] * r.m
-        b = np.empty((s.pairs, 2))
-        b[:, 0] = r.n - free[0] - self.dilatancy * (plus + minus) + free[3] - self.ratio[3] * r.q
-        b[:, 1] = r.t - plus + minus
-        du = s.factor.solve(-r.u - s.pull(times(self.D, b)))
-        dt = times(self.D, b + s.along(du))
-        slack = np.empty_like(z.slack)
-        slack[0] = dt_n = -dt[:, 0]
-        dt_t = np.where(rough, -dt[:, 1], 0.0)
-        slack[1], slack[2], slack[3] = mu * dt_n + dt_t + r.p, mu * dt_n - dt_t + r.m, r.q - dt_n
-        slack[1:3, ~rough] = 0.0
-        slack[3, ~capped] = 0.0
-        return Iterate(du, dt_t, slack, free - self.ratio * slack)
 
 
 class InteriorPoint:
@@ -344,10 +210,7 @@ class InteriorPoint:
         step, iteration, kept, why = 1.0, 0, z, ""
         while True:
             rest, gap = self.residuals(z, theta), self.gap(z)
-            force = max(1.0, float(z.t_n.max(initial=0.0)), float(np.abs(z.t_t).max(initial=0.0)))
-            length = max(1.0, float(np.abs(z.u).max(initial=0.0)))
-            residual = rest.size(force, length)
-            typical = max(1.0, float(z.t_n.mean())) * max(1.0, float(z.dual[:3].sum(axis=0).mean()))
+            residual, typical = rest.size(*z.size()), z.typical_product()
             merit = max(residual, gap / typical)
             if not np.isfinite(merit):
                 why = "numbers ran over"

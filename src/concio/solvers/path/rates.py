@@ -129,7 +129,7 @@ def rates(equations: PathEquations, direction: Array, creep: Array | None = None
     yielding = float((equations.lent * np.maximum(np.abs(t_n), np.abs(t_t))).max(initial=0.0))
     small = max(CREEPING * yielding, 1e-3 * CREEPING * float(np.abs(creep[:n]).max(initial=0.0)))
     away, along = equations.positions(creep, rate=True)
-    away, along = away + equations.lent * t_n, along + equations.lent * t_t
+    along = along + equations.lent * t_t  # open pairs, asked for away, carry nothing
     away = np.where((np.abs(gap) <= still) & (np.abs(away) > small), away, 0.0)
     along = np.where((np.abs(slip) <= still) & (np.abs(along) > small), along, 0.0)
     plus, minus = d.cone.friction * t_n + t_t, d.cone.friction * t_n - t_t
