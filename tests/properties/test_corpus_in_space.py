@@ -14,12 +14,15 @@ sys.path.append(str(Path(__file__).resolve().parents[2] / "benchmarks"))
 
 from corpus_space import DECIDED, FAMILIES, draw, proven
 
-SAMPLE = (0, 2, 3, 4, 5, 6, 7, 8, 10, 11, 12, 14, 15, 17, 34, 35)
+SAMPLE = [(0, k) for k in (0, 2, 3, 4, 5, 6, 7, 8, 10, 11, 12, 14, 15, 17, 34, 35)]
+
+HARD = [(7, 44), pytest.param(7, 67, marks=pytest.mark.long)]
+"""A motion of which all but a millionth is over long before the rest, and an equilibrium far from where it starts."""
 
 
-@pytest.mark.parametrize("k", SAMPLE)
-def test_verdict_is_a_proof(k: int) -> None:
-    problem, _ = draw(np.random.default_rng([0, k]), FAMILIES[k % len(FAMILIES)])
+@pytest.mark.parametrize(("seed", "k"), [*SAMPLE, *HARD])
+def test_verdict_is_a_proof(seed: int, k: int) -> None:
+    problem, _ = draw(np.random.default_rng([seed, k]), FAMILIES[k % len(FAMILIES)])
     found = find("auto")(problem)
     assert found.status.name in DECIDED
     assert proven(problem, found)

@@ -131,7 +131,7 @@ def test_between_the_limits_letting_go_decides() -> None:
     assert found.status is Status.COLLAPSES
     assert found.departure is not None
     assert found.departure.certified
-    assert found.info["strategy"] == "release"
+    assert found.info["strategy"] == "release, single steps"
     assert any("statically admissible forces exist" in line for line in found.trace)
 
 
@@ -144,6 +144,16 @@ def test_single_long_steps_from_rest_show_the_motion_that_never_ends() -> None:
     assert moves.certified
     rests = at_once(ConeRun(scale(built.at(0.5 * limit))))
     assert isinstance(rests, Finished)
+
+
+@pytest.mark.long
+def test_a_dome_close_to_its_limit_moves_away() -> None:
+    """Only the further starts and the small steps from the longest one solved show the motion."""
+    built = dome(6, 16, kn=1e3)
+    limit = associated_limit(built.problem, built.live).multiplier
+    moves = at_once(ConeRun(scale(built.at(0.99 * limit))))
+    assert isinstance(moves, Departure)
+    assert moves.certified
 
 
 def test_letting_go_ends_after_the_work_that_is_allowed(monkeypatch) -> None:

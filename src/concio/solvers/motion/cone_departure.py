@@ -31,11 +31,15 @@ SOLVED = 1e-9
 RIGID = 1e-6
 """Largest scaled displacement, besides the motion, that is taken for none: elastic bodies under load move by one."""
 
+BEYOND = 100.0
+"""Least length of the motion, in displacements besides it, at the point on it that is certified: directions of slips
+that have only begun would be known to fewer digits."""
+
 SLIDES = 1e-6
 """Share of the largest slip of a step from which on a pair counts as sliding."""
 
 
-def departure(s: Scaled, u: Array, t: Array, velocity: Array) -> Departure | None:
+def departure(s: Scaled, u: Array, t: Array, velocity: Array, resistance: float | None = None) -> Departure | None:
     """Return the certified motion that follows from a state of slow motion, or None.
 
     Parameters
@@ -45,10 +49,12 @@ def departure(s: Scaled, u: Array, t: Array, velocity: Array) -> Departure | Non
         Displacements and forces of the state, scaled.
     velocity : (N,) array
         e (u_k+1 - u_k) of its last step.
+    resistance : float, optional
+        e of that step, to begin with where the step was a long one.
     """
     if s.problem.rigid_motions == 0:
         return None
-    for e in FINEST:
+    for e in FINEST if resistance is None else (resistance, *FINEST):
         found = _settled(s, u, t, velocity / e, e)
         if found is not None and found.certified:
             return found
@@ -100,4 +106,5 @@ def _proof(s: Scaled, a: Array, u: Array, t: Array) -> Departure | None:
     opening = (rate[:, 0] > STILL * top) & (gap < 0) & (t[:, 0] <= 0)
     behind = (speed > STILL * top) & (slip < 0) & s.rough
     far = np.concatenate([-gap[opening] / rate[opening, 0], -slip[behind] / speed[behind]]).max(initial=0.0)
-    return verify_departure(s.problem, s.acceleration(a), *s.restore(u + 1.01 * far * a, t))
+    far = max(1.01 * far, BEYOND * float(np.abs(u).max()) / top)
+    return verify_departure(s.problem, s.acceleration(a), *s.restore(u + far * a, t))

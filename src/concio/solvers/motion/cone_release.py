@@ -7,12 +7,13 @@ What stands still is an equilibrium, made exact; what settles into a steady moti
 
 Before that single steps are made from rest, each ten times longer than the last (:func:`at_once`). In the longest that
 is solved the structure has moved far beyond what its joints give way, and mostly in the very motion that never ends:
-that saves following all that happens on the way.
+that saves following all that happens on the way. A step that no start solves is passed over; from the longest solved
+Newton's method goes on in smaller steps, for a motion that has settled grows with the step and changes no state.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,8 +41,20 @@ STEP = 1e-10
 MOST = 80
 """Largest number of steps tried."""
 
-LONG = 1e-5
-"""Resistance e up to which a single step from rest is looked at as a motion that never ends."""
+LEAST_GROWTH = 1.1
+"""Least factor between the resistances of single steps: where not even that succeeds, they end."""
+
+SINGLE = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
+"""Resistances of the single steps from rest that the interior point is asked for where Newton's method fails."""
+
+FAR = Start(100.0, 1e3, 0.9)
+"""A further start of the interior point for single steps, whose displacements are large."""
+
+LONGEST = 1e-11
+"""Least resistance of a single step."""
+
+CHANGES = 0.1
+"""Largest change of the motion from one single step to the next, relative, at which it is asked whether it ends."""
 
 FAILURES = 12
 """Largest number of steps that may fail."""
@@ -61,21 +74,59 @@ def at_once(run: ConeRun) -> Finished | Departure | None:
     """
     s = run.scaled
     rest = np.zeros(len(s.f))
-    e = FIRST
+    allowed = s.factor.made + _allowed(s)
+    single = _Single()
+    for e in SINGLE:
+        if single.ended is None and s.factor.made < allowed:
+            step = s.step_from(rest, e)
+            single.reached(run, e, single.guessed(step, e) or _inner(run, step, (*starts_for(step), FAR)))
+    growth = GROWTH
+    while single.last is not None and single.ended is None and growth > LEAST_GROWTH and s.factor.made < allowed:
+        e = single.before / growth
+        if e < LONGEST:
+            break
+        went_on = single.reached(run, e, single.guessed(s.step_from(rest, e), e))
+        growth = min(growth**1.5, GROWTH) if went_on else np.sqrt(growth)
+    ended = single.ended
+    outcome = {Finished: "comes to rest", Departure: "moves away", type(None): "no end found"}[type(ended)]
+    run.trace.append(f"release: single steps down to a resistance of {single.before:.0e}, {outcome}")
+    return ended
+
+
+@dataclass
+class _Single:
+    """The longest single step from rest solved so far, and what it showed.
+
+    Parameters
+    ----------
+    before : float
+        Its resistance.
+    last : Finished, optional
+    ended : Finished or Departure, optional
+        Rest or motion without end.
+    """
+
+    before: float = np.inf
     last: Finished | None = None
     ended: Finished | Departure | None = None
-    allowed = _allowed(s)
-    while e >= LEAST and ended is None and s.factor.made < allowed:
-        step = s.step_from(rest, e)
-        found = None if last is None else _newton(step, (GROWTH * last.u, last.u), last.t)
-        found = found or _inner(run, step, starts_for(step)[:1])
-        if found is None:
-            break
-        ended = _rest(run, found) or (departure(s, found.u, found.t, e * found.u) if e <= LONG else None)
-        e, last = e / GROWTH, found
-    outcome = {Finished: "comes to rest", Departure: "moves away", type(None): "no end found"}[type(ended)]
-    run.trace.append(f"release: single steps down to a resistance of {GROWTH * e:.0e}, {outcome}")
-    return ended
+
+    def guessed(self, step: Scaled, e: float) -> Finished | None:
+        """Solve a longer step by Newton's method from this one: the motion goes on, or the structure stays."""
+        if self.last is None:
+            return None
+        return _newton(step, (self.before / e * self.last.u, self.last.u), self.last.t)
+
+    def reached(self, run: ConeRun, e: float, now: Finished | None) -> bool:
+        """Look at a step solved with resistance e; once the motion changes little it is asked whether it ever ends."""
+        if now is None:
+            return False
+        self.ended = _rest(run, now)
+        if self.ended is None and self.last is not None:
+            velocity, other = e * now.u, self.before * self.last.u
+            if float(np.abs(velocity - other).max()) < CHANGES * float(np.abs(velocity).max()):
+                self.ended = departure(run.scaled, now.u, now.t, velocity, e)
+        self.before, self.last = e, now
+        return True
 
 
 def release(run: ConeRun, u: Array | None = None) -> Finished | Departure | None:
@@ -94,7 +145,7 @@ def release(run: ConeRun, u: Array | None = None) -> Finished | Departure | None
     before = e
     here: Finished | None = None
     ended: Finished | Departure | None = None
-    allowed = _allowed(s)
+    allowed = s.factor.made + _allowed(s)
     while taken + failures < MOST and failures < FAILURES and s.factor.made < allowed:
         moved = _solve(run, s.step_from(u, e), here, before / e)
         if moved is None:
@@ -114,8 +165,8 @@ def release(run: ConeRun, u: Array | None = None) -> Finished | Departure | None
 
 
 def _allowed(s: Scaled) -> int:
-    """Return the count of factorisations beyond which no further step is made."""
-    return s.factor.made + int(np.clip(WORK / (len(s.f) + s.pairs), LEAST_WORK, MOST_WORK))
+    """Return how many factorisations are made at most before the last step is begun."""
+    return int(np.clip(WORK / (len(s.f) + s.pairs), LEAST_WORK, MOST_WORK))
 
 
 def _rest(run: ConeRun, now: Finished) -> Finished | None:
