@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+import concio
+
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 
@@ -133,12 +135,23 @@ def check_facade_with_return(found):
     assert found["turns"]
 
 
+def check_chapel_corner(found):
+    """Tied, the corner bears what the vault bears between two fixed abutments: neither wall moves."""
+    vault = concio.barrel(span=3.5, ring=0.3, length=3.75, voussoirs=15, blocks=5, block="rigid", horizontal=1.0)
+    alone = concio.limit(vault, path=False, steps=False, search=False).associated.multiplier
+    assert found["with two ties"] == pytest.approx(alone, rel=1e-9)
+    assert found["without ties"] < alone / 3
+    assert found["fall"]
+    assert max(v for name, v in found.items() if name.endswith("error")) <= 1e-9
+
+
 LONG = {
     "04_settlement",  # quick: test_settle, test_path
     "16_smaller_and_smaller_blocks",  # test_continuum, halving to the continuum's limit
     "17_facade_strip",  # test_assess, the same wall with ties
     "25_fragility_of_a_pillar",  # 24 here, the same motions
     "33_tower_under_lateral_load",  # test_space_generators, test_collapse_in_space
+    "35_chapel_corner",  # test_compose, test_ties, test_collapse_in_space
     "34_facade_with_return",  # test_assess_in_space, test_interlocked_corner
 }
 """Examples of more than some four seconds, and the quick tests that show the same code at work."""

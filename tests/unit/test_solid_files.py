@@ -268,6 +268,54 @@ def test_a_block_that_touches_nothing_is_told(tmp_path: Path) -> None:
     assert "'c' touches" not in out
 
 
+CHAPEL = """
+[[parts]]
+name = "wall"
+[parts.walls]
+lines = [[[0, 0], [2, 0]], {{ start = [0, 0], end = [0, 3], openings = [{{ x = 1.5, y = 0, width = 0.75, {} }}] }}]
+height = 1.5
+block_size = {}
+block = "rigid"
+[[parts]]
+name = "vault"
+at = {}
+turn = -90
+without = "right abutment"
+[parts.barrel]
+span = 2
+ring = 0.25
+length = 1
+voussoirs = 7
+block = "rigid"
+[[ties]]
+name = "bar"
+body_a = "wall-w1-c06-b02"
+at_a = [1, 0, {}]
+at_b = [1, 3, 1.4]
+stiffness = 1000
+"""
+SOUND = ("height = 1, lintel = 0.25", "[0.5, 0.25, 0.25]", "[0.5, 1.1, 1.5]", "1.4")
+MISTAKES = {
+    "none": ({}, 0, ""),
+    "no lintel": ({0: "height = 1"}, 0, "'wall-w2-c05-b04' has nothing under it: only friction"),
+    "millimetres": ({1: "[500, 250, 250]"}, 2, "the wall is 2 m long and 250 m thick -> .*is block_size in mm"),
+    "elsewhere": ({2: "[0.5, 1.1, 9]"}, 0, "blocks are in 2 groups that do not touch: 'wall-w1-c01-b01' and 63 more"),
+    "hanging": ({2: "[0.5, 1.6, 1.5]"}, 0, "'vault-v07-b01'.* have nothing under them: .*a pier missing"),
+    "tie": ({3: "4.1"}, 0, "tie 'bar' ends at .1, 0, 4.1. m, 2.6 m outside 'wall-w1-c06-b02'"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_mistakes_in_putting_parts_together_are_noticed(tmp_path: Path, mistake: str) -> None:
+    changed, code, said = MISTAKES[mistake]
+    (tmp_path / "m.toml").write_text(CHAPEL.format(*(changed.get(k, text) for k, text in enumerate(SOUND))))
+    found, out, err = run("check", tmp_path / "m.toml")
+    assert found == code, out + err
+    words = " ".join((out + err).split())
+    assert re.search(said, words), words
+    assert ("attention" in words) == (mistake not in ("none", "millimetres"))
+
+
 def test_compas_and_json_that_is_none(tmp_path: Path) -> None:
     block = {"vertex": {str(k): dict(zip("xyz", p, strict=True)) for k, p in enumerate(CUBE.tolist())}}
     block["face"] = {str(k): [str(v) for v in f] for k, f in enumerate(BOX)}  # type: ignore[assignment]

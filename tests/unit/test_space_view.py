@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from concio.analysis.result import Result
 from concio.plot.picture import Picture
 from concio.plot.space_figures import VIEWS, directions, plot_space_model
 from concio.post.joint_faces import joint_faces, pieces_of
-from concio.post.solids import body_motions_in_space, model_solids, solids
+from concio.post.solids import body_motions_in_space, model_solids, moved_ties, solids
 from concio.post.space_states import mechanism_states_in_space
 from concio.problem.solution import Mechanism, Status, failed
 from concio.report.page import report_html
@@ -141,8 +142,21 @@ def test_a_picture_shows_what_is_nearest() -> None:
     assert row[width // 2].tolist() == [0, 255, 0]
 
 
-def test_a_legend_explains_only_what_is_seen() -> None:
+def test_ties_are_carried_along_by_their_bodies() -> None:
+    """One end rises and turns about x with its block, the other stands; twice as far at a scale of two."""
+    tie = concio.Tie("bar", "top", (1.0, 0.0, 0.75), "", (5.0, 0.0, 0.75), stiffness=1e3)
+    result = moving(replace(tower(), ties=(tie,)), {"top": ((0, 0, 1.0), (0.5, 0, 0))})
+    arm = np.array([1.0, 0.0, 0.75]) - result.model.polyhedra[2].centroid
+    ends = moved_ties(result, result.mechanism_velocity, 2.0)
+    assert ends[0, 1] == pytest.approx([5.0, 0.0, 0.75])
+    assert ends[0, 0] == pytest.approx([1.0, -2 * 0.5 * arm[2], 0.75 + 2 * (1.0 + 0.5 * arm[1])])
+    data = space_view_data([result], ["collapse"])["ties"]
+    assert unpack(data["body"]).tolist() == [2, -1]
+
+
+def test_a_legend_explains_only_what_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """The joint under a block that lifts is seen from the corner, and is hidden by both blocks from above."""
+    monkeypatch.setattr("concio.plot.picture.LONGER_SIDE", 400)
     result = moving(tower(), {"top": ((0, 0, 1.0), (0, 0, 0))})
     words = {}
     for view in ("axonometry", "plan"):

@@ -22,6 +22,8 @@ from concio.model.model import Body, Model
 from concio.model.plausibility import implausible
 from concio.model.polyhedron import Polyhedron
 
+BEARS = 1e-3
+"""A face that looks up by less carries nothing without friction."""
 MOST_LINES = 20
 """More findings than this are counted, unless all are asked for."""
 
@@ -36,7 +38,7 @@ def check_facts(model: Model, detection: Detection) -> dict[str, Any]:
         **({} if model.periods is None else {"periods": [list(p) for p in model.periods]}),
         "near_misses": [m.sentence for m in detection.near_misses],
         "overlaps": [o.sentence for o in detection.overlaps],
-        "attention": [*implausible(model), *_loose(model, detection)],
+        "attention": [*implausible(model), *_apart(model, detection)],
         "drawing_faults": list(_noted(model, "faults")),
         "left_out": list(_noted(model, "left_out")),
         "moved": list(_noted(model, "moved")),
@@ -97,7 +99,7 @@ def check_lines(
         lines.append(f"tie          {tie.name}: {tie.body_a} to {tie.body_b or 'a fixed point'}")
     geometry = [f"overlap      {o.sentence}" for o in detection.overlaps if o.sentence not in fault]
     geometry += [f"near miss    {m.sentence}" for m in detection.near_misses]
-    noticed = (*implausible(model), *_loose(model, detection), *_noted(model, "faults"))
+    noticed = (*implausible(model), *_apart(model, detection), *_noted(model, "faults"))
     findings = [f"attention    {sentence}" for sentence in noticed] + geometry
     lines += _drawing(model, every=every)
     shown = findings if every else findings[:MOST_LINES]
@@ -156,8 +158,8 @@ def _interfaces(model: Model, detection: Detection) -> list[str]:
     return lines or ["joints       none: no two bodies touch"]
 
 
-def _loose(model: Model, detection: Detection) -> list[str]:
-    """Return a sentence on the blocks from which no joint, tie or support leads to anything that stands."""
+def _apart(model: Model, detection: Detection) -> list[str]:
+    """Return sentences on blocks that touch nothing that stands, on groups that do not touch, and on what hangs."""
     number = {body.name: k for k, body in enumerate(model.bodies)}
     ground = len(model.bodies)
     links = [(i.a, i.b) for i in detection.interfaces]
@@ -166,15 +168,50 @@ def _loose(model: Model, detection: Detection) -> list[str]:
     links += [(k, ground) for k, body in enumerate(model.bodies) if body.kind == "fixed"]
     if model.periods is not None or not detection.interfaces:
         return []
-    a, b = np.array(links).T
-    graph = sp.coo_array((np.ones(len(links)), (a, b)), shape=(ground + 1, ground + 1))
-    part = connected_components(graph, directed=False)[1]
+    part = _groups(links, ground + 1)
     loose = [body.name for k, body in enumerate(model.bodies) if part[k] != part[ground]]
-    if not loose:
+    found = []
+    if loose:
+        words = ("touches nothing that stands: it falls", "touch nothing that stands: they fall")[len(loose) > 1]
+        found.append(f"{_first(loose)} {words}; are all of them where they should be?")
+    if model.dim == 2:
+        return found
+    free = [k for k, body in enumerate(model.bodies) if body.kind != "fixed" and part[k] == part[ground]]
+    among = _groups([(p, q) for p, q in links if {p, q} <= set(free)], ground + 1)
+    groups: dict[int, list[str]] = defaultdict(list)
+    for k in free:
+        groups[int(among[k])].append(model.bodies[k].name)
+    if len(groups) > 1:
+        shown = sorted(groups.values(), key=len, reverse=True)
+        words = ", ".join(_first(names, 1) for names in shown[:3]) + (", ..." if len(shown) > 3 else "")
+        found.append(f"the blocks are in {len(shown):,} groups that do not touch: {words}; is that meant?")
+    return found + _hanging(model, detection)
+
+
+def _groups(links: list[tuple[int, int]], count: int) -> np.ndarray:
+    """Return the number of the group (count,) of each body, of those that links hold together."""
+    a, b = np.array(links, dtype=int).reshape(-1, 2).T
+    graph = sp.coo_array((np.ones(len(a)), (a, b)), shape=(count, count))
+    return np.asarray(connected_components(graph, directed=False)[1])
+
+
+def _first(names: list[str], most: int = 3) -> str:
+    more = f" and {len(names) - most:,} more" if len(names) > most else ""
+    return ", ".join(f"'{name}'" for name in names[:most]) + more
+
+
+def _hanging(model: Model, detection: Detection) -> list[str]:
+    """Return a sentence on the blocks in space that touch others, none of which is under them to any degree."""
+    held = {tie.body_a for tie in model.ties} | {tie.body_b for tie in model.ties} | {s.body for s in model.supports}
+    touched = {k for patch in detection.patches for k in (patch.a, patch.b)}
+    borne = {p.b for p in detection.patches if p.normal[2] > BEARS}
+    borne |= {p.a for p in detection.patches if p.normal[2] < -BEARS}
+    bodies = [model.bodies[k] for k in sorted(touched - borne)]
+    names = [b.name for b in bodies if b.kind != "fixed" and b.name not in held]
+    if not names or not any(load.kind == "weight" for load in model.loads):
         return []
-    first = ", ".join(f"'{name}'" for name in loose[:3]) + (f" and {len(loose) - 3:,} more" if len(loose) > 3 else "")
-    words = ("touches nothing that stands: it falls", "touch nothing that stands: they fall")[len(loose) > 1]
-    return [f"{first} {words}; are all of them where they should be?"]
+    words = ("has nothing under it", "have nothing under them")[len(names) > 1]
+    return [f"{_first(names)} {words}: only friction at the sides can hold that; is a lintel or a pier missing?"]
 
 
 def _torsion(model: Model, detection: Detection, contact_model: Mapping[str, int]) -> list[str]:

@@ -19,6 +19,8 @@ HEAVY = 80.0
 """No building material is heavier; steel has 78.5 [kN/m3]."""
 LONG = 50.0
 """No block is longer [m]."""
+FAR = 0.5
+"""Share of the size of a block by which the end of a tie may lie outside it."""
 MOVED = 0.1
 """Imposed displacements above this share of a block's size are large, and rotations above this [rad]."""
 
@@ -43,7 +45,7 @@ def implausible(model: Model) -> tuple[str, ...]:
                 f"material '{name}': a unit weight of {material.unit_weight:g} kN/m3 is more than that of steel: "
                 f"masses are written with their unit, '{material.unit_weight:g} kg/m3'"
             )
-    return (*found, *_sizes(model))
+    return (*found, *_sizes(model), *_ties(model))
 
 
 def _law(name: str, law: JointLaw) -> list[str]:
@@ -56,6 +58,23 @@ def _law(name: str, law: JointLaw) -> list[str]:
 
 def _modulus(E: float) -> str:
     return f"{E / 1e6:g} GPa" if E >= 1e6 else f"{E / 1e3:g} MPa"
+
+
+def _ties(model: Model) -> list[str]:
+    """Return a sentence for each end of a tie that lies far from the block it is fixed to."""
+    at = {b.name: b for b in model.bodies}
+    found = []
+    for tie in model.ties:
+        for name, end in ((tie.body_a, tie.at_a), (tie.body_b, tie.at_b)):
+            if name not in at:
+                continue
+            low, high = at[name].vertices.min(0), at[name].vertices.max(0)
+            point = np.asarray(end, dtype=float)
+            off = float(np.linalg.norm(np.maximum(0.0, np.maximum(low - point, point - high))))
+            if off > FAR * float((high - low).max()):
+                place = ", ".join(f"{v:g}" for v in point)
+                found.append(f"tie '{tie.name}' ends at ({place}) m, {off:.3g} m outside '{name}': is that its anchor?")
+    return found
 
 
 def _sizes(model: Model) -> list[str]:

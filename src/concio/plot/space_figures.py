@@ -18,7 +18,7 @@ from concio.plot import style
 from concio.plot.picture import Picture
 from concio.post.joint_faces import joint_faces
 from concio.post.outlines import display_scale
-from concio.post.solids import Solids, model_solids, solids
+from concio.post.solids import Solids, model_solids, moved_ties, solids
 from concio.post.space_states import mechanism_states_in_space
 
 if TYPE_CHECKING:
@@ -133,9 +133,11 @@ def plot_space(
     title = "Collapse mechanism" if mechanism else f"Displaced shape, {number(chosen)} times"
     factors = ", ".join(f"{group} = {number(factor)}" for group, factor in result.factors.items())
     note = f"loads {factors}" if factors else ""
-    ax, picture = draw_solids(shown, block_colours(result.model), view, ax, chosen, title, extra, note)
+    bars = moved_ties(result, u, chosen)
+    ax, picture = draw_solids(shown, block_colours(result.model), view, ax, chosen, title, extra, note, bars)
     words = WORDS_OF_MECHANISMS if mechanism else WORDS
-    style.legend(ax, [style.patch(looks[k], words[k]) for k in looks if picture.points_of(looks[k]) >= SEEN])
+    told = {looks[k]: words[k] for k in looks} | ({style.TENSION.colour: "tie"} if len(bars) else {})
+    style.legend(ax, [style.patch(look, word) for look, word in told.items() if picture.points_of(look) >= SEEN])
     return ax
 
 
@@ -154,8 +156,9 @@ def draw_solids(
     title: str,
     extra: Sequence[tuple[Array, str]] = (),
     note: str = "",
+    bars: Array | None = None,
 ) -> tuple[Axes, Picture]:
-    """Draw bodies, each in its colour, with coloured areas (n, 3) upon them; return the axes and the picture."""
+    """Draw bodies, each in its colour, coloured areas (n, 3) upon them and ties (t, 2, 3); return axes and picture."""
     from matplotlib.colors import to_rgb
 
     right, up, eye = directions(view)
@@ -177,6 +180,8 @@ def draw_solids(
     picture.fill(areas, fills)
     wide = 1 if len(colours) > style.LARGE else 2
     picture.stroke(points[shown.edges], to_rgb(style.EDGE), wide, 1.5e-3 * shown.size)
+    if bars is not None and len(bars):
+        picture.stroke(bars, to_rgb(style.TENSION.colour), 2 * wide + 1, 1.5e-3 * shown.size)
     extent = (box[0, 0], box[1, 0], box[0, 1], box[1, 1])
     ax.imshow(picture.image(), extent=extent, interpolation="antialiased", zorder=1)
     style.dress(ax, box, title, note)

@@ -11,6 +11,7 @@ import numpy as np
 from concio.contact.factors import load_factor
 from concio.fem.discretisation import FIXED, RIGID
 from concio.fem.solid import SolidShape
+from concio.kinematics.frames import cross
 from concio.kinematics.rigid import rigid_operator, swept
 from concio.representation import short_repr
 
@@ -92,6 +93,25 @@ def solids(result: Result, u: Array | None = None) -> Solids:
             blocks.append(block)
             moves.append(motion[b, :3] + swept(motion[b, 3:], block[0] - disc.centroids[b]))
     return _joined(blocks, moves)
+
+
+def tie_ends(model: Model) -> Array:
+    """Return the two ends of each tie (t, 2, 3) [m]."""
+    return np.array([[tie.at_a, tie.at_b] for tie in model.ties], dtype=float).reshape(-1, 2, 3)
+
+
+def tie_bodies(model: Model) -> Array:
+    """Return the numbers of the bodies that the ends of each tie are fixed to (t, 2), -1 for a point that stands."""
+    number = {body.name: k for k, body in enumerate(model.bodies)}
+    return np.array([[number[t.body_a], number.get(t.body_b, -1)] for t in model.ties], dtype=int).reshape(-1, 2)
+
+
+def moved_ties(result: Result, u: Array | None, scale: float) -> Array:
+    """Return the ends of each tie (t, 2, 3) carried along by their bodies, so many times as far as they move [m]."""
+    ends, bodies = tie_ends(result.model), tie_bodies(result.model)
+    motion = np.vstack([body_motions_in_space(result, u), np.zeros(6)])[bodies]
+    arm = ends - np.vstack([result.assembly.disc.centroids, np.zeros(3)])[bodies]
+    return np.asarray(ends + scale * (motion[..., :3] + cross(motion[..., 3:], arm)))
 
 
 def body_motions_in_space(result: Result, u: Array | None = None) -> Array:

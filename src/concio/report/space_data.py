@@ -13,7 +13,7 @@ import numpy as np
 
 from concio.post.joint_faces import JointFaces, joint_faces
 from concio.post.outlines import display_scale
-from concio.post.solids import Solids, body_motions_in_space, solids
+from concio.post.solids import Solids, body_motions_in_space, solids, tie_bodies, tie_ends
 from concio.post.space_states import mechanism_states_in_space
 from concio.report.view_data import LOOK, kind_of, pack, steps_within, units_of
 
@@ -82,6 +82,11 @@ def space_view_data(results: Sequence[Result], labels: Sequence[str]) -> dict[st
             "b": pack(resultants.body_b, "i4"),
             "area": pack(resultants.area, "f8"),
             "normal": pack(resultants.normal, "f4"),
+        },
+        "ties": {
+            "name": [tie.name for tie in model.ties],
+            "end": pack(tie_ends(model) - origin, "f4"),
+            "body": pack(tie_bodies(model), "i4"),
         },
         "steps": packed,
     }

@@ -18,7 +18,7 @@
   };
 
   const data = JSON.parse($("data").textContent);
-  const look = data.look, bodies = unpacked(data.bodies), pieces = unpacked(data.pieces), joints = unpacked(data.joints);
+  const look = data.look, bodies = unpacked(data.bodies), pieces = unpacked(data.pieces), joints = unpacked(data.joints), ties = unpacked(data.ties);
   const steps = data.steps.map(() => null);
   const stepAt = (k) => (steps[k] ??= stepOf(unpacked(data.steps[k])));
   const count = bodies.name.length, triangles = bodies.owner.length, cells = pieces.pair.length;
@@ -150,7 +150,7 @@
 
   /* blocks */
   const blocks = mesh(3 * triangles), edges = mesh(6 * bodies.edge_owner.length), faces = mesh(6 * cells);
-  let forces = mesh(0), crosses = mesh(0);
+  let forces = mesh(0), crosses = mesh(0), bars = mesh(0);
   const spread = (array, index, size) => {
     const out = new Float32Array(index.length * size);
     for (let i = 0; i < index.length; i++) for (let j = 0; j < size; j++) out[size * i + j] = array[size * index[i] + j];
@@ -227,6 +227,13 @@
     }
     forces = mesh(0); strips(forces, Float32Array.from(lines), Float32Array.from(moves), Float32Array.from(tones));
   }
+  /* ties, carried along by the bodies that they are fixed to */
+  function placeTies() {
+    const count = ties.name.length, moves = new Float32Array(6 * count), tones = new Float32Array(3 * count);
+    for (let k = 0; k < 2 * count; k++) if (ties.body[k] >= 0) moves.set(motionAt(ties.body[k], ties.end.subarray(3 * k, 3 * k + 3)), 3 * k);
+    for (let k = 0; k < count; k++) tones.set(parse(look.tension), 3 * k);
+    bars = mesh(0); strips(bars, ties.end, moves, tones);
+  }
   function placeCrosses() {
     const lines = [], moves = [], tones = [];
     if (step.stress) {
@@ -284,6 +291,7 @@
       for (const k of [0, 1, 2, 3]) if (held.has(k)) parts.push(`<span class="key" style="background:${look[STATE_LOOK[k]]}"></span>joint ${words[k]}`);
     }
     if (view.crosses || view.forces) parts.push(`<span class="key" style="background:${look.compression}"></span>compression <span class="key" style="background:${look.tension}"></span>tension`);
+    if (ties.name.length) parts.push(`<span class="key" style="background:${look.tension}"></span>tie`);
     $("legend").innerHTML = parts.map((p) => `<span>${p}</span>`).join(" ");
   }
 
@@ -338,6 +346,7 @@
     if (view.joints) { put(faces, "colour", faces.tones, 3); paint(solid, faces, { ...u, alpha: 1, lit: 0 }); }
     if (view.crosses && crosses.vertices) paint(line, crosses, { ...u, wide: 2.6, pull: 0 });
     if (view.forces && forces.vertices) paint(line, forces, { ...u, wide: 3, pull: 0 });
+    if (bars.vertices) paint(line, bars, { ...u, wide: 2.6, pull: 0 });
     const glass = view.solid < 1;
     if (glass) { gl.enable(gl.BLEND); gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA); gl.depthMask(false); }
     if (view.solid > 0) { gl.enable(gl.POLYGON_OFFSET_FILL); gl.polygonOffset(1.5, 2); paint(solid, blocks, { ...u, alpha: view.solid, lit: 1 }); gl.disable(gl.POLYGON_OFFSET_FILL); }
@@ -463,7 +472,7 @@
     render(); requestAnimationFrame(tick);
   }
   function setStep() {
-    step = stepAt(view.step); placeBlocks(); placeForces(); placeCrosses(); recolour(); describe(); scaleText();
+    step = stepAt(view.step); placeBlocks(); placeForces(); placeCrosses(); placeTies(); recolour(); describe(); scaleText();
     if ($("step-text")) $("step-text").textContent = step.label;
   }
   function resize() {

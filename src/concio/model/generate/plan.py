@@ -21,6 +21,9 @@ from concio.model.generate.openings import Opening, checked_openings
 
 Array = np.ndarray
 
+THICK = 20.0
+"""A wall thicker than this is in another unit [m]."""
+
 
 @strict_class
 @dataclass(frozen=True)
@@ -111,6 +114,11 @@ def checked_plan(
         along = q - p
         axis = int(np.argmax(np.abs(along)))
         length = float(np.abs(along[axis]))
+        if length <= thick and thick > THICK:
+            ends = f"from ({p[0]:g}, {p[1]:g}) to ({q[0]:g}, {q[1]:g}) m"
+            msg = f"{ends}: the wall is {length:g} m long and {thick:g} m thick"
+            hint = f"lengths without a unit are in m: is block_size in mm? [..., '{thick:g} mm', ...]"
+            raise InputError(msg, where=place, hint=hint)
         if length <= thick or abs(along[1 - axis]) > 1e-9 * length:
             msg = f"from ({p[0]:g}, {p[1]:g}) to ({q[0]:g}, {q[1]:g}) m: a wall is longer than thick, along x or y"
             raise InputError(msg, where=place, hint="turn the whole with concio.place where it stands askew")
