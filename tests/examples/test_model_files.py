@@ -33,9 +33,14 @@ def solved(name: str) -> concio.Result:
     return concio.solve(concio.load(FOLDER / name), on_failure="return")
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_every_example_is_decided(name: str) -> None:
+LONG = {"facade.toml"}
+"""More than some four seconds; test_settle settles the same facade quickly."""
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.long] * (n in LONG)) for n in FILES])
+def test_every_example_is_decided_and_told_in_plain_json(name: str) -> None:
     result = solved(name)
+    assert json.loads(json.dumps(result.summary(), allow_nan=False))["title"]
     if name in COLLAPSE:
         assert result.status is Status.NO_EQUILIBRIUM
         return
@@ -132,8 +137,3 @@ def test_the_stages_are_followed_in_their_order() -> None:
     at_once = solved("load_stages.toml")
     assert at_once.reactions["ground"] == pytest.approx((-wind, weight), rel=1e-9)
     assert (after.contacts.state != at_once.contacts.state).any()  # friction remembers
-
-
-def test_json_of_every_example_is_plain(tmp_path: Path) -> None:
-    for name in FILES:
-        assert json.loads(json.dumps(solved(name).summary(), allow_nan=False))["title"]

@@ -70,7 +70,7 @@ def read(text: str) -> concio.Model | concio.InputError:
         return error
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(mutated())
 def test_a_changed_file_is_a_model_or_a_message(data: dict[str, Any]) -> None:
     found = read("\n".join(_pairs(data)))

@@ -77,6 +77,12 @@ def test_rectangle_marks_become_mesh_lines():
     assert not is_rectangle(np.array([(0, 0), (1, 1), (0, 2), (-1, 1.0)]))
 
 
+def test_refinement_of_a_polygon_shortens_its_edges_as_much():
+    outline = np.array([(0, 0), (1.2, 0), (1.4, 0.8), (0.5, 1.3), (-0.2, 0.7)])
+    coarse, fine = (len(mesh_body(Body("b", outline), 0.4, k, [np.zeros(0)] * 5)[1]) for k in (1, 3))
+    assert fine == pytest.approx(9 * coarse, rel=0.4)
+
+
 def test_refinement_splits_each_element():
     outline = np.array([(0, 0), (1, 0), (1, 1), (0, 1.0)])
     none = [np.zeros(0)] * 4

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
 
 import concio
-from concio import Elastic, InputError, JointLaw, Load, Model, Polyhedron, Rigid, Support, Tie
+from concio import Elastic, GeometryError, InputError, JointLaw, Load, Model, Polyhedron, Rigid, Support, Tie
 from concio.analysis.stress import Stress
 from concio.contact.assembly import Assembly
 from concio.contact.patch_points import corner_points, spread_points
@@ -365,3 +367,12 @@ def test_slivers_of_a_mesh_of_tetrahedra_are_taken_away(block: Polyhedron, size:
     shape = shape_of(points, cells)
     assert shape.min() > GOOD
     assert shape.max() <= 1.0
+
+
+def test_elements_that_do_not_fill_their_block_are_refused() -> None:
+    """Its faces stand higher than the mesh: the outer sides of the upper elements lie on none of them."""
+    assembly = concio.assemble(model(GROUND, box("a", (0, 0, 0), (1, 1, 1), mesh_size=0.5)))
+    shape = assembly.disc.shapes[assembly.disc.shape_of[1]]
+    assert len(shape.facets) == 6
+    with pytest.raises(GeometryError, match="the mesh leaves the faces of the block"):
+        _ = replace(shape, vertices=shape.vertices * (1.0, 1.0, 1.5)).facets

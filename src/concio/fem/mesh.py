@@ -30,8 +30,7 @@ def merged(values: Array, tolerance: float) -> Array:
     for v in values[1:]:
         if v - keep[-1] > tolerance:
             keep.append(v)
-    if values[-1] - keep[-1] > 0:
-        keep[-1] = values[-1]
+    keep[-1] = values[-1]
     return np.array(keep)
 
 

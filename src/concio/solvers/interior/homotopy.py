@@ -60,7 +60,7 @@ def walk(
     theta, stride = 1.0, 0.2
     while theta > 0 and total < most:
         new = max(0.0, theta - stride)
-        trial, outcome = engine.run(z.recentred(level), theta=new, level=2 * level, most=25, watch=watch)
+        trial, outcome = engine.run(z, theta=new, level=2 * level, most=25, watch=watch)
         total += outcome.iterations
         if outcome.converged:
             z, theta = trial, new

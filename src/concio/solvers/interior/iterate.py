@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -62,16 +62,6 @@ class Iterate:
         """Return ``share`` of the step along d to the boundary, at most 1."""
         falls = min(float((d.slack / self.slack).min(initial=0.0)), float((d.dual / self.dual).min(initial=0.0)))
         return 1.0 if -falls <= share else share / -falls
-
-    def recentred(self, level: float) -> Iterate:
-        """Return the point with products below ``level`` raised to it by the smaller factor."""
-        grow = np.maximum(level / np.maximum(self.products(), 1e-300), 1.0)
-        smaller = self.slack < self.dual
-        return replace(
-            self,
-            slack=np.where(smaller, self.slack * grow, self.slack),
-            dual=np.where(smaller, self.dual, self.dual * grow),
-        )
 
 
 @dataclass(frozen=True, eq=False)
