@@ -19,6 +19,9 @@ from concio.solvers.algebra.sparse_factor import Engine, OrderedFactor, Pattern
 PIVOT = 0.0
 """Every diagonal entry is a pivot: refinement costs less than the fill that others bring late in an iteration."""
 
+SAME = 1e-13
+"""Relative difference up to which two blocks are the same."""
+
 SMALL_BODY = 6
 """Bodies of up to this many unknowns are coupled as wholes: rigid blocks."""
 
@@ -106,6 +109,12 @@ class BlockFactor:
     def made(self) -> int:
         """Number of factorisations made by this and by all that share its pattern."""
         return self._made[0]
+
+    def has(self, D: Array, diagonal: float) -> bool:
+        """Tell whether the factors at hand are those of D (m, d, d) and this diagonal, but for rounding."""
+        if self.D is None or not np.array_equal(np.asarray(self.diagonal), diagonal):
+            return False
+        return bool(np.allclose(D, self.D, rtol=SAME, atol=0.0))
 
     def with_diagonal(self, diagonal: Array) -> BlockFactor:
         """Return a factor of K + diag(diagonal) that shares ordering and pattern; each keeps factors of its own."""

@@ -1,9 +1,10 @@
 r"""A contact problem in units of its own, in the plane and in space, with what is factorised again and again.
 
 Lengths and forces are divided by ``U`` and ``F`` so that a typical pair carries one and a typical stiffness is one.
-``F`` is measured on the *glued* structure (every pair held by two-sided springs of the typical stiffness in series with
-its own compliance), which costs one factorisation and is regular although ``K`` is singular. Penalties, step lengths
-and tolerances of the methods mean something in these units only, and no answer depends on the user's.
+``F`` is measured on the *glued* structure (every pair held by two-sided springs of about the typical stiffness, in
+series with its own compliance), which is regular although ``K`` is singular. In the plane these are the springs of the
+point where the interior point begins, so that its first system is factorised already. Penalties, step lengths and
+tolerances of the methods mean something in these units only, and no answer depends on the user's.
 
 Strengths are shifted by the tensile strength, so that every pair reads ``p = t_n + T >= 0``, ``|t_t| <= c' + mu p``:
 the cone has no tension, loads hold the share ``-C_n' T`` of the shift and gaps the share ``-a_n T``. Rows of ``C`` are
@@ -27,8 +28,8 @@ from concio.problem.tolerances import GRANTED, ROUNDING, SMOOTH
 from concio.solvers.algebra.block_factor import BlockFactor
 from concio.solvers.algebra.sparse_factor import Engine
 
-HELD = 1e-9
-"""Stiffness that holds what no pair holds in the glued structure, scaled units."""
+LOOSE = 1e-10
+"""Stiffness of the springs that keep unknowns which nothing holds where they are, scaled units."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,7 +228,7 @@ class Scaled:
     @cached_property
     def start(self) -> Array:
         """Forces of the glued structure brought into the cones (m, d): where iterations start."""
-        springs = 1.0 / (1.0 + self.compliance)
+        springs = 1.0 / (_softness(self.problem) + self.compliance)
         held = self.x if not self.problem.f.any() else np.minimum(self.x, 0.0)
         t = -springs * (held + self.along(self.glued))
         t[:, 0] += self.problem.laws.tension / self.force
@@ -280,8 +281,8 @@ def scale(problem: ContactProblem, engine: Engine | None = None, *, loads: Array
     stiffness = typical_stiffness(problem)
     K, C = sp.csr_array(problem.K * (1.0 / stiffness)), interleaved(problem)
     factor = BlockFactor(K, C, m, problem.bodies, engine)
-    springs = 1.0 / (1.0 + _compliance(problem) * stiffness)
-    factor.factorise(springs[:, :, None] * np.eye(d), HELD)
+    springs = 1.0 / (_softness(problem) + _compliance(problem) * stiffness)
+    factor.factorise(springs[:, :, None] * np.eye(d), LOOSE)
     measured = problem.f if loads is None else loads
     gaps = np.column_stack([problem.gap, -problem.slip_origin])
     held = springs * (gaps if not measured.any() else np.minimum(gaps, 0.0))
@@ -324,3 +325,17 @@ def _compliance(problem: ContactProblem) -> Array:
     """Return a_n and a_t of each pair, (m, d) [m/kN]."""
     law = problem.laws
     return np.column_stack([law.normal_compliance, *[law.tangential_compliance] * (problem.dim - 1)])
+
+
+def _softness(problem: ContactProblem) -> Array:
+    """Return how much the glued structure gives way at each pair before its own compliance counts, (m, d), scaled.
+
+    In space one. In the plane what the interior point gives way where it begins, every slack equal to its multiplier:
+    1 + 2 d along the normal, and 2 / mu in the joint where there is friction.
+    """
+    softness = np.ones((problem.pairs, problem.dim))
+    if problem.dim == 2:
+        rough, mu = problem.laws.cone.rough, problem.laws.cone.friction
+        softness[:, 0] += np.where(rough, 2.0 * problem.laws.dilatancy, 0.0)
+        softness[:, 1] = 2.0 / np.where(rough & (mu > SMOOTH), mu, 2.0)
+    return softness

@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 
 from concio.problem.contact_problem import Array
-from concio.solvers.algebra.scaled import Scaled
+from concio.solvers.algebra.scaled import LOOSE, Scaled
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.interior.iterate import Iterate, Residuals
-from concio.solvers.states.given import LOOSE, times
+from concio.solvers.states.given import times
 
 
 class Newton:
@@ -49,7 +49,8 @@ class Newton:
         self.D = np.empty((s.pairs, 2, 2))
         self.D[:, 0, 0], self.D[:, 0, 1] = h_tt / det, -dilatancy * lean / det
         self.D[:, 1, 0], self.D[:, 1, 1] = -mu * lean / det, np.where(rough, h_nn / det, 0.0)
-        s.factor.factorise(self.D, LOOSE)
+        if not s.factor.has(self.D, LOOSE):  # it has where the iteration begins
+            s.factor.factorise(self.D, LOOSE)
 
     def direction(self, change: Array) -> Iterate:
         """Return the direction that changes the products by ``change`` (4, m), to first order."""

@@ -11,13 +11,10 @@ from __future__ import annotations
 import numpy as np
 
 from concio.problem.contact_problem import Array
-from concio.solvers.algebra.scaled import Scaled
+from concio.solvers.algebra.scaled import LOOSE, Scaled
 from concio.solvers.algebra.updated_blocks import UpdatedBlocks
 from concio.solvers.states.equations import StateEquations
 from concio.solvers.states.reading import sizes
-
-LOOSE = 1e-10
-"""Stiffness of the springs that keep unknowns which nothing holds where they are, scaled units."""
 
 REFINED = 1e-14
 """Relative residual at which refinement of an answer stops; before where it no longer halves the residual."""

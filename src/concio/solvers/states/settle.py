@@ -21,10 +21,10 @@ import numpy as np
 from concio.problem.contact_problem import Array
 from concio.problem.pair_state import PairStates
 from concio.problem.tolerances import EXACT
-from concio.solvers.algebra.scaled import Scaled
+from concio.solvers.algebra.scaled import LOOSE, Scaled
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.states.equations import StateEquations
-from concio.solvers.states.given import LOOSE, TRIED, GivenStates
+from concio.solvers.states.given import TRIED, GivenStates
 from concio.solvers.states.reading import Finished, natural_residual, read_states
 from concio.solvers.states.small_problem import decide
 
