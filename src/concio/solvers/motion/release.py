@@ -28,7 +28,7 @@ from concio.solvers.pivoting import sparse_lemke
 from concio.solvers.states.reading import Finished, natural_residual, read_states
 from concio.solvers.states.settle import Settler
 
-FIRST = 1e-2
+FIRST = 3e-2
 """Resistance e of the first step, scaled units."""
 
 GROWTH = 10.0
@@ -52,7 +52,7 @@ WORK = 3_000_000
 COLD = 3000
 """Largest number of pairs for which the first step is tried by pivoting from nothing."""
 
-FAILURES = 12
+FAILURES = 30
 """Largest number of steps that may fail."""
 
 SLOW = 1e-3
