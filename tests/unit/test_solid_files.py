@@ -141,6 +141,69 @@ def test_ply_and_off(tmp_path: Path, name: str) -> None:
         concio.model_from_solids(tmp_path / name, block="rigid")
 
 
+def off_of(*blocks: tuple[np.ndarray, object]) -> str:
+    points, faces = np.vstack([p for p, _ in blocks]), []
+    for k, (_, own) in enumerate(blocks):
+        faces += [tuple(8 * k + v for v in face) for face in own]  # type: ignore[attr-defined]
+    rows = [f"{x} {y} {z}" for x, y, z in points] + [f"{len(f)} {' '.join(map(str, f))}" for f in faces]
+    return f"OFF {len(points)} {len(faces)} 0\n" + "\n".join(rows)
+
+
+def off_as_ply(text: str) -> str:
+    head, *rows = text.split("\n")
+    _, points, faces, _ = head.split()
+    lines = ["ply", "format ascii 1.0", f"element vertex {points}", *(f"property double {c}" for c in "xyz")]
+    lines += [f"element face {faces}", "property list uchar int vertex_index", "end_header", *rows]
+    return "\n".join(lines) + "\n"
+
+
+WRONG = {
+    "open": (off_of((CUBE, BOX[:5])), "block 'm': the surface is open"),
+    "inside out": (off_of((CUBE, [f[::-1] for f in BOX])), "block 'm': the faces point inwards"),
+    "crossing": (off_of((CUBE, [(0, 3, 2, 1), *BOX[1:]])), "block 'm': face 1 crosses itself"),
+    "out of plane": (off_of((CUBE + np.eye(8)[:, 7:] * [0, 0, 0.2], BOX)), "face 2 is not planar: .* 49.51 mm off"),
+    "inside": (off_of((CUBE, BOX), (CUBE / 2 + 0.25, BOX)), "'m-2' lies inside 'm'"),
+    "overlap": (off_of((CUBE, BOX), (CUBE + np.array([0.9, 0, 0]), BOX)), "'m' and 'm-2' overlap .* 100 mm deep"),
+    "millimetres": (off_of((CUBE * 300, BOX)), "longer than 300 m .* unit = 'mm'"),
+    "index": (off_of((CUBE, [(0, 1, 9)])), "uses a vertex|uses vertex 9"),
+    "two vertices": (off_of((CUBE, [(0, 1)])), "a face of 2 vertices|has 2 vertices"),
+    "no number": (off_of((CUBE, BOX)).replace("1.0 1.0 1.0", "1.0 one 1.0"), "line .*cannot be read|no row of"),
+    "counts": (off_of((CUBE, BOX)).replace("8 6 0", f"{10**9} 6 0"), "more than 5,000,000 vertices"),
+    "faces": (off_of((CUBE, BOX)).replace("8 6 0", f"8 {10**9} 0"), "the file ends before"),
+    "no faces": (off_of((CUBE, [])), "no faces|holds no blocks"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("end", [".off", ".ply"])
+@pytest.mark.parametrize("fault", WRONG)
+def test_what_is_wrong_in_surfaces_is_said_in_a_sentence(tmp_path: Path, fault: str, end: str) -> None:
+    text, said = WRONG[fault]
+    path = bad(tmp_path, text if end == ".off" else off_as_ply(text), f"m{end}")
+    path.write_text(path.read_text().replace("[materials", "[solids]\nground = true\n[materials"))
+    code, out, err = run("check", path)
+    assert code == 2
+    assert re.search(said, " ".join((out + err).split())), out + err
+    assert "Traceback" not in out + err
+
+
+HEADERS = {
+    "no header": ("plyx", "is not PLY"),
+    "big": ("ply\nformat ascii 1.0\nelement vertex 8\nproperty quad x\nend_header\n", "line 4 of the header"),
+    "no format": ("ply\nelement vertex 0\nend_header\n", "does not say its format"),
+    "no coordinates": ("ply\nformat ascii 1.0\nelement vertex 1\nend_header\n", "no element 'vertex' with x, y"),
+}
+
+
+@pytest.mark.parametrize("fault", HEADERS)
+def test_headers_that_cannot_be_read(tmp_path: Path, fault: str) -> None:
+    (tmp_path / "m.ply").write_text(HEADERS[fault][0])
+    with pytest.raises(InputError, match=HEADERS[fault][1]):
+        concio.model_from_solids(tmp_path / "m.ply", block="rigid")
+    (tmp_path / "m.off").write_text(HEADERS[fault][0])
+    with pytest.raises(InputError, match="is not OFF as text"):
+        concio.model_from_solids(tmp_path / "m.off", block="rigid")
+
+
 def test_another_program_writes_what_is_read(tmp_path: Path) -> None:
     mesh = trimesh.creation.icosphere(subdivisions=1)
     for name, how in (("a.ply", "ascii"), ("b.ply", "binary"), ("c.off", None)):

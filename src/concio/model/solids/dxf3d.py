@@ -60,7 +60,8 @@ def _shapes(entities: list[Any]) -> list[Shape]:
             mesh = MeshBuilder.from_mesh(entity) if kind == "MESH" else MeshBuilder.from_polyface(entity)
             points = np.array([tuple(v) for v in mesh.vertices], dtype=float).reshape(-1, 3)
             faces = [list(f) for f in mesh.faces if len(f) > 2]
-            found.append(Shape(f"h{entity.dxf.get('handle', '')}", layer, points, faces))
+            name = f"h{entity.dxf.get('handle', '')}"
+            found.append(Shape(name, layer, points, faces, source=f"layer '{layer}'"))
     for layer, loops in loose.items():
         if not loops:
             continue

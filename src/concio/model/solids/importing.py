@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from itertools import chain
 from pathlib import Path
 from typing import Any, Literal, Unpack
 
@@ -200,6 +201,8 @@ def _parted(shape: Shape, metres: float, within: float) -> list[tuple[Shape, Arr
     if not len(points) or not np.isfinite(points).all():
         return [(shape, points, tuple(map(tuple, shape.faces)))]
     own = tuple(map(tuple, shape.faces))
+    if own and len(points) > MOST_VERTICES and np.bincount(_labels(own)).max() > MOST_VERTICES:
+        return [(shape, points, own)]  # refused at sight: no block, however it is parted
     parts = _connected(points, own)
     if not within and all(len(faces) > 3 and topology(faces, ()).fault is None for _, faces in parts):
         return [(shape, *part) for part in parts]
@@ -212,13 +215,19 @@ def _connected(points: Array, faces: tuple[Loop, ...]) -> list[tuple[Array, tupl
     return [(points[list(used)], own) for used, own in _parts_of(faces)] if faces else [(points, faces)]
 
 
+def _labels(faces: tuple[Loop, ...]) -> Array:
+    """Return the number of the part to which each vertex belongs; one that no face uses is a part of its own."""
+    sides = np.fromiter(chain.from_iterable(faces), dtype=int)
+    first = np.repeat([f[0] for f in faces], [len(f) for f in faces])
+    count = int(sides.max()) + 1
+    meets = sp.coo_array((np.ones(len(sides)), (first, sides)), shape=(count, count))
+    return np.asarray(connected_components(meets, directed=False)[1])
+
+
 @lru_cache(maxsize=256)
 def _parts_of(faces: tuple[Loop, ...]) -> list[tuple[tuple[int, ...], tuple[Loop, ...]]]:
     """Return the vertices of each part, and its faces numbered by them: once for all blocks of one sort."""
-    sides = np.concatenate([np.array(f) for f in faces])
-    first = np.repeat([f[0] for f in faces], [len(f) for f in faces])
-    count = int(sides.max()) + 1
-    _, part = connected_components(sp.coo_array((np.ones(len(sides)), (first, sides)), shape=(count, count)))
+    part = _labels(faces)
     own: dict[int, list[Loop]] = {}
     for face in faces:
         own.setdefault(int(part[face[0]]), []).append(face)

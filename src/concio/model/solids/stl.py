@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from concio.errors import InputError
-from concio.files import check_regular
+from concio.files import LARGEST, check_regular
 from concio.model.solids.shapes import Scene, Shape, check_size
 
 Array = np.ndarray
@@ -23,7 +23,9 @@ def read_stl(path: Path) -> Scene:
     InputError
         The file is missing, cut off, or not STL.
     """
-    check_regular(path)
+    if check_regular(path) > LARGEST:
+        msg = f"the file has more than {LARGEST / 1e6:.0f} MB"
+        raise InputError(msg, where=str(path), hint="a scanned surface is no structure of blocks: model the blocks")
     raw = path.read_bytes()
     if len(raw) >= 84 and len(raw) == 84 + 50 * int.from_bytes(raw[80:84], "little"):
         corners = np.frombuffer(raw, RECORD, offset=84)["corners"].astype(float)
