@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import shapely
-from hypothesis import assume, given, settings
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from concio.fem.polygon_mesh import mesh_polygon
@@ -44,7 +44,7 @@ def test_every_mesh_of_a_simple_polygon_is_right(outline, share, data):
             assert np.hypot(*(points - (a + (b - a) * mark / length)).T).min() < 1e-9 * size
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 @given(simple_polygons(), st.floats(0.2, 0.6))
 def test_triangles_keep_the_subdivision_of_the_boundary(outline, share):
     size = share * np.ptp(outline, axis=0).max()

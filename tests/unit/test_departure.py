@@ -165,6 +165,19 @@ def test_a_changed_proof_is_refused(part: str) -> None:
         assert not check({**pieces, part: change * pieces[part]}).certified
 
 
+def test_a_motion_into_the_ground_is_no_departure() -> None:
+    """A load that keeps the balance of accelerations, downward: nothing is wrong but that joints close without end."""
+    problem = pushed_wall(0.41)
+    motion = release(Run(scale(problem)))
+    assert isinstance(motion, Departure)
+    down = np.zeros_like(motion.acceleration)
+    down[1::2] = -0.01 * np.abs(motion.acceleration).max()
+    pressed = problem.with_loads(problem.f + problem.inertia * down)
+    state = motion.displacement, motion.normal_force, motion.friction_force
+    found = verify_departure(pressed, motion.acceleration + down, *state)
+    assert found.violation == pytest.approx(0.01, rel=1e-3)
+
+
 def test_what_stands_comes_to_rest() -> None:
     problem = pushed_wall(0.1)
     whole = find("interior-point")(problem)

@@ -174,3 +174,10 @@ def test_count_of_a_running_bond_wall():
 def test_bad_tolerances_are_refused(options):
     with pytest.raises(InputError, match="gap"):
         detect_interfaces([box("a", 0, 0, 1, 1)], **options)
+
+
+def test_overlap_is_told_wherever_the_origin_is():
+    for at in (-50.0, 0.0, 50.0):
+        a, b = box("a", at, at, at + 1, at + 1), box("b", at + 0.9, at + 0.2, at + 2, at + 0.8)
+        (overlap,) = detect_interfaces([a, b], tolerance=1e-6).overlaps
+        assert overlap.area == pytest.approx(0.06)

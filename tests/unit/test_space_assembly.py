@@ -376,3 +376,9 @@ def test_elements_that_do_not_fill_their_block_are_refused() -> None:
     assert len(shape.facets) == 6
     with pytest.raises(GeometryError, match="the mesh leaves the faces of the block"):
         _ = replace(shape, vertices=shape.vertices * (1.0, 1.0, 1.5)).facets
+
+
+def test_blocks_of_one_shape_and_two_mesh_sizes_have_meshes_of_their_own() -> None:
+    a, b = box("a", (0, 0, 0), (1, 1, 1), mesh_size=0.5), box("b", (3, 0, 0), (4, 1, 1), mesh_size=0.25)
+    disc = concio.assemble(model(GROUND, a, b)).disc
+    assert len(disc.nodes(2)) > 3 * len(disc.nodes(1))

@@ -64,7 +64,7 @@ def test_rigid_motions_left(supports, motions, stone):
     assembly = assemble(beam(*supports, stone=stone))
     problem = assembly.problem()
     own = problem.R[: problem.bodies[1]].toarray()
-    assert np.linalg.matrix_rank(own) == motions
+    assert (np.linalg.matrix_rank(own) if own.size else 0) == motions
     assert problem.R.shape[1] == motions + 3
     np.testing.assert_allclose((problem.R.T @ problem.R).toarray(), np.eye(motions + 3), atol=1e-13)
     assert abs(problem.K @ problem.R).max() < 1e-9 * max(abs(problem.K).max(), 1.0)

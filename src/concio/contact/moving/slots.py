@@ -207,7 +207,7 @@ class SlotMaker:
             return None
         nodes = self.disc.shapes[self.disc.shape_of[b]].edges[int(self.edges.number[edge])]
         t, away = placed.tangent[edge], point - placed.start[edge]
-        along = float(np.clip(t.real * away.real + t.imag * away.imag, nodes.at[0], nodes.at[-1]))
+        along = float(np.clip(dot(t, away), nodes.at[0], nodes.at[-1]))
         k = int(np.clip(np.searchsorted(nodes.at, along) - 1, 0, len(nodes.at) - 2))
         share = (along - nodes.at[k]) / (nodes.at[k + 1] - nodes.at[k])
         return self.first_node[b] + nodes.nodes[k : k + 2], np.array([1.0 - share, share])
