@@ -9,6 +9,7 @@ import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem, Laws
 from concio.problem.tolerances import BALANCED
+from concio.solvers.statics.cone_statics import ConeStatics
 from concio.solvers.statics.existence import statically_admissible
 from concio.solvers.statics.friction import smallest_friction
 from concio.solvers.statics.limit import associated_limit
@@ -235,3 +236,14 @@ def test_all_directions_of_friction_are_alike() -> None:
         state = statically_admissible(problem)
         assert state.exists is holds
         assert (state.mechanism is None) is holds
+
+
+def test_forces_are_moved_into_balance() -> None:
+    """Any forces inside the cones are moved until what is left of the load is rounding."""
+    built = wall(3, 4, leaves=2)
+    statics = ConeStatics(built.problem)
+    load, t = statics.project(built.problem.f), np.zeros((built.problem.pairs, 3))
+    t[:, 0] = 1.0
+    first = np.abs(statics.programme.Ct @ t.ravel() + load).max()
+    moved = statics.balance(t, load)
+    assert np.abs(statics.programme.Ct @ moved.ravel() + load).max() < 1e-9 * first

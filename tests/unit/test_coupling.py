@@ -110,3 +110,9 @@ def test_between_rigid_sides(points):
     assert c.length @ c.at == pytest.approx(4.5)
     if points > 2:
         assert c.length @ c.at**3 == pytest.approx(81 / 4)  # Simpson
+
+
+def test_forces_of_whole_quadratic_edges_are_lumped_as_their_shape_functions():
+    """Against a rigid side: one to four to one; where an edge is cut, as linear ones."""
+    assert couple(line([0.0, 0.5, 1.0], order=2), None, 1.0).length == pytest.approx([1 / 6, 4 / 6, 1 / 6])
+    assert couple(line([0.0, 0.5, 1.0]), None, 1.0).length == pytest.approx([1 / 4, 1 / 2, 1 / 4])

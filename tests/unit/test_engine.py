@@ -15,6 +15,8 @@ from concio.problem.solution import Status
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.auto.friction_neighbours import from_neighbours
 from concio.solvers.interior.engine import Cancelled, Run
+from concio.solvers.interior.interior_point import InteriorPoint
+from concio.solvers.interior.newton_equations import Newton
 from concio.solvers.methods import find
 from concio.solvers.states.settle import Settler
 from concio.solvers.statics.existence import find_mechanism
@@ -224,3 +226,21 @@ def test_blocks_ten_million_times_stiffer_than_their_joints():
     size = np.abs(stiff).max()
     assert np.abs(soft - stiff).max() <= 1e-2 * size
     assert np.abs(stiffer - stiff).max() <= 1.1e-2 * np.abs(soft - stiff).max() + 1e-8 * size
+
+
+def test_a_full_step_of_newton_satisfies_all_linear_equations():
+    """Whatever the products are asked to become: equilibrium, gaps, slips, strengths and caps are linear."""
+    problem = plain_wall(2, 2, alpha=0.2, mu=0.5)
+    m = problem.pairs
+    laws = replace(
+        problem.laws, dilatancy=np.full(m, 0.3), cohesion=np.full(m, 0.2), cap=np.full(m, 9.0),
+        normal_compliance=np.full(m, 1e-3), tangential_compliance=np.full(m, 2e-3),
+    )  # fmt: skip
+    iteration = InteriorPoint(scale(replace(problem, laws=laws)))
+    z = iteration.start()
+    spread = np.random.default_rng(3).uniform(0.5, 2.0, (2, 4, m))
+    z = replace(z, slack=z.slack * spread[0], dual=z.dual * spread[1])
+    rest = iteration.residuals(z, 0.0)
+    assert rest.size(1.0, 1.0) > 1.0
+    there = z.moved(Newton(iteration.problem, z, rest, iteration.dilatancy(0.0)).direction(-z.products()), 1.0)
+    assert iteration.residuals(there, 0.0).size(1.0, 1.0) < 1e-6

@@ -82,3 +82,14 @@ def test_normal_equations_are_those_of_springs():
     x = np.empty_like(g)
     x[normal.order] = normal.solve(g[normal.order])
     assert (A * theta) @ (A.T @ x) == pytest.approx(g, abs=1e-10)
+
+
+def test_normal_equations_are_those_of_the_weights():
+    rng = np.random.default_rng(4)
+    A = sp.csc_array(sp.random_array((9, 24), density=0.4, rng=rng) + sp.csc_array(np.eye(9, 24)))
+    theta, g = 10.0 ** rng.uniform(-2, 2, 24), rng.normal(size=9)
+    normal = NormalEquations(A)
+    normal.factorise(theta)
+    x = np.zeros(9)
+    x[normal.order] = normal.solve(g[normal.order])
+    assert (A @ (theta * (A.T @ x))) == pytest.approx(g, abs=1e-8)
