@@ -1,6 +1,7 @@
 """The engine in space on walls, barrels and domes of growing size, against one sparse factorisation, in one run.
 
     python benchmarks/space_family.py [--large] [--elastic] [--close] [--limit] [--clarabel] [--fast] [--only NAME]
+                                      [--markdown]
 
 Blocks of running bond, domes and barrels (tests/space_problems.py), friction 0.6, own weight and a share of the
 associated limit of a horizontal load. Rigid blocks have joints with stiffness; elastic ones 2 x 2 x 2 hexahedra.
@@ -36,6 +37,19 @@ from space_problems import Built, barrel, dome, wall  # noqa: E402
 OUT = (0.0, 1.0, 0.0)
 
 
+HEADS = ("problem", "blocks", "pairs", "unknowns", "share", "outcome", "by", "worst", "iter", "fact", "CPU s", "one")
+HEADS += ("ratio", "MB", "growth")
+WIDTHS = (-26, 7, 9, 9, 7, -17, -30, 9, 6, 6, 9, 9, 8, 8, 8)
+"""Columns of the table, with their widths; negative ones are set left."""
+
+
+def row(cells: tuple[str, ...], *, markdown: bool = False) -> str:
+    """Return one line of the table."""
+    if markdown:
+        return "| " + " | ".join(cells) + " |"
+    return "".join(f"  {c:{-w - 2}s}" if w < 0 else f"{c:>{w}s}" for c, w in zip(cells, WIDTHS, strict=True))
+
+
 def yardstick(problem: ContactProblem) -> float:
     """Return the CPU seconds of one factorisation of K + C'DC, the second of two."""
     s = scale(problem)
@@ -52,7 +66,7 @@ def memory() -> float:
 
 
 def report(
-    name: str, built: Built, shares: tuple[float, ...], engine: str, last: tuple[int, float] | None
+    name: str, built: Built, shares: tuple[float, ...], engine: str, last: tuple[int, float] | None, *, markdown: bool
 ) -> tuple[int, float]:
     """Solve under shares of the associated limit; return blocks and CPU seconds of the first."""
     problem = built.problem
@@ -69,12 +83,13 @@ def report(
         growth = ""
         if last is not None and share == shares[0]:
             growth = f"{np.log(seconds / last[1]) / np.log(blocks / last[0]):8.2f}"
-        print(
-            f"{name:26s}{blocks:7d}{problem.pairs:9d}{problem.unknowns:9d}{share:7.2f}  {found.status.name:15s}"
-            f"{found.certificate.worst:9.1e}{found.iterations:6d}{found.factorisations:6d}{seconds:9.2f}"
-            f"{unit:9.3f}{seconds / unit:8.1f}{memory():8.0f}{growth:>8s}",
-            flush=True,
+        by = str(found.info.get("strategy", "at rest"))
+        cells = (
+            *(name, f"{blocks}", f"{problem.pairs}", f"{problem.unknowns}", f"{share:.2f}", found.status.name, by),
+            *(f"{found.certificate.worst:.1e}", f"{found.iterations}", f"{found.factorisations}", f"{seconds:.2f}"),
+            *(f"{unit:.3f}", f"{seconds / unit:.1f}", f"{memory():.0f}", growth.strip()),
         )
+        print(row(cells, markdown=markdown), flush=True)
     return blocks, first
 
 
@@ -161,6 +176,7 @@ def main() -> None:
     parser.add_argument("--clarabel", action="store_true", help="with --limit: Clarabel beside it")
     parser.add_argument("--fast", action="store_true", help="engine pardiso (extra: fast)")
     parser.add_argument("--only", metavar="NAME", help="one family alone, such as 'wall, elastic'")
+    parser.add_argument("--markdown", action="store_true", help="the table for the documentation")
     arguments = parser.parse_args()
     stiff = {"kn": 1e3}
     families: dict[str, list[Built]] = {
@@ -168,7 +184,7 @@ def main() -> None:
         "wall out of plane, rigid": [wall(22, 23, direction=OUT, **stiff)],
         "header wall, rigid": [wall(6, 8, leaves=3, **stiff)],
         "barrel, rigid": [barrel(24, 20, **stiff)],
-        "dome, rigid": [dome(6, 16, **stiff), dome(16, 32, **stiff)],
+        "dome, rigid": [dome(6, 16, **stiff), dome(10, 16, **stiff), dome(16, 32, **stiff)],
     }
     if arguments.large:
         families["wall, rigid"] += [wall(43, 45, **stiff), wall(98, 102, **stiff)]
@@ -184,15 +200,15 @@ def main() -> None:
             for case in cases:
                 limits(name, case, clarabel=arguments.clarabel)
         return
-    heads = ("blocks", "pairs", "unknowns", "share", "outcome", "worst", "iter", "fact", "CPU s", "one", "ratio", "MB")
-    widths = (7, 9, 9, 7, -17, 9, 6, 6, 9, 9, 8, 8)
-    cells = (f"{h:>{w}s}" if w > 0 else f"  {h:{-w - 2}s}" for h, w in zip(heads, widths, strict=True))
-    print(f"{'problem':26s}" + "".join(cells) + "  growth")
+    print(row(HEADS, markdown=arguments.markdown))
+    if arguments.markdown:
+        print(row(("---",) * len(HEADS), markdown=True))
     shares = (0.5, 0.9, 0.97, 0.99) if arguments.close else (0.5, 0.9)
     for name, cases in families.items():
         last: tuple[int, float] | None = None
         for case in cases:
-            last = report(name, case, shares, "pardiso" if arguments.fast else "superlu", last)
+            engine = "pardiso" if arguments.fast else "superlu"
+            last = report(name, case, shares, engine, last, markdown=arguments.markdown)
 
 
 if __name__ == "__main__":

@@ -154,3 +154,18 @@ def test_what_cannot_be_extruded() -> None:
         concio.extrude(concio.cell())
     with pytest.raises(InputError, match="thickness = -1"):
         concio.extrude(concio.column(width=1, height=2, blocks=2), -1.0)
+
+
+def test_where_nothing_holds_a_block_only_its_place_is_open() -> None:
+    """Frictionless: any place along the joints is an equilibrium, and what each block chose is apart from the rest."""
+    size = {"width": 0.4, "height": 0.6, "blocks": 2, "mesh_size": 0.25}
+    plane = concio.column(plane="strain", friction=0.0, element="Q9", **size)
+    flat, solid = concio.solve(plane), concio.solve(concio.extrude(plane, 0.3, held=True))
+    largest = np.abs(flat.displacement).max()
+    for b, body in enumerate(plane.bodies):
+        if body.kind == "fixed":
+            continue
+        at, x = flat.nodes(b), solid.nodes(b)[:, [0, 2]]
+        near = np.argmin(np.linalg.norm(x[:, None] - at, axis=2), axis=1)
+        apart = solid.node_displacement(b)[:, [0, 2]] - flat.node_displacement(b)[near]
+        assert np.abs(apart - [apart[:, 0].mean(), 0.0]).max() < 1e-12 * largest

@@ -117,6 +117,24 @@ class SolidShape(Meshed):
         return used, total[used]
 
 
+SAME = 1e-7
+"""Distance over the square root of the area up to which vertices of a polygon count as one."""
+
+STRAIGHT = 1e-9
+"""Twice the area that a vertex of a polygon adds, over that of the polygon, up to which it counts as none."""
+
+
+def _corners(ring: Array, area: float) -> Array:
+    """Return the vertices (n, 2) of a convex polygon that are corners.
+
+    Whether a cut leaves further ones on a side, or one twice, depends on how the structure is turned.
+    """
+    ring = ring[np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1) > SAME * np.sqrt(area)]
+    before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
+    corners: Array = ring[np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]) > STRAIGHT * area]
+    return corners
+
+
 def triangles_in(shape: shapely.Geometry) -> Array:
     """Return triangles (t, 3, 2) that fill a polygon or several."""
     found = []
@@ -125,7 +143,8 @@ def triangles_in(shape: shapely.Geometry) -> Array:
             continue
         ring = shapely.get_coordinates(part.exterior)[:-1]
         if len(part.interiors) == 0 and shapely.convex_hull(part).area - part.area <= 1e-12 * part.area:
-            middle = np.tile(ring.mean(0), (len(ring), 1))
+            ring = _corners(ring, part.area)
+            middle = np.tile(shapely.get_coordinates(part.centroid), (len(ring), 1))
             found.append(np.stack([middle, ring, np.roll(ring, -1, axis=0)], 1))
         else:
             cells = shapely.get_parts(shapely.constrained_delaunay_triangles(part))

@@ -130,7 +130,7 @@ def merged(run: Run, answer: Solution, method: str) -> Solution:
         answer.certificate,
         method,
         iterations=run.iterations + answer.iterations,
-        factorisations=run.scaled.factor.count + answer.factorisations,
+        factorisations=run.scaled.factor.made + answer.factorisations,
         mechanism=answer.mechanism,
         departure=answer.departure,
         trace=tuple(run.trace),
