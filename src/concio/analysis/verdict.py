@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 MUCH = 1000.0
 """Forces of a joint this many times all loads are pointed out."""
 
+FORCED = 1e-2
+"""Share of the largest displacement that a lent compliance takes up where rigid blocks are forced together; of blocks
+that can move aside it takes up a share that falls with the compliance lent, some 1e-4."""
+
 MOST_REACTIONS = 4
 """More reactions than this are counted in a short text."""
 
@@ -50,12 +54,24 @@ def attention(result: Result) -> tuple[str, ...]:
     if not result.solved:
         return odd
     found = [result.joint_motion.sentence] if result.joint_motion.large else []
-    if result.lent_compliance and result.assembly.lent_compliance:
-        found.append(
+    return (*odd, *found, *_not_rigid(result), *_heavy(result))
+
+
+def _not_rigid(result: Result) -> tuple[str, ...]:
+    """Return a sentence on an answer that still has the compliance lent to joints of rigid blocks, else none."""
+    if not (result.lent_compliance and result.assembly.lent_compliance):
+        return ()
+    answer, size = result.solution, f"{result.lent_compliance:.3g} m/kN"
+    closing = float((result.assembly.laws.normal_compliance * answer.normal_force).max(initial=0.0))
+    if closing > FORCED * float(np.abs(answer.displacement).max(initial=0.0)):
+        return (
             "blocks that cannot yield are forced together: the forces between them grow without end as joints become "
-            f"stiffer, and those given belong to a compliance of {result.lent_compliance:.3g} m/kN"
+            f"stiffer, and those given belong to a compliance of {size}",
         )
-    return (*odd, *found, *_heavy(result))
+    return (
+        f"joints between rigid blocks keep the compliance of {size} that was lent to them: no answer without it was "
+        "certified, since which way they slip depends on it a little",
+    )
 
 
 def _heavy(result: Result) -> tuple[str, ...]:

@@ -143,8 +143,11 @@ def verdict(result: Result) -> Verdict:
         steps.append(
             f"{places} bodies nearly touch and have no joint: 'concio check' names them. Is that what you meant?"
         )
-    told = [f"{line[0].upper()}{line[1:]}" for line in result.attention if line not in odd]
-    steps += [f"{line}. Read it as a warning, not as a place of rest." for line in told]
+    moved = result.joint_motion.sentence
+    for line in result.attention:
+        if line not in odd:
+            rest = " Read it as a warning, not as a place of rest." if line == moved else ""
+            steps.append(f"{line[0].upper()}{line[1:]}.{rest}")
     meaning = words.meaning
     if result.self_stress is not None:
         meaning = f"{meaning} {result.sentence.removeprefix(result.status.value).strip()}"
