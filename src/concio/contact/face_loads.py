@@ -14,6 +14,7 @@ from concio.fem.solid import SolidShape
 from concio.kinematics.frames import tangents
 from concio.kinematics.rigid import rigid_operator
 from concio.model.model import Load, Model
+from concio.model.overlay import common, without
 
 Array = np.ndarray
 
@@ -134,7 +135,7 @@ def _in_polygon(
         lies &= np.abs(body.normals @ normal) >= np.cos(np.deg2rad(0.1))
         for face in np.flatnonzero(lies).tolist():
             rings = [(body.vertices[list(loop)] - middle) @ axes.T for loop in body.loops_of(face)]
-            part = shapely.Polygon(rings[0], rings[1:]).intersection(area)
+            part = common(np.array([shapely.Polygon(rings[0], rings[1:])]), area)[0]
             if part.area > tolerance * max(part.length, tolerance):
                 found.append((b, face, part))
     if load.face == "both" or len(found) < 2:
@@ -144,12 +145,12 @@ def _in_polygon(
     kept = []
     for k, (b, face, part) in enumerate(found):
         others = [j for j in tree.query(part).tolist() if up[j] != up[k] and found[j][0] != b]
-        shared = [part.intersection(found[j][2]) for j in others]
+        shared = list(common(np.array([found[j][2] for j in others]), part)) if others else []
         shared = [s for s in shared if s.area > tolerance * max(s.length, tolerance)]
         what = f"{load.kind} load on the polygon from {_text(np.array(load.polygon)[0])}"
         outward = model.polyhedra[b].normals[face]
         if shared and not prefers(load, outward, what, f"load group '{load.group}'"):
-            part = part.difference(shapely.union_all(shared))
+            part = without(np.array([part]), shapely.union_all(shared))[0]
             if part.area <= tolerance * max(part.length, tolerance):
                 continue
         kept.append((b, face, part))

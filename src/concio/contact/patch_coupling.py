@@ -26,6 +26,7 @@ from scipy.spatial import cKDTree
 from concio.contact.coupling import Side
 from concio.fem.facets import FacetMesh, functions, local_coordinates, quadrature
 from concio.fem.solid import triangles_in
+from concio.model.overlay import common
 
 Array = np.ndarray
 
@@ -103,7 +104,7 @@ def _covering(side: FaceSide, patch: shapely.Polygon) -> tuple[Array, Array, Arr
     cells = shapely.polygons(side.corners)
     near = shapely.STRtree(cells).query(patch, predicate="intersects")
     near.sort()
-    area = shapely.area(shapely.intersection(cells[near], patch))
+    area = shapely.area(common(cells[near], patch))
     some = area > 1e-12 * patch.area
     return near[some], cells[near[some]], area[some]
 
@@ -162,14 +163,14 @@ def _mortar(slave: FaceSide, master: FaceSide | None, patch: shapely.Polygon) ->
     cells = shapely.polygons(corners)
     near = shapely.STRtree(cells).query(patch, predicate="intersects")
     near.sort()
-    covered = shapely.intersection(cells[near], patch)
+    covered = common(cells[near], patch)
     some = shapely.area(covered) > 1e-12 * patch.area
     piece_part, pieces = near[some], covered[some]
     piece_master = np.zeros(len(pieces), dtype=int)
     if master is not None:
         facets = shapely.polygons(master.corners)
         k, m = shapely.STRtree(facets).query(pieces, predicate="intersects")
-        cut = shapely.intersection(pieces[k], facets[m])
+        cut = common(pieces[k], facets[m])
         some = shapely.area(cut) > 1e-13 * patch.area
         pieces, piece_part, piece_master = cut[some], piece_part[k[some]], m[some]
     triangles = [triangles_in(piece) for piece in pieces]

@@ -13,6 +13,7 @@ from concio.fem.body import Meshed
 from concio.fem.elements import Elements
 from concio.fem.facets import FacetMesh, functions, local_coordinates, quadrature
 from concio.kinematics.frames import cross, tangents
+from concio.model.overlay import common
 from concio.model.topology import Loop
 
 Array = np.ndarray
@@ -102,7 +103,7 @@ class SolidShape(Meshed):
         flat = (self.elements.nodes[mesh.nodes[:, : mesh.corners]] - origin) @ axes.T
         cells = shapely.polygons(flat)
         number = np.flatnonzero(shapely.intersects(cells, part))
-        pieces = shapely.intersection(cells[number], part)
+        pieces = common(cells[number], part)
         total = np.zeros(len(self.elements.nodes))
         for k, piece in zip(number.tolist(), pieces, strict=True):
             triangles = triangles_in(piece)

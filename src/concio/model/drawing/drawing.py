@@ -23,6 +23,7 @@ from concio.model.interfaces.near import find_overlaps
 from concio.model.interfaces.polygon_check import polygon_faults
 from concio.model.materials import Elastic, Rigid
 from concio.model.model import Array, Body, Model
+from concio.model.overlay import common
 from concio.units import quantity
 
 
@@ -207,7 +208,7 @@ def _without_duplicates(outlines: list[Outline], mend: float, note: Any) -> list
             mend, 1e-6 * np.sqrt(shapely.area(shapes[i]))
         )
         for p, q in zip(i[same].tolist(), j[same].tolist(), strict=True):
-            both = shapes[p].intersection(shapes[q]).area
+            both = float(shapely.area(common(shapes[[p]], shapes[q]))[0])
             if both > 0.99 * max(shapes[p].area, shapes[q].area) and q not in drop:
                 drop.add(q)
                 text = f"the same block as entity {outlines[p].handle}, drawn twice" + (", deleted" if mend else "")

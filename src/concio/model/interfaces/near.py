@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 
 from concio.model.model import Array, Body
+from concio.model.overlay import common
 from concio.representation import short_repr
 
 MissKind = Literal["gap", "angle", "sliver", "partial", "corner"]
@@ -142,12 +143,12 @@ def find_overlaps(bodies: Sequence[Body], tolerance: float) -> list[Overlap]:
     keep = (i < j) & ~(fixed[i] & fixed[j])
     i, j = i[keep], j[keep]
     box = shapely.bounds(shapes)
-    common = np.minimum(box[i, 2:], box[j, 2:]) - np.maximum(box[i, :2], box[j, :2])
-    keep = (common > tolerance).all(1)
+    widths = np.minimum(box[i, 2:], box[j, 2:]) - np.maximum(box[i, :2], box[j, :2])
+    keep = (widths > tolerance).all(1)
     i, j = i[keep], j[keep]
     valid = shapely.is_valid(shapes)
     shapes = np.where(valid, shapes, shapely.make_valid(shapes)) if not valid.all() else shapes
-    both = shapely.intersection(shapes[i], shapes[j])
+    both = common(shapes[i], shapes[j])
     area, around = shapely.area(both), shapely.length(both)
     depth = np.divide(2 * area, around, out=np.zeros_like(area), where=around > 0)
     result = []

@@ -29,6 +29,7 @@ from concio.model.interfaces.detect import FACING_ANGLE, NEAR_ANGLE, NEAR_SHARE,
 from concio.model.interfaces.faces import FacePairs, Faces, facing_faces, neighbours
 from concio.model.interfaces.near import MissKind, NearMiss
 from concio.model.interfaces.near_space import find_overlaps_in_space, find_touches, miss_in_space
+from concio.model.overlay import common
 from concio.model.polyhedron import Polyhedron
 
 Array = np.ndarray
@@ -247,7 +248,7 @@ class _Common:
         meet = np.flatnonzero((high - low > tolerance).all(1))
         boxes = _are_boxes(first[meet], box_a[meet]) & _are_boxes(second[meet], box_b[meet])
         plain, other = meet[boxes], meet[~boxes]  # rectangles along the axes of their plane need no cutting
-        parts, index = shapely.get_parts(shapely.intersection(first[other], second[other]), return_index=True)
+        parts, index = shapely.get_parts(common(first[other], second[other]), return_index=True)
         both = shapely.box(*low[plain].T, *high[plain].T)
         pair = np.concatenate([plain, other[index]])
         return cls.described(table, pairs, np.concatenate([both, parts]), pair, pair, tolerance)
@@ -284,7 +285,7 @@ class _Common:
             g0, g1, g2 = pairs.height(table, 1, np.full(3, p), probe)
             slope = np.array([g1 - g0, g2 - g0])
             band = _band(self.shape[k], slope, g0, least, most)
-            parts = shapely.get_parts(shapely.intersection(self.shape[k], band))
+            parts = shapely.get_parts(common(self.shape[[k]], band))
             shapes.append(parts)
             pair.append(np.full(len(parts), p))
             source.append(np.full(len(parts), k))
