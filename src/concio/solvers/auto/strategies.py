@@ -51,7 +51,8 @@ def first_answer(run: Run | ConeRun, table: Sequence[Strategy]) -> Solution:
     except Cancelled:
         return run.solution(None, Status.CANCELLED)
     undecided = run.solution(None, Status.UNDECIDED, method="auto")
-    return replace(undecided, info={**undecided.info, "strategy": "none", "cost": tuple(cost)})
+    name = "best point met" if undecided.solved else "none"  # certified, though no strategy took it for an answer
+    return replace(undecided, info={**undecided.info, "strategy": name, "cost": tuple(cost)})
 
 
 def where_it_ends(run: Run | ConeRun, follow: Callable[[Array], Solution | None], u: Array) -> Solution:
