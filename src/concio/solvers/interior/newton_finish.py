@@ -40,6 +40,9 @@ SETTLED = 1e-13
 STALE = 6
 """Rounds without a smaller residual after which Newton's method gives up."""
 
+FURTHER = 10
+"""Rounds beyond those asked for in which an exact answer is brought to the last digits, which the least forces need."""
+
 UNDECIDED = 1e-10
 """Violation of its law from which on a pair counts as undecided."""
 
@@ -95,7 +98,9 @@ def finish(
     """
     error, laws = natural_residual(s, u, t)
     best, stale, solves = (u, t, error, laws), 0, 0
-    for _ in range(rounds):
+    for k in range(rounds + FURTHER):
+        if k >= rounds and not best[2] <= EXACT:
+            break
         force, length = sizes(u, t)
         moved = _newton(s, u, t, rho * force / length)
         if moved is None:
