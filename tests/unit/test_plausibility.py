@@ -11,8 +11,9 @@ import pytest
 import concio
 from commands import run
 from concio.model.materials import Elastic, JointLaw, Rigid
-from concio.model.model import Support
+from concio.model.model import Load, Support
 from concio.model.plausibility import implausible
+from concio.model.stages import Stage
 from models import box, model_of
 
 GROUND = box("ground", -5, 5, -1, 0, kind="fixed", role="ground")
@@ -49,6 +50,40 @@ RIGHT = {
     "long": {"size": 50.0},
     "settled": {"support": moved(0.1)},
 }
+
+
+CUBE = concio.Polyhedron.box("cube", (0, 0, 0), (1, 1, 1), material="m", kind="rigid")
+FAR_OFF = {
+    "a point load": ({"loads": (Load("point", (1.0, 0, 0), ("cube",), at=(9.0, 0, 0)),)},
+                     r"a point load of group 'dead' acts at \(9, 0, 0\) m, 8 m outside 'cube'"),
+    "a support": ({"supports": (Support("s", "cube", polygon=((0, 0, 3.0), (1, 0, 3.0), (1, 1, 3.0))),)},
+                  r"support 's' holds at \(0, 0, 3\) m, 2 m outside 'cube'"),
+    "gravity of the plane": ({"loads": (Load("weight", (0, -1.0, 0)),)}, "acts along -y.*gravity is \\[0, 0, -1\\]"),
+    "a stage": ({"stages": (Stage("s", {"dad": 1.0}),), "loads": (Load("weight", (0, 0, -1.0)),)},
+                "stage 's' names the load group 'dad'.*groups are dead"),
+}  # fmt: skip
+IN_PLACE = {
+    "turned gravity": {"loads": (Load("weight", (0, -1.0, 0)), Load("weight", (0, 0, -1.0)))},
+    "a bracket": {"loads": (Load("point", (1.0, 0, 0), ("cube",), at=(1.4, 0, 0)),)},
+    "a stage": {"stages": (Stage("s", {"dead": 1.0}),), "loads": (Load("weight", (0, 0, -1.0)),)},
+}
+
+
+def of_cube(**fields):
+    floor = concio.Polyhedron.box("floor", (-1, -1, -1), (2, 2, 0), kind="fixed")
+    return implausible(concio.Model((floor, CUBE), {"m": Rigid(20.0)}, {"joint": JointLaw(0.6)}, **fields))
+
+
+@pytest.mark.parametrize("case", FAR_OFF)
+def test_what_is_hardly_meant_in_space(case):
+    fields, sentence = FAR_OFF[case]
+    (found,) = of_cube(**fields)
+    assert re.search(sentence, found)
+
+
+@pytest.mark.parametrize("case", IN_PLACE)
+def test_what_may_be_meant_in_space(case):
+    assert of_cube(**IN_PLACE[case]) == ()
 
 
 @pytest.mark.parametrize("case", WRONG)

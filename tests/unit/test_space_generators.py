@@ -297,7 +297,8 @@ def test_what_generators_in_space_refuse(build: Callable[[], Model], words: str)
 
 
 LARGE = ("walls", "tower", "barrel", "dome", "cloister_vault", "cross_vault")
-KINDS = (*(pytest.param(kind, marks=pytest.mark.long) for kind in LARGE), "drums", "arch_on_piers", "arcade")
+SMALL = ("drums", "arch_on_piers", "arcade", "blocks_in_space")
+KINDS = (*(pytest.param(kind, marks=pytest.mark.long) for kind in LARGE), *SMALL)
 
 
 @pytest.mark.parametrize("kind", KINDS)

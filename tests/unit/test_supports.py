@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -91,6 +93,15 @@ def test_rotation_of_a_whole_held_body():
     u, nodes = concio.solve(model).node_displacement("beam"), concio.solve(model).nodes("beam")
     x, y = (nodes - [2.0, 0.5]).T
     np.testing.assert_allclose(u, np.column_stack([2e-3 - 1e-3 * y, 1e-3 * x]), atol=1e-15)
+
+
+@pytest.mark.parametrize("space", [False, True], ids=["plane", "space"])
+def test_supports_may_hold_every_block(space):
+    model = model_of(box("ground", -1, 2, -1, 0, kind="fixed"), box("a", 0, 1, 0, 1, **STONE), loads=(WEIGHT,))
+    held = replace(concio.extrude(model) if space else model, supports=(Support("s", "a"),))
+    result = concio.solve(held)
+    assert result.solved
+    assert result.reactions["s"][-1] == pytest.approx(-concio.solve(model).total_load[1])
 
 
 def test_two_supports_of_one_body_share_what_both_hold():

@@ -92,6 +92,7 @@ def test_the_end_of_a_tie_moves_with_its_anchor():
     ("tie", "message"),
     [
         (Tie("rod", "b", (0.0, 0.5), "", (0.0, 0.5), 1.0), "ends coincide"),
+        (Tie("rod", "b", (0.0, 0.5), "b", (0.5, 0.5), 1.0), "both of its ends are on 'b'"),
         (Tie("rod", "b", (0.0, 0.5), "", (0.0, 3.0), 0.0), "stiffness 0"),
         (Tie("rod", "b", (0.0, 0.5), "", (0.0, 3.0), 1.0, -1.0), "prestress -1"),
         (Tie("rod", "x", (0.0, 0.5), "", (0.0, 3.0), 1.0), "no body called 'x'"),

@@ -12,7 +12,7 @@ from concio.cli.output import check_file, replaced_file
 
 Kind = Literal[
     "panel", "wall", "arch", "column", "cell", "assessment", "motion", "blocks", "arch_on_piers", "arcade", "walls",
-    "tower", "barrel", "dome", "cloister_vault", "cross_vault", "drums",
+    "tower", "barrel", "dome", "cloister_vault", "cross_vault", "drums", "blocks_in_space",
 ]  # fmt: skip
 
 

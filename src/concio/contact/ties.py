@@ -46,6 +46,9 @@ def add_ties(disc: Discretisation, pairs: Pairs, laws: Laws) -> tuple[Pairs, Law
         if not length > 0:
             msg = "its ends coincide"
             raise InputError(msg, where=where, hint="give two different points")
+        if tie.body_a == tie.body_b != "":
+            msg = f"both of its ends are on '{tie.body_a}'"
+            raise InputError(msg, where=where, hint="a bar within one block pulls on nothing else: name two bodies")
         if not (0 < tie.stiffness < np.inf) or not (0 <= tie.prestress < np.inf):
             msg = f"stiffness {tie.stiffness:g} must be positive and prestress {tie.prestress:g} not negative"
             raise InputError(msg, where=where)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from concio.model.actions import Point
 from concio.model.materials import Elastic, JointLaw
 from concio.model.model import Model
 
@@ -20,7 +21,7 @@ HEAVY = 80.0
 LONG = 50.0
 """No block is longer [m]."""
 FAR = 0.5
-"""Share of the size of a block by which the end of a tie may lie outside it."""
+"""Share of the size of a block by which the end of a tie, a support or a point load may lie outside it."""
 MOVED = 0.1
 """Imposed displacements above this share of a block's size are large, and rotations above this [rad]."""
 
@@ -45,7 +46,7 @@ def implausible(model: Model) -> tuple[str, ...]:
                 f"material '{name}': a unit weight of {material.unit_weight:g} kN/m3 is more than that of steel: "
                 f"masses are written with their unit, '{material.unit_weight:g} kg/m3'"
             )
-    return (*found, *_sizes(model), *_ties(model))
+    return (*found, *_sizes(model), *_places(model), *_weights(model), *_stages(model))
 
 
 def _law(name: str, law: JointLaw) -> list[str]:
@@ -60,21 +61,53 @@ def _modulus(E: float) -> str:
     return f"{E / 1e6:g} GPa" if E >= 1e6 else f"{E / 1e3:g} MPa"
 
 
-def _ties(model: Model) -> list[str]:
-    """Return a sentence for each end of a tie that lies far from the block it is fixed to."""
+def _places(model: Model) -> list[str]:
+    """Return a sentence for each tie, support and point load that acts far outside its block."""
     at = {b.name: b for b in model.bodies}
+    acting: list[tuple[str, str, tuple[Point, ...], str]]
+    acting = [(f"tie '{t.name}' ends", name, (end,), "its anchor") for t in model.ties
+              for name, end in ((t.body_a, t.at_a), (t.body_b, t.at_b))]  # fmt: skip
+    for support in model.supports:
+        region = support.edge if support.edge is not None else support.polygon
+        acting.append((f"support '{support.name}' holds", support.body, region or (), "its place"))
+    for load in model.loads:
+        if load.kind == "point" and load.at is not None and len(load.bodies) == 1:
+            words = f"a point load of group '{load.group}' acts"
+            acting.append((words, load.bodies[0], (load.at,), "its place"))
     found = []
-    for tie in model.ties:
-        for name, end in ((tie.body_a, tie.at_a), (tie.body_b, tie.at_b)):
-            if name not in at:
-                continue
-            low, high = at[name].vertices.min(0), at[name].vertices.max(0)
-            point = np.asarray(end, dtype=float)
+    for words, name, points, place in acting:
+        if name not in at:
+            continue
+        low, high = at[name].vertices.min(0), at[name].vertices.max(0)
+        for point in np.array([p for p in points if len(p) == len(low)], dtype=float):
             off = float(np.linalg.norm(np.maximum(0.0, np.maximum(low - point, point - high))))
             if off > FAR * float((high - low).max()):
-                place = ", ".join(f"{v:g}" for v in point)
-                found.append(f"tie '{tie.name}' ends at ({place}) m, {off:.3g} m outside '{name}': is that its anchor?")
+                where = ", ".join(f"{v:g}" for v in point)
+                found.append(f"{words} at ({where}) m, {off:.3g} m outside '{name}': is that {place}?")
+                break
     return found
+
+
+def _weights(model: Model) -> list[str]:
+    """Return a sentence where the own weight of a model in space acts along -y, as it does in the plane."""
+    weights = [load.value for load in model.loads if load.kind == "weight"]
+    down = any(len(v) == 3 and v[0] == 0 and v[1] < 0 for v in weights)
+    if model.dim != 3 or not down or any(v[-1] != 0 for v in weights):
+        return []
+    return ["own weight acts along -y and none along z: in space z points up, and gravity is [0, 0, -1]"]
+
+
+def _stages(model: Model) -> list[str]:
+    """Return a sentence for each stage of a path that names a load group that no load and no support belongs to."""
+    if model.periods is not None:  # a cell: its stages name strains and stresses
+        return []
+    known = model.load_groups
+    return [
+        f"stage '{stage.name}' names the load group '{group}', which does not exist: groups are {', '.join(known)}"
+        for stage in model.stages
+        for group in stage.factors
+        if group not in known
+    ]
 
 
 def _sizes(model: Model) -> list[str]:

@@ -191,8 +191,9 @@ def _unusable(points: Array, faces: Sequence[Loop], holes: Sequence[tuple[int, L
         if not 0 <= face < len(faces):
             text = f"a hole belongs to face {face + 1}, but there are {len(faces)}"
             return fault("index", text, "faces of holes are numbered from 0")
-        if any(not 0 <= v < len(points) for v in loop):
-            text = f"face {face + 1} uses vertex {max(loop)}, but there are {len(points)} vertices"
+        missing = [v for v in loop if not 0 <= v < len(points)]
+        if missing:
+            text = f"face {face + 1} uses vertex {missing[0]}, but there are {len(points)} vertices"
             return fault("index", text, "vertices of faces are numbered from 0", face)
         if len(set(loop)) < 3:
             text = f"face {face + 1} has {len(set(loop))} different vertices"

@@ -32,7 +32,8 @@ def body_of(table: BlockTable, number: int, materials: Materials, thickness: flo
             return _solid(table, materials)
         if (table.outline is None) == (table.rectangle is None):
             msg = "give either an outline or a rectangle" + ("" if table.outline is None else ", not both")
-            raise InputError(msg, hint="outline = [[x, y], ...] or rectangle = [[x1, y1], [x2, y2]]")
+            hint = "outline = [[x, y], ...] or rectangle = two corners; in space box, or vertices and faces"
+            raise InputError(msg, hint=hint)
         if table.rectangle is not None:
             _plane_points(table.rectangle)
             (x0, x1), (y0, y1) = (sorted(values) for values in zip(*table.rectangle, strict=True))

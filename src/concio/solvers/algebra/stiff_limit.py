@@ -50,8 +50,10 @@ def without_compliance(hard: ContactProblem, lent: ContactProblem, answer: Solut
         A certified solution of ``lent``: its states are imposed.
     """
     still = np.zeros_like(answer.displacement)
+    u, t_n, t_t = still, answer.normal_force, answer.friction_force
     try:
-        u, t_n, t_t = _States(hard, lent, answer).limit(answer)
+        if still.size:  # else supports hold every block
+            u, t_n, t_t = _States(hard, lent, answer).limit(answer)
     except SingularMatrixError:
         return None
     if float(np.abs(u).max(initial=0.0)) <= NOTHING * float(np.abs(answer.displacement).max(initial=0.0)):
