@@ -1,1 +1,20 @@
 """Shared by all tests. Its place also puts this directory on the import path, for helpers such as ``rigid_walls``."""
+
+from __future__ import annotations
+
+import gc
+
+import pytest
+
+import samples
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Draw fewer cases where the long tests are left out: the quick suite."""
+    samples.whole = "not long" not in config.getoption("markexpr").replace("long or not long", "")
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Spare the collector of garbage the thousands of tests it would look at again and again: a tenth of the time."""
+    gc.freeze()
+    gc.set_threshold(20_000, 20, 20)

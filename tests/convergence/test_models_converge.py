@@ -42,6 +42,7 @@ def fine_block():
     return work(block("Q9", 1 / 64))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("element", ["Q4", "Q4I", "Q9", "T3", "T6"])
 def test_block_under_a_strip_load(element):
     """At the ends of the strip the shear strain has a logarithm: the error of the work is of order h^2 log(1/h)."""

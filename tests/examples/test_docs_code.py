@@ -24,7 +24,11 @@ def pages() -> list[Path]:
     return [p for p in found if FENCE.search(p.read_text(encoding="utf-8"))]
 
 
-LONG = {"howto/space.md", "howto/assessment.md", "howto/cells.md"}
+LONG = {
+    "start.md", "methods.md", "howto/space.md", "howto/assessment.md", "howto/cells.md", "howto/studies.md",
+    "howto/no_equilibrium.md",
+}  # fmt: skip
+"""Pages of more than a second, whose commands and functions have quick tests of their own."""
 
 
 def named(page: Path) -> object:

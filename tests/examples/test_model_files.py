@@ -33,8 +33,8 @@ def solved(name: str) -> concio.Result:
     return concio.solve(concio.load(FOLDER / name), on_failure="return")
 
 
-LONG = {"facade.toml"}
-"""More than some four seconds; test_settle settles the same facade quickly."""
+LONG = {"facade.toml", "settling_wall.toml"}
+"""More than two seconds; test_settle settles the same facade quickly, and spreading_arch.toml has settlements."""
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.long] * (n in LONG)) for n in FILES])
@@ -104,9 +104,12 @@ def test_the_eccentric_column_opens_a_quarter_of_its_joints() -> None:
     assert opened == pytest.approx(0.25, abs=0.06)  # no tension, plane sections: 1 - 3 (1/2 - e/b)
 
 
+@pytest.mark.long
+def test_a_wall_settles_with_its_ground() -> None:
+    assert solved("settling_wall.toml").max_settlement == pytest.approx(3e-3, abs=5e-5)
+
+
 def test_settlement_is_that_of_the_ground() -> None:
-    result = solved("settling_wall.toml")
-    assert result.max_settlement == pytest.approx(3e-3, abs=5e-5)
     spread = solved("spreading_arch.toml")
     assert spread.node_displacement("right abutment")[:, 0] == pytest.approx(4e-3)
     assert spread.contacts.count("open") > 0
@@ -119,6 +122,7 @@ def test_the_drawn_gate_is_the_one_of_the_table() -> None:
     assert drawn.reactions["ground"] == pytest.approx(listed.reactions["ground"], rel=1e-6, abs=1e-6)
 
 
+@pytest.mark.long  # test_file_stages follows stages of a file, too
 def test_the_stages_are_followed_in_their_order() -> None:
     """All four are reached; the neighbour props the wall against the wind, and then lets go."""
     path = concio.run_path(concio.load(FOLDER / "load_stages.toml"))

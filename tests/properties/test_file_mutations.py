@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import concio
 from concio.model.file.writing import _pairs
+from samples import sample
 
 TEMPLATES = {
     p.name: tomllib.loads(p.read_text(encoding="utf-8")) for p in files("concio.model").joinpath("templates").iterdir()
@@ -70,7 +71,7 @@ def read(text: str) -> concio.Model | concio.InputError:
         return error
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=sample(40, 150), deadline=None)
 @given(mutated())
 def test_a_changed_file_is_a_model_or_a_message(data: dict[str, Any]) -> None:
     found = read("\n".join(_pairs(data)))
@@ -81,7 +82,7 @@ def test_a_changed_file_is_a_model_or_a_message(data: dict[str, Any]) -> None:
         assert concio.loads(concio.dumps(found)).title == found.title
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=sample(50, 150), deadline=None)
 @given(st.text(max_size=200))
 def test_any_text_is_a_model_or_a_message(text: str) -> None:
     found = read(text)

@@ -12,6 +12,7 @@ from concio.model.generate.rubble import rubble
 from concio.model.generate.walls import wall
 from concio.model.interfaces.detect import detect_interfaces
 from concio.model.model import Body
+from samples import sample
 
 
 def copies(bodies, change, order=None):
@@ -45,7 +46,7 @@ def assemblies(draw):
     return [Body(b.name, b.outline + rng.choice([0, 0, 2e-3]) * np.array([0, 1]), kind=b.kind) for b in model.bodies]
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=sample(8, 20), deadline=None)
 @given(assemblies(), st.floats(0, 6.28), st.tuples(st.floats(-5, 5), st.floats(-5, 5)), st.sampled_from([0.0, 5e-3]))
 def test_rigid_motion_changes_nothing(bodies, angle, move, reach):
     c, s = np.cos(angle), np.sin(angle)
@@ -58,7 +59,7 @@ def test_rigid_motion_changes_nothing(bodies, angle, move, reach):
         np.testing.assert_allclose(along, [-f.normal[1], f.normal[0]], atol=1e-2)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=sample(8, 20), deadline=None)
 @given(assemblies(), st.integers(0, 1000))
 def test_renumbering_and_mirror_change_nothing(bodies, seed):
     order = np.random.default_rng(seed).permutation(len(bodies))
@@ -82,7 +83,7 @@ def test_a_stone_does_not_hide_its_own_edge(stones, gaps, names):
     assert names in [row[:2] for row in found[0]]
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=sample(8, 20), deadline=None)
 @given(assemblies())
 def test_normals_point_from_a_to_b(bodies):
     for f in detect_interfaces(bodies, tolerance=1e-5, reach=5e-3).interfaces:
@@ -104,7 +105,7 @@ def contains(outline, point):
 lengths = st.floats(0.25, 1.5)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=sample(40, 100), deadline=None)
 @given(
     st.lists(lengths, min_size=1, max_size=3), st.lists(lengths, max_size=2), st.lists(lengths, max_size=2),
     st.floats(0.3, 20),

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from concio.fem.polygon_mesh import mesh_polygon
 from concio.model.interfaces.polygon_check import polygon_faults
 from meshes import assert_good_mesh
+from samples import sample
 
 
 @st.composite
@@ -28,7 +29,7 @@ def simple_polygons(draw):
     return outline
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=sample(25, 60), deadline=None)
 @given(simple_polygons(), st.floats(0.15, 0.8), st.data())
 def test_every_mesh_of_a_simple_polygon_is_right(outline, share, data):
     size = share * np.ptp(outline, axis=0).max()
@@ -44,7 +45,7 @@ def test_every_mesh_of_a_simple_polygon_is_right(outline, share, data):
             assert np.hypot(*(points - (a + (b - a) * mark / length)).T).min() < 1e-9 * size
 
 
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
+@settings(max_examples=sample(10, 25), deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 @given(simple_polygons(), st.floats(0.2, 0.6))
 def test_triangles_keep_the_subdivision_of_the_boundary(outline, share):
     size = share * np.ptp(outline, axis=0).max()

@@ -10,6 +10,7 @@ from hypothesis.extra.numpy import arrays
 from concio.solvers.lcp.lemke_method import Outcome, lemke
 from concio.solvers.lcp.linear_problem import LinearComplementarity
 from lcp_oracles import infeasibility
+from samples import sample
 
 small = st.integers(-4, 4).map(float)
 sizes = st.integers(1, 7)
@@ -25,7 +26,7 @@ def good(problem: LinearComplementarity, residual: float) -> bool:
     return residual <= 1e-9 * (1 + np.abs(problem.q).max() + np.abs(problem.M).max())
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=sample(60, 150), deadline=None)
 @given(square_and_vector(), st.sampled_from(["inverse", "product"]), st.sampled_from([1e-5, 1.0, 1e6]))
 def test_p_matrices_are_solved(data: tuple[np.ndarray, np.ndarray], basis: str, unit: float) -> None:
     """L L' + skew + I/2 is a P-matrix: one solution for every q, in any units."""
@@ -36,7 +37,7 @@ def test_p_matrices_are_solved(data: tuple[np.ndarray, np.ndarray], basis: str, 
     assert problem.residual(result.z) <= 1e-9 * (1 + np.abs(problem.q).max())
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=sample(60, 150), deadline=None)
 @given(square_and_vector())
 def test_copositive_plus_is_solved_or_infeasible(data: tuple[np.ndarray, np.ndarray]) -> None:
     """A A' + skew is positive semidefinite, hence copositive-plus: a ray proves that no feasible point exists."""
@@ -55,7 +56,7 @@ def test_copositive_plus_is_solved_or_infeasible(data: tuple[np.ndarray, np.ndar
         assert (problem.M.T @ v).max() <= 1e-9
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=sample(60, 150), deadline=None)
 @given(st.integers(2, 6), st.integers(0, 10_000))
 def test_degenerate_problems_end(n: int, seed: int) -> None:
     """Repeated rows and columns and zeros in q: ratios tie all along the path."""

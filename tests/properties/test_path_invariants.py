@@ -10,13 +10,14 @@ from concio.solvers.path.record import Outcome
 from concio.solvers.statics.limit import associated_limit
 from path_helpers import energy_error, least_dissipation, weight_then, worst_certificate
 from rigid_walls import running_bond
+from samples import sample
 
 sizes = st.tuples(st.floats(0.5, 2.0), st.floats(0.3, 1.0))
 walls = st.builds(running_bond, st.integers(1, 3), st.integers(1, 4), sizes)
 few = st.builds(running_bond, st.integers(1, 3), st.integers(1, 3), sizes)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=sample(8, 25), deadline=None)
 @given(walls, st.floats(0.2, 0.9), st.sampled_from([1.0, -1.0]), st.floats(0.5, 4.0))
 def test_pushover_of_small_walls(assembly, mu, side, ratio):
     push = assembly.load(side, 0)
@@ -30,7 +31,7 @@ def test_pushover_of_small_walls(assembly, mu, side, ratio):
     assert least_dissipation(path, found) >= -1e-10
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=sample(4, 10), deadline=None)
 @given(few, st.floats(0.3, 0.8))
 def test_mirror_image(assembly, mu):
     """Pushed from the other side the wall does the same; walls of running bond are symmetric."""
@@ -46,7 +47,7 @@ def test_mirror_image(assembly, mu):
     assert abs(ends[0].peak - ends[1].peak) <= 1e-9
 
 
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=sample(1, 8), deadline=None)
 @given(few, st.floats(0.3, 0.8), st.floats(1e-6, 1e-2))
 def test_stiffness_of_the_joints_scales_displacements_only(assembly, mu, compliance):
     """Without gaps, rigid blocks on joints ten times softer move ten times as much at the same load."""

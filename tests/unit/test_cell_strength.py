@@ -13,6 +13,7 @@ from concio.analysis.cells.half_spaces import HalfSpaces
 from concio.analysis.cells.periodic_cell import PeriodicCell
 from concio.errors import InputError, NoEquilibriumError
 from concio.solvers.statics.limit import associated_limit
+from samples import sample
 
 
 def running(a, b, f, c, **options):
@@ -36,7 +37,7 @@ def test_running_bond_has_the_closed_form_in_random_directions(a, b, f):
     cell = PeriodicCell.of(running(a, b, f, 1.0, thickness=0.3))
     problem, exact = cell.problem(), closed_form(a, b, f, 1.0)
     rng = np.random.default_rng(7)
-    for direction in rng.normal(size=(60, 3)):
+    for direction in rng.normal(size=(sample(20, 200), 3)):
         found = associated_limit(problem, cell.load(direction))
         assert found.checked
         wanted = exact.distance(direction)
@@ -71,7 +72,7 @@ def test_the_half_spaces_are_found_exactly(name):
     if name == "with crushing":
         assert np.isfinite([faces.distance(d) for d in np.vstack([np.eye(3), -np.eye(3)])]).all()
         own = found.cell
-        for direction in np.random.default_rng(1).normal(size=(60, 3)):
+        for direction in np.random.default_rng(1).normal(size=(sample(20, 200), 3)):
             ray = associated_limit(own.problem(), own.load(direction))
             assert ray.multiplier == pytest.approx(faces.distance(direction), rel=1e-8)
         return

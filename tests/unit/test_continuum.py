@@ -13,6 +13,7 @@ from concio.analysis.continuum.continuum import continuum_of
 from concio.analysis.continuum.elastic import solve_elastic
 from concio.analysis.continuum.kinematic_bound import kinematic_bound
 from concio.analysis.continuum.static_bound import static_bound
+from samples import sample
 
 DEAD, LIVE = {"dead": 1.0, "live": 0.0}, {"dead": 0.0, "live": 1.0}
 STONE = concio.Rigid(unit_weight=20.0)
@@ -126,7 +127,7 @@ def test_prandtls_strip_footing_is_enclosed():
     assert exact < high.multiplier < 1.1 * exact
 
 
-@pytest.mark.parametrize("case", range(4))
+@pytest.mark.parametrize("case", range(sample(2, 4)))
 def test_stresses_never_carry_more_than_a_mechanism_allows(case):
     rng = np.random.default_rng(case)
     law = concio.JointLaw(rng.uniform(0.4, 0.9), cohesion=rng.uniform(0, 20), tensile_strength=rng.uniform(0, 10))
@@ -138,14 +139,16 @@ def test_stresses_never_carry_more_than_a_mechanism_allows(case):
 
 
 def test_the_limit_load_comes_down_to_that_of_the_continuum_as_blocks_are_halved():
-    found = concio.halve_blocks(pushed, sizes=(1, 2, 4), elastic=False)
+    count = sample(2, 3)
+    found = concio.halve_blocks(pushed, sizes=(1, 2, 4)[:count], elastic=False)
     low, high = found.bracket
     load = found.table()["limit_blocks"]
-    assert load == pytest.approx([0.65, 0.56624418, 0.48886525], rel=1e-6)
+    assert load == pytest.approx([0.65, 0.56624418, 0.48886525][:count], rel=1e-6)
     assert low < high < load.min()
     assert high - low < 0.08 * high
-    smaller = load[-1] - (load[-2] - load[-1])  # if what is left is in proportion to the size
-    assert low < smaller < high
+    if count == 3:
+        smaller = load[-1] - (load[-2] - load[-1])  # if what is left is in proportion to the size
+        assert low < smaller < high
 
 
 def test_the_bounds_are_those_of_the_same_wall_seen_in_a_mirror():

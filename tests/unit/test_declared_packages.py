@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import re
 import sys
 import tomllib
@@ -10,6 +9,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+
+from sources import source
 
 ROOT = Path(__file__).parents[2]
 NAMES = {
@@ -52,16 +53,10 @@ def imported(folder: Path) -> dict[str, str]:
     own = {"concio", "validation_cases"} | {f.stem for f in near} | {f.parent.name for f in near}
     found: dict[str, str] = {}
     for file in files:
-        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-            modules: list[str] = []
-            if isinstance(node, ast.Import):
-                modules = [alias.name for alias in node.names]
-            elif isinstance(node, ast.ImportFrom) and not node.level:
-                modules = [node.module or ""]
-            for module in modules:
-                top = module.split(".")[0]
-                if top not in own and top not in sys.stdlib_module_names:
-                    found.setdefault(top, f"{file.relative_to(ROOT)}:{node.lineno}")
+        for one in source(file).imports:
+            top = one.module.split(".")[0]
+            if top not in own and top not in sys.stdlib_module_names:
+                found.setdefault(top, f"{file.relative_to(ROOT)}:{one.line}")
     return found
 
 
@@ -83,11 +78,10 @@ def test_modules_of_the_core_need_no_extra_when_they_are_imported() -> None:
     """At the top of a module stand packages of the core alone; what an extra brings is imported where it is used."""
     core = declared(pyproject())
     for file in sorted((ROOT / "src").rglob("*.py")):
-        for node in ast.parse(file.read_text(encoding="utf-8")).body:
-            if isinstance(node, ast.Import | ast.ImportFrom) and not getattr(node, "level", 0):
-                names = [a.name for a in node.names] if isinstance(node, ast.Import) else [node.module or ""]
-                tops = {name.split(".")[0] for name in names} - {"concio"} - set(sys.stdlib_module_names)
-                assert {plain(NAMES.get(top, top)) for top in tops} <= core, f"{file}:{node.lineno}"
+        for one in source(file).imports:
+            top = one.module.split(".")[0]
+            if one.place == "top" and top != "concio" and top not in sys.stdlib_module_names:
+                assert plain(NAMES.get(top, top)) in core, f"{file}:{one.line}"
 
 
 @pytest.mark.parametrize("package", ["trimesh", "hypothesis", "vtk"])

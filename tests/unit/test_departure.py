@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +50,7 @@ def falling(material: Elastic | Rigid = BRICK) -> ContactProblem:
     return concio.assemble(between_walls(material)).problem()
 
 
+@cache
 def pushed_wall(share: float, mu: float = 0.4) -> ContactProblem:
     """A dry wall of elastic blocks pushed sideways by a share of its weight, on its base."""
     model = concio.running_bond_panel(
@@ -57,6 +59,15 @@ def pushed_wall(share: float, mu: float = 0.4) -> ContactProblem:
     )  # fmt: skip
     model = replace(model, loads=(*model.loads, Load("weight", (share, 0.0))))
     return concio.assemble(model).problem()
+
+
+@cache
+def moving_wall() -> tuple[ContactProblem, Departure]:
+    """The wall pushed by more than its friction, and how it moves away."""
+    problem = pushed_wall(0.41)
+    motion = release(Run(scale(problem)))
+    assert isinstance(motion, Departure)
+    return problem, motion
 
 
 def test_masses_are_weights_over_gravity() -> None:
@@ -125,9 +136,7 @@ def test_block_on_an_incline_accelerates_as_galileo_says() -> None:
 
 
 def test_wall_moves_away_and_its_proof_stands_by_itself() -> None:
-    problem = pushed_wall(0.41)
-    ended = release(Run(scale(problem)))
-    assert isinstance(ended, Departure)
+    problem, ended = moving_wall()
     a, u, t_n, t_t = ended.acceleration, ended.displacement, ended.normal_force, ended.friction_force[:, 0]
     total = np.abs(problem.f).sum()
     # equilibrium with inertia, friction cones, rates of closed joints: written out here again
@@ -152,9 +161,7 @@ def test_wall_moves_away_and_its_proof_stands_by_itself() -> None:
 
 @pytest.mark.parametrize("part", ["acceleration", "displacement", "normal_force", "friction_force"])
 def test_a_changed_proof_is_refused(part: str) -> None:
-    problem = pushed_wall(0.41)
-    motion = release(Run(scale(problem)))
-    assert isinstance(motion, Departure)
+    problem, motion = moving_wall()
     pieces = {n: getattr(motion, n) for n in ("acceleration", "displacement", "normal_force", "friction_force")}
 
     def check(values: dict[str, np.ndarray]) -> Departure:
@@ -167,9 +174,7 @@ def test_a_changed_proof_is_refused(part: str) -> None:
 
 def test_a_motion_into_the_ground_is_no_departure() -> None:
     """A load that keeps the balance of accelerations, downward: nothing is wrong but that joints close without end."""
-    problem = pushed_wall(0.41)
-    motion = release(Run(scale(problem)))
-    assert isinstance(motion, Departure)
+    problem, motion = moving_wall()
     down = np.zeros_like(motion.acceleration)
     down[1::2] = -0.01 * np.abs(motion.acceleration).max()
     pressed = problem.with_loads(problem.f + problem.inertia * down)

@@ -19,6 +19,7 @@ from concio.solvers.exhaustive.states import Empty, StateQuestions
 from concio.solvers.statics.existence import statically_admissible
 from contact_problems import wall
 from lcp_problems import small_wall
+from samples import sample
 
 pytest.importorskip("highspy")
 
@@ -81,7 +82,7 @@ def some_state_exists(problem: ContactProblem) -> bool:
 @pytest.mark.parametrize(("pairs", "smooth"), [(2, False), (3, False), (3, True)])
 def test_same_verdict_as_trying_every_state(pairs: int, smooth: bool) -> None:
     verdicts = []
-    for seed in range(30):
+    for seed in range(sample(10, 30)):
         problem = tiny(seed, pairs, smooth)
         assert statically_admissible(problem).exists
         answer = solve(problem)
@@ -89,7 +90,7 @@ def test_same_verdict_as_trying_every_state(pairs: int, smooth: bool) -> None:
         assert answer.status is (Status.SOLVED if exists else Status.NO_COULOMB_STATE), seed
         assert answer.info["reach"] >= 1e7
         verdicts.append(exists)
-    assert 3 <= sum(verdicts) <= 27  # both verdicts are met, though statics admits every load
+    assert 0.1 <= np.mean(verdicts) <= 0.9  # both verdicts are met, though statics admits every load
 
 
 @pytest.mark.parametrize("mu", [0.3, 2.0])

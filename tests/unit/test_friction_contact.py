@@ -78,7 +78,9 @@ def test_the_answer_obeys_the_local_equations() -> None:
         assert np.abs(work).max() < 1e-6 * size**2
 
 
-@pytest.mark.parametrize(("blocks", "courses", "push", "least"), [(12, 9, 0.7, 600), (30, 25, 0.2, 4000)])
+@pytest.mark.parametrize(
+    ("blocks", "courses", "push", "least"), [(12, 9, 0.7, 600), pytest.param(30, 25, 0.2, 4000, marks=pytest.mark.long)]
+)
 def test_hundreds_of_sliding_contacts_and_thousands_at_rest(blocks: int, courses: int, push: float, least: int) -> None:
     problem, M, H = wall_step(blocks, courses, push)
     assert problem.pairs > least
