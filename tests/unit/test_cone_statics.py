@@ -7,9 +7,12 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
+from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array, ContactProblem, Laws
 from concio.problem.tolerances import BALANCED
-from concio.solvers.statics.cone_statics import ConeStatics
+from concio.solvers.statics.cone_interior import ConeAnswer, maximise
+from concio.solvers.statics.cone_programme import ConeProgramme, Pairs
+from concio.solvers.statics.cone_statics import ConeStatics, _motions_of_bodies, _room
 from concio.solvers.statics.existence import statically_admissible
 from concio.solvers.statics.friction import smallest_friction
 from concio.solvers.statics.limit import associated_limit
@@ -247,3 +250,51 @@ def test_forces_are_moved_into_balance() -> None:
     first = np.abs(statics.programme.Ct @ t.ravel() + load).max()
     moved = statics.balance(t, load)
     assert np.abs(statics.programme.Ct @ moved.ravel() + load).max() < 1e-9 * first
+
+
+def test_every_iterate_tells_the_residuals_of_its_point_and_the_best_is_given() -> None:
+    built = wall(4, 5)
+    statics = ConeStatics(built.problem)
+    it, e, g = statics.programme, statics.offset(built.problem.f), statics.project(built.live)
+    seen: list[ConeAnswer] = []
+
+    def note(answer: ConeAnswer) -> bool:
+        seen.append(answer)
+        return False
+
+    found = maximise(it, e, g, stop=note)
+    for answer in seen:
+        left = np.abs(it.Ct @ answer.t.ravel() + e + answer.multiplier * g).max()
+        assert answer.primal == pytest.approx(left / max(1.0, answer.t[:, 0].max()), rel=1e-12)
+    assert found.t[:, 0].max() > 2.0
+    worst = [max(a.primal, a.dual, a.gap) for a in seen]
+    assert max(found.primal, found.dual, found.gap) == min(worst) < 1e-12
+
+
+@pytest.mark.parametrize(("mu", "cohesion", "cap"), [(0.6, 0.0, np.inf), (0.6, 0.3, np.inf), (0.4, 0.3, 4.0)])
+def test_a_share_of_their_room_never_takes_forces_out_of_the_cones(mu: float, cohesion: float, cap: float) -> None:
+    """1/sqrt(2) of it in any direction; of a plain cone no more."""
+    rng, m = np.random.default_rng(5), 20
+    cone = Cone(*(np.full(m, v) for v in (mu, cohesion, 0.0, cap)))
+    it = ConeProgramme(Pairs(sp.csr_array(np.tile(np.eye(3), (m, 1))), cone, np.array([0, 3])))
+    t_n, angle = rng.uniform(0.5, 3.0, m), rng.uniform(0, 2 * np.pi, m)
+    size = rng.uniform(0, 0.95, m) * (cohesion + mu * t_n)
+    t = np.column_stack([t_n, size * np.cos(angle), size * np.sin(angle)])
+    step = rng.normal(size=(2000, 1, 3))
+    moved = (np.linalg.cholesky(_room(it, t)) @ (step / np.linalg.norm(step, axis=2)[..., None])[..., None])[..., 0]
+
+    def outside(share: float) -> Array:
+        """The largest way outside of each pair (m,)."""
+        return np.max([cone.excess(x[:, 0], x[:, 1:]) for x in t + share * moved], axis=0)
+
+    assert (outside(0.7) <= 0).all()
+    if cohesion == 0:
+        assert (outside(0.75) > 0).all()
+
+
+def test_motions_are_those_of_one_body_after_another() -> None:
+    problem = wall(3, 2).problem
+    r = problem.rigid_motions
+    assert _motions_of_bodies(problem).tolist() == list(range(0, r + 1, 6))
+    mixed = replace(problem, R=sp.csc_array(problem.R[:, ::-1]))
+    assert _motions_of_bodies(mixed).tolist() == list(range(r + 1))

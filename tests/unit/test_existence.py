@@ -64,8 +64,10 @@ def test_sufficient_condition_stays_below_a_cap():
 @pytest.mark.parametrize(("share", "proof"), [(0.399, False), (0.401, True)])
 def test_block_topples(share, proof):
     p = block_on_incline(0.4, 1.0, 0.0).problem(0.9, np.array([share, -1.0, 0.0]))
-    found = find_mechanism(p)
-    assert statically_admissible(p).exists is not proof
+    found, state = find_mechanism(p), statically_admissible(p)
+    assert state.exists is not proof
+    assert state.decided
+    assert not replace(state, exists=False, mechanism=None).decided
     assert (found is not None) is proof
     if found is not None:
         assert found.violation <= 1e-12

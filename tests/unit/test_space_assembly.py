@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
+from scipy.spatial import cKDTree
 
 import concio
 from concio import Elastic, GeometryError, InputError, JointLaw, Load, Model, Polyhedron, Rigid, Support, Tie
@@ -15,7 +16,7 @@ from concio.contact.assembly import Assembly
 from concio.contact.patch_points import corner_points, spread_points
 from concio.fem.constitutive import principal_in_space, solid_matrix
 from concio.fem.elements import SOLID_FAMILIES
-from concio.fem.tetrahedra import GOOD, shape_of, tetrahedra
+from concio.fem.tetrahedra import GOOD, _lattice, shape_of, tetrahedra
 from concio.kinematics.frames import tangents
 from concio.model.interfaces.patches import Patch
 from concio.model.surfaces import from_grid
@@ -389,3 +390,34 @@ def test_tributary_areas_do_not_depend_on_how_a_structure_is_turned() -> None:
     dome = concio.dome(span=4, ring=0.6, courses=2, blocks=6, mesh_size=0.6)
     there, turned = (concio.assemble(m).pairs for m in (dome, concio.place(dome, turn=37.0, axis=(1.0, 2.0, 3.0))))
     assert np.abs(np.sort(turned.area) - np.sort(there.area)).max() < 1e-13 * there.area.max()
+
+
+def test_equal_blocks_share_their_shape_wherever_they_stand() -> None:
+    """Meshed, cut by marks or from a grid: what stands elsewhere is the same; what is longer or turned is not."""
+    x = np.linspace(0.0, 1.0, 3)
+    grid = np.stack(np.meshgrid(x, x, 0.5 * x, indexing="ij"), -1)
+    quarter = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    brick = box("brick", (0, 0, 0), (1, 0.7, 0.5), mesh_size=0.5)
+    taller, aside, moved = np.array([1, 1, 2]), np.array([4.0, 0, 0]), np.array([2.0, 0.5, 0.0])
+    blocks = [
+        from_grid("a", grid), from_grid("b", grid + moved), from_grid("c", grid * taller + aside),
+        *(replace(brick, name=n, vertices=brick.vertices + move) for n, move in (("d", -moved), ("e", [[2, -3, 0]]))),
+        replace(brick, name="f", vertices=brick.vertices @ quarter.T + np.array([4, -2, 0])),
+    ]  # fmt: skip
+    a, b, c, d, e, f = concio.assemble(model(GROUND, *blocks)).disc.shape_of[1:]
+    assert a == b
+    assert d == e
+    assert len({a, c, d, f}) == 4
+
+
+def test_points_of_a_face_are_a_triangular_lattice_in_its_middle() -> None:
+    """Each inner one has six neighbours at the distance asked for, and none of the face is far from one."""
+    face = shapely.Polygon([(1, 2), (6, 2), (6, 5), (1, 5)])
+    flat = _lattice(face, 0.4)
+    assert np.allclose(flat.mean(0), face.centroid.coords[0], atol=0.05)
+    inner = flat[shapely.distance(face.boundary, shapely.points(flat)) > 0.61]
+    distance, _ = cKDTree(flat).query(inner, k=7)
+    assert len(inner) > 30
+    assert np.allclose(distance[:, 1:], 0.4)
+    sides = np.stack(np.meshgrid(np.linspace(1, 6, 51), np.linspace(2, 5, 31)), -1).reshape(-1, 2)
+    assert cKDTree(flat).query(sides)[0].max() < 2 * 0.4

@@ -216,7 +216,7 @@ def _motions_of_bodies(problem: ContactProblem) -> Array:
 
 
 def _room(it: ConeProgramme, t: Array) -> Array:
-    """Return the inverse Hessian (m, d, d) of the barrier of the strengths: a step in its unit ball stays inside."""
+    """Return the inverse Hessian (m, d, d) of a barrier of the cones: 1/sqrt(2) of its unit ball lies inside."""
     beta = it.strength(t)
     sized = np.maximum(determinant(beta), 0.0)
     cone = 2.0 * beta[:, :, None] * beta[:, None, :]
