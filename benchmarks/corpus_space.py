@@ -1,12 +1,12 @@
 """A corpus of random problems in space: every verdict must be a proof, and almost every problem must get one.
 
-    python benchmarks/corpus_space.py [--count 300] [--seed 0] [--first 0] [--list]
+    python benchmarks/corpus_space.py [--count 300] [--seed 0 7 ...] [--first 0] [--list] [--markdown]
 
 Walls in running and in header bond, walls with corners, barrels, domes; rigid blocks with stiff joints and elastic
 blocks; tilted, on supports that have moved, with blocks that nothing loads, squeezed between fixed sides without a
 base. Friction, size, direction and share of the associated limit (0 to 1.3) are drawn. For each: the verdict of
 ``auto``, its proof recomputed here from the original arrays, and the strategy that found it. Prints a table by family,
-one by strategy, and the undecided ones with what was tried.
+one by strategy (verdicts, most factorisations of one problem, CPU seconds), and the undecided ones with what was tried.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import argparse
 import sys
 import time
 from collections import Counter
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +25,7 @@ sys.path[:0] = [str(Path(__file__).resolve().parents[1] / "tests")]
 from corpus import DECIDED, proven  # noqa: E402
 
 from concio.problem.contact_problem import ContactProblem  # noqa: E402
+from concio.problem.solution import Solution  # noqa: E402
 from concio.solvers.methods import find  # noqa: E402
 from concio.solvers.statics.limit import associated_limit  # noqa: E402
 from space_problems import Built, barrel, corner_wall, dome, wall  # noqa: E402
@@ -93,52 +94,91 @@ def draw(rng: np.random.Generator, family: str) -> tuple[ContactProblem, dict[st
     return problem.with_loads(load), note
 
 
+@dataclass
+class Count:
+    """What was counted of the problems of one seed."""
+
+    seed: int
+    families: dict[str, Counter[str]] = field(default_factory=lambda: {f: Counter() for f in FAMILIES})
+    strategies: dict[str, Counter[str]] = field(default_factory=dict)
+    work: Counter[str] = field(default_factory=Counter)
+    spent: Counter[str] = field(default_factory=Counter)
+    left: list[str] = field(default_factory=list)
+
+    @property
+    def verdicts(self) -> Counter[str]:
+        """Return how often each verdict was given."""
+        total: Counter[str] = Counter()
+        for counts in self.families.values():
+            total += counts
+        return total
+
+    def add(self, family: str, verdict: str, solution: Solution, seconds: float) -> None:
+        """Count one answer."""
+        by = str(solution.info.get("strategy", "at rest"))
+        self.families[family][verdict] += 1
+        self.strategies.setdefault(by, Counter())[verdict] += 1
+        self.work[by] = max(self.work[by], solution.factorisations)
+        self.spent[by] += seconds
+
+
+def table(rows: list[list[str]], *, markdown: bool) -> str:
+    """Return a table whose first row is its heads; columns after the first are set right where it is not Markdown."""
+    if markdown:
+        return "\n".join("| " + " | ".join(row) + " |" for row in [rows[0], ["---"] * len(rows[0]), *rows[1:]])
+    widths = [max(len(row[c]) for row in rows) + 2 for c in range(len(rows[0]))]
+    return "\n".join(
+        row[0].ljust(widths[0]) + "".join(c.rjust(w) for c, w in zip(row[1:], widths[1:], strict=True)) for row in rows
+    )
+
+
+def tables(count: Count, *, markdown: bool) -> str:
+    """Return the tables of one seed: by family, by strategy, and what is undecided."""
+    names = (*DECIDED[:3], "UNDECIDED", "GAVE_UP", "WRONG")
+    heads = [n.lower().replace("_", " ") for n in names]
+    families = [["family", *heads]]
+    families += [[family, *(str(counts[n]) for n in names)] for family, counts in count.families.items()]
+    families += [["all", *(str(count.verdicts[n]) for n in names)]]
+    strategies = [["strategy", *heads, "most factorisations", "CPU s"]]
+    for by, counts in sorted(count.strategies.items(), key=lambda item: -item[1].total()):
+        mine = [str(counts[n]) for n in names]
+        strategies.append([by, *mine, str(count.work[by]), f"{count.spent[by]:.1f}"])
+    total, wrong = count.verdicts.total(), count.verdicts["WRONG"]
+    decided = sum(count.verdicts[n] for n in DECIDED)
+    share = f"{decided} of {total} decided ({100 * decided / total:.2f} %), {wrong} wrong"
+    last = f"seed {count.seed}: {share}, {count.spent.total():.0f} CPU s in all"
+    both = (table(families, markdown=markdown), table(strategies, markdown=markdown), last)
+    return "\n\n".join(both) + "\n" + "\n".join(count.left)
+
+
 def main() -> None:
     """Run the corpus and print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=300)
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--seed", type=int, nargs="+", default=[0], help="one or more, each drawn anew")
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--list", action="store_true", help="print every problem")
+    parser.add_argument("--markdown", action="store_true", help="the tables for the documentation")
     arguments = parser.parse_args()
-    table: dict[str, Counter[str]] = {family: Counter() for family in FAMILIES}
-    strategies: Counter[str] = Counter()
-    work: dict[str, int] = {}
-    left, seconds, wrong = [], 0.0, 0
-    for k in range(arguments.first, arguments.first + arguments.count):
-        family = FAMILIES[k % len(FAMILIES)]
-        problem, note = draw(np.random.default_rng([arguments.seed, k]), family)
-        begin = time.process_time()
-        solution = find("auto")(problem)
-        spent = time.process_time() - begin
-        seconds += spent
-        verdict = solution.status.name
-        if verdict in DECIDED and not proven(problem, solution):
-            verdict, wrong = "WRONG", wrong + 1
-        table[family][verdict] += 1
-        by = str(solution.info.get("strategy", "none"))
-        strategies[by] += 1
-        work[by] = max(work.get(by, 0), solution.factorisations)
-        if arguments.list or verdict not in DECIDED:
-            line = f"#{k} {family} {note} pairs {problem.pairs} {verdict} {spent:.2f} s"
-            print(line, flush=True)
-            if verdict not in DECIDED:
-                left.append((line, solution.trace))
-    names = (*DECIDED[:3], "UNDECIDED", "WRONG")
-    print(f"\n{'family':16s}" + "".join(f"{n:>16s}" for n in names))
-    total: Counter[str] = Counter()
-    for family, counts in table.items():
-        total += counts
-        print(f"{family:16s}" + "".join(f"{counts[n]:16d}" for n in names))
-    count = sum(total.values())
-    decided = sum(total[n] for n in DECIDED)
-    print(f"{'all':16s}" + "".join(f"{total[n]:16d}" for n in names))
-    print(f"\n{'strategy':32s}{'decides':>8s}{'most factorisations':>21s}")
-    for name, n in strategies.most_common():
-        print(f"{name:32s}{n:8d}{work[name]:21d}")
-    print(f"{decided} of {count} decided ({100 * decided / count:.2f} %), {wrong} wrong, {seconds:.0f} CPU s in all")
-    for line, trace in left:
-        print(line + "\n    " + "\n    ".join(trace))
+    for seed in arguments.seed:
+        count = Count(seed)
+        for k in range(arguments.first, arguments.first + arguments.count):
+            family = FAMILIES[k % len(FAMILIES)]
+            problem, note = draw(np.random.default_rng([seed, k]), family)
+            begin = time.process_time()
+            solution = find("auto")(problem)
+            spent = time.process_time() - begin
+            verdict = solution.status.name
+            if verdict in DECIDED and not proven(problem, solution):
+                verdict = "WRONG"
+            count.add(family, verdict, solution, spent)
+            if arguments.list or verdict not in DECIDED:
+                by = solution.info.get("strategy")
+                said = f"#{k} {family} {note} pairs {problem.pairs} {verdict} {spent:.2f} s by {by}"
+                print(said, flush=True)
+                if verdict not in DECIDED:
+                    count.left.append("\n    ".join([said, *solution.trace]))
+        print("\n" + tables(count, markdown=arguments.markdown) + "\n", flush=True)
 
 
 if __name__ == "__main__":

@@ -47,6 +47,7 @@ from concio.solvers.statics.limit import associated_limit  # noqa: E402
 from space_problems import Built, barrel, dome, stretchers, wall  # noqa: E402
 
 SYSTEM_PYTHON = "/usr/bin/python3"
+SICONOS_WAYS = (("admm", "1e-6"), ("admm", "1e-10"), ("newton", "1e-10"), ("gauss-seidel", "1e-6"))
 PAGE = HERE.parent / "docs" / "research" / "peers-in-space.md"
 BOX_FACES = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
 COARSE, FINE = {"amin": 1e-2, "tmax": 1e-2, "nmax": 10}, {"amin": 1e-6, "tmax": 1e-4, "nmax": 10}
@@ -302,7 +303,7 @@ def clarabel_rows() -> list[list[str]]:
 
 
 def siconos_rows(limit: float) -> list[list[str]]:
-    """Return rows of elastic walls, every unknown on a soft spring, by the engine and by two solvers of Siconos."""
+    """Return rows of elastic walls, every unknown on a soft spring, by the engine and by three solvers of Siconos."""
     rows = []
     installed = Path(SYSTEM_PYTHON).exists() and run([SYSTEM_PYTHON, "-c", "import siconos.numerics"], limit)[0] == 0
     for name, built in {"wall 4 x 4": wall(4, 4, elastic=True), "wall 10 x 10": wall(10, 10, elastic=True),
@@ -326,7 +327,7 @@ def siconos_rows(limit: float) -> list[list[str]]:
         data: dict[str, Any] = {"f": problem.f, "gap": problem.gap, "friction": problem.laws.friction}
         for key, matrix in (("K", problem.K), ("C", C)):
             data |= {f"{key}_{part}": getattr(matrix, part) for part in ("data", "indices", "indptr", "shape")}
-        for way, tolerance in (("admm", "1e-6"), ("admm", "1e-10"), ("newton", "1e-10")):
+        for way, tolerance in SICONOS_WAYS:
             with tempfile.TemporaryDirectory() as folder:
                 given, got = Path(folder) / "problem.npz", Path(folder) / "answer.npz"
                 np.savez(given, **data)
@@ -365,9 +366,9 @@ after {limit:.0f} of them. {said}
     return "\n".join([head, *texts])
 
 
-COMPAS = """compas_cra 0.8 (MIT, with IPOPT in its wheel) on its own samples, with supports, friction and options of its
-examples, and on walls of boxes 1 x 1/2 x 1/2 in running bond, friction 0.6, the lowest course fixed: upright, and
-tilted in their plane to shares of what the associated limit allows (beyond it no equilibrium exists). It finds its
+COMPAS = """compas_cra {version} (MIT, with IPOPT in its wheel) on its own samples, with supports, friction and options
+of its examples, and on walls of boxes 1 x 1/2 x 1/2 in running bond, friction 0.6, the lowest course fixed: upright,
+and tilted in their plane to shares of what the associated limit allows (beyond it no equilibrium exists). It finds its
 interfaces itself (not counted in its seconds), and its answer is checked here from interfaces, forces and
 displacements, blocks weighed anew: what the forces leave of the weights, how far they lie outside the round cones
 (those of the package have eight sides, whose corners lie outside), both over the total load, and "law": the worst of
@@ -376,9 +377,9 @@ displacements and its contact distance. Beside it are the verdict of `auto` on t
 blocks, vanishing compliance), its seconds, and the worst entry of the certificate, or of the mechanism that proves the
 verdict. `rbe` is the method without displacements; its forces may pull, and those that do are outside the cone.
 
-"ok" is all that compas_cra says: it asks for forces that some small displacements explain, not for full friction
-where there is slip, so that "law" is not met by design and says how far its answers are from Coulomb's. A failure of
-its solver proves nothing either way."""
+"ok" is all that compas_cra says: it asks for forces that some small displacements explain, not for full friction where
+there is slip, so that "law" is not met by design and says how far its answers are from Coulomb's. A failure of its
+solver proves nothing either way."""
 CLARABEL = """The largest multiplier of a horizontal load in proportion to the weights, rigid blocks, friction 0.6,
 corner points: concio's programme on the graph of the blocks and Clarabel on the same arrays. Forces and motion of both
 are rechecked from these: what the forces leave, how far the motion is from admissible, and how far apart the bounds
@@ -386,8 +387,8 @@ are."""
 SICONOS = """Elastic walls and a dome of hexahedra under half of their associated limit. Siconos wants a definite
 stiffness, so every unknown has a spring of 1e-6 of the mean diagonal of K, for the engine too. "Certificate" is the
 worst entry for the tool's own displacements and forces, "du" the largest difference of a displacement from the
-engine's, over the largest. Its Newton method, as it is called here, stops at once; other settings were not sought. Its
-Gauss-Seidel method, which condenses first, did not end within a minute of the clock on any of the three."""
+engine's, over the largest. Its Newton and Gauss-Seidel methods (the second condenses first) run with their defaults;
+other settings were not sought."""
 
 
 def main() -> None:
@@ -407,7 +408,9 @@ def main() -> None:
         else:
             cases = {k: c for k, c in (SAMPLES | wall_cases()).items() if arguments.cases in k}
             heads = ["case", "blocks", "points", "compas_cra", "s", "balance", "cone", "law", "concio", "s", "proof"]
-            parts["compas_cra"] = (COMPAS, heads, compas_rows(arguments.compas, arguments.limit, cases))
+            about = "from importlib.metadata import version; print(version('compas_cra'))"
+            text = COMPAS.replace("{version}", run([arguments.compas, "-c", about], arguments.limit)[1])
+            parts["compas_cra"] = (text, heads, compas_rows(arguments.compas, arguments.limit, cases))
     if "clarabel" in asked:
         if not find_spec("clarabel"):
             missing.append("Clarabel (pip install clarabel)")

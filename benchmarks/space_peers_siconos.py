@@ -1,6 +1,6 @@
 """Siconos on one contact problem in space; run by the system's Python (Debian package ``python3-siconos``).
 
-    /usr/bin/python3 space_peers_siconos.py problem.npz answer.npz admm|newton TOLERANCE
+    /usr/bin/python3 space_peers_siconos.py problem.npz answer.npz admm|newton|gauss-seidel TOLERANCE
 
 Knows nothing of concio: reads K, f, C (rows normal, first, second tangent of each pair), gap and friction, writes
 displacements, forces, seconds and an outcome. K must be definite. Forces are divided by the mean load on a pair,
@@ -17,6 +17,7 @@ import siconos.numerics as sn
 WAYS = {
     "admm": (sn.SICONOS_GLOBAL_FRICTION_3D_ADMM, 100_000),
     "newton": (sn.SICONOS_GLOBAL_FRICTION_3D_NSN_AC, 500),
+    "gauss-seidel": (sn.SICONOS_GLOBAL_FRICTION_3D_NSGS_WR, 100_000),
 }
 
 
