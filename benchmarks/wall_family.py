@@ -1,18 +1,24 @@
 """The engine on walls and panels of growing size, against one sparse factorisation and against Lemke, in one run.
 
-    python benchmarks/wall_family.py [--large] [--huge] [--fast] [--lemke] [--close]
+    python benchmarks/wall_family.py [--large] [--fast] [--lemke] [--close]
+    python benchmarks/wall_family.py --huge [--fast]
+    python benchmarks/wall_family.py --wall UNITS COURSES SHARE [--fast]
 
 Walls: running bond of dry elastic blocks 2:1, 2 x 2 elements, friction 0.6, own weight and a horizontal share alpha of
 it. Head joints are coupled at the inner nodes of a block's end, bed joints at every node. Panels: 0.2 x 0.1 m blocks,
 4 x 2 elements, between rigid walls on a full base, 10 kN/m2 on top.
 
 Times are CPU times. The yardstick is one SuperLU factorisation of K + C'C of the same problem with SciPy's best
-built-in ordering (``mmd``) and with nested dissection (``nd``): ratios to it do not depend on the machine.
+built-in ordering (``mmd``) and with nested dissection (``nd``): ratios to it do not depend on the machine. ``GB`` is
+the largest resident set of the process when that answer was found; so ``--huge`` solves every wall in a process of its
+own, as ``--wall`` does one. With ``--fast`` these take PARDISO alone, beside the same yardsticks.
 """
 
 from __future__ import annotations
 
 import argparse
+import multiprocessing
+import resource
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -28,6 +34,8 @@ from concio.problem.contact_problem import ContactProblem
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.methods import find
 from concio.solvers.states.settle import Settler
+
+Methods = list[tuple[str, dict[str, Any]]]
 
 WALLS = ((30, 14, 0.30), (30, 14, 0.40), (30, 14, 0.43), (30, 14, 0.44), (50, 40, 0.30), (50, 40, 0.34))
 PANELS = ((10, 10, 0.0, 1.0), (20, 20, 0.0, 1.0), (10, 10, 0.02, 1.0), (20, 20, 0.02, 0.6))
@@ -101,21 +109,28 @@ def yardsticks(problem: ContactProblem) -> tuple[float, float]:
     return mmd, nd
 
 
-def report(name: str, problem: ContactProblem, methods: list[tuple[str, dict[str, Any]]], motion: bool = False) -> None:
-    """Solve by each method and print a row; ``motion`` adds the largest displacement."""
-    mmd, nd = yardsticks(problem)
+def report(name: str, problem: ContactProblem, methods: Methods, motion: bool = False) -> tuple[float, float]:
+    """Solve by each method and print a row; return the seconds of the last and of one factorisation (``nd``).
+
+    ``motion`` adds the largest displacement to the row.
+    """
+    rows = []
     for method, options in methods:
         begin = time.process_time()
         solution = find(method)(problem, **options)
         seconds = time.process_time() - begin
+        rows.append((method, options, solution, seconds, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20))
+    mmd, nd = yardsticks(problem)
+    for method, options, solution, seconds, memory in rows:
         label = method + "".join(f" {v}" for v in options.values())
         print(
             f"{name:28s}{problem.pairs:8d}{problem.unknowns:9d}  {label:24s}{solution.status.name:15s}"
             f"{solution.certificate.worst:9.1e}{solution.iterations:6d}{solution.factorisations:6d}"
-            f"{seconds:9.2f}{mmd:8.3f}{nd:8.3f}{seconds / mmd:8.1f}{seconds / nd:8.1f}"
+            f"{seconds:9.2f}{mmd:8.3f}{nd:8.3f}{seconds / mmd:8.1f}{seconds / nd:8.1f}{memory:7.2f}"
             + (f"  moves {np.abs(solution.displacement).max():.4g} m" if motion else ""),
             flush=True,
         )
+    return rows[-1][3], nd
 
 
 def second_solve() -> None:
@@ -140,24 +155,52 @@ def second_solve() -> None:
         )
 
 
+def alone(units: int, courses: int, alpha: float, engine: Methods) -> tuple[int, float, float]:
+    """Print the row of one wall; return its pairs, the seconds to solve it and those of one factorisation."""
+    problem = wall(units, courses, alpha)
+    seconds, one = report(f"wall {units} x {courses}, {alpha:.2f}", problem, engine)
+    return problem.pairs, seconds, one
+
+
+def huge(engine: Methods) -> None:
+    """Print large walls, each in a process of its own, and how their times grow with the number of pairs."""
+    found: dict[float, tuple[int, float, float]] = {}
+    with multiprocessing.get_context("spawn").Pool(1, maxtasksperchild=1) as one_by_one:
+        for units, courses, alpha in HUGE:
+            now = one_by_one.apply(alone, (units, courses, alpha, engine))
+            if alpha in found:
+                larger, *powers = np.log(np.array(now) / np.array(found[alpha]))
+                solve, factorise = np.array(powers) / larger
+                print(f"share {alpha:.2f}: solve grows with pairs^{solve:.2f}, a factorisation with ^{factorise:.2f}")
+            found[alpha] = now
+
+
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--large", action="store_true", help="also 10,050 blocks and the 40 x 40 panels")
-    parser.add_argument("--huge", action="store_true", help="also 100,000 blocks (half an hour, 7 GB)")
-    parser.add_argument("--fast", action="store_true", help="also with the engine 'pardiso' (extra: fast)")
+    parser.add_argument("--huge", action="store_true", help="only 10,000 and 100,000 blocks (half an hour, 7 GB)")
+    parser.add_argument("--wall", nargs=3, metavar=("UNITS", "COURSES", "SHARE"), help="one wall alone")
+    parser.add_argument("--fast", action="store_true", help="also, of large walls only, with 'pardiso' (extra: fast)")
     parser.add_argument("--lemke", action="store_true", help="also the pivoting methods on the small walls")
     parser.add_argument("--close", action="store_true", help="also what loading does not reach, and a jammed panel")
     arguments = parser.parse_args()
-    engine: list[tuple[str, dict[str, Any]]] = [("interior-point", {})]
+    engine: Methods = [("interior-point", {})]
     if arguments.fast:
         engine.append(("interior-point", {"engine": "pardiso"}))
     heads = ("pairs", "unknowns", "method", "outcome", "worst", "iter", "fact", "CPU s", "mmd s", "nd s", "/mmd", "/nd")
-    widths = (8, 9, -26, -15, 9, 6, 6, 9, 8, 8, 8, 8)
+    heads += ("GB",)
+    widths = (8, 9, -26, -15, 9, 6, 6, 9, 8, 8, 8, 8, 7)
     titles = zip(heads, widths, strict=True)
-    print(f"{'problem':28s}" + "".join(f"{h:>{w}s}" if w > 0 else f"  {h:{-w - 2}s}" for h, w in titles))
+    print(f"{'problem':28s}" + "".join(f"{h:>{w}s}" if w > 0 else f"  {h:{-w - 2}s}" for h, w in titles), flush=True)
+    if arguments.wall:
+        alone(int(arguments.wall[0]), int(arguments.wall[1]), float(arguments.wall[2]), engine[-1:])
+        return
+    if arguments.huge:
+        huge(engine[-1:])
+        return
     for units, courses, alpha in ((6, 7, 0.15), (10, 10, 0.15)) if arguments.lemke else ():
-        pivoting: list[tuple[str, dict[str, Any]]] = [("sparse-lemke", {})]
+        pivoting: Methods = [("sparse-lemke", {})]
         report(f"wall {units} x {courses}, {alpha}", wall(units, courses, alpha), engine + pivoting)
     for units, courses, alpha in WALLS:
         report(f"wall {units} x {courses}, {alpha:.2f}", wall(units, courses, alpha), engine)
@@ -172,9 +215,6 @@ def main() -> None:
         report("panel 10 x 20 hung, 1", panel(10, 20, 0.02, 1.0, base="none"), [("auto", {})], motion=True)
         for alpha in CLOSE:
             report(f"wall 50 x 40, {alpha:.2f}", wall(50, 40, alpha), [("auto", {})], motion=True)
-    if arguments.huge:
-        for units, courses, alpha in HUGE:
-            report(f"wall {units} x {courses}, {alpha:.2f}", wall(units, courses, alpha), engine)
 
 
 if __name__ == "__main__":
