@@ -126,6 +126,22 @@ def test_path_with_wrong_options(slender: Path, options: tuple[str, ...], said: 
     assert said in err
 
 
+def test_tables_of_a_result_in_space_are_exported(tmp_path: Path) -> None:
+    block = concio.Polyhedron.box("b", (0, 0, 0), (1, 1, 1), kind="rigid")
+    floor = concio.Polyhedron.box("floor", (-1, -1, -1), (2, 2, 0), kind="fixed")
+    materials, laws = {"block": concio.Rigid(20.0)}, {"joint": concio.JointLaw(0.6)}
+    model = concio.Model((floor, block), materials, laws, loads=(concio.Load("weight", (0, 0, -1)),))
+    concio.save(model, tmp_path / "cube.toml")
+    assert run("run", tmp_path / "cube.toml", "--out", tmp_path / "r", "--no-figures", "-q")[0] == 0
+    code, out, _ = run("export", tmp_path / "r", "--to", "csv")
+    assert code == 0
+    assert [Path(line).stem for line in out.splitlines()] == ["bodies", "joints", "contacts", "reactions"]
+    for path in map(Path, out.splitlines()):
+        assert path.read_bytes() == (tmp_path / "r" / path.name).read_bytes()
+    with pytest.raises(concio.InputError, match="three principal values"):
+        _ = concio.solve(model).stress.principal
+
+
 def test_export_for_other_programs(slender: Path) -> None:
     assert run("run", slender, "--factor", "live=0.05", "--out", "r", "--no-figures", "-q")[0] == 0
     code, out, _ = run("export", "r", "--to", "vtu")

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.quiver import Quiver
 
 import concio
 from concio.analysis.result import Result
@@ -187,3 +188,18 @@ def test_the_report_of_a_mechanism_in_space_is_one_offline_file() -> None:
     text = page.split('id="data">')[1].split("</script>")[0]
     assert json.loads(text)["bodies"]["name"] == ["ground", "low", "top"]
     assert page.count("<figure") == 5
+
+
+def test_loads_are_drawn_where_and_as_they_act() -> None:
+    face = ((0, 0, 0), (3, 0, 0), (3, 0, 0.5), (0, 0, 0.5))
+    loads = (
+        concio.Load("pressure", (2.0,), ("low",), polygon=face),
+        concio.Load("pressure", (-3.0,), polygon=face[::-1]),
+        concio.Load("point", (-4.0, 0.0, 0.0), ("low",), at=(3.0, 0.5, 0.2)),
+    )
+    ax = plot_space_model(replace(tower(), loads=loads), view="plan", names=False)
+    arrows = [a for a in ax.collections if isinstance(a, Quiver)]
+    assert [np.sign(np.round([*a.U, *a.V], 9)).tolist() for a in arrows] == [[0, 1], [0, -1], [-1, 0]]
+    assert {"2 kN/m2", "3 kN/m2", "4 kN"} <= {text.get_text() for text in ax.texts}
+    front = plot_space_model(replace(tower(), loads=loads), view="front", names=False)
+    assert len([a for a in front.collections if isinstance(a, Quiver)]) == 1  # the others come straight at the eye

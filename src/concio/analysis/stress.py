@@ -67,6 +67,9 @@ class Stress:
 
         Of plane models; in space see :attr:`principal_in_space`.
         """
+        if self.mean.shape[1] != 3:
+            msg = "stresses in space have three principal values"
+            raise InputError(msg, hint="they are in stress.principal_in_space")
         return principal(self.mean)
 
     @cached_property

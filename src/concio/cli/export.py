@@ -71,9 +71,9 @@ def _write_tables(result: Result, to: str, place: Path) -> list[Path]:
 
         return write_paraview(result, place)
     from concio.io.csv_table import write_csv
-    from concio.post.tables import Tables
+    from concio.post.tables_of import tables_of
 
-    return [write_csv(table, place / f"{name}.csv") for name, table in Tables(result).all().items()]
+    return [write_csv(table, place / f"{name}.csv") for name, table in tables_of(result).all().items()]
 
 
 def _write_file(result: Result, to: str, fresh: Path, scale: float, unit: str | None) -> None:

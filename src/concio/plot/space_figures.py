@@ -16,6 +16,7 @@ from concio.display import number
 from concio.errors import InputError
 from concio.plot import style
 from concio.plot.picture import Picture
+from concio.plot.space_loads import draw_loads
 from concio.post.joint_faces import joint_faces
 from concio.post.outlines import display_scale
 from concio.post.solids import Solids, model_solids, moved_ties, solids
@@ -62,7 +63,7 @@ def directions(view: View | tuple[float, float]) -> tuple[Array, Array, Array]:
 def plot_space_model(
     model: Model, ax: Axes | None = None, *, view: View = "axonometry", names: bool | None = None
 ) -> Axes:
-    """Draw the blocks, ties and point loads of a model in space, as it is described.
+    """Draw the blocks, ties and loads of a model in space, as it is described; own weight is not drawn.
 
     Parameters
     ----------
@@ -76,9 +77,7 @@ def plot_space_model(
     ax, picture = draw_solids(shown, block_colours(model), view, ax, 0.0, model.title or "Model")
     if len(model.bodies) <= NAMED if names is None else names:
         _names(ax, model, picture)
-    for load in model.loads:
-        if load.at is not None:
-            ax.plot(*(picture.axes[:2] @ np.array(load.at)), "v", color=style.LOAD.colour, ms=7, zorder=5)
+    draw_loads(ax, model, picture.axes)
     for tie in model.ties:
         ends = np.array([tie.at_a, tie.at_b]) @ picture.axes[:2].T
         ax.plot(ends[:, 0], ends[:, 1], color=style.TENSION.colour, lw=1.6, zorder=5)
