@@ -244,7 +244,7 @@ FILES = {
     "cut off": (lambda t: t[: len(t) // 2], r"the file was cut off after #\d+ \(line \d+\)"),
     "no data": (lambda t: t[:60], "no section DATA"),
     "xml": (lambda _: "<?xml version='1.0'?><ifc/>", "does not begin with 'ISO-10303-21;'.*ifcXML"),
-    "zip": (lambda _: "PK\3\4" + "x" * 90, "does not begin with"),
+    "zip": (lambda _: "PK\3\4\33[2J" + "x" * 90, r"does not begin with .* with 'PK\?\?\?\[2Jx"),
     "other schema": (lambda t: t.replace("'IFC4'", "'AUTOMOTIVE_DESIGN'"), "'AUTOMOTIVE_DESIGN', not IFC"),
     "twice": (lambda t: t.replace("#7=", "#6="), "line 14: #6 is given twice"),
     "garbled": (lambda t: t.replace("#7= IFC", "#7: IFC"), "line 14 is no instance: '#7: IFC"),

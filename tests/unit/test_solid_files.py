@@ -286,6 +286,12 @@ def test_what_is_wrong_is_said_in_a_sentence(tmp_path: Path, fault: str) -> None
     assert len(err.strip().split("\n")) <= 6
 
 
+def test_an_empty_file_is_told_before_its_layers(tmp_path: Path) -> None:
+    (tmp_path / "nothing.obj").write_text("# nothing")
+    with pytest.raises(InputError, match="holds no blocks"):
+        concio.model_from_solids(tmp_path / "nothing.obj", layers={"ground": "fixed"})
+
+
 def test_a_block_inside_another_is_an_overlap(tmp_path: Path) -> None:
     text = obj_of(CUBE) + "\n" + obj_of(0.5 * CUBE + 0.25, [tuple(v + 8 for v in f) for f in BOX], "inner")
     code, out, err = run("check", bad(tmp_path, text))

@@ -116,6 +116,9 @@ def model_from_solids(
         scene = replace(scene, shapes=tuple(replace(s, points=s.points @ Y_UP.T) for s in scene.shapes))
     metres = scene.metres or 1.0 if unit is None else quantity(f"1 {unit}", "length", where=f"{where}, unit")
     meanings, table = dict(layers or {}), {"block": options.base.block, **(materials or {})}
+    if not scene.shapes and not scene.left_out:
+        msg = "the file holds no blocks"
+        raise InputError(msg, where=where, hint="export solids or meshes: lines and points are no blocks")
     for word, meaning in meanings.items():
         if not any(s.answers(word) for s in scene.shapes):
             msg = f"there is no layer or block '{word}'"

@@ -157,7 +157,8 @@ class StepFile:
         where = str(path)
         text = read_text(path, latin=True)
         if not text.lstrip().startswith("ISO-10303-21;"):
-            msg = f"the file does not begin with 'ISO-10303-21;' but with '{' '.join(text[:40].split())[:40]}'"
+            begin = "".join(c if c.isprintable() else "?" for c in " ".join(text[:40].split()))
+            msg = f"the file does not begin with 'ISO-10303-21;' but with '{begin}'"
             hint = "save it as IFC in the STEP physical file format (.ifc, not ifcXML, ifcZIP or JSON)"
             raise InputError(msg, where=where, hint=hint)
         if "/*" in text:
