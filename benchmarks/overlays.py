@@ -1,6 +1,6 @@
 """How often overlays of polygons in floating point fail, what that does to an answer, and what the check costs.
 
-    python benchmarks/overlays.py [--pairs 400000] [--only count|turned|cost]
+    python benchmarks/overlays.py [--pairs 100000] [--only count|turned|cost]
 
 Random triangles in pairs, displaced against each other by 1e-16: two that share a side, which have no area in common,
 and equal ones, which have all of it. An overlay has failed where its area is wrong by more than 1e-6; counted for
@@ -118,7 +118,7 @@ def cost(runs: int = 3) -> None:
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--pairs", type=int, default=400_000)
+    parser.add_argument("--pairs", type=int, default=100_000)
     parser.add_argument("--only", choices=("count", "turned", "cost"))
     arguments = parser.parse_args()
     parts = {"count": lambda: count(arguments.pairs), "turned": turned, "cost": cost}
