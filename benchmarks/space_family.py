@@ -134,9 +134,10 @@ def report(
         if last is not None and share == shares[0]:
             growth = f"{np.log(seconds / last[1]) / np.log(blocks / last[0]):8.2f}"
         by = str(found.info.get("strategy", "at rest"))
+        certified = f"{found.certificate.worst:.1e}" if found.solved else ""
         cells = (
             *(name, f"{blocks}", f"{problem.pairs}", f"{problem.unknowns}", f"{share:.2f}", found.status.name, by),
-            *(f"{found.certificate.worst:.1e}", f"{found.iterations}", f"{found.factorisations}", f"{seconds:.2f}"),
+            *(certified, f"{found.iterations}", f"{found.factorisations}", f"{seconds:.2f}"),
             *(f"{unit:.3f}", f"{seconds / unit:.1f}", f"{memory():.0f}", growth.strip()),
         )
         print(row(cells, WIDTHS, markdown=markdown), flush=True)
