@@ -147,6 +147,7 @@ def test_steps_meet_the_linkage(model: Model, way: str, end: float | None) -> No
     assert steps.multiplier[1:-1] == pytest.approx(met, abs=2e-5)
 
 
+@pytest.mark.long  # above the same steps meet a linkage
 def test_a_dry_wall_whose_courses_slide_is_followed_in_steps() -> None:
     model = concio.wall(length=1.0, height=2.0, block_size=(0.5, 0.25), friction=0.6, block="rigid")
     worst = concio.assess(model, site=site(), direction="right", levels=["SLV"]).worst

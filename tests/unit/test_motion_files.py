@@ -197,6 +197,7 @@ def test_bad_motion_tables(tmp_path, old, new, words):
         concio.load(file)
 
 
+@pytest.mark.long  # test_cli interrupts a command, too
 def test_ctrl_c_keeps_what_was_computed(tmp_path):
     """The command is stopped in the middle: exit code 130, and the motion written so far loads and goes on."""
     file, out = tmp_path / "motion.toml", tmp_path / "out"

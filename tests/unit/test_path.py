@@ -96,6 +96,7 @@ def test_control_point_passes_the_peak(small):
     assert found.peak() <= limit(small, path=False).associated.multiplier * (1 + 1e-9)
 
 
+@pytest.mark.long  # test_path_report follows a block to its fall
 def test_load_that_cannot_be_carried(fallen):
     assert fallen.outcomes[-1] is Outcome.LIMIT
     assert len(fallen.outcomes) == 2

@@ -16,6 +16,7 @@ from concio.studies.distributions import FAMILIES, Distribution
 from concio.studies.sampling import draw
 from concio.studies.statistics import fragility, probability
 from concio.studies.variables import variable
+from samples import sample
 from study_functions import VARIABLES, block, formula, milankovitch, seeded
 
 ARCH = """
@@ -63,7 +64,7 @@ def test_models_of_a_function_say_the_same_as_the_formula() -> None:
 
 def test_chance_that_a_semicircular_arch_stands() -> None:
     """It stands from t/R = 0.1075 (Milankovitch): t in (.10, .12) gives 0.626; a Latin hypercube misses by 1/n."""
-    n = 32
+    n = sample(16, 32)
     thickness = concio.variable("t", low=0.10, high=0.12)
     found = concio.study(milankovitch, (thickness,), "stands", "latin-hypercube", size=n, seed=1)
     share = found.probability("stands", above=0.5)

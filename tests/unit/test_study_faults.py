@@ -48,7 +48,7 @@ def same_rows(one: concio.StudyResult, other: concio.StudyResult) -> bool:
     return told(one.rows) == told(other.rows)
 
 
-@pytest.mark.parametrize("executor", EXECUTORS)
+@pytest.mark.parametrize("executor", [*EXECUTORS[:2], pytest.param("dask", marks=pytest.mark.long)])
 def test_rows_are_the_same_whatever_the_executor_and_a_run_that_raises_is_one(executor: str) -> None:
     found = study(raising, executor)
     assert same_rows(found, study(raising, "serial"))

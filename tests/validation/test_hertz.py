@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from validation_cases import hertz
 from validation_cases.row import check
 
 import concio
 
 
+@pytest.mark.long  # the same cylinder, coarser, is below
 def test_rows():
     check(hertz.rows())
 

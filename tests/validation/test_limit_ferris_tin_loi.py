@@ -48,6 +48,7 @@ def test_2446_pairs():
     assert 0.4 < found.multiplier < 0.6
 
 
+@pytest.mark.long  # the walls of the paper have the same proofs
 def test_10458_pairs():
     """1,785 blocks: both proofs to rounding, and a tenth above the limit a mechanism that proves it."""
     a = running_bond(42, 42)
