@@ -131,6 +131,9 @@ def test_fixed_bodies_may_touch_and_overlap_each_other():
     found = detect_interfaces(bodies, tolerance=1e-6)
     assert [(f.a, f.b) for f in found.interfaces] == [(0, 2), (1, 2)]
     assert not found.report()
+    for sunk in ([bodies[0], box("b", 0, -0.1, 1, 1)], [box("b", 0, -0.1, 1, 1), bodies[0]]):
+        (overlap,) = detect_interfaces(sunk, tolerance=1e-6).overlaps
+        assert overlap.area == pytest.approx(0.1)
 
 
 def test_a_body_between_hides_what_lies_behind():
