@@ -33,6 +33,7 @@ from concio.model.generate.panel import Base
 from concio.problem.contact_problem import ContactProblem
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.methods import find
+from concio.solvers.path.near_forces import Nearby
 from concio.solvers.states.settle import Settler
 
 Methods = list[tuple[str, dict[str, Any]]]
@@ -136,7 +137,8 @@ def report(name: str, problem: ContactProblem, methods: Methods, motion: bool = 
 def second_solve() -> None:
     """Print what the second solve of small panels takes (everything imported, nothing kept), and what of it is where.
 
-    Beside it: settling the states of the pairs at once, from pairs that stick, instead of iterating.
+    Beside it: settling the states of the pairs at once, from pairs that stick, instead of iterating; and the next load
+    step (two per cent more load), which begins where the last one ended, with its factors.
     """
     for courses, blocks in SMALL:
         problem = panel(courses, blocks, 0.0, 0.6)
@@ -145,13 +147,20 @@ def second_solve() -> None:
         u, sticking = np.zeros(len(s.f)), np.tile((1.0, 0.0), (s.pairs, 1))
         whole = [lambda p=problem: find("interior-point")(p), lambda p=problem: scale(p)]
         settler = [lambda s=s, u=u, t=sticking: Settler(s).settle(s, u, t)]
-        best, scaling, settling = (1e3 * min(timed(work) for _ in range(20)) for work in whole + settler)
+        last = solution.displacement, solution.normal_force, solution.friction_force
+        nearby, more = Nearby(), problem.with_loads(1.02 * problem.f)
+        if nearby.solve(problem, last) is None or nearby.solve(more, last) is None:
+            raise AssertionError("the next load step is not found from the last")
+        step = [lambda n=nearby, p=more, t=last: n.solve(p, t)]
+        best, scaling, settling, next_step = (
+            1e3 * min(timed(work) for _ in range(20)) for work in whole + settler + step
+        )
         one = 1e3 * min(yardsticks(problem)[1] for _ in range(20))
         found = "" if settler[0]().settled else ", without an answer"
         print(
             f"panel {courses} x {blocks}, second solve: {best:.1f} ms, {solution.factorisations} factorisations of "
             f"{one:.2f} ms, scaling and ordering {scaling:.1f} ms; settled from sticking pairs: {settling:.1f} ms"
-            + found
+            + f"{found}; next load step: {next_step:.1f} ms"
         )
 
 

@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 import concio
+from concio.analysis.lent_compliance import lend
 from concio.analysis.path import Stage, run_path
+from concio.problem.certificate import certify
 from concio.solvers.interior import engine
-from concio.solvers.path.near_forces import needed, solve_near
+from concio.solvers.methods import find
+from concio.solvers.path.near_forces import Nearby, needed, solve_near
 
 PUSH = 0.4
 
@@ -95,3 +98,54 @@ def test_a_step_without_change_changes_no_forces(panel, exact):
     assert np.abs(near.normal_force - given_n).max() <= 1e-8
     assert np.abs(near.friction_force[:, 0] - given_t).max() <= 1e-8
     assert np.abs(near.normal_force - t_n).max() >= 1e-3
+
+
+def state_of(solution):
+    return solution.displacement, solution.normal_force, solution.friction_force
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_the_next_step_is_found_from_the_last_without_an_iteration(dim):
+    """Mortar of a stiffness of its own, so that forces are unique; other loads, the same factors."""
+    model = concio.wall(length=1.5, height=0.75, block="rigid", friction=0.6, horizontal=0.2)
+    assembly = lend(concio.assemble(model if dim == 2 else concio.extrude(model, 0.3)))
+    nearby, problem = Nearby(), assembly.problem({"live": 0.5})
+    assert nearby.solve(problem, tuple(np.zeros_like(part) for part in state_of(find("auto")(problem)))) is None
+    for factor in (0.51, 0.53):
+        last, problem = find("auto")(problem), assembly.problem({"live": factor})
+        found, fresh = nearby.solve(problem, state_of(last)), find("auto")(problem)
+        assert found is not None
+        assert found.solved
+        assert found.iterations == 0 < fresh.iterations
+        assert found.factorisations < fresh.factorisations / 2
+        for mine, other in zip(state_of(found), state_of(fresh), strict=True):
+            assert np.abs(mine - other).max() <= 1e-9 * np.abs(other).max()
+
+
+def test_a_state_far_away_is_no_excuse_for_a_wrong_answer(panel):
+    nearby, problem = Nearby(), panel.problem({"dead": 1.0, "live": PUSH})
+    last = state_of(engine.solve(problem))
+    for live in (-PUSH, 0.0, 2 * PUSH):
+        other = panel.problem({"dead": 1.0, "live": live})
+        found = nearby.solve(other, last)
+        assert found is None or certify(other, *state_of(found)).worst <= 1e-9
+
+
+@pytest.mark.long
+def test_steps_from_the_last_keep_to_the_exact_path_where_stones_come_loose():
+    """From nothing, the last of twenty steps ends in another equilibrium: a loose stone 5 % of the motion away."""
+    model = concio.running_bond_panel(
+        courses=10,
+        blocks=8,
+        block_size=(1.0, 0.5),
+        thickness=1.0,
+        block=concio.Elastic(E=1e5, nu=0.15, unit_weight=20.0),
+        friction=0.6,
+        side_walls=False,
+        horizontal=0.5,
+        elements_per_block=(2, 2),
+    )
+    weight = Stage("weight", {"dead": 1.0}, steps=1)
+    exact = run_path(model, [weight, Stage("push", {"live": 1.0})]).steps[-1].state
+    steps = run_path(model, [weight, Stage("push", {"live": 1.0}, steps=20)], method="steps").steps[-1].state
+    assert np.abs(steps.displacement - exact.displacement).max() <= 1e-2 * np.abs(exact.displacement).max()

@@ -16,7 +16,10 @@ from concio.errors import InputError
 from concio.model.generate.walls import wall
 from concio.model.materials import Elastic
 from concio.model.model import Body, Support
+from concio.solvers.methods import find
 from concio.solvers.path.record import Outcome
+from concio.solvers.path.state import LinearPath, at_rest
+from concio.solvers.path.step_path import follow_in_steps
 
 WEIGHT = Stage("weight", {"dead": 1.0}, steps=1)
 
@@ -104,6 +107,21 @@ def test_load_that_cannot_be_carried(fallen):
     assert fallen.peak() < 0.6 + 1e-9
     assert "grows no further" in fallen.notes[-1]
     assert fallen.events[-1].step == len(fallen.steps) - 1
+
+
+def test_what_falls_under_its_own_weight_is_not_tried_at_smaller_and_smaller_loads():
+    tried = []
+
+    def solver(problem):
+        tried.append(problem)
+        return find("auto")(problem)
+
+    leaning = assemble(wall(length=1.0, height=0.5, horizontal=1.0, friction=0.6, mesh_size=0.125))
+    path = LinearPath(leaning.problem({"dead": 0.0, "live": 0.0}), leaning.problem({"dead": 1.0, "live": 1.0}).f)
+    found = follow_in_steps(path, at_rest(path.problem), until=1.0, steps=4, solver=solver)
+    assert found.outcome is Outcome.LIMIT
+    assert len(found.states) == 1
+    assert len(tried) == 1
 
 
 def test_restart_from_a_step(small, exact):

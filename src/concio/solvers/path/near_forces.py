@@ -27,7 +27,7 @@ import scipy.sparse as sp
 from concio.problem.certificate import certify
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution, judge
-from concio.solvers.algebra.scaled import scale, typical_stiffness
+from concio.solvers.algebra.scaled import Scaled, scale, typical_stiffness
 from concio.solvers.interior import cone_run, engine, newton_finish
 from concio.solvers.states.reading import read_states
 from concio.solvers.states.settle import Settler
@@ -37,6 +37,11 @@ SOFT = 1e-5
 
 TETHER = 1e-8
 """Stiffness of the springs that hold what nothing else holds, over the typical stiffness of the bodies."""
+
+FLIPS = 3
+"""Factorisations that trying the states of the last step may cost beyond the first."""
+
+State = tuple[Array, Array, Array]
 
 NAME = "interior-point near the last forces"
 
@@ -79,6 +84,48 @@ def softened(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> Conta
     )
 
 
+class Nearby:
+    """What the steps of one structure share: units, ordering, and the factors of the last one.
+
+    The states of the last step are tried first. Where few of them change, which is what small steps are for, that takes
+    a few updates of the factors at hand instead of an iteration from nothing, and of several answers it is the nearest.
+    """
+
+    def __init__(self) -> None:
+        self._kept: dict[str, Scaled] = {}
+
+    def scaled(self, problem: ContactProblem, which: str = "as it is") -> Scaled:
+        """Return a problem of this structure in the units of its first step; ``which`` tells stiffnesses apart."""
+        kept = self._kept.get(which)
+        self._kept[which] = scale(problem) if kept is None else kept.renewed(problem)
+        return self._kept[which]
+
+    def solve(self, problem: ContactProblem, near: State, which: str = "as it is") -> Solution | None:
+        """Return the answer of a problem whose states differ in few pairs from those of a state, if it has one.
+
+        Parameters
+        ----------
+        problem : ContactProblem
+        near : arrays
+            Displacements [m], t_n and t_t [kN] of the state.
+        which : str
+            See :meth:`scaled`.
+        """
+        if not any(part.any() for part in near):
+            return None
+        s = self.scaled(problem, which)
+        made, point = s.factor.made, s.bring(*near)
+        if problem.dim == 2:
+            run: engine.Run = engine.Run(s)
+            found = run.finish(*point, flips=FLIPS)
+        else:
+            run = cone_run.ConeRun(s)
+            found = run.settle(*point, cone_run.WEIGHTS[:1])
+        if found is None:
+            return None
+        return replace(run.solution(found, method=NAME), factorisations=s.factor.made - made)
+
+
 def solve_near(
     problem: ContactProblem,
     u: Array,
@@ -86,6 +133,7 @@ def solve_near(
     t_t: Array,
     *,
     starts: tuple[float, ...] = engine.STARTS,
+    nearby: Nearby | None = None,
     progress: ProgressCallback | None = None,
 ) -> Solution:
     """Solve one load step, taking of all answers it allows the one near to the state given.
@@ -99,6 +147,8 @@ def solve_near(
         Its forces [kN].
     starts : tuple of float
         Sizes of the interior point's starting points, in the plane.
+    nearby : Nearby, optional
+        What the steps before kept, where they are small: the states of the last are then tried first.
     progress : callable, optional
 
     Returns
@@ -106,20 +156,22 @@ def solve_near(
     Solution
         Certified by the problem itself, or GAVE_UP (or CANCELLED).
     """
-    plane = problem.dim == 2
+    plane, near = problem.dim == 2, (u, t_n, t_t)
 
-    def solve(step: ContactProblem) -> Solution:
+    def solve(step: ContactProblem, which: str) -> Solution:
+        found = None if nearby is None else nearby.solve(step, near, which)
         if not plane:
-            return cone_run.solve(step, progress=progress)
-        return engine.solve(step, homotopy=False, starts=starts, progress=progress)
+            return found or cone_run.solve(step, progress=progress)
+        return found or engine.solve(step, homotopy=False, starts=starts, progress=progress)
 
     if not needed(problem):
-        return solve(problem)
+        return solve(problem, "as it is")
     soft = softened(problem, u, t_n, t_t)
-    first = solve(soft)
+    first = solve(soft, "softened")
     if not first.solved:
         return replace(first, method=NAME)
-    s = scale(problem)
+    s = scale(problem) if nearby is None else nearby.scaled(problem)
+    made = s.factor.made
     v, p = s.bring(first.displacement, first.normal_force, first.friction_force)
     if plane:
         found = Settler(s).settle(s, v, p, read_states(s.renewed(soft), v, p), least=False)
@@ -137,7 +189,7 @@ def solve_near(
         p_t,
         method=NAME,
         iterations=first.iterations,
-        factorisations=first.factorisations + s.factor.count,
+        factorisations=first.factorisations + s.factor.made - made,
         trace=(*first.trace, f"compliance taken out: {found.solves} linear solves, residual {found.error:.1e}"),
         info=first.info,
     )

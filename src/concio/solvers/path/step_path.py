@@ -85,17 +85,17 @@ def follow_in_steps(
     states, events = [start], list[Event]()
     whole = (until - start.parameter) / steps
     size, outcome = whole, Outcome.REACHED
-    breaking = False
+    breaking, nearby = False, near_forces.Nearby()
     while breaking or abs(until - states[-1].parameter) > 1e-12 * max(1.0, abs(until)):
         before = states[-1]
         left = until - before.parameter
         size = np.sign(whole) * min(abs(size), abs(left)) if not breaking else size
         parameter = until if abs(size) >= abs(left) * (1 - 1e-12) else before.parameter + size
         parameter = before.parameter if breaking else parameter
-        solution = _step(path, before, parameter, solver)
+        solution = _step(path, before, parameter, solver, nearby)
         smallest = abs(size) <= SMALLEST * abs(whole)
         if not solution.solved:
-            if not smallest and not breaking:
+            if not smallest and not breaking and not _proportional(path, before):
                 size *= 0.5
                 continue
             outcome = Outcome.LIMIT if solution.status in (Status.NO_EQUILIBRIUM, Status.COLLAPSES) else Outcome.LOST
@@ -127,13 +127,26 @@ def follow_in_steps(
     return StepPath(tuple(states), tuple(events), outcome, last / (float(np.abs(last).max(initial=0.0)) or 1.0))
 
 
-def _step(path: LinearPath, before: PathState, parameter: float, solver: Solver) -> Solution:
-    """Solve one step, keeping redundant forces near the last ones if that succeeds."""
+def _step(
+    path: LinearPath, before: PathState, parameter: float, solver: Solver, nearby: near_forces.Nearby
+) -> Solution:
+    """Solve one step: near the last state, keeping redundant forces near the last ones, or else from nothing."""
     problem = step_problem(path, before, parameter)
+    last = before.displacement, before.normal_force, before.friction_force
     if not near_forces.needed(problem):
-        return solver(problem)
-    solution = near_forces.solve_near(problem, before.displacement, before.normal_force, before.friction_force)
+        return nearby.solve(problem, last) or solver(problem)
+    solution = near_forces.solve_near(problem, *last, nearby=nearby)
     return solution if solution.solved else solver(problem)
+
+
+def _proportional(path: LinearPath, before: PathState) -> bool:
+    """Tell whether all that acts from rest grows with the parameter: a small step fails where a large one does.
+
+    So it is with joints that have no strength but friction, and nothing on the structure before.
+    """
+    p, law = path.problem, path.problem.laws
+    acts = (p.f, p.gap, p.slip_origin, law.tension, law.cohesion, before.displacement, before.normal_force)
+    return before.parameter == 0.0 and not any(part.any() for part in acts) and bool(np.isinf(law.cap).all())
 
 
 def _broken(path: LinearPath, before: PathState, after: PathState) -> tuple[PathState, Array]:
