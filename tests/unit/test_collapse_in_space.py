@@ -56,6 +56,22 @@ def test_a_toe_that_crushes() -> None:
     assert found.velocity[2] < 0
 
 
+def test_pressure_over_many_points_is_spread_in_load_steps_and_free_in_bounds() -> None:
+    """Torsion of a square joint, side a: 0.382598 mu N a under uniform pressure, mu N a / sqrt(2) at its corners."""
+    ground = Polyhedron.box("ground", (-5, -5, -1), (5, 5, 0), kind="fixed")
+    body = Polyhedron.box("body", (0, 0, 0), (1, 1, 0.5), kind="rigid")
+    couple = [Load("point", (0, s, 0), ("body",), at=(x, 0.5, 0), group="live") for x, s in ((1.0, 1.0), (0.0, -1.0))]
+    loads = (Load("weight", (0, 0, -1)), *couple)
+    laws = {"joint": JointLaw(0.5)}
+    model = Model((ground, body), {"block": Rigid(20.0)}, laws, loads=loads, contact_points=6)
+    found = concio.limit(model, steps=True, search=False)
+    assert found.associated.multiplier == pytest.approx(0.5 * 10 / np.sqrt(2), rel=1e-8)
+    assert found.carried == pytest.approx(0.382598 * 0.5 * 10, rel=0.05)
+    state = search(model, starts=1, iterations=2).state  # its programme meets a border without any part in the motion
+    assert state is not None
+    assert 0 < state.multiplier < found.carried
+
+
 def test_a_motion_that_is_no_collapse_is_not_certified() -> None:
     assembly = assemble(block(JointLaw(0.9), (1.0, 0.0)))
     dead = assembly.problem({"live": 0.0})

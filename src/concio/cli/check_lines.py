@@ -229,7 +229,8 @@ def _torsion(model: Model, detection: Detection, contact_model: Mapping[str, int
     word = "block is" if len(parallel) == 1 else "blocks are"
     return [
         f"attention    {len(parallel):,} {word} held by parallel joints alone, stated at their corners: friction "
-        "resists torsion there up to 1.85 times better than under uniform pressure (contact_points = 4 spreads it)"
+        "resists torsion there up to 1.85 times better than under uniform pressure (contact_points = 4 spreads it, in "
+        "answers and load steps; the associated bound of 'concio limit' stays that of the corners)"
     ]
 
 

@@ -121,7 +121,8 @@ class Step:
         """Solve by C'DC, the multiplier bordered: digits are lost where that matrix is worse than 1e16."""
         it, g = self.it, self.g
         x = it.factor.solve(it.Ct @ times(self.F, e2).ravel() - e1)
-        extra = (e3 - float(g @ x)) / float(g @ self.border)
+        across = float(g @ self.border)
+        extra = (e3 - float(g @ x)) / across if across else np.nan  # digits are lost: pivoting takes over
         x += extra * self.border
         return x, e2 - times(self.F.transpose(0, 2, 1), it.rate(x)), extra
 
