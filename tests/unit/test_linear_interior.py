@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from scipy.optimize import linprog
+from scipy.optimize import OptimizeResult, linprog
 
 from concio.solvers.algebra.normal_equations import NormalEquations, rebalance
+from concio.solvers.statics import programme as statics
 from concio.solvers.statics.linear_interior import solve_interior
 from concio.solvers.statics.programme import optimise
 from rigid_walls import running_bond
@@ -93,3 +94,20 @@ def test_normal_equations_are_those_of_the_weights():
     x = np.zeros(9)
     x[normal.order] = normal.solve(g[normal.order])
     assert (A @ (theta * (A.T @ x))) == pytest.approx(g, abs=1e-8)
+
+
+def test_where_highs_ends_with_an_error_both_its_methods_are_asked_again_for_a_digit_less(monkeypatch):
+    asked = []
+
+    def fails_at_ten_digits(*arguments, method, options, **others):
+        asked.append((method, options["primal_feasibility_tolerance"]))
+        if options["primal_feasibility_tolerance"] < 1e-9:
+            return OptimizeResult(status=4, x=None, message="Solve error")
+        return linprog(*arguments, method=method, options=options, **others)
+
+    monkeypatch.setattr(statics, "linprog", fails_at_ten_digits)
+    cost, equations, bounds, x = programme(0)
+    found = optimise(cost, equations, bounds, method="highs")
+    assert found.status == 0
+    assert cost @ found.x == pytest.approx(cost @ x, rel=1e-7)
+    assert asked == [("highs-ds", 1e-10), ("highs-ipm", 1e-10), ("highs-ds", 1e-9)]

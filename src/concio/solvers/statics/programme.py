@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 from typing import Any, Literal
 
 import numpy as np
@@ -29,6 +30,9 @@ LARGE = 1_000
 
 HUGE = 5_000
 """Number of columns from which HiGHS, where it is asked, begins with its interior point."""
+
+TOLERANCES = (1e-10, 1e-9)
+"""Feasibility asked of HiGHS; at the first it may end with an error where at the second it sees an unbounded one."""
 
 Method = Literal["interior", "highs"]
 
@@ -228,16 +232,16 @@ def _highs(
 ) -> Optimum:
     """HiGHS, right-hand sides scaled to one: the dual simplex method, or interior point for large programmes.
 
-    Where the first does not finish, the other is tried.
+    Where the first does not finish, the other is tried, and both again with the second of ``TOLERANCES``.
     """
     unit = float(np.abs(equations[1]).max(initial=0.0)) or 1.0
-    options: dict[str, Any] = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10}
     arguments: dict[str, Any] = {"A_eq": equations[0], "b_eq": equations[1] / unit, "bounds": bounds / unit}
     if inequalities is not None:
         arguments |= {"A_ub": inequalities[0], "b_ub": inequalities[1] / unit}
     highs: Any = linprog
     methods = ("highs-ipm", "highs-ds") if cost.size > HUGE else ("highs-ds", "highs-ipm")
-    for method in methods:
+    for tolerance, method in product(TOLERANCES, methods):
+        options = {f"{side}_feasibility_tolerance": tolerance for side in ("primal", "dual")}
         result = highs(cost, method=method, options=options, **arguments)
         if result.status not in (1, 4):  # iteration limit, numerical trouble
             break
