@@ -13,6 +13,7 @@ from concio.kinematics.rigid import rotation_matrix
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Departure, Status
 from concio.solvers.algebra.scaled import scale
+from concio.solvers.auto.space import best_point_met
 from concio.solvers.interior.cone_iteration import ConeIteration, NewtonStep
 from concio.solvers.interior.cone_run import STARTS, ConeRun, starts_for
 from concio.solvers.interior.newton_finish import states_of
@@ -226,3 +227,14 @@ def test_collapse_of_a_model_in_space() -> None:
     assert result.status is Status.NO_EQUILIBRIUM
     with pytest.raises(concio.NoEquilibriumError):
         concio.solve(concio.extrude(tall, 0.4))
+
+
+def test_the_best_point_met_is_an_answer_only_where_it_is_certified() -> None:
+    """Newton's method left it at 1e-11, which the certificate grants; at 1e-3 it does not."""
+    run = ConeRun(scale(wall(3, 3, **STIFF).at(0.2)))
+    assert best_point_met(run) is None
+    found = run.from_start(STARTS[2])
+    assert found is not None
+    for size, solved in ((1e-11, True), (1e-3, False)):
+        run.best = replace(found, u=found.u * (1 + size), error=size)
+        assert (best_point_met(run) is not None) is solved

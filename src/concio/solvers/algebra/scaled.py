@@ -256,9 +256,15 @@ def interleaved(problem: ContactProblem) -> sp.csr_array:
 
 
 def typical_stiffness(problem: ContactProblem) -> float:
-    """Return the geometric mean of the stiffnesses met at the pairs [kN/m]; 1 for rigid bodies with hard joints."""
-    touched = np.asarray(abs(problem.C).sum(axis=0)).ravel() > 0
-    diagonal = problem.K.diagonal()[touched]
+    """Return the geometric mean of the stiffnesses met at the pairs [kN/m]; 1 for rigid bodies with hard joints.
+
+    In space that of a node is the mean of its three, which no turn of the structure changes.
+    """
+    met = np.asarray(abs(problem.C).sum(axis=0)).ravel()
+    diagonal = problem.K.diagonal()
+    if problem.dim == 3 and diagonal.size % 3 == 0:
+        met, diagonal = met.reshape(-1, 3).sum(axis=1), diagonal.reshape(-1, 3).mean(axis=1)
+    diagonal = diagonal[met > 0]
     springs = [c[c > 0] for c in (problem.laws.normal_compliance, problem.laws.tangential_compliance)]
     found = np.concatenate([diagonal[diagonal > 0], *(1.0 / c for c in springs)])
     if found.size:

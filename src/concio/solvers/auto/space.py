@@ -4,9 +4,10 @@
 2. a cone programme: either a mechanism, rechecked, proves that there is no equilibrium, or there are statically
    admissible forces; where no body has to move under them (rigid blocks), they are the answer;
 3. interior point from the other starts;
-4. release, single steps: the structure is let go, and ever longer steps from rest show where it goes;
-5. release: it is followed in slow motion, from rest and from the state in which associated flow
-   jams; it comes to rest, which is an equilibrium, or settles into a motion without end, which is the answer.
+4. the best point that the starts met, where its certificate holds although Newton's method did not end;
+5. release, single steps: the structure is let go, and ever longer steps from rest show where it goes;
+6. release: it is followed in slow motion from rest; it comes to rest, which is an equilibrium, or settles into a motion
+   without end, which is the answer.
 
 What was tried is the solution's trace. Words are those of the plane (:mod:`concio.solvers.auto.strategies`). Pivoting
 and the exhaustive search, which prove that no Coulomb state exists, know two ways of slipping only and have no place
@@ -26,7 +27,7 @@ from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.auto.strategies import Strategy, first_answer, moves_away, statics, where_it_ends
 from concio.solvers.interior.cone_run import ConeRun, starts_for
 from concio.solvers.interior.engine import at_rest
-from concio.solvers.motion.cone_release import associated_state, at_once, release
+from concio.solvers.motion.cone_release import at_once, release
 from concio.solvers.states.reading import Finished
 
 
@@ -40,6 +41,12 @@ def other_starts(run: ConeRun) -> Solution | None:
     return _from(run, 2, None)
 
 
+def best_point_met(run: ConeRun) -> Solution | None:
+    """Take the best point the starts met where it is certified: no motion is followed for digits nobody asks for."""
+    met = None if run.best is None else run.solution(run.best, method="interior-point")
+    return met if met is not None and met.solved else None
+
+
 def released_in_single_steps(run: ConeRun) -> Solution | None:
     """Let the structure go, and look at what single long steps from rest show."""
     return _judged(run, at_once(run))
@@ -50,18 +57,13 @@ def released_at_rest(run: ConeRun) -> Solution | None:
     return _released(run, np.zeros(len(run.scaled.f)))
 
 
-def released_jammed(run: ConeRun) -> Solution | None:
-    """Let the structure go from the state in which associated flow holds it."""
-    return _released(run, associated_state(run))
-
-
 STRATEGIES: tuple[Strategy, ...] = (
     Strategy("interior-point", usual_starts),
     Strategy("mechanism", statics),
     Strategy("interior-point, other starts", other_starts),
+    Strategy("best point met", best_point_met),
     Strategy("release, single steps", released_in_single_steps),
     Strategy("release", released_at_rest),
-    Strategy("release, jammed", released_jammed),
 )
 """What is tried, in this order; the name of the one that decided is ``info["strategy"]``."""
 

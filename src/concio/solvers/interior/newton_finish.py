@@ -28,7 +28,7 @@ from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.interior.redundant_forces import least_forces
 from concio.solvers.states.reading import Finished, natural_residual, sizes
 
-DELTA = 1e-6
+DELTA = 1e-3
 """Compliance added to pairs of mean area in the factorised matrix, scaled units."""
 
 LOOSE = 1e-9
