@@ -6,7 +6,7 @@ Two walls that meet, a dome, a cross vault and a barrel under their weight and a
 that give way, and elastic with every element, each solved as it stands and turned by 37 degrees about an axis that is
 none of the structure's. Printed are the largest differences of displacements (turned back), normal forces and sizes of
 friction forces, over their largest value. Then limit multipliers of walls, an arch and a buttress in the plane and
-swept into space, and their difference.
+swept into space by their own thickness, and their difference.
 """
 
 from __future__ import annotations
@@ -120,7 +120,7 @@ def main() -> None:
     for name, plane in swept().items():
         a, b = (
             concio.limit(m, path=False, steps=False, search=False).associated.multiplier
-            for m in (plane, concio.extrude(plane, 0.4))
+            for m in (plane, concio.extrude(plane))
         )
         print(f"| {name} | {a:.10f} | {b:.10f} | {abs(a - b) / abs(a):.0e} |", flush=True)
 
