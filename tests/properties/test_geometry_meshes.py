@@ -29,7 +29,7 @@ def simple_polygons(draw):
     return outline
 
 
-@settings(max_examples=sample(25, 60), deadline=None)
+@settings(max_examples=sample(25, 60), deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 @given(simple_polygons(), st.floats(0.15, 0.8), st.data())
 def test_every_mesh_of_a_simple_polygon_is_right(outline, share, data):
     size = share * np.ptp(outline, axis=0).max()
