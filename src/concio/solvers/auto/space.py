@@ -6,8 +6,8 @@
 3. interior point from the other starts;
 4. the best point that the starts met, where its certificate holds although Newton's method did not end;
 5. release, single steps: the structure is let go, and ever longer steps from rest show where it goes;
-6. release: it is followed in slow motion from rest; it comes to rest, which is an equilibrium, or settles into a motion
-   without end, which is the answer.
+6. release: it is followed in slow motion, from rest and from the state in which associated flow jams; it comes to rest,
+   which is an equilibrium, or settles into a motion without end, which is the answer.
 
 What was tried is the solution's trace. Words are those of the plane (:mod:`concio.solvers.auto.strategies`). Pivoting
 and the exhaustive search, which prove that no Coulomb state exists, know two ways of slipping only and have no place
@@ -27,7 +27,7 @@ from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.auto.strategies import Strategy, first_answer, moves_away, statics, where_it_ends
 from concio.solvers.interior.cone_run import ConeRun, starts_for
 from concio.solvers.interior.engine import at_rest
-from concio.solvers.motion.cone_release import at_once, release
+from concio.solvers.motion.cone_release import associated_state, at_once, release
 from concio.solvers.states.reading import Finished
 
 
@@ -57,6 +57,11 @@ def released_at_rest(run: ConeRun) -> Solution | None:
     return _released(run, np.zeros(len(run.scaled.f)))
 
 
+def released_jammed(run: ConeRun) -> Solution | None:
+    """Let the structure go from the state in which associated flow holds it."""
+    return _released(run, associated_state(run))
+
+
 STRATEGIES: tuple[Strategy, ...] = (
     Strategy("interior-point", usual_starts),
     Strategy("mechanism", statics),
@@ -64,6 +69,7 @@ STRATEGIES: tuple[Strategy, ...] = (
     Strategy("best point met", best_point_met),
     Strategy("release, single steps", released_in_single_steps),
     Strategy("release", released_at_rest),
+    Strategy("release, jammed", released_jammed),
 )
 """What is tried, in this order; the name of the one that decided is ``info["strategy"]``."""
 

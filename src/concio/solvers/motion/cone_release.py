@@ -21,7 +21,7 @@ from concio.problem.contact_problem import Array
 from concio.problem.solution import Departure
 from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
-from concio.solvers.interior.cone_run import ConeRun, Start, starts_for
+from concio.solvers.interior.cone_run import STARTS, ConeRun, Start, starts_for
 from concio.solvers.interior.newton_finish import finish
 from concio.solvers.motion.cone_departure import departure
 from concio.solvers.states.reading import Finished
@@ -203,3 +203,11 @@ def _inner(run: ConeRun, step: Scaled, starts: tuple[Start, ...]) -> Finished | 
     run.iterations += inner.iterations
     run.history.extend(inner.history)
     return found
+
+
+def associated_state(run: ConeRun) -> Array:
+    """Return the displacements (N,), scaled, at which associated flow holds the structure, or nearly so."""
+    z = run.cones.start(STARTS[0].force, STARTS[0].length)
+    outcome = run.cones.run(z, theta=1.0, target=1e-6, watch=run.watch("associated flow"))
+    run.iterations += outcome.iterations
+    return z.u
