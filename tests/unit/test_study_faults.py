@@ -203,6 +203,7 @@ def test_two_processes_do_not_write_one_study(tmp_path: Path) -> None:
     assert inner
 
 
+@pytest.mark.long  # waits for a scheduler that never answers
 def test_an_executor_that_is_none_is_told() -> None:
     with pytest.raises(concio.InputError, match="has no 'submit'"):
         study(formula, executor=3)  # type: ignore[arg-type]

@@ -28,6 +28,7 @@ def test_an_arch_has_a_size_and_a_thrust_that_moduli_do_not_have():
     assert wall_and_continuum.panel(2).elastic.settlements[0] > 2 * blocks
 
 
+@pytest.mark.long  # bounds on their sides are seen by the test below
 def test_limit_loads_come_down_to_the_continuum():
     load = wall_and_continuum.pushed().associated
     assert (np.diff(load) < 0).all()

@@ -41,6 +41,9 @@ TETHER = 1e-8
 FLIPS = 3
 """Factorisations that trying the states of the last step may cost beyond the first."""
 
+STEPS = 6
+"""Newton steps of such a try in space: where more are needed, the state found is no neighbour of the last."""
+
 State = tuple[Array, Array, Array]
 
 NAME = "interior-point near the last forces"
@@ -120,7 +123,7 @@ class Nearby:
             found = run.finish(*point, flips=FLIPS)
         else:
             run = cone_run.ConeRun(s)
-            found = run.settle(*point, cone_run.WEIGHTS[:1])
+            found = run.settle(*point, cone_run.WEIGHTS[:1], STEPS)
         if found is None:
             return None
         return replace(run.solution(found, method=NAME), factorisations=s.factor.made - made)
