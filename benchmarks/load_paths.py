@@ -17,6 +17,7 @@ from typing import Any
 from unittest import mock
 
 import numpy as np
+from wall_family import wall_model
 
 import concio
 from concio.solvers.algebra.sparse_factor import OrderedFactor
@@ -24,21 +25,6 @@ from concio.solvers.path import near_forces
 from concio.solvers.path.near_forces import Nearby
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "load_stages.toml"
-
-
-def wall(blocks: int, courses: int, horizontal: float) -> concio.Model:
-    """Return a dry wall of elastic blocks of 1.0 x 0.5 m, pushed by a share of its weight."""
-    return concio.running_bond_panel(
-        courses=courses,
-        blocks=blocks,
-        block_size=(1.0, 0.5),
-        thickness=1.0,
-        block=concio.Elastic(E=1e5, nu=0.15, unit_weight=20.0),
-        friction=0.6,
-        side_walls=False,
-        horizontal=horizontal,
-        elements_per_block=(2, 2),
-    )
 
 
 def hung() -> concio.Model:
@@ -62,9 +48,9 @@ def pushed(steps: int, live: float = 1.0) -> tuple[concio.Stage, ...]:
 def cases() -> Iterator[tuple[str, concio.Model, tuple[concio.Stage, ...]]]:
     """Yield name, model and stages."""
     yield "examples/load_stages.toml", concio.load(EXAMPLE), ()
-    yield "wall 10 x 8, 20 steps", wall(8, 10, 0.5), pushed(20)
-    yield "wall 10 x 8, 5 steps", wall(8, 10, 0.5), pushed(5)
-    yield "wall 22 x 20, 10 steps", wall(20, 22, 0.3), pushed(10)
+    yield "wall 10 x 8, 20 steps", wall_model(8, 10, 0.5), pushed(20)
+    yield "wall 10 x 8, 5 steps", wall_model(8, 10, 0.5), pushed(5)
+    yield "wall 22 x 20, 10 steps", wall_model(20, 22, 0.3), pushed(10)
     yield "panel that is not carried", hung(), (concio.Stage("top", {"top": 1.0}, steps=10),)
     yield "in space, rigid, 15 blocks", small_wall(1.5), pushed(10, 2.0)
     yield "in space, rigid, 100 blocks", small_wall(4.0), pushed(10, 1.2)
@@ -106,7 +92,7 @@ def from_nothing() -> Any:
 
 def against_the_exact_path() -> None:
     """Print how far the steps of a wall near its limit, where stones come loose, end from the exact path."""
-    model = wall(8, 10, 0.5)
+    model = wall_model(8, 10, 0.5)
     exact = concio.run_path(model, pushed(1), method="events").steps[-1].state
     print("\n| steps | each from | displacements apart from the exact path | forces |\n|---|---|---|---|")
     for steps in (20, 160):

@@ -16,21 +16,24 @@ from concio.solvers.path.near_forces import Nearby, needed, solve_near
 PUSH = 0.4
 
 
-@pytest.fixture(scope="module")
-def panel():
+def dry_wall(courses, blocks, horizontal):
     """Running bond with three pairs at every inner corner, for the two motions a corner has."""
-    model = concio.running_bond_panel(
-        courses=5,
-        blocks=4,
+    return concio.running_bond_panel(
+        courses=courses,
+        blocks=blocks,
         block_size=(1.0, 0.5),
         thickness=1.0,
         block=concio.Elastic(E=1e5, nu=0.15, unit_weight=20.0),
         friction=0.6,
         side_walls=False,
-        horizontal=1.0,
+        horizontal=horizontal,
         elements_per_block=(2, 2),
     )
-    return concio.assemble(model)
+
+
+@pytest.fixture(scope="module")
+def panel():
+    return concio.assemble(dry_wall(5, 4, 1.0))
 
 
 def stages(steps: int) -> list[Stage]:
@@ -134,17 +137,7 @@ def test_a_state_far_away_is_no_excuse_for_a_wrong_answer(panel):
 @pytest.mark.long
 def test_steps_from_the_last_keep_to_the_exact_path_where_stones_come_loose():
     """From nothing, the last of twenty steps ends in another equilibrium: a loose stone 5 % of the motion away."""
-    model = concio.running_bond_panel(
-        courses=10,
-        blocks=8,
-        block_size=(1.0, 0.5),
-        thickness=1.0,
-        block=concio.Elastic(E=1e5, nu=0.15, unit_weight=20.0),
-        friction=0.6,
-        side_walls=False,
-        horizontal=0.5,
-        elements_per_block=(2, 2),
-    )
+    model = dry_wall(10, 8, 0.5)
     weight = Stage("weight", {"dead": 1.0}, steps=1)
     exact = run_path(model, [weight, Stage("push", {"live": 1.0})]).steps[-1].state
     steps = run_path(model, [weight, Stage("push", {"live": 1.0}, steps=20)], method="steps").steps[-1].state

@@ -61,7 +61,7 @@ def run_path(
     method : {"events", "steps"}, optional
         By default events in the plane, steps in space.
     solver : str
-        Method of the load steps and of the start of event paths.
+        Method of the start of event paths, and of load steps that are not found from the states of the step before.
     restart : (PathResult, int), optional
         Begin at a step of an earlier path of the same model instead of at rest.
     max_events : int
