@@ -6,9 +6,17 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from concio.kinematics.frames import cross, tangents, turned_left, turned_right, turning
+from concio.kinematics.frames import cross, tangents, turned, turned_left, turned_right, turning
 from concio.kinematics.mass import polygon_moments, polyhedron_moments, signed_area
-from concio.kinematics.rigid import motions, rigid_modes, rigid_operator, rigid_row, rotation_matrix, swept
+from concio.kinematics.rigid import (
+    motions,
+    plane_rotation,
+    rigid_modes,
+    rigid_operator,
+    rigid_row,
+    rotation_matrix,
+    swept,
+)
 
 RNG = np.random.default_rng(20)
 BOX = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
@@ -63,7 +71,8 @@ def test_rigid_operator_is_the_small_rotation(dim):
     motion = 1e-8 * RNG.normal(size=(5, motions(dim)))
     rotation = motion[:, dim:] / reach[:, None]
     rotation = rotation[:, 0] if dim == 2 else rotation
-    moved = motion[:, :dim] + np.einsum("kij,kj->ki", rotation_matrix(rotation), arm) - arm
+    turn = plane_rotation(rotation) if dim == 2 else rotation_matrix(rotation)
+    moved = motion[:, :dim] + np.einsum("kij,kj->ki", turn, arm) - arm
     operator = rigid_operator(arm, reach)
     assert operator.shape == (5, dim, motions(dim))
     np.testing.assert_allclose(np.einsum("kij,kj->ki", operator, motion), moved, atol=1e-13)
@@ -102,8 +111,11 @@ def test_finite_rotations():
     np.testing.assert_allclose(Q @ Q.T, np.eye(3), atol=1e-15)
     np.testing.assert_allclose(Q @ axis, axis, atol=1e-15)
     assert np.trace(Q) == pytest.approx(1 + 2 * np.cos(angle))
-    np.testing.assert_allclose(rotation_matrix(np.array([0.0, 0.0, 0.4]))[:2, :2], rotation_matrix(0.4), atol=1e-15)
-    np.testing.assert_allclose(rotation_matrix(np.pi / 2) @ [1.0, 0.0], [0.0, 1.0], atol=1e-15)
+    np.testing.assert_allclose(rotation_matrix(np.array([0.0, 0.0, 0.4]))[:2, :2], plane_rotation(0.4), atol=1e-15)
+    np.testing.assert_allclose(plane_rotation(np.pi / 2) @ [1.0, 0.0], [0.0, 1.0], atol=1e-15)
+    angles, v = np.array([0.4, -1.1, 2.9]), np.array([[3.0, 1.0], [-0.5, 2.0], [0.1, -0.7]])
+    np.testing.assert_allclose(turned(v, angles), np.einsum("kij,kj->ki", plane_rotation(angles), v), atol=1e-15)
+    np.testing.assert_allclose(turning(v, turned(v, angles)), angles, atol=1e-15)
     np.testing.assert_array_equal(rotation_matrix(np.zeros((2, 3))), np.broadcast_to(np.eye(3), (2, 3, 3)))
 
 

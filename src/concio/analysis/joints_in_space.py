@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.analysis.contacts import Contacts
+from concio.kinematics.frames import cross
 from concio.model.interfaces.patches import Patch
 from concio.problem.pair_state import PairState
 from concio.representation import short_repr
@@ -77,7 +78,7 @@ def joint_resultants_in_space(contacts: Contacts, patches: Sequence[Patch]) -> S
 
     force = contacts.force_on_b[own]
     total = summed(force)
-    moment = summed(np.cross(pairs.point[own] - middle[of], force))
+    moment = summed(cross(pairs.point[own] - middle[of], force))
     N = (total * normal).sum(1)
     safe = np.where(N == 0, 1.0, N)
     # the normal forces alone place the resultant in the plane of the joint

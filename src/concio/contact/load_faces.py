@@ -9,6 +9,7 @@ import numpy as np
 
 from concio.arguments import closest
 from concio.errors import InputError
+from concio.kinematics.frames import turned_left, turned_right
 from concio.model.model import Load, Model, called
 
 Array = np.ndarray
@@ -143,7 +144,7 @@ def line_tolerance(model: Model) -> float:
 
 
 def _on_line(model: Model, chosen: list[int], p: Array, along: Array, length: float, tolerance: float) -> list[_Found]:
-    across = np.array([-along[1], along[0]])
+    across = turned_left(along)
     found = []
     for b in chosen:
         vertices, following = model.outlines[b].vertices, model.outlines[b].following
@@ -154,7 +155,7 @@ def _on_line(model: Model, chosen: list[int], p: Array, along: Array, length: fl
             first, last = float((a - p) @ along), float((c - p) @ along)
             low, high = max(min(first, last), 0.0), min(max(first, last), length)
             if high - low > tolerance:
-                outward = np.array([direction[1], -direction[0]])
+                outward = turned_right(direction)
                 found.append(_Found(b, e, low, high, first, 1.0 if last > first else -1.0, outward))
     return found
 

@@ -17,6 +17,7 @@ from functools import cache
 import numpy as np
 import shapely
 
+from concio.kinematics.frames import cross
 from concio.kinematics.mass import polygon_moments
 from concio.model.interfaces.patches import Patch
 
@@ -41,13 +42,13 @@ def corner_points(patches: Sequence[Patch]) -> tuple[Array, Array, Array]:
     ahead[first + count - 1] = first
     normal = np.array([p.normal for p in patches])[owner]
     near = points[first][owner]
-    fan = 0.5 * (np.cross(points - near, points[ahead] - near) * normal).sum(1)
+    fan = 0.5 * (cross(points - near, points[ahead] - near) * normal).sum(1)
     total = np.bincount(owner, fan)
     centre = np.stack(
         [np.bincount(owner, fan * (near + points + points[ahead])[:, k]) / (3 * total) for k in range(3)], 1
     )
     arm = points - centre[owner]
-    part = 0.5 * (np.cross(arm, arm[ahead]) * normal).sum(1)
+    part = 0.5 * (cross(arm, arm[ahead]) * normal).sum(1)
     share = 0.5 * part
     share[ahead] += 0.5 * part
     least = np.full(len(patches), np.inf)
@@ -97,7 +98,7 @@ def spread_points(patch: Patch, n: int) -> tuple[Array, Array]:
 
 def _convex(ring: Array) -> bool:
     before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
-    return bool((before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0] > 0).all())
+    return bool((cross(before, after) > 0).all())
 
 
 def _tensor(quad: Array, n: int) -> tuple[Array, Array]:
@@ -107,7 +108,7 @@ def _tensor(quad: Array, n: int) -> tuple[Array, Array]:
     a, b, c, d = quad
     points = (1 - r) * (1 - s) * a + r * (1 - s) * b + r * s * c + (1 - r) * s * d
     along, across = (1 - s) * (b - a) + s * (c - d), (1 - r) * (d - a) + r * (c - b)
-    jacobian = along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]
+    jacobian = cross(along, across)
     return points, np.outer(w, w).ravel() * jacobian
 
 

@@ -132,7 +132,7 @@ def _corners(ring: Array, area: float) -> Array:
     """
     ring = ring[np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1) > SAME * np.sqrt(area)]
     before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
-    corners: Array = ring[np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]) > STRAIGHT * area]
+    corners: Array = ring[np.abs(cross(before, after)) > STRAIGHT * area]
     return corners
 
 

@@ -17,7 +17,7 @@ from concio.errors import GeometryError
 from concio.fem.facets import local_coordinates
 from concio.fem.polygon_mesh import mesh_polygon
 from concio.fem.tetrahedra import tetrahedra
-from concio.kinematics.frames import tangents
+from concio.kinematics.frames import cross, tangents
 from concio.model.polyhedron import Polyhedron
 
 Array = np.ndarray
@@ -70,7 +70,7 @@ def _own_frame(body: Polyhedron) -> tuple[Polyhedron, Array]:
     first = body.vertices[body.faces[0][1]] - body.vertices[body.faces[0][0]]
     first = first - (first @ normal) * normal
     first /= np.linalg.norm(first)
-    axes = np.array([first, np.cross(normal, first), normal])
+    axes = np.array([first, cross(normal, first), normal])
     return replace(body, vertices=_rounded((body.vertices - body.vertices[0]) @ axes.T, body.length)), axes
 
 
@@ -282,7 +282,7 @@ def _prism_mesh(body: Polyhedron, sweep: Sweep, size: float, refinement: int, ma
 
 def _face_coordinates(corners: Array, points: Array) -> Array:
     """Return local coordinates (k, 2) of points (k, 3) in a planar quadrilateral (4, 3)."""
-    normal = np.cross(corners[2] - corners[0], corners[3] - corners[1])
+    normal = cross(corners[2] - corners[0], corners[3] - corners[1])
     axes = tangents(normal / np.linalg.norm(normal))
     flat = (corners - corners[0]) @ axes.T
     return local_coordinates(np.broadcast_to(flat, (len(points), 4, 2)), (points - corners[0]) @ axes.T)
@@ -311,7 +311,7 @@ def require_right_handed(points: Array, cells: Array, name: str) -> None:
     first = points[cells[:, 0]]
     third = points[cells[:, 4 if cells.shape[1] == 8 else 3]]
     second = points[cells[:, 3 if cells.shape[1] == 8 else 2]]
-    volume = (np.cross(points[cells[:, 1]] - first, second - first) * (third - first)).sum(1)
+    volume = (cross(points[cells[:, 1]] - first, second - first) * (third - first)).sum(1)
     if (volume <= 0).any():
         x, y, z = first[int(np.argmin(volume))]
         msg = f"an element of the mesh at ({x:.4g}, {y:.4g}, {z:.4g}) m is turned inside out"

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from concio.kinematics.frames import cross
+
 Array = np.ndarray
 STONE, GROUND = [0.86, 0.80, 0.70, 1.0], [0.55, 0.55, 0.55, 1.0]
 """Colours of blocks and of fixed bodies."""
@@ -23,7 +25,7 @@ def glb_bytes(blocks: Sequence[tuple[str, Array, bool]]) -> bytes:
     for k, (name, triangles, fixed) in enumerate(blocks):
         middle = triangles.reshape(-1, 3).mean(0)
         points = (triangles - middle).astype("<f4").reshape(-1, 3)
-        normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+        normal = cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
         normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
         for values in (points, np.repeat(normal, 3, axis=0).astype("<f4")):
             views.append({"buffer": 0, "byteOffset": len(data), "byteLength": values.nbytes, "target": 34962})

@@ -15,6 +15,7 @@ from concio.arguments import strict
 from concio.errors import InputError
 from concio.files import whole_file
 from concio.io.gltf import glb_bytes
+from concio.kinematics.frames import cross
 from concio.model.model import Model
 from concio.post.solids import solids
 
@@ -106,7 +107,7 @@ def _stl(path: Path, blocks: Sequence[Drawn]) -> None:
     for block in blocks:
         lines.append(f"solid {block.name}")
         for triangle in block.triangles:
-            normal = np.cross(triangle[1] - triangle[0], triangle[2] - triangle[0])
+            normal = cross(triangle[1] - triangle[0], triangle[2] - triangle[0])
             x, y, z = (normal / max(float(np.linalg.norm(normal)), 1e-300)).tolist()
             lines += [f"facet normal {x:.9g} {y:.9g} {z:.9g}", "outer loop"]
             lines += [f"vertex {a!r} {b!r} {c!r}" for a, b, c in triangle.tolist()]

@@ -26,6 +26,12 @@ def turned_right(v: Array) -> Array:
     return np.stack([v[..., 1], -v[..., 0]], axis=-1)
 
 
+def turned(v: Array, angle: Array | float) -> Array:
+    """Return plane vectors (..., 2) turned left by angles (...) [rad]."""
+    v, c, s = np.asarray(v), np.cos(angle), np.sin(angle)
+    return np.stack([c * v[..., 0] - s * v[..., 1], s * v[..., 0] + c * v[..., 1]], axis=-1)
+
+
 def cross(p: Array, q: Array) -> Array:
     """Return the cross product: (...) in the plane, positive from p to q turning left; (..., 3) in space."""
     p, q = np.asarray(p), np.asarray(q)

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from concio.kinematics.rigid import rotation_matrix
+from concio.kinematics.rigid import plane_rotation, rotation_matrix
 
 Array = np.ndarray
 
@@ -43,8 +43,7 @@ class Placement:
         """Rotation matrices (B, d, d)."""
         if self.dim == 3:
             return self.rotation
-        c, s = np.cos(self.rotation), np.sin(self.rotation)
-        return np.stack([np.stack([c, -s], axis=-1), np.stack([s, c], axis=-1)], axis=-2)
+        return plane_rotation(self.rotation)
 
     def moved(self, translation: Array, turn: Array) -> Placement:
         """Return the placement after a displacement of the centroids and a finite rotation about them.

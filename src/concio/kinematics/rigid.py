@@ -78,12 +78,15 @@ def rigid_modes(points: Array) -> Array:
     return modes
 
 
-def rotation_matrix(rotation: Array | float) -> Array:
-    """Return the matrix (..., d, d) of finite rotations: angles (...) in the plane, vectors (..., 3) in space [rad]."""
+def plane_rotation(angle: Array | float) -> Array:
+    """Return the matrices (..., 2, 2) of rotations in the plane by angles (...) [rad]."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack([np.stack([c, -s], axis=-1), np.stack([s, c], axis=-1)], axis=-2)
+
+
+def rotation_matrix(rotation: Array) -> Array:
+    """Return the matrices (..., 3, 3) of finite rotations in space by vectors (..., 3) [rad]."""
     theta = np.asarray(rotation, dtype=float)
-    if not theta.ndim or theta.shape[-1] != 3:
-        c, s = np.cos(theta), np.sin(theta)
-        return np.stack([np.stack([c, -s], axis=-1), np.stack([s, c], axis=-1)], axis=-2)
     angle = np.linalg.norm(theta, axis=-1)[..., None, None]
     zero = np.zeros(theta.shape[:-1])
     x, y, z = theta[..., 0], theta[..., 1], theta[..., 2]

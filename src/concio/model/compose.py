@@ -14,7 +14,7 @@ import numpy as np
 
 from concio.arguments import closest, strict
 from concio.errors import InputError
-from concio.kinematics.rigid import rotation_matrix
+from concio.kinematics.rigid import plane_rotation, rotation_matrix
 from concio.model.materials import JointLaw
 from concio.model.model import Body, JointRule, Load, Model, Point, Support, Tie, called
 from concio.model.polyhedron import Polyhedron
@@ -121,7 +121,7 @@ def _motion(
         if len(axis):
             msg = "a plane model turns in its plane: leave axis out"
             raise InputError(msg, where=where)
-        return exact(rotation_matrix(np.deg2rad(angle))) @ flip, shift
+        return exact(plane_rotation(np.deg2rad(angle))) @ flip, shift
     direction = np.array(axis if len(axis) else (0.0, 0.0, 1.0), dtype=float)
     if direction.shape != (3,) or not np.linalg.norm(direction) > 0:
         msg = f"axis = {list(axis)} must be three numbers, not all zero"

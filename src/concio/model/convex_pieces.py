@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from concio.kinematics.frames import cross, tangents
+from concio.kinematics.frames import cross, tangents, turned_left
 from concio.representation import short_repr
 
 if TYPE_CHECKING:
@@ -143,7 +143,7 @@ def _half_plane(slope: Array, height: float, reach: float, middle: Array) -> sha
     """Return where ``height + slope . x <= 0``, as far as twice ``reach`` from a point."""
     steep = float(np.hypot(*slope))
     across = slope / steep
-    along = np.array([-across[1], across[0]])
+    along = turned_left(across)
     edge = middle - (height + middle @ slope) / steep * across
     far = 4 * reach
     return shapely.Polygon([edge - far * along, edge + far * along, edge + far * along - far * across,

@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from concio.errors import GeometryError
-from concio.kinematics.frames import tangents
+from concio.kinematics.frames import cross, tangents
 from concio.kinematics.mass import signed_area
 from concio.model.polyhedron import Polyhedron
 from concio.model.topology import Loop, topology
@@ -124,7 +124,7 @@ def straightened(points: Array, faces: tuple[Loop, ...], holes: tuple[tuple[int,
         p, q = (int(e.sum()) - v for e in top.edges[(top.edges == v).any(1)])
         along = points[q] - points[p]
         arm = points[v] - points[p]
-        off = np.linalg.norm(np.cross(along, arm)) / max(float(np.linalg.norm(along)), 1e-300)
+        off = np.linalg.norm(cross(along, arm)) / max(float(np.linalg.norm(along)), 1e-300)
         keep[v] = off > 1e-9 * size
     if keep.all():
         return points, faces, holes

@@ -127,7 +127,7 @@ def face_triangles(points: Array, loops: Sequence[Loop], normal: Array) -> Array
     flat = points[outer] @ frame.T
     if len(loops) == 1:
         before, after = flat - np.roll(flat, 1, axis=0), np.roll(flat, -1, axis=0) - flat
-        turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+        turn = cross(before, after)
         if len(outer) <= 4 and (turn > 0).all():
             return np.column_stack([np.full(len(outer) - 2, outer[0]), outer[1:-1], outer[2:]])
     every = np.concatenate([np.array(loop) for loop in loops])

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from concio.kinematics.frames import cross
+
 Array = np.ndarray
 
 MOST_POINTS = 200_000
@@ -63,7 +65,7 @@ class Picture:
         span = np.clip(placed[..., :2].max(1).astype(int) + 1, 0, limit) - low + 1
         outside = (placed[..., :2].max(1) < 0).any(1) | (placed[..., :2].min(1) > limit + 1).any(1)
         a, ab, ac = placed[:, 0], placed[:, 1] - placed[:, 0], placed[:, 2] - placed[:, 0]
-        whole = ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]
+        whole = cross(ab[:, :2], ac[:, :2])
         size = 1 << np.ceil(np.log2(span)).astype(int)  # (t, 2): boxes a power of two wide and high
         drawn = np.flatnonzero(~outside & (whole != 0.0))
         kinds, kind = np.unique(size[drawn], axis=0, return_inverse=True)

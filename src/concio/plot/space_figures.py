@@ -14,6 +14,7 @@ import numpy as np
 from concio.arguments import strict
 from concio.display import number
 from concio.errors import InputError
+from concio.kinematics.frames import cross
 from concio.plot import style
 from concio.plot.picture import Picture
 from concio.plot.space_loads import draw_loads
@@ -165,7 +166,7 @@ def draw_solids(
     box = style.box_of(points @ np.column_stack([right, up]))
     ax = style.axes_for(box, ax)
     corners = points[shown.triangles]
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normal, axis=1)
     facing = normal @ eye > 1e-9 * length
     light = 0.7 * eye + 0.5 * up + 0.2 * right

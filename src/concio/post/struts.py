@@ -23,6 +23,7 @@ import scipy.optimize as so
 import scipy.sparse as sp
 import shapely
 
+from concio.kinematics.frames import cross, turned_right
 from concio.model.model import Body
 from concio.representation import short_repr
 
@@ -107,8 +108,8 @@ def balanced(body: Body, point: Array, force: Array) -> Pushed:
     if not size > (1e-9 * float(np.abs(force).sum())) ** 2:
         return Pushed(point, force, body.outline)
     arm = point - centre
-    moment = -float((arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]).sum())
-    at = centre + moment / size * np.array([rest[1], -rest[0]])
+    moment = -float(cross(arm, force).sum())
+    at = centre + moment / size * turned_right(rest)
     far = rest / np.sqrt(size) * float(np.ptp(body.outline, axis=0).sum())
     within = shapely.Polygon(body.outline, body.holes).intersection(shapely.LineString([at - far, at + far]))
     if not within.is_empty:
@@ -122,7 +123,7 @@ def _off(place: Array, point: Array, force: Array) -> float:
     """Return how far a place is from the line through the points (p, 2) of the two largest forces (p, 2)."""
     a, b = point[np.argsort(np.linalg.norm(force, axis=1))[-2:]]
     along, across = b - a, place - a
-    return abs(float(along[0] * across[1] - along[1] * across[0])) / (float(np.hypot(*along)) or 1.0)
+    return abs(float(cross(along, across))) / (float(np.hypot(*along)) or 1.0)
 
 
 def struts(bodies: Sequence[Pushed]) -> Struts:

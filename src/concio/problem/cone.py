@@ -33,7 +33,7 @@ Dimension 2 and 3 alike: tangential arrays are (m, d-1).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -69,6 +69,11 @@ class Cone:
     def __getitem__(self, pick: Array | slice) -> Cone:
         return Cone(self.friction[pick], self.cohesion[pick], self.tension[pick], self.cap[pick])
 
+    def followed_by(self, other: Cone) -> Cone:
+        """Return these domains and, behind them, those of other pairs."""
+        both = (np.concatenate([getattr(self, f.name), getattr(other, f.name)]) for f in fields(self))
+        return Cone(*both)
+
     # -- what a pair can do -----------------------------------------------------------------------------------------
 
     @cached_property
@@ -96,8 +101,13 @@ class Cone:
 
     def strength(self, t_n: Array) -> Array:
         """Return the sliding strength c + mu t_n (m,) [kN], never below zero."""
-        strength: Array = np.maximum(self.cohesion + self.friction * t_n, 0.0)
+        strength: Array = np.maximum(self.linear_strength(t_n), 0.0)
         return strength
+
+    def linear_strength(self, t_n: Array, *, rate: bool = False) -> Array:
+        """Return c + mu t_n (m,) [kN] even below zero, for iterates outside; with ``rate`` its rate, mu t_n."""
+        share: Array = self.friction * t_n
+        return share if rate else self.cohesion + share
 
     def excess(self, t_n: Array, t_t: Array) -> Array:
         """Return how far forces t_n (m,) and t_t (m, d-1) lie outside, (m,) [kN]: beyond strength, T or N."""

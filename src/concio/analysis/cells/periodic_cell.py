@@ -23,6 +23,7 @@ import scipy.sparse as sp
 from concio.contact.assembly import Assembly, assemble
 from concio.contact.periodic import COMPONENTS, STRAINS, strain_columns
 from concio.errors import InputError
+from concio.kinematics.frames import cross
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
 from concio.representation import short_repr
@@ -99,7 +100,7 @@ class PeriodicCell:
         pairs, faces = self.assembly.pairs, self.assembly.detection.segments
         shift = np.array([face.shift for face in faces], dtype=float).reshape(-1, 2)[pairs.interface]
         force = normal_force[:, None] * pairs.normal + friction_force[:, None] * pairs.tangent
-        return float((force[:, 0] * shift[:, 1] - force[:, 1] * shift[:, 0]).sum()) / (2 * self.volume)
+        return float(cross(force, shift).sum()) / (2 * self.volume)
 
     def problem(
         self, stress: Three = (0.0, 0.0, 0.0), strain: Three = (0.0, 0.0, 0.0), free: Sequence[bool] = ALL

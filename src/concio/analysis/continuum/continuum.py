@@ -26,6 +26,7 @@ from concio.analysis.continuum.outline import (
 from concio.contact.assembly import Assembly, default_tolerance
 from concio.contact.factors import load_factor
 from concio.errors import InputError
+from concio.kinematics.frames import cross, turned_left, turned_right
 from concio.model.generate.spacing import subdivided
 from concio.model.interfaces.detect import Interface
 from concio.model.materials import JointLaw
@@ -85,8 +86,7 @@ class Continuum:
     def areas(self) -> Array:
         """Areas of the triangles (e,) [m2]."""
         a, b, c = (self.points[self.triangles[:, k]] for k in range(3))
-        p, q = b - a, c - a
-        found: Array = 0.5 * (p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0])
+        found: Array = 0.5 * cross(b - a, c - a)
         return found
 
     @cached_property
@@ -105,7 +105,7 @@ class Continuum:
     def outward(self) -> Array:
         """Outward unit normals of the boundary edges (b, 2)."""
         along = (self.points[self.edges[:, 1]] - self.points[self.edges[:, 0]]) / self.lengths[:, None]
-        return np.column_stack([along[:, 1], -along[:, 0]])
+        return turned_right(along)
 
     def force(self, factors: Mapping[str, float]) -> Array:
         """Return the body force (2,) under load factors; groups not named have 1 [kN/m3]."""
@@ -229,7 +229,7 @@ def _held(
         key = _support(model, face)
         along = (face.end - face.start) / face.length
         s = (middle - face.start) @ along
-        off = np.abs((middle - face.start) @ np.array([-along[1], along[0]]))
+        off = np.abs((middle - face.start) @ turned_left(along))
         on = (off <= 10 * wide) & (s >= -wide) & (s <= face.length + wide)
         if not on.any():
             continue
@@ -277,7 +277,7 @@ def _edge_load(wall: Continuum, load: Load, wide: float) -> Array:
     length = float(np.hypot(*(q - p)))
     along = (q - p) / length
     middle = wall.points[wall.edges].mean(axis=1)
-    s, off = (middle - p) @ along, np.abs((middle - p) @ np.array([-along[1], along[0]]))
+    s, off = (middle - p) @ along, np.abs((middle - p) @ turned_left(along))
     on = (off <= wide) & (s >= -wide) & (s <= length + wide)
     if not on.any():
         msg = f"the {load.kind} from ({p[0]:g}, {p[1]:g}) to ({q[0]:g}, {q[1]:g}) lies within the wall"

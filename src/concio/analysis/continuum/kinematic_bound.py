@@ -24,6 +24,7 @@ from concio.analysis.cells.half_spaces import HalfSpaces
 from concio.analysis.continuum.continuum import Continuum
 from concio.analysis.continuum.joint_domain import joint_half_planes
 from concio.errors import SolverError
+from concio.kinematics.frames import turned_left
 from concio.solvers.statics.programme import optimise
 
 Array = np.ndarray
@@ -185,7 +186,7 @@ def _joints(wall: Continuum, nodes: SixNodes, unit: float, length: float) -> tup
         m, g = joint_half_planes(law)
         for b in np.flatnonzero(wall.held_by == number):
             n = wall.outward[b]
-            frame = np.array([n, [-n[1], n[0]]])
+            frame = np.array([n, turned_left(n)])
             for node in wall.edges[b]:  # the joint opens where the wall moves against its outward normal
                 for r in range(2):
                     for axis in range(2):

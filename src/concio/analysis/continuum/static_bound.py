@@ -23,6 +23,7 @@ from concio.analysis.cells.half_spaces import HalfSpaces
 from concio.analysis.continuum.continuum import Continuum
 from concio.analysis.continuum.joint_domain import joint_half_planes
 from concio.errors import SolverError
+from concio.kinematics.frames import turned_left, turned_right
 from concio.solvers.statics.programme import optimise
 
 Array = np.ndarray
@@ -151,7 +152,7 @@ def _inequalities(wall: Continuum, faces: HalfSpaces, unit: float) -> tuple[sp.c
         m, g = joint_half_planes(law)
         n = wall.outward[held]
         across = traction_rows(wall.element[held], corners_of(wall, held), n, e)
-        turn = np.stack([n, np.column_stack([-n[:, 1], n[:, 0]])], axis=1)  # traction to (s, t)
+        turn = np.stack([n, turned_left(n)], axis=1)  # traction to (s, t)
         frames = np.repeat(turn, 2, axis=0)
         rows = sp.block_diag([m @ f for f in frames], format="csr") if len(frames) else sp.csr_array((0, 0))
         blocks.append(sp.csr_array(rows @ across))
@@ -170,7 +171,7 @@ def inner_edges(cells: Array, points: Array) -> tuple[Array, Array, Array, Array
     ca = np.column_stack([local[first], (local[first] + 1) % 3])
     cb = np.column_stack([(local[second] + 1) % 3, local[second]])  # runs the other way
     along = points[edges[first, 1]] - points[edges[first, 0]]
-    normal = np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(*along.T)[:, None]
+    normal = turned_right(along) / np.hypot(*along.T)[:, None]
     return owner[first], ca, owner[second], cb, normal
 
 

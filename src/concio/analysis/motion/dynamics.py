@@ -23,6 +23,7 @@ from concio.analysis.motion.stepper import Stepper, StepReport, at_rest
 from concio.arguments import strict
 from concio.contact.moving.reference import Reference
 from concio.errors import InputError
+from concio.kinematics.rigid import swept
 from concio.model.model import Model
 from concio.model.stages import ControlPoint
 from concio.problem.solution import Progress, ProgressCallback
@@ -228,7 +229,7 @@ def _thrown(reference: Reference, state: MotionState, velocities: Mapping[str, S
         if reference.disc.shape_of[b] >= 0:
             own = np.flatnonzero(reference.body_of_node == b)
             placed = state.configuration(reference).nodes(b) - state.centre[b]
-            nodal[own] = velocity[b] + spin[b] * np.column_stack([-placed[:, 1], placed[:, 0]])
+            nodal[own] = velocity[b] + swept(spin[b], placed)
     return replace(state, velocity=velocity, spin=spin, nodal=nodal)
 
 

@@ -20,7 +20,7 @@ from functools import cached_property
 import numpy as np
 
 from concio.analysis.seismic.macro_blocks import GROUND, MacroJoint, Mechanics
-from concio.kinematics.frames import turned_left
+from concio.kinematics.frames import turned, turned_left
 from concio.model.model import Tie
 
 Array = np.ndarray
@@ -114,10 +114,7 @@ class Linkage:
 
     def arm(self, q: Array, block: int, point: Array) -> Array:
         """Return the turned vector (2,) from the centre of a macro-block to one of its points [m]."""
-        turn = q[block, 2]
-        c, s = np.cos(turn), np.sin(turn)
-        x, y = point - self.mechanics.blocks[block].centre
-        return np.array([c * x - s * y, s * x + c * y])
+        return turned(point - self.mechanics.blocks[block].centre, q[block, 2])
 
     def place(self, q: Array, block: int, point: Array) -> Array:
         """Return where a point (2,) of a macro-block is [m]."""
@@ -137,10 +134,7 @@ class Linkage:
     def normal(self, q: Array, joint: MacroJoint) -> Array:
         """Return the normal (2,) of the face of a roller, turned with its macro-block."""
         block = joint.b if joint.face else joint.a
-        turn = 0.0 if block == GROUND else q[block, 2]
-        c, s = np.cos(turn), np.sin(turn)
-        x, y = joint.normal
-        return np.array([c * x - s * y, s * x + c * y])
+        return joint.normal if block == GROUND else turned(joint.normal, q[block, 2])
 
     def apart(self, q: Array, joint: MacroJoint) -> Array:
         """Return the vector (2,) from the point of a joint on a to that on b [m]."""

@@ -16,7 +16,7 @@ from concio.analysis.seismic.linkage import Force
 from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, face_of
 from concio.contact.assembly import Assembly
 from concio.kinematics.frames import cross, tangents
-from concio.kinematics.rigid import motions, rigid_row, rotation_matrix
+from concio.kinematics.rigid import motions, plane_rotation, rigid_row, rotation_matrix
 from concio.problem.contact_problem import ContactProblem, Laws
 
 Array = np.ndarray
@@ -94,10 +94,11 @@ class Placed:
         """Return them after screw motions of constant velocity (G, 3 or 6) in space: exact about fixed axes."""
         d = self.centre.shape[1]
         shift, spin = velocity[:, :d] * time, velocity[:, d:] * time
-        turn = rotation_matrix(spin[:, :1])[:, 0] if d == 2 else rotation_matrix(spin)
         if d == 2:
+            turn = plane_rotation(spin[:, 0])
             swept = _plane_mean(spin[:, 0], shift)
         else:
+            turn = rotation_matrix(spin)
             angle = np.linalg.norm(spin, axis=1)[:, None]
             across = cross(spin, shift)
             versine = 0.5 * np.sinc(angle / (2 * np.pi)) ** 2

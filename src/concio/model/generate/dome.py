@@ -14,6 +14,7 @@ import numpy as np
 
 from concio.arguments import strict_with
 from concio.errors import InputError
+from concio.kinematics.frames import cross
 from concio.model.generate.arguments import choice, count, finite, not_negative, positive
 from concio.model.generate.masonry import numbered
 from concio.model.generate.solid_masonry import (
@@ -118,7 +119,7 @@ def dome(
     loads = []
     if weight:
         upper = [shape.joint(k, float(angles[-1])) for k in range(cells * m)]
-        area = sum(0.5 * float(np.linalg.norm(np.cross(f[2] - f[0], f[3] - f[1]))) for f in upper)
+        area = sum(0.5 * float(np.linalg.norm(cross(f[2] - f[0], f[3] - f[1]))) for f in upper)
         loads = [
             Load("traction", (0.0, 0.0, -weight / area), polygon=tuple(map(tuple, f.tolist())), group="lantern")
             for f in upper
@@ -165,6 +166,6 @@ def _key(shape: _Revolved, angle: float) -> SolidPiece:
 
 def _springer(name: str, facet: Array, thick: float) -> SolidPiece:
     """Return a fixed block behind a planar joint (4, 3), on its lower side."""
-    normal = np.cross(facet[1] - facet[0], facet[3] - facet[0])
+    normal = cross(facet[1] - facet[0], facet[3] - facet[0])
     normal *= -np.sign(normal[2]) / np.linalg.norm(normal)
     return prism_piece(name, [facet], (0.5 * thick * normal).tolist(), role="springer")

@@ -23,7 +23,7 @@ import numpy as np
 import shapely
 
 from concio.errors import InputError
-from concio.kinematics.frames import cross, tangents
+from concio.kinematics.frames import cross, tangents, turned_left
 from concio.kinematics.mass import polygon_moments
 from concio.model.interfaces.detect import FACING_ANGLE, NEAR_ANGLE, NEAR_SHARE, SLIVER_SHARE, Detection
 from concio.model.interfaces.faces import FacePairs, Faces, facing_faces, neighbours
@@ -360,7 +360,7 @@ def _kept_vertices(flat: Array, rings: Array, tolerance: float) -> Array:
     ahead = np.where(number == last, rings[:-1][ring], number + 1)
     behind = np.where(number == rings[:-1][ring], last, number - 1)
     along, back = flat[ahead] - flat, flat - flat[behind]
-    turn = back[:, 0] * along[:, 1] - back[:, 1] * along[:, 0]
+    turn = cross(back, along)
     base = np.linalg.norm(flat[ahead] - flat[behind], axis=1)
     suspect = (np.linalg.norm(along, axis=1) <= tolerance) | (np.abs(turn) <= 0.1 * tolerance * base)
     for r in np.unique(ring[suspect]).tolist():
@@ -370,7 +370,7 @@ def _kept_vertices(flat: Array, rings: Array, tolerance: float) -> Array:
             p, v, q = members[k - 1], members[k], members[(k + 1) % len(members)]
             e, d = flat[q] - flat[p], flat[v] - flat[p]
             length = float(np.hypot(*e))
-            off = abs(float(e[0] * d[1] - e[1] * d[0])) / length if length > 0 else 0.0
+            off = abs(float(cross(e, d))) / length if length > 0 else 0.0
             if off <= 0.1 * tolerance or float(np.hypot(*d)) <= tolerance:
                 keep[v] = False
                 del members[k]
@@ -384,7 +384,7 @@ def _band(shape: shapely.Polygon, slope: Array, start: float, least: float, most
     """Return the strip of the plane where ``start + slope . x`` lies between two values, as far as a shape reaches."""
     steep = float(np.hypot(*slope))
     across = slope / steep
-    along = np.array([-across[1], across[0]])
+    along = turned_left(across)
     corners = shapely.get_coordinates(shape)
     s = corners @ along
     reach = float(np.ptp(corners, axis=0).sum()) + 1.0

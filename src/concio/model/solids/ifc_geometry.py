@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import shapely
 
-from concio.kinematics.frames import tangents
+from concio.kinematics.frames import cross, tangents
 from concio.kinematics.mass import signed_area
 from concio.model.solids.ifc_placement import axes, direction, operator, point
 from concio.model.solids.ifc_profiles import indices, rings
@@ -85,7 +85,7 @@ def _filled(of: Instance, points: Array, loops: list[Loop]) -> list[Loop]:
     if len(loops) == 1:
         return loops
     outer = points[list(loops[0])] - points[loops[0][0]]
-    normal = np.cross(outer, np.roll(outer, -1, axis=0)).sum(0)
+    normal = cross(outer, np.roll(outer, -1, axis=0)).sum(0)
     length = float(np.linalg.norm(normal))
     if not length > 0:
         of.refuse("has no area")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from concio.kinematics.frames import cross
 from concio.model.solids.step import Instance, StepFile, Typed
 
 Array = np.ndarray
@@ -90,7 +91,7 @@ def _frame(of: Instance, along: Array, z: Array) -> tuple[Array, Array, Array]:
     if length < PARALLEL:
         of.refuse("has two parallel directions, which span no axes")
     x = x / length
-    return x, np.cross(z, x), z
+    return x, cross(z, x), z
 
 
 class Placements:

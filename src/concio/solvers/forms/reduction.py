@@ -60,12 +60,12 @@ class Reduction:
     @property
     def mu(self) -> Array:
         """Friction of the rough pairs, (k,)."""
-        return np.asarray(self.system.mu[self.rough])
+        return np.asarray(self.system.cone.friction[self.rough])
 
     @property
     def cohesion(self) -> Array:
         """Strength c' of the rough pairs at p = 0, (k,)."""
-        return np.asarray(self.system.cohesion[self.rough])
+        return np.asarray(self.system.cone.cohesion[self.rough])
 
     @property
     def dilatancy(self) -> Array:
@@ -101,7 +101,7 @@ def reduce(problem: ContactProblem) -> Reduction:
         The problem is not plane, or a pair has a cap on compression.
     """
     system = PairSystem(scale(problem))
-    if np.isfinite(system.cap).any():
+    if system.cone.capped.any():
         msg = "the dense forms have no cap on compression"
         raise MethodError(msg, hint="use sparse-lemke or interior-point")
     m, R = system.m, sp.csc_array(problem.R)

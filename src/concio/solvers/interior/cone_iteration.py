@@ -154,7 +154,7 @@ class ConeIteration:
     def strength(self, z: ConePoint) -> Array:
         """Return beta (m, d), (1, 0) where a pair is smooth."""
         beta = z.t.copy()
-        beta[:, 0] = self.s.cone.cohesion + self.s.cone.friction * z.t[:, 0]
+        beta[:, 0] = self.s.cone.linear_strength(z.t[:, 0])
         beta[~self.rough] = 0.0
         beta[~self.rough, 0] = 1.0
         return beta

@@ -111,7 +111,7 @@ def _solve_states(s: Scaled, record: Record, states: PairStates, u: Array, t: Ar
     jacobian[:, 1, 1] = np.where(slips, sign * cone.friction * jacobian[:, 0, 1], ~_idle(s, states))
     imposed = np.where(states.open, -cone.tension, np.where(closed, -scale * kappa * cone.cohesion, 0.0))
     imposed = np.where(states.crushed, cone.cap, imposed)
-    constant = np.column_stack([imposed, np.where(slips, sign * (cone.cohesion + cone.friction * imposed), 0.0)])
+    constant = np.column_stack([imposed, np.where(slips, sign * cone.linear_strength(imposed), 0.0)])
 
     def forces(v: Array, multiplier: Array) -> Array:
         w = stiffness * (multiplier / STIFFNESS - s.opening(v))

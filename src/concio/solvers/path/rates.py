@@ -107,7 +107,7 @@ def values(equations: PathEquations, x: Array, slip: Array, offset: Array) -> Va
     opening, position = equations.positions(x)
     gap = opening + offset - d.dilatancy * np.abs(position - slip)
     t_n, t_t = x[n : n + m], x[n + m : -1]
-    strength = d.cone.cohesion + d.cone.friction * t_n
+    strength = d.cone.linear_strength(t_n)
     length = max(float(np.abs(x[:n]).max(initial=0.0)), 1e-3)
     force = max(float(np.abs(x[n:-1]).max(initial=0.0)), 1e-3)
     return Values(
@@ -132,8 +132,8 @@ def rates(equations: PathEquations, direction: Array, creep: Array | None = None
     along = along + equations.lent * t_t  # open pairs, asked for away, carry nothing
     away = np.where((np.abs(gap) <= still) & (np.abs(away) > small), away, 0.0)
     along = np.where((np.abs(slip) <= still) & (np.abs(along) > small), along, 0.0)
-    plus, minus = d.cone.friction * t_n + t_t, d.cone.friction * t_n - t_t
-    return Rates(direction, creep, away, along, gap, slip, t_n, plus, minus, still, calm)
+    strength = d.cone.linear_strength(t_n, rate=True)
+    return Rates(direction, creep, away, along, gap, slip, t_n, strength + t_t, strength - t_t, still, calm)
 
 
 def wrong(equations: PathEquations, v: Values, r: Rates) -> list[tuple[float, int, int, int]]:

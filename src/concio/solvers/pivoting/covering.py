@@ -87,10 +87,9 @@ def cover_point(
     size = 1.0 + float(np.abs(np.concatenate([p, r])).max(initial=0.0))
     far = 1.0 + float(np.abs(u).max(initial=0.0))
     least = NEAR * np.random.default_rng(0).uniform(0.5, 1.5, system.m)
-    room = np.where(np.isfinite(system.cap), system.cap, np.inf)
-    p = np.where(closed, np.clip(p, least * size, np.maximum(room - least * size, 0.0)), 0.0)
-    p = np.where(normal == Normal.CRUSHED, system.cap, p)
-    strength = system.cohesion + system.mu * p
+    p = np.where(closed, np.clip(p, least * size, np.maximum(system.cone.cap - least * size, 0.0)), 0.0)
+    p = np.where(normal == Normal.CRUSHED, system.cone.cap, p)
+    strength = system.cone.linear_strength(p)
     y = (system.C @ u).reshape(-1, 2) + system.x
     free = (normal == Normal.OPEN) & system.weak & ~system.frictionless
     sign = np.where(free & ~stick, np.where(y[:, 1] < 0, -1, 1), sign)
@@ -149,22 +148,22 @@ def cover_states(
     least = base * np.random.default_rng(seed).uniform(0.5, 1.5, m)
     closed, open_ = normal == Normal.CLOSED, normal == Normal.OPEN
     stick = sign == 0
-    weak = (system.cohesion == 0.0) & (glue == 0.0)
+    weak = (system.cone.cohesion == 0.0) & (glue == 0.0)
     slides = ~stick & ~system.frictionless & ~(open_ & weak & (system.dilatancy == 0.0))
     t = v[system.n : -1].reshape(-1, 2)
-    p, r, mu = t[:, 0], t[:, 1], system.mu
+    p, r, mu = t[:, 0], t[:, 1], system.cone.friction
     rough = closed & stick & (mu > 0)
     # prestress P: |r| <= c' + mu (p + P), with room to spare
-    lean = np.where(mu > 0, (np.abs(r) - system.cohesion) / np.where(mu > 0, mu, 1.0) - p, 0.0)
+    lean = np.where(mu > 0, (np.abs(r) - system.cone.cohesion) / np.where(mu > 0, mu, 1.0) - p, 0.0)
     need = np.where(rough, np.maximum(lean, -p), -p)
     P = np.where(closed, least + np.maximum(need, 0.0), 0.0)
     bound = stick & ~rough & ~system.frictionless  # strength that does not grow with p, or open and sticking
-    c = np.where(bound, least + np.maximum(np.abs(r) - system.cohesion - mu * p, 0.0), 0.0)
+    c = np.where(bound, least + np.maximum(np.abs(r) - system.cone.cohesion - mu * p, 0.0), 0.0)
     c += np.where(mu > 0, glue * least, 0.0)
     Q = np.where(~stick & ~system.frictionless, -sign * (mu * P + c), 0.0)  # slipping: u and the forces do not change
     h = np.where(slides, sign * (least + np.maximum(-sign * y_t, 0.0)), 0.0)
-    over = np.where(np.isfinite(system.cap), p - np.where(np.isfinite(system.cap), system.cap, 0.0), -np.inf)
-    X = np.where(closed & np.isfinite(system.cap), P + least + np.maximum(over, 0.0), 0.0)
+    over = np.where(system.cone.capped, p - np.where(system.cone.capped, system.cone.cap, 0.0), -np.inf)
+    X = np.where(closed & system.cone.capped, P + least + np.maximum(over, 0.0), 0.0)
     slope = sign * system.dilatancy * h
     g = np.where(open_, slope + least + np.maximum(-value["y_n"], 0.0), slope)
     g = np.where(normal == Normal.CRUSHED, slope - least - np.maximum(value["y_n"], 0.0), g)

@@ -28,6 +28,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
+from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array
 from concio.problem.pair_state import Normal
 from concio.solvers.algebra.scaled import Scaled, require_plane
@@ -79,7 +80,7 @@ class PairSystem:
         self.problem, self.s = scaled.problem, scaled
         s, self.m, self.n = scaled, scaled.pairs, scaled.f.size
         m, n = self.m, self.n
-        self.mu, self.cohesion, self.cap = s.cone.friction, s.cone.cohesion, s.cone.cap
+        self.cone = s.cone
         self.dilatancy = s.dilatancy
         self.frictionless = ~s.rough
         self.a, self.x, self.load = s.compliance, s.x, s.f
@@ -103,9 +104,8 @@ class PairSystem:
         self.C = sp.csr_array(sp.vstack([self.C, sp.csr_array(held)[order]]))
         self.C.sort_indices()
         none = np.zeros(r)
-        for name in ("mu", "cohesion", "dilatancy"):
-            setattr(self, name, np.concatenate([getattr(self, name), none]))
-        self.cap = np.concatenate([self.cap, np.full(r, np.inf)])
+        self.cone = self.cone.followed_by(Cone(none, none, none, np.full(r, np.inf)))
+        self.dilatancy = np.concatenate([self.dilatancy, none])
         self.frictionless = np.concatenate([self.frictionless, np.zeros(r, dtype=bool)])
         self.a = np.vstack([self.a, np.zeros((r, 2))])
         self.x = np.vstack([self.x, np.column_stack([np.ones(r), none])])
@@ -115,7 +115,7 @@ class PairSystem:
     @property
     def weak(self) -> Array:
         """Pairs that have no sliding strength left when open, (m,) booleans."""
-        return np.asarray((self.cohesion == 0.0) & (self.cover.c == 0.0))
+        return np.asarray((self.cone.cohesion == 0.0) & (self.cover.c == 0.0))
 
     def equilibrium_rows(self) -> list[Row]:
         """Return the N rows of equilibrium."""
@@ -155,13 +155,13 @@ class PairSystem:
                 np.concatenate([columns, [p + 1, last]]),
                 np.concatenate([values, [soft, self.cover.h[k] - soft * self.cover.Q[k]]]),
             )
-        return np.array([p + 1, p, last]), np.array([1.0, sigma * self.mu[k], sigma * self.cover.c[k]])
+        return np.array([p + 1, p, last]), np.array([1.0, sigma * self.cone.friction[k], sigma * self.cover.c[k]])
 
     def right_hand_side(self, normal: Array, sign: Array) -> tuple[Array, Array]:
         """Return the right-hand sides of the rows of all pairs in these states, (m,) and (m,)."""
         closed = -self.x[:, 0] + sign * self.dilatancy * self.x[:, 1]
-        b_n = np.where(normal == Normal.CLOSED, closed, np.where(normal == Normal.CRUSHED, self.cap, 0.0))
-        b_t = np.where(sign == 0, -self.x[:, 1], -sign * self.cohesion)
+        b_n = np.where(normal == Normal.CLOSED, closed, np.where(normal == Normal.CRUSHED, self.cone.cap, 0.0))
+        b_t = np.where(sign == 0, -self.x[:, 1], -sign * self.cone.cohesion)
         return b_n, b_t
 
     def slacks(self, v: Array, sign: Array, *, rate: bool = False) -> dict[str, Array]:
@@ -173,10 +173,8 @@ class PairSystem:
         constant = 0.0 if rate else 1.0
         y_t = y[:, 1] + constant * self.x[:, 1] + z0 * cover.h
         y_n = y[:, 0] + constant * self.x[:, 0] + z0 * cover.g - sign * self.dilatancy * y_t
-        strength = constant * self.cohesion + self.mu * p + z0 * cover.c
-        room = np.where(np.isfinite(self.cap), constant * np.where(np.isfinite(self.cap), self.cap, 0.0), np.inf)
-        if rate:
-            room = np.zeros(self.m)
+        strength = self.cone.linear_strength(p, rate=rate) + z0 * cover.c
+        room = np.zeros(self.m) if rate else self.cone.cap
         return {
             "p": p,
             "y_n": y_n,

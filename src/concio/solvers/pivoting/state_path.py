@@ -165,7 +165,7 @@ class StatePath:
         free = system.frictionless | (open_ & system.weak & (system.dilatancy == 0.0))
         watched = (
             ("p", closed, 1.0),
-            ("room", closed & np.isfinite(system.cap), 1.0),
+            ("room", closed & system.cone.capped, 1.0),
             ("y_n", open_, 1.0),
             ("crush", normal == Normal.CRUSHED, -1.0),
             ("plus", stick, 1.0),

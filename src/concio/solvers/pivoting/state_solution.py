@@ -34,7 +34,7 @@ def state_matrix(system: PairSystem, normal: Array, sign: Array) -> tuple[sp.csr
     rows_t = sp.diags_array(stick.astype(float)) @ C_t
     nn = np.where(closed, system.a[:, 0] + delta, 1.0)
     nt = slope * (system.a[:, 1] + delta)
-    tn = np.where(stick, 0.0, sign * system.mu)
+    tn = np.where(stick, 0.0, sign * system.cone.friction)
     tt = np.where(stick, system.a[:, 1] + delta, 1.0)
     C_nt, C_tt = sp.csr_array(C_n.T), sp.csr_array(C_t.T)
     matrix = sp.block_array(
@@ -104,7 +104,7 @@ def finish(system: PairSystem, normal: Array, sign: Array, *, method: str, **ext
     v = state_solution(system, normal, sign, hard=True)
     p, r = v[system.n : -1].reshape(-1, 2).T
     p = np.maximum(np.where(normal == Normal.OPEN, 0.0, p), 0.0)
-    strength = system.cohesion + system.mu * p
+    strength = system.cone.linear_strength(p)
     r = np.clip(np.where(sign == 0, r, -sign * strength), -strength, strength)
     u, t_n, t_t = s.restore(v[: system.n], np.column_stack([p, r]))
     t_n = np.where(normal == Normal.OPEN, -problem.laws.tension, t_n)

@@ -6,7 +6,7 @@ beta = (c + mu t_n, t_t) and w of the caps t_n <= N; see :mod:`concio.solvers.st
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -108,6 +108,7 @@ class ConeProgramme:
         self.cap = np.where(self.capped, cone.cap, 0.0)
         self.coulomb = self.rough & (cone.friction > SMOOTH)  # the others with friction have a constant strength
         self.mu = np.where(self.coulomb, cone.friction, 0.0)
+        self.cone = replace(cone, friction=self.mu)
         self.line = ~self.rough | (cone.cohesion > 0)  # where the cone itself does not keep t_n >= 0
         self.degenerate = False
         self.count = max(int(self.line.sum()) + 2 * int(self.rough.sum()) + int(self.capped.sum()), 1)
@@ -120,7 +121,7 @@ class ConeProgramme:
     def strength(self, t: Array) -> Array:
         """Return beta (m, d); (1, 0) where there is no cone."""
         beta = t.copy()
-        beta[:, 0] = self.pairs.cone.cohesion + self.mu * t[:, 0]
+        beta[:, 0] = self.cone.linear_strength(t[:, 0])
         beta[~self.rough] = 0.0
         beta[~self.rough, 0] = 1.0
         return beta

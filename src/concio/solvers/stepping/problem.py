@@ -190,7 +190,7 @@ class StepProblem:
         if self.plain and self.dim == 2:
             y, along, force = y_t[:, 0], t[:, 1], self.force
             law = np.abs(np.minimum(t_n / force, (y_n - self.dilatancy * np.abs(y)) / self.length))
-            strength = np.maximum(cone.friction * t_n, 0.0)
+            strength = cone.strength(t_n)
             trial = along - force / self.length * y
             wrong = np.abs(along - np.minimum(np.maximum(trial, -strength), strength)) / force
             idle = np.maximum(np.abs(t_n), np.abs(along)) / force
@@ -203,7 +203,7 @@ class StepProblem:
         p = t_n / self.force
         law = np.abs(p - np.clip(p - y_n, -cone.tension / self.force, cone.cap / self.force))
         with np.errstate(invalid="ignore"):
-            strength = np.where(self.pinned, np.inf, np.maximum(cone.cohesion + cone.friction * t_n, 0.0))
+            strength = np.where(self.pinned, np.inf, cone.strength(t_n))
         trial = t_t - ratio * y_t
         size = np.abs(trial[:, 0]) if self.dim == 2 else np.linalg.norm(trial, axis=1)
         outside = size > strength

@@ -53,7 +53,7 @@ def solve_small(W: Array, q: Array, cone: Cone, dilatancy: Array) -> tuple[Array
     M[capped, crush] = np.eye(c)
     M[crush, capped] = -np.eye(c)
     q0[:v], q0[plus], q0[minus] = shift[n], shift[T], -shift[T]
-    q0[slip] = (cone.cohesion - cone.friction * cone.tension)[rough]
+    q0[slip] = cone.linear_strength(-cone.tension)[rough]
     q0[crush] = (cone.cap + cone.tension)[capped]
     found = lemke(LinearComplementarity(M, q0))
     if found.outcome is not Outcome.SOLVED:
