@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 
 import concio
+import concio.solvers.stepping.solver as step_solver
 from concio.analysis.motion.pairs import relative
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.statics import Statics
 from concio.analysis.motion.stepper import at_rest
 from concio.contact.moving.reference import Reference
+from concio.kinematics.rigid import rigid_row
 from concio.problem.cone import Cone
+from concio.problem.pair_state import PairState, PairStates
+from concio.solvers.stepping.matrix import StepMatrix
+from concio.solvers.stepping.problem import StepProblem
 from concio.solvers.stepping.small import solve_small
+from concio.solvers.stepping.solver import StepSolver
 from motion_models import G, standing
 
 
@@ -45,6 +53,39 @@ def test_small_problems_obey_the_joint_law(seed):
     assert (y_n[t_n < cap - small] >= -small).all()
     slides = np.abs(y_t) > small
     assert t_t[slides] == pytest.approx((-np.sign(y_t) * (cohesion + mu * t_n))[slides], abs=small)
+
+
+def test_pivoting_goes_on_from_the_states_a_step_has_reached(monkeypatch):
+    """Where nothing else ends, pairs that slip are handed on as slipping, not as crushed."""
+    arm = np.array([[-0.5, -1.0], [0.5, -1.0]])
+    values = np.stack([rigid_row(np.broadcast_to(direction, arm.shape), arm, 1.0) for direction in np.eye(2)[::-1]], 1)
+    zero, m = np.zeros(2), 2
+    p = StepProblem(
+        matrix=StepMatrix(sp.csr_array(np.diag([2.0, 2.0, 0.7]))), b=np.array([4.0, -5.0, 0.3]),
+        columns=np.tile(np.arange(3), (m, 1)), values=values, gap=zero, origin=np.zeros((m, 1)),
+        cone=Cone(np.full(m, 0.3), zero, zero, np.full(m, np.inf)), a_n=zero, a_t=zero, dilatancy=zero,
+        active=np.ones(m, dtype=bool), force=5.0, length=2.0,
+    )  # fmt: skip
+    all_closed = PairStates.plane(np.ones(m), zero)
+    answer = StepSolver().solve(p, all_closed, np.zeros(3), np.zeros((m, 2)))
+    assert answer.residual < 1e-12
+    assert (answer.states.code == PairState.SLIP).all()
+
+    handed = []
+    near = SimpleNamespace(
+        displacement=answer.x, normal_force=answer.t[:, 0] + 1e-6, friction_force=answer.t[:, 1:] - 3e-7
+    )
+    pivot = step_solver.sparse_lemke.solve
+    monkeypatch.setattr(step_solver, "ROUNDS", 0)
+    monkeypatch.setattr(step_solver.interior, "solve", lambda _: near)
+    monkeypatch.setattr(
+        step_solver.sparse_lemke, "solve", lambda problem, **known: handed.append(known) or pivot(problem, **known)
+    )
+    found = StepSolver().solve(p, all_closed, np.zeros(3), np.zeros((m, 2)))
+    assert (handed[0]["start_states"].code == PairState.SLIP).all()
+    assert found.how == "pivoting"
+    assert found.residual < 1e-12
+    assert found.x == pytest.approx(answer.x, abs=1e-12)
 
 
 def test_turned_blocks_slip_by_what_their_points_move_along_the_joint():

@@ -10,6 +10,7 @@ from concio.analysis.motion.pairs import PairMaker
 from concio.analysis.motion.state import Memory
 from concio.contact.moving.rows import Rows
 from concio.model.model import Model
+from concio.problem.pair_state import Normal
 
 Array = np.ndarray
 
@@ -47,16 +48,16 @@ def joint_events(
     known = np.isin(after.key, before.key)
     slots = maker.slots
     carries = after.force[:, 0] > 0
-    closed = (after.contact > 0) & rows.valid
-    was = old.contact > 0
+    closed = (after.contact != Normal.OPEN) & rows.valid
+    was = old.contact != Normal.OPEN
     kinds = (
         ("opens", known & was & ~closed & (old.force[:, 0] > 0)),
         ("closes", known & ~was & closed & carries),
         ("touches", ~known & closed & carries & ~slots.bonded),
         ("slips", closed & carries & (after.slip != 0) & ~(known & (old.slip == after.slip))),
         ("sticks", closed & carries & known & (after.slip == 0) & (old.slip != 0)),
-        ("crushes", (after.contact == 2) & ~(known & (old.contact == 2))),
-        ("recovers", known & (old.contact == 2) & (after.contact != 2)),
+        ("crushes", (after.contact == Normal.CRUSHED) & ~(known & (old.contact == Normal.CRUSHED))),
+        ("recovers", known & (old.contact == Normal.CRUSHED) & (after.contact != Normal.CRUSHED)),
     )
     found = []
     for kind, hit in kinds:

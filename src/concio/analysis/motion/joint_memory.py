@@ -14,6 +14,7 @@ import numpy as np
 from concio.analysis.motion.joint_step import JointAnswer, JointStep, PairData
 from concio.analysis.motion.joints import Joints
 from concio.analysis.motion.state import Memory
+from concio.problem.pair_state import Normal
 
 Array = np.ndarray
 
@@ -35,7 +36,7 @@ def after_step(
         [s].
     """
     y, t = found.motion, found.force
-    contact, slip = np.where(data.active, found.contact, 0), found.slip
+    contact, slip = np.where(data.active, found.contact, np.int8(Normal.OPEN)), found.slip
     lost_n, lost_t = -h * t[:, 0] * y[:, 0], -h * t[:, 1] * y[:, 1]
     slid, stretch, stuck = _plastic_slip(memory, step, t, contact, slip, h * y[:, 1])
     raised, damped = memory.raised, 0.0
@@ -46,7 +47,7 @@ def after_step(
     crushing, squeezed, crushed = memory.crushing, np.zeros(len(t)), 0.0
     if joints.any_cap:
         yields = np.where(step.springy, -step.a_n * data.cone.cap - sunk, -h * y[:, 0])
-        squeezed = np.where(contact == 2, np.maximum(yields, 0.0), 0.0)
+        squeezed = np.where(contact == Normal.CRUSHED, np.maximum(yields, 0.0), 0.0)
         crushing, crushed = crushing + squeezed, float((t[:, 0] * squeezed).sum())
     broken, stored = _broken(joints, memory, step, contact, slip), step.stored
     if step.springs is not None:
@@ -91,14 +92,14 @@ def after_equilibrium(
     found : JointAnswer
     """
     y, t = found.motion, found.force
-    contact, slip = np.where(data.active, found.contact, 0), found.slip
-    touches = contact > 0
+    contact, slip = np.where(data.active, found.contact, np.int8(Normal.OPEN)), found.slip
+    touches = contact != Normal.OPEN
     stretch = np.where(touches, -step.a_t * t[:, 1], 0.0)
     slid = np.where(touches & (slip != 0), y[:, 1] - stretch, 0.0)
     crushing = memory.crushing
     if joints.any_cap:
         depth = -(y[:, 0] + step.a_n * t[:, 0])
-        crushing = crushing + np.where(contact == 2, np.maximum(depth, 0.0), 0.0)
+        crushing = crushing + np.where(contact == Normal.CRUSHED, np.maximum(depth, 0.0), 0.0)
     sunk = stored = np.zeros(len(t))
     if step.springs is not None:
         sunk = np.where(touches, -step.a_n * t[:, 0], np.maximum(y[:, 0], step.springs.longest))
@@ -118,15 +119,15 @@ def _plastic_slip(
     A hard pair that is hit keeps no stretch: what an impact moves was never elastic.
     """
     soft = step.a_t > 0
-    hit = (contact > 0) & ~(memory.force[:, 0] > 0) & ~step.springy
-    stuck = soft & (slip == 0) & (contact > 0) & ~hit
+    hit = (contact != Normal.OPEN) & ~(memory.force[:, 0] > 0) & ~step.springy
+    stuck = soft & (slip == 0) & (contact != Normal.OPEN) & ~hit
     stretch = np.where(stuck, memory.stretch + moved, np.where(soft & ~hit, -step.a_t * t[:, 1], 0.0))
     slid = moved - np.where(soft, stretch - memory.stretch, 0.0)
-    return np.where((contact > 0) & (slip != 0), slid, 0.0), stretch, stuck
+    return np.where((contact != Normal.OPEN) & (slip != 0), slid, 0.0), stretch, stuck
 
 
 def _broken(joints: Joints, memory: Memory, step: JointStep, contact: Array, slip: Array) -> Array:
     """Return which joints (m,) have lost cohesion and tensile strength: brittle ones that opened or slipped."""
     if not (joints.any_bond and joints.scheme.brittle):
         return memory.broken
-    return np.asarray(memory.broken | (step.bonded & ((contact == 0) | (slip != 0))))
+    return np.asarray(memory.broken | (step.bonded & ((contact == Normal.OPEN) | (slip != 0))))

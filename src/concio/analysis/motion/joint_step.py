@@ -81,7 +81,7 @@ class JointAnswer:
     force : (m, d) array
         [kN].
     contact, slip : (m,) integer arrays
-        State: 0 open, 1 closed, 2 crushed; sign of the slip.
+        State: codes of :class:`concio.problem.pair_state.Normal`; sign of the slip.
     """
 
     motion: Array

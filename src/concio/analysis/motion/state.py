@@ -9,6 +9,7 @@ import numpy as np
 from concio.contact.moving.attachments import Ties
 from concio.contact.moving.reference import Configuration, Reference
 from concio.kinematics.placement import Placement
+from concio.problem.pair_state import Normal, PairStates
 
 Array = np.ndarray
 
@@ -22,7 +23,7 @@ class Memory:
     key : (m,) integer array
         Names of the pairs, growing.
     contact, slip : (m,) integer arrays
-        State: 0 open, 1 closed, 2 crushed; sign of the slip.
+        State: codes of :class:`concio.problem.pair_state.Normal`; sign of the slip.
     force : (m, d) array
         Normal and friction forces of the last step [kN].
     stretch : (m,) array
@@ -60,9 +61,15 @@ class Memory:
         m = len(key)
         zero = np.zeros(m)
         return cls(
-            key, np.ones(m, dtype=np.int8), np.zeros(m, dtype=np.int8), np.zeros((m, dim)), zero, zero.copy(),
-            zero.copy(), np.zeros(m, dtype=bool), zero.copy(), zero.copy(), zero.copy(), zero.copy(),
+            key, np.full(m, int(Normal.CLOSED), dtype=np.int8), np.zeros(m, dtype=np.int8), np.zeros((m, dim)),
+            zero, zero.copy(), zero.copy(), np.zeros(m, dtype=bool), zero.copy(), zero.copy(), zero.copy(), zero.copy(),
         )  # fmt: skip
+
+    def states(self, count: int) -> PairStates:
+        """Return the states of ``count`` pairs, those behind the m remembered closed and sticking."""
+        normal, sign = np.full(count, int(Normal.CLOSED), dtype=np.int8), np.zeros(count)
+        normal[: len(self.key)], sign[: len(self.key)] = self.contact, self.slip
+        return PairStates.plane(normal, sign)
 
     def carried_to(self, key: Array) -> Memory:
         """Return the memory of pairs with other keys, blank where a key is new."""

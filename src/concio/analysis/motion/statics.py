@@ -23,9 +23,10 @@ from concio.analysis.motion.state import Memory, MotionState
 from concio.analysis.motion.tie_bars import settled_ties
 from concio.contact.moving.reference import Reference
 from concio.model.stages import ControlPoint
+from concio.problem.pair_state import PairStates
 from concio.problem.tolerances import CERTIFIED
 from concio.solvers.algebra.sparse_factor import Engine, SingularMatrixError
-from concio.solvers.stepping.problem import StepProblem, StepSolution, StepStates
+from concio.solvers.stepping.problem import StepProblem, StepSolution
 from concio.solvers.stepping.solver import StepSolver
 
 Array = np.ndarray
@@ -170,7 +171,7 @@ class Statics(SmallDisplacements):
             self.solver.new_layout()
         return look
 
-    def _solved(self, p: StepProblem, states: StepStates, t: Array, x: Array | None = None) -> StepSolution:
+    def _solved(self, p: StepProblem, states: PairStates, t: Array, x: Array | None = None) -> StepSolution:
         """Return the solution of a step problem, begun with displacements x (N,) or none; count it if it is none."""
         found = self.solver.solve(p, states, np.zeros(self.frames.n) if x is None else x, t)
         self._unsolved += not found.residual <= CERTIFIED
@@ -222,21 +223,18 @@ class Statics(SmallDisplacements):
             t = found.t.copy()
             t[k + len(self.maker.ties) :] = 0.0  # ties at rest do not swing
             residual, _ = p.residual(np.zeros(self.frames.n), t)
-            contact, slip = found.states.contact[:m], found.states.slip[:m]
-            answer = JointAnswer(look.data.shift, found.t[:m], contact, slip)
+            answer = JointAnswer(look.data.shift, found.t[:m], found.states.normal[:m], found.states.sign[:m])
             memory = after_equilibrium(self.maker.joints, look.memory, look.joint, look.data, answer)
             own = slice(k, k + len(self.maker.ties))
-            tied = settled_ties(self.maker.ties, state.ties, look.parts[2], t[own, 0], found.states.contact[own])
+            tied = settled_ties(self.maker.ties, state.ties, look.parts[2], t[own, 0], found.states.normal[own])
         else:
             residual, memory, tied = np.inf, look.memory, state.ties
         placed = replace(state, memory=memory, ties=tied)
         return Balanced(placed, multiplier, residual, residual <= CERTIFIED, moved, found.t, m, count)
 
 
-def _guess(p: StepProblem, memory: Memory, last: StepSolution | None) -> tuple[StepStates, Array]:
+def _guess(p: StepProblem, memory: Memory, last: StepSolution | None) -> tuple[PairStates, Array]:
     """Return states and forces (pairs, d) to begin with: those of the last iteration, or the states of the memory."""
     if last is not None and len(last.t) == p.pairs:
         return last.states, last.t
-    states = StepStates(np.ones(p.pairs, dtype=np.int8), np.zeros(p.pairs, dtype=np.int8))
-    states.contact[: len(memory.key)], states.slip[: len(memory.key)] = memory.contact, memory.slip
-    return states, np.zeros((p.pairs, 2))
+    return memory.states(p.pairs), np.zeros((p.pairs, 2))

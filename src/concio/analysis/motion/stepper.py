@@ -33,7 +33,7 @@ from concio.contact.moving.reference import Reference
 from concio.contact.moving.rows import Rows
 from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.stepping.matrix import StepMatrix
-from concio.solvers.stepping.problem import StepSolution, StepStates
+from concio.solvers.stepping.problem import StepSolution
 from concio.solvers.stepping.solver import StepSolver
 
 Array = np.ndarray
@@ -152,11 +152,10 @@ class Stepper:
         parts = [data, held] if ties is None else [data, held, ties.data]
         problem = assembled(self.matrix(h), b, parts, force, speed)
         m, count = len(memory.key), problem.pairs
-        states = StepStates(np.ones(count, dtype=np.int8), np.zeros(count, dtype=np.int8))
         k = m + len(maker.held)
-        states.contact[:m], states.slip[:m] = memory.contact, memory.slip
+        states = memory.states(count)
         if ties is not None:
-            states.contact[k:] = ties.states()
+            states.normal[k:] = ties.states()
         t0 = np.zeros((count, 2))
         t0[:m] = memory.force
         found = self.solver.solve(problem, states, x0, t0)
@@ -164,7 +163,7 @@ class Stepper:
         x = theta * found.x + (1 - theta) * x0
         y = relative(rows.columns, rows.values, x) + rows.imposed
         memory_before = memory
-        answer = JointAnswer(y, found.t[:m], found.states.contact[:m], found.states.slip[:m])
+        answer = JointAnswer(y, found.t[:m], found.states.normal[:m], found.states.sign[:m])
         memory, works = after_step(maker.joints, memory, joint, data, answer, h)
         works["input"] = h * float(ground @ x) - h * float((found.t[:m] * rows.imposed).sum())
         if len(maker.held):
@@ -173,7 +172,7 @@ class Stepper:
         tied = state.ties
         if ties is not None:
             rate = relative(ties.data.columns, ties.data.values, x)[:, 0]
-            tied, lost, yielded = ties.remember(rate, found.t[k:, 0], found.states.contact[k:], h)
+            tied, lost, yielded = ties.remember(rate, found.t[k:, 0], found.states.normal[k:], h)
             works["damping" if self.scheme.stiffness_damping else "impact"] += lost
             works["crushing"] += yielded
             works["drift"] += ties.drift

@@ -15,6 +15,7 @@ from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.springs import RETURN
 from concio.analysis.motion.state import TieMemory
 from concio.contact.moving.attachments import Ties
+from concio.problem.pair_state import Normal
 
 Array = np.ndarray
 
@@ -69,8 +70,8 @@ class TieStep:
         return cls(ties, begun, data, begun.stored(ties) - memory.stored(ties))
 
     def states(self) -> Array:
-        """Return the states (k,) in which the ties are to begin with: 0 slack, 1 tight."""
-        return (self.memory.sunk < 0).astype(np.int8)
+        """Return the states (k,) in which the ties are to begin with: open where slack, closed where tight."""
+        return np.where(self.memory.sunk < 0, Normal.CLOSED, Normal.OPEN).astype(np.int8)
 
     def remember(self, y: Array, t: Array, contact: Array, h: float) -> tuple[TieMemory, float, float]:
         """Return what ties remember after the step, and the energies lost and taken by yielding [kN m].
@@ -82,12 +83,12 @@ class TieStep:
         t : (k,) array
             Tensions [kN].
         contact : (k,) integer array
-            States; 2 where a tie yields.
+            States; crushed where a tie yields.
         h : float
             [s].
         """
         ties, sunk = self.ties, self.memory.sunk + h * y
-        squeezed = np.where(contact == 2, np.maximum(-ties.most / ties.stiffness - sunk, 0.0), 0.0)
+        squeezed = np.where(contact == Normal.CRUSHED, np.maximum(-ties.most / ties.stiffness - sunk, 0.0), 0.0)
         after = self.memory.grown(ties, sunk, squeezed)
         yielded = float((t * squeezed).sum())
         change = after.stored(ties) - self.memory.stored(ties)
@@ -110,5 +111,5 @@ def settled_ties(ties: Ties, memory: TieMemory, data: PairData, t: Array, contac
         States.
     """
     gap = data.shift[:, 0]
-    squeezed = np.where(contact == 2, np.maximum(-gap - t / ties.stiffness, 0.0), 0.0)
+    squeezed = np.where(contact == Normal.CRUSHED, np.maximum(-gap - t / ties.stiffness, 0.0), 0.0)
     return memory.grown(ties, gap, squeezed)

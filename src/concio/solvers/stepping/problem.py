@@ -24,6 +24,7 @@ import scipy.sparse as sp
 
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array, ContactProblem, Laws
+from concio.problem.pair_state import PairStates
 from concio.solvers.stepping.matrix import FEW, StepMatrix
 
 DELTA = 1e-6
@@ -254,34 +255,6 @@ def largest(v: Array) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class StepStates:
-    """States of the pairs of a step.
-
-    Parameters
-    ----------
-    contact : (m,) integer array
-        0 open, 1 closed, 2 crushed.
-    slip : (m,) integer array
-        Sign of the slip; 0 where a pair sticks.
-    """
-
-    contact: Array
-    slip: Array
-
-    def same(self, other: StepStates) -> bool:
-        """Return whether all states are the same."""
-        return bool((self.contact == other.contact).all() and (self.slip == other.slip).all())
-
-    def halting(self, before: StepStates) -> StepStates:
-        """Return these states with pairs sticking that would slide back after sliding forwards.
-
-        What slides one way in one round and the other way in the next sticks in nine answers of ten.
-        """
-        back = (self.contact > 0) & (before.contact > 0) & (self.slip * before.slip < 0)
-        return StepStates(self.contact, np.where(back, 0, self.slip).astype(np.int8))
-
-
-@dataclass(frozen=True, eq=False)
 class StepSolution:
     """Answer of one step.
 
@@ -290,7 +263,7 @@ class StepSolution:
     x : (N,) array
     t : (m, d) array
         Forces, normal first [kN].
-    states : StepStates
+    states : PairStates
     residual : float
         Worst relative violation of any equation.
     how : str
@@ -300,7 +273,7 @@ class StepSolution:
 
     x: Array
     t: Array
-    states: StepStates
+    states: PairStates
     residual: float
     how: str
     factorisations: int

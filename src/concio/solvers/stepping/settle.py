@@ -13,8 +13,9 @@ from __future__ import annotations
 import numpy as np
 
 from concio.problem.contact_problem import Array
+from concio.problem.pair_state import PairStates
 from concio.solvers.stepping.factor import StepFactor
-from concio.solvers.stepping.problem import StepProblem, StepStates
+from concio.solvers.stepping.problem import StepProblem
 from concio.solvers.stepping.small import solve_small
 from concio.solvers.stepping.states import Linear, read_states, solve_states
 
@@ -44,15 +45,15 @@ class UpdatedFactor:
 
 
 def settle(
-    p: StepProblem, factor: StepFactor, states: StepStates, x: Array, t: Array, D: Array
-) -> tuple[Array, Array, StepStates, float, int]:
+    p: StepProblem, factor: StepFactor, states: PairStates, x: Array, t: Array, D: Array
+) -> tuple[Array, Array, PairStates, float, int]:
     """Settle the states of a step whose states, factorised, gave (x, t).
 
     Returns
     -------
     x : (N,) array
     t : (m, 2) array
-    states : StepStates
+    states : PairStates
     residual : float
     work : int
         Pairs that took part, summed over the rounds.
@@ -67,7 +68,7 @@ def settle(
     work = 0
     for _ in range(ROUNDS):
         new = read_states(p, x, t)
-        violated = (laws > SETTLED) & ((new.contact != states.contact) | (new.slip != states.slip))
+        violated = (laws > SETTLED) & new.differ(states)
         violated[chosen] = False
         added = np.flatnonzero(violated)
         if not added.size:
@@ -110,9 +111,9 @@ def settle(
         t[chosen] = tau.reshape(-1, d)
         _, laws = p.residual(x, t)
         small = read_states(p, x, t)
-        contact, slip = states.contact.copy(), states.slip.copy()
-        contact[chosen], slip[chosen] = small.contact[chosen], small.slip[chosen]
-        now = StepStates(contact, slip)
+        normal, direction = states.normal.copy(), states.direction.copy()
+        normal[chosen], direction[chosen] = small.normal[chosen], small.direction[chosen]
+        now = PairStates(normal, direction)
         settled = Linear.of(p, now)
         D_now = settled.blocks(p)
         try:

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from concio.errors import SolverError
 from concio.problem.contact_problem import Array
-from concio.problem.pair_state import PairState, PairStates
+from concio.problem.pair_state import PairStates
 from concio.solvers.algebra.sparse_factor import Engine, SingularMatrixError
 from concio.solvers.interior import engine as interior
 from concio.solvers.pivoting import sparse_lemke
 from concio.solvers.stepping.factor import StepFactor
-from concio.solvers.stepping.problem import StepProblem, StepSolution, StepStates
+from concio.solvers.stepping.problem import StepProblem, StepSolution
 from concio.solvers.stepping.settle import SETTLED, settle
-from concio.solvers.stepping.states import Linear, read_states, solve_states
+from concio.solvers.stepping.states import Linear, halting, read_states, solve_states
 
 FEW = 25
 """Changed pairs up to which one small problem is cheaper than another factorisation."""
@@ -48,21 +47,21 @@ class StepSolver:
         """Forget the pattern: the rows meet other unknowns from now on."""
         self.factor = None
 
-    def solve(self, p: StepProblem, states: StepStates, x: Array, t: Array) -> StepSolution:
+    def solve(self, p: StepProblem, states: PairStates, x: Array, t: Array) -> StepSolution:
         """Solve a step from the states of the one before and a point near the answer."""
         if self.factor is None:
             self.factor = StepFactor(p.matrix.sparse, p.columns, self.engine)
         factor, begun = self.factor, self.factor.count
         best: StepSolution | None = None
 
-        def keep(x: Array, t: Array, states: StepStates, residual: float, how: str) -> StepSolution:
+        def keep(x: Array, t: Array, states: PairStates, residual: float, how: str) -> StepSolution:
             nonlocal best
             found = StepSolution(x, t, states, residual, how, factor.count - begun)
             if best is None or residual < best.residual:
                 best = found
             return best
 
-        seen: list[StepStates] = []
+        seen: list[PairStates] = []
         for round_ in range(ROUNDS):
             linear = Linear.of(p, states)
             D = linear.blocks(p)
@@ -75,20 +74,20 @@ class StepSolver:
             found = keep(x1, t1, states, residual, "same states" if not round_ else "active set")
             if residual < GOOD:
                 return self._count(found)
-            new = read_states(p, x1, t1, errors).halting(states)
-            changed = int(((laws > SETTLED) & ((new.contact != states.contact) | (new.slip != states.slip))).sum())
+            new = halting(read_states(p, x1, t1, errors), states)
+            changed = int(((laws > SETTLED) & new.differ(states)).sum())
             seen.append(states)
-            if changed <= FEW or round_ >= FLIPS or any(new.same(s) for s in seen):
+            if changed <= FEW or round_ >= FLIPS or any(not new.differ(s).any() for s in seen):
                 x2, t2, settled, residual, _ = settle(p, factor, states, x1, t1, D)
                 found = keep(x2, t2, settled, residual, "small problem")
                 if residual < SETTLED:
                     return self._count(found)
-                if any(new.same(s) for s in seen):
+                if any(not new.differ(s).any() for s in seen):
                     break
             states = new
         return self._count(self._fallback(p, best))
 
-    def response(self, p: StepProblem, states: StepStates, f: Array) -> Array:
+    def response(self, p: StepProblem, states: PairStates, f: Array) -> Array:
         """Return the change of x (N,) under a change f (N,) of the right-hand side, in given states."""
         if self.factor is None:
             self.factor = StepFactor(p.matrix.sparse, p.columns, self.engine)
@@ -107,11 +106,7 @@ class StepSolver:
         if found.residual < SETTLED:
             return found
         nearest = found if best is None or found.residual < best.residual else best
-        s = nearest.states
-        slides = np.where(s.slip == 0, PairState.STICK, PairState.SLIP)
-        code = np.where(s.contact == 0, PairState.OPEN, np.where(s.contact == 2, PairState.CRUSHED, slides))
-        named = PairStates(code[pick].astype(np.int8), s.slip[pick, None].astype(float))
-        answer = sparse_lemke.solve(problem, start_states=named, tries=0, limit=PIVOTS * len(pick))
+        answer = sparse_lemke.solve(problem, start_states=nearest.states[pick], tries=0, limit=PIVOTS * len(pick))
         found = self._read(p, pick, answer.displacement, answer.normal_force, answer.friction_force, "pivoting")
         return found if found.residual < nearest.residual else nearest
 
@@ -120,17 +115,3 @@ class StepSolver:
         t[pick, 0], t[pick, 1:] = t_n, t_t
         residual, _ = p.residual(x, t)
         return StepSolution(x, t, read_states(p, x, t), residual, how, 0)
-
-
-def require(found: StepSolution, tolerance: float) -> StepSolution:
-    """Return a solution that holds to a tolerance.
-
-    Raises
-    ------
-    SolverError
-        It does not.
-    """
-    if not found.residual <= tolerance:
-        msg = f"a step was solved to {found.residual:.1e} only"
-        raise SolverError(msg, hint="take a smaller step")
-    return found

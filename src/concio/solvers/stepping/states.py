@@ -13,7 +13,8 @@ from typing import Protocol
 import numpy as np
 
 from concio.problem.contact_problem import Array
-from concio.solvers.stepping.problem import Errors, StepProblem, StepStates, largest
+from concio.problem.pair_state import Normal, PairStates
+from concio.solvers.stepping.problem import Errors, StepProblem, largest
 
 EXACT = 1e-13
 """Relative residual at which refinement stops."""
@@ -64,29 +65,29 @@ class Linear:
     opens: bool
 
     @classmethod
-    def of(cls, p: StepProblem, states: StepStates) -> Linear:
+    def of(cls, p: StepProblem, states: PairStates) -> Linear:
         """Return the linear laws of states."""
-        cone, sigma = p.cone, states.slip.astype(float)
+        cone, sigma = p.cone, states.direction[:, 0]
         delta_n, delta_t = p.added
         if p.plain:
-            closed, zero = (states.contact == 1) & p.active, np.zeros(p.pairs)
+            closed, zero = states.closed & p.active, np.zeros(p.pairs)
             rough = closed & cone.rough
-            stick = rough & (states.slip == 0) & (p.flexibility[:, 1] + p.a_t > 0)
-            slips = rough & (states.slip != 0)
+            stick = rough & (sigma == 0) & (p.flexibility[:, 1] + p.a_t > 0)
+            slips = rough & (sigma != 0)
             drag = np.where(slips, -sigma * cone.friction, 0.0)
             return cls(
                 closed, stick, drag, zero, zero, p.dilatancy * sigma * slips if p.dilates else zero, delta_n,
                 np.where(stick, p.a_t + delta_t, 1.0), p.dilates,
             )  # fmt: skip
-        closed = ((states.contact == 1) & p.active) | p.glued
+        closed = (states.closed & p.active) | p.glued
         tension = np.where(p.glued | ~p.active, 0.0, cone.tension)
         cohesion = np.where(p.pinned, 0.0, cone.cohesion)
-        holds = p.active & cone.rough & ((states.contact != 0) | (cohesion - cone.friction * tension > 0))
-        stick = ((holds & (states.slip == 0)) | p.pinned) & (p.flexibility[:, 1] + p.a_t > 0)
+        holds = p.active & cone.rough & (~states.open | (cohesion - cone.friction * tension > 0))
+        stick = ((holds & (sigma == 0)) | p.pinned) & (p.flexibility[:, 1] + p.a_t > 0)
         slips = holds & ~stick
         drag = np.where(slips, -sigma * cone.friction, 0.0)
         pull = np.where(slips, -sigma * cohesion, 0.0)
-        crushed = (states.contact == 2) & p.active
+        crushed = states.crushed & p.active
         held = np.where(crushed, np.where(np.isfinite(cone.cap), cone.cap, 0.0), -tension)
         return cls(
             closed,
@@ -163,7 +164,7 @@ def _side_by_side(first: Array, second: Array) -> Array:
     return both
 
 
-def read_states(p: StepProblem, x: Array, t: Array, errors: Errors | None = None) -> StepStates:
+def read_states(p: StepProblem, x: Array, t: Array, errors: Errors | None = None) -> PairStates:
     """Return the states that the natural map assigns to a point, each pair measured by its own flexibility."""
     y_n, y_t = p.relative(x, t) if errors is None else errors[1:]
     stiff = 1.0 / np.where(p.flexibility > 0, p.flexibility, 1.0)
@@ -177,4 +178,13 @@ def read_states(p: StepProblem, x: Array, t: Array, errors: Errors | None = None
     tangential = t[:, 1] - stiff[:, 1] * slip
     sliding = np.where(tangential < -strength, 1, np.where(tangential > strength, -1, 0))
     sliding = np.where(p.pinned | ~p.active | ~cone.rough, 0, sliding)
-    return StepStates(np.where(crushed, 2, closed).astype(np.int8), sliding.astype(np.int8))
+    return PairStates.plane(np.where(crushed, Normal.CRUSHED, np.where(closed, Normal.CLOSED, Normal.OPEN)), sliding)
+
+
+def halting(states: PairStates, before: PairStates) -> PairStates:
+    """Return states of plane pairs, those sticking that would slide back after sliding forwards.
+
+    What slides one way in one round and the other way in the next sticks in nine answers of ten.
+    """
+    back = ~states.open & ~before.open & (states.direction[:, 0] * before.direction[:, 0] < 0)
+    return PairStates(states.normal, np.where(back[:, None], 0.0, states.direction))
