@@ -15,6 +15,7 @@ from commands import run
 from concio.analysis.limit import limit_stages
 from concio.io.result_file import load_result, save_result
 from concio.solvers.algebra.sparse_factor import Array, Pattern, chosen_engine
+from seismic_walls import overturning, site
 
 TEXT = """
 [column]
@@ -116,13 +117,25 @@ def test_steps_of_a_motion_are_solved_by_the_engine_of_the_model(asked: str, mon
         assert engines_of(lambda model=model: MOVED[asked](model), monkeypatch) == {engine}
 
 
+def test_assessments_in_space_are_solved_by_the_engine_of_the_model(monkeypatch: pytest.MonkeyPatch) -> None:
+    for engine in ("pardiso", "superlu"):
+        facade = replace(concio.extrude(overturning(2), 0.5), engine=engine)
+        assert engines_of(lambda m=facade: concio.assess(m, site=site(), direction="-x"), monkeypatch) == {engine}
+
+
+def test_a_comparison_of_methods_takes_the_engine_of_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "column.toml"
+    file.write_text(TEXT.format(solver=PARDISO), encoding="utf-8")
+    assert engines_of(lambda: run("compare", file, "--methods", "alart-curnier"), monkeypatch) == {"pardiso"}
+
+
 def test_between_two_numbers_of_a_limit_the_engine_is_what_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
     stages = limit_stages(replace(BLOCKS, engine="pardiso"), path=False, steps=False, search=False)
     next(stages)
     assert engines_of(lambda: concio.load_margin(BLOCKS, tolerance=0.5), monkeypatch) == {"superlu"}
 
 
-@pytest.mark.parametrize("command", ["run", "limit", "path", "push", "shake", "cell"])
+@pytest.mark.parametrize("command", ["run", "limit", "path", "push", "shake", "cell", "assess", "continuum"])
 def test_commands_take_the_engine(command: str, tmp_path: Path) -> None:
     file = tmp_path / "column.toml"
     file.write_text(TEXT.format(solver=""), encoding="utf-8")

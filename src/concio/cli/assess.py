@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,7 +11,7 @@ import typer
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
-from concio.cli.run import File, Json, Quiet
+from concio.cli.run import EngineOf, File, Json, Quiet
 
 if TYPE_CHECKING:
     from concio.analysis.seismic.assessment import Assessment
@@ -24,6 +25,7 @@ def assess(
     language: Annotated[
         str | None, typer.Option("--language", "-l", help="Language of the report, en or it; by default the file's.")
     ] = None,
+    engine: EngineOf = None,
     json: Json = False,
     quiet: Quiet = False,
 ) -> int:
@@ -41,12 +43,13 @@ def assess(
     if out is not None:
         check_directory(out)
     asked = read_asked(file)
+    model = asked.model if engine is None else replace(asked.model, engine=engine)
     tie: TieForce | None = None
     with progress_bar(shown=not (json or quiet)) as progress:
-        found = concio.assess(asked.model, progress=progress, **asked.arguments)
+        found = concio.assess(model, progress=progress, **asked.arguments)
         if asked.size_tie:
             arguments = {**asked.arguments, "progress": progress}
-            tie = tie_force(asked.model, asked.size_tie, largest=asked.largest_tie, **arguments)
+            tie = tie_force(model, asked.size_tie, largest=asked.largest_tie, **arguments)
         varied: tuple[Variation, ...] = ()
         if asked.sensitivity and out is not None:
             varied = variations(found, progress=progress)

@@ -27,13 +27,14 @@ def compare(
     """
     import concio
     from concio.contact.assembly import as_assembly
+    from concio.solvers.algebra.sparse_factor import factorised_by
     from concio.studies.compare import compare as compared
     from concio.studies.compare import format_table
 
     names = None if methods is None else [name.strip() for name in methods.split(",") if name.strip()]
     model = concio.load(file)
     problem = as_assembly(model).problem(factors_of(factor))
-    with progress_bar(shown=not json) as progress:
+    with factorised_by(model.engine), progress_bar(shown=not json) as progress:
         table = compared(problem, names, time_limit=time_limit, progress=progress, title=model.title or str(file))
     if json:
         print_json(table.as_dict())

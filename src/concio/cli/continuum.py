@@ -10,7 +10,7 @@ import typer
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
-from concio.cli.run import Factors, File, Json, factors_of
+from concio.cli.run import EngineOf, Factors, File, Json, factors_of, loaded
 
 
 @guarded
@@ -30,6 +30,7 @@ def continuum(
     elastic: Annotated[bool, typer.Option("--elastic/--no-elastic", help="Compare elastic answers.")] = True,
     strength: Annotated[bool, typer.Option("--strength/--no-strength", help="Compare limit loads.")] = True,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for tables and figures.")] = None,
+    engine: EngineOf = None,
     json: Json = False,
 ) -> int:
     """Solve a wall block by block and as a homogenised continuum, and put both side by side.
@@ -62,7 +63,7 @@ def continuum(
     halving: BlockHalving | None = None
     with progress_bar(shown=not json) as progress:
         if halve:
-            make = halved_file(file)
+            make = halved_file(file, engine)
             halving = concio.halve_blocks(
                 make, own, sizes=[2**k for k in range(halve + 1)], live=live, mesh_size=size, elastic=elastic,
                 strength=strength, progress=progress,
@@ -70,8 +71,8 @@ def continuum(
             found = halving.comparisons[0]
         else:
             found = concio.compare_with_continuum(
-                concio.load(file), own, factors=factors_of(factor), live=live, mesh_size=size, elastic=elastic,
-                strength=strength, progress=progress,
+                loaded(file, engine=engine), own, factors=factors_of(factor), live=live, mesh_size=size,
+                elastic=elastic, strength=strength, progress=progress,
             )  # fmt: skip
     written: list[str] = []
     if out is not None:

@@ -5,17 +5,19 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from copy import deepcopy
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from concio.model.model import Model
+    from concio.solvers.algebra.sparse_factor import Engine
 
 STIFFNESSES = ("normal_stiffness", "tangential_stiffness")
 
 
-def halved_file(file: Path) -> Callable[[int], Model]:
-    """Return ``make(n)``: the wall or panel of a file with blocks n times smaller in both directions.
+def halved_file(file: Path, engine: Engine | None = None) -> Callable[[int], Model]:
+    """Return ``make(n)``: the wall or panel of a file with blocks n times smaller in both directions, for an engine.
 
     Mortar joints become n times thinner and joints n times stiffer, so that the homogenised wall stays the same; a
     panel gets n times as many courses and blocks.
@@ -25,7 +27,7 @@ def halved_file(file: Path) -> Callable[[int], Model]:
     InputError
         The file describes no ``[wall]`` and no ``[panel]``.
     """
-    import concio
+    from concio.cli.run import loaded
     from concio.errors import InputError
     from concio.model.file.reading import model_from_tables, read_tables
 
@@ -37,13 +39,14 @@ def halved_file(file: Path) -> Callable[[int], Model]:
 
     def make(n: int) -> Model:
         if n == 1:
-            return concio.load(file)
+            return loaded(file, engine=engine)
         tables = deepcopy(data)
         _halve(tables[kind], kind, n)
         for name in ("joints", "materials"):
             for law in tables.get(name, {}).values():
                 _stiffen(law, n)
-        return model_from_tables(tables, folder=file.parent, name=str(file))
+        model = model_from_tables(tables, folder=file.parent, name=str(file))
+        return model if engine is None else replace(model, engine=engine)
 
     return make
 

@@ -170,6 +170,7 @@ class CellPath:
         last = self.steps[-1]
         return {
             "title": self.cell.model.title,
+            "engine": self.cell.model.engine,
             "stages": [_stage(s) for s in self.stages],
             "outcomes": [o.name.lower() for o in self.outcomes],
             "complete": self.complete,

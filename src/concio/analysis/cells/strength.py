@@ -185,6 +185,7 @@ class StrengthDomain:
         domain = self.domain
         return {
             "title": self.cell.model.title,
+            "engine": self.cell.model.engine,
             "base": self.base.tolist(),
             "directions": [
                 {

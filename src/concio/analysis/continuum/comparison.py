@@ -93,6 +93,7 @@ class ContinuumComparison:
             "blocks": len(self.assembly.model.free_bodies),
             "triangles": len(self.wall.triangles),
             "cell": self.cell.model.title,
+            "engine": self.assembly.model.engine,
             "elastic": None,
             "elastic_note": self.elastic_note,
             "strength": None,

@@ -151,6 +151,7 @@ class DynamicsResult:
             "time": float(self.end.time),
             "steps": len(self.steps),
             "solved_by": self.steps.shares(),
+            "engine": self.model.engine,
             "certificate": {"worst": self.certificate},
             "energy_error": self.energy.error,
             "drift": float(self.steps.depth.max(initial=0.0)),

@@ -195,6 +195,7 @@ class PushResult:
             "status": self.ending.name.lower(),
             "sentence": self.ending.value,
             "title": self.model.title,
+            "engine": self.model.engine,
             "points": len(self),
             "peak": {"multiplier": self.peak, "displacement": float(self.displacement[self.peak_step])},
             "end": {"multiplier": float(self.multiplier[-1]), "displacement": float(self.displacement[-1])},

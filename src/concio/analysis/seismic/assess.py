@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from concio.analysis.engine import by_its_engine
 from concio.analysis.seismic.applied import pushes_sideways
 from concio.analysis.seismic.assessment import Assessment, LocalMechanism, NoMechanism
 from concio.analysis.seismic.chain import Chain, Participant, gathered
@@ -43,6 +44,7 @@ BARELY = 1e-3
 
 
 @strict
+@by_its_engine
 def assess(
     model: Model,
     *,

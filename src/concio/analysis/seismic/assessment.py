@@ -357,6 +357,7 @@ class Assessment:
             "zeta_E": _number(self.zeta),
             "holds": self.holds,
             "complete": self.complete,
+            "engine": self.model.engine,
             "mechanisms": [m.summary() for m in self.mechanisms],
             "no_mechanism": [{"name": n.name, "direction": n.direction, "why": n.sentence} for n in self.locked],
             "attention": list(self.notes),

@@ -9,6 +9,7 @@ from typing import Any
 
 from scipy.optimize import brentq
 
+from concio.analysis.engine import by_its_engine
 from concio.analysis.seismic.assess import EVERY, assess
 from concio.analysis.seismic.assessment import Assessment
 from concio.analysis.seismic.directions import Direction
@@ -52,6 +53,7 @@ class TieForce:
 
 
 @strict
+@by_its_engine
 def tie_force(model: Model, tie: str, *, zeta: float = 1.0, largest: float | None = None, **arguments: Any) -> TieForce:
     """Return the yield force of a tie that brings the least zeta_E of all mechanisms to ``zeta``, by solving.
 
@@ -127,6 +129,7 @@ class Variation:
     zeta: float
 
 
+@by_its_engine
 def variations(found: Assessment, progress: ProgressCallback | None = None) -> tuple[Variation, ...]:
     """Return how the weakest mechanism changes with the friction and, where joints crush, with their strength.
 
