@@ -22,7 +22,7 @@ SMALL = 0.1
 
 
 class PathEvent(Protocol):
-    """An event on a curve: :class:`concio.solvers.path.event_path.Event` has it."""
+    """An event on a curve: :class:`concio.solvers.path.record.Event` has it."""
 
     @property
     def parameter(self) -> float:

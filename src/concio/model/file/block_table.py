@@ -14,7 +14,7 @@ take for a formula are written with an apostrophe in front, which reading takes 
 A further column ``holes`` gives the holes of a block, written as its outline, with ``|`` between them; in JSON they
 are a list of outlines. A block in space has ``vertices`` and ``faces`` (and perhaps ``holes``, pairs of a face and a
 loop) in place of its outline; it goes into a JSON table. ``name`` and the shape must be there; the others, where they
-are left out or their cell is empty, have the defaults of :class:`concio.model.model.Body`. JSON may hold ``mesh_size``
+are left out or their cell is empty, have the defaults of :class:`concio.model.body.Body`. JSON may hold ``mesh_size``
 too, and another ``unit`` of its coordinates (thickness and mesh size are always in m).
 """
 

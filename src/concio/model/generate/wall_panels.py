@@ -27,7 +27,7 @@ class Panel:
     at : (x, y)
         Lower left corner [m].
     bond : str or sequence, optional
-        As in :func:`wall`; None takes the wall's.
+        As in :func:`concio.wall`; None takes the wall's.
     openings : sequence of Opening or mapping
         Measured from the panel's own corner.
     """
