@@ -16,12 +16,10 @@ from concio.analysis.result import Result
 from concio.analysis.thrust import AT_EDGE
 from concio.arguments import strict
 from concio.errors import InputError
+from concio.problem.tolerances import AT_BOUND
 from concio.representation import short_repr
 
 Array = np.ndarray
-
-CARRIES = 1e-9
-"""Joints with less than this share of the largest normal force carry nothing."""
 
 
 @short_repr
@@ -78,7 +76,7 @@ def thrust_surface(result: Result) -> ThrustSurface:
         msg = "a thrust surface is for models in space; the model is in the plane"
         raise InputError(msg, hint="thrust_line gives the line of thrust of an arch")
     joints, names = result.joints_in_space, [body.name for body in result.model.bodies]
-    chosen = np.flatnonzero(joints.N / (float(joints.N.max(initial=0.0)) or 1.0) > CARRIES)
+    chosen = np.flatnonzero(joints.N / (float(joints.N.max(initial=0.0)) or 1.0) > AT_BOUND)
     patches = [result.assembly.detection.patches[j] for j in chosen]
     distance = np.zeros((len(chosen), 2))
     for k, (patch, j) in enumerate(zip(patches, chosen, strict=True)):

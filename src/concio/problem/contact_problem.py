@@ -28,6 +28,7 @@ import scipy.sparse as sp
 
 from concio.errors import InputError
 from concio.problem.cone import Cone
+from concio.problem.tolerances import SMOOTH
 from concio.representation import short_repr
 
 Array = np.ndarray
@@ -170,7 +171,7 @@ class ContactProblem:
             msg = "R holds motions that deform a body: K R is not zero"
             raise InputError(msg, hint="leave the motions out that supports or springs resist")
         bound = self.laws.friction * self.laws.tension - self.laws.cohesion
-        if (bound > 1e-12 * (1.0 + self.laws.cohesion)).any():
+        if (bound > SMOOTH * self.laws.cohesion).any():
             k = int(np.argmax(bound))
             msg = f"pair {k}: tensile strength needs cohesion >= friction x tension"
             raise InputError(msg, hint="lower the tensile strength or raise the cohesion")

@@ -21,6 +21,7 @@ from concio.contact.assembly import Assembly
 from concio.fem.discretisation import FIXED, RIGID
 from concio.kinematics.frames import turned_left
 from concio.kinematics.rigid import motions, rigid_operator, swept
+from concio.problem.tolerances import AT_BOUND
 
 Array = np.ndarray
 
@@ -29,9 +30,6 @@ GROUND = -1
 
 STILL = {2: 1e-7, 3: 1e-6}
 """Relative velocities below this share of the largest are none; in space they come from cone programmes."""
-
-CARRIES = 1e-9
-"""Forces below this share of the largest are none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,7 +196,7 @@ def mechanics_of(assembly: Assembly, velocity: Array, normal_force: Array) -> Me
         blocks.append(MacroBlock(bodies, names, centre, np.concatenate([shifted, motion[first, d:]])))
     across = np.array([of_body.get(int(b), GROUND) for b in pairs.body_a])
     beyond = np.array([of_body.get(int(b), GROUND) for b in pairs.body_b])
-    loaded = normal_force > CARRIES * max(float(np.abs(normal_force).max(initial=0.0)), 1e-12)
+    loaded = normal_force > AT_BOUND * float(np.abs(normal_force).max(initial=0.0))
     active = np.flatnonzero(loaded & (across != beyond))
     speed = np.linalg.norm((pairs.C_t @ velocity).reshape(len(pairs), d - 1), axis=1)
     joints: list[MacroJoint] = []

@@ -23,7 +23,7 @@ from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, carried
 from concio.analysis.seismic.placed import Contacts, Placed, Stated, on_blocks, problem_of, stated
 from concio.kinematics.rigid import motions
 from concio.model.model import Tie
-from concio.problem.tolerances import CHECKED
+from concio.problem.tolerances import AT_BOUND, CHECKED
 from concio.solvers.statics.collapse_search import find_collapse_state
 from concio.solvers.statics.collapse_state import certify_collapse
 from concio.solvers.statics.limit import associated_limit
@@ -165,7 +165,7 @@ class Sequence:
         forces[closed] = found.normal_force
         slip = np.linalg.norm((problem.C_t @ found.velocity).reshape(len(closed), d - 1), axis=1)
         stays = np.zeros(len(now.gap), dtype=bool)
-        presses = found.normal_force > 1e-9 * max(float(found.normal_force.max(initial=0.0)), 1e-12)
+        presses = found.normal_force > AT_BOUND * float(found.normal_force.max(initial=0.0))
         stays[closed] = presses & (slip <= 1e-8)
         return State(q, found.multiplier, velocity / speed, forces, stays, now, pull, longer)
 
@@ -174,7 +174,7 @@ class Sequence:
         L, d = self.size, last.q.centre.shape[1]
         q = last.q.moved(last.velocity, length)
         crushing = np.isfinite(self.contacts.laws.cap)
-        presses = np.flatnonzero((last.normal_force > 1e-9 * last.normal_force.max(initial=0.0)) & ~crushing)
+        presses = np.flatnonzero((last.normal_force > AT_BOUND * last.normal_force.max(initial=0.0)) & ~crushing)
         stuck = np.flatnonzero(last.stays)
         rows = (stuck[:, None] * (d - 1) + np.arange(d - 1)).ravel()
         before = np.inf

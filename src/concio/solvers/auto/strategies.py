@@ -122,18 +122,11 @@ def moves_away(run: Run, motion: Departure) -> Solution:
 
 def merged(run: Run, answer: Solution, method: str) -> Solution:
     """Return an answer of another method with this run's work and trace."""
-    return Solution(
-        answer.status,
-        answer.displacement,
-        answer.normal_force,
-        answer.friction_force,
-        answer.kinematics,
-        answer.certificate,
-        method,
+    return replace(
+        answer,
+        method=method,
         iterations=run.iterations + answer.iterations,
         factorisations=run.scaled.factor.made + answer.factorisations,
-        mechanism=answer.mechanism,
-        departure=answer.departure,
         trace=tuple(run.trace),
         info={"history": tuple(run.history), **answer.info},
     )

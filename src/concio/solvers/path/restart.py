@@ -23,6 +23,7 @@ import numpy as np
 from concio.problem.certificate import scales
 from concio.problem.contact_problem import Array
 from concio.problem.solution import ProgressCallback, Solution, Status, failed
+from concio.problem.tolerances import AT_BOUND
 from concio.solvers.auto import chain as auto
 from concio.solvers.interior import engine
 from concio.solvers.path.near_forces import needed, solve_near
@@ -175,13 +176,13 @@ def moves_freely(path: LinearPath, point: PathState, velocity: Array) -> bool:
     force, length = scales(path.at(point.parameter), point.displacement, point.normal_force, point.friction_force)
     opening, _ = plastic_position(path, point)
     w_n, w_t = problem.C_n @ v, problem.C_t @ v
-    touching = opening + point.offset <= 1e-9 * length
+    touching = opening + point.offset <= AT_BOUND * length
     rough = problem.cone.rough
     strength = problem.cone.strength(point.normal_force)
     lifted = w_n - np.where(rough, law.dilatancy * np.abs(w_t), 0.0)
-    carried = point.normal_force + law.tension > 1e-9 * force
-    crushed = law.cap - point.normal_force <= 1e-9 * force
-    resisting = np.abs(point.friction_force[:, 0] + np.sign(w_t) * strength) > 1e-9 * force
+    carried = point.normal_force + law.tension > AT_BOUND * force
+    crushed = law.cap - point.normal_force <= AT_BOUND * force
+    resisting = np.abs(point.friction_force[:, 0] + np.sign(w_t) * strength) > AT_BOUND * force
     wrong = touching & (lifted < -FREE) & ~crushed
     wrong |= carried & (lifted > FREE)
     wrong |= rough & carried & (np.abs(w_t) > FREE) & resisting

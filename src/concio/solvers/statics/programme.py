@@ -67,46 +67,38 @@ class StaticProgramme:
 
     @cached_property
     def rays(self) -> tuple[Array, Array]:
-        """Return (pair, direction) of each ray: integers (k,) and vectors (k, 1); smooth pairs have one."""
-        m = self.problem.pairs
-        rough = np.flatnonzero(self.problem.laws.friction > 0)
-        return np.concatenate([np.arange(m), rough]), np.concatenate([np.ones((m, 1)), -np.ones((rough.size, 1))])
-
-    @cached_property
-    def spare(self) -> Array:
-        """Half width of the segment of each pair, (m,): c - mu T."""
-        return self.problem.cone.spare
+        """Return (pair, sign) of each ray, (k,): two of pairs with friction (t_t = +- mu t_n), one of others."""
+        m, frictional = self.problem.pairs, np.flatnonzero(self.problem.laws.friction > 0)
+        return np.concatenate([np.arange(m), frictional]), np.concatenate([np.ones(m), -np.ones(frictional.size)])
 
     @cached_property
     def map(self) -> tuple[sp.csc_array, Array]:
-        """Return (B, t0) with (t_n, t_t) = B x + t0, shapes (m d, n) and (m d,)."""
-        m, s = self.problem.pairs, self.problem.dim - 1
-        law = self.problem.laws
-        pair, direction = self.rays
-        sticky = np.flatnonzero(self.spare > 0)
-        segment = (m + sticky[:, None] * s + np.arange(s)).ravel()
+        """Return (B, t0) with (t_n, t_t) = B x + t0, shapes (2 m, n) and (2 m,)."""
+        m, law = self.problem.pairs, self.problem.laws
+        pair, sign = self.rays
+        sticky = np.flatnonzero(self.problem.cone.spare > 0)
         ray = np.arange(pair.size)
-        rows = [pair, *(m + pair * s + a for a in range(s)), segment]
-        columns = [ray, *(ray for _ in range(s)), pair.size + np.arange(segment.size)]
-        data = [np.ones(pair.size), *(law.friction[pair] * direction[:, a] for a in range(s)), np.ones(segment.size)]
-        shape = (m * (1 + s), pair.size + segment.size)
+        rows = [pair, m + pair, m + sticky]
+        columns = [ray, ray, pair.size + np.arange(sticky.size)]
+        data = [np.ones(pair.size), law.friction[pair] * sign, np.ones(sticky.size)]
+        shape = (2 * m, pair.size + sticky.size)
         matrix = sp.csc_array((np.concatenate(data), (np.concatenate(rows), np.concatenate(columns))), shape)
-        return matrix, np.concatenate([-law.tension, np.zeros(m * s)])
+        return matrix, np.concatenate([-law.tension, np.zeros(m)])
 
     @cached_property
     def bounds(self) -> Array:
         """Lower and upper bounds of x, (n, 2)."""
-        law, s = self.problem.laws, self.problem.dim - 1
+        law, spare = self.problem.laws, self.problem.cone.spare
         pair, _ = self.rays
         top = np.full(pair.size, np.inf)
         smooth = ~(law.friction[pair] > 0)
         top[smooth] = law.cap[pair[smooth]] + law.tension[pair[smooth]]
-        width = np.repeat(self.spare[self.spare > 0], s)
+        width = spare[spare > 0]
         return np.concatenate([np.column_stack([np.zeros_like(top), top]), np.column_stack([-width, width])])
 
     @cached_property
     def caps(self) -> tuple[sp.csc_array, Array] | None:
-        """Return (A, b) of the rows sum of rays <= N + T of rough pairs with a cap; None where there are none."""
+        """Return (A, b) of the rows sum of rays <= N + T of pairs with friction and a cap; None without any."""
         law = self.problem.laws
         capped = np.flatnonzero(np.isfinite(law.cap) & (law.friction > 0))
         if not capped.size:
@@ -124,7 +116,7 @@ class StaticProgramme:
         return sp.csc_array(reduced @ matrix), reduced @ offset
 
     def forces(self, x: Array) -> tuple[Array, Array]:
-        """Return t_n (m,) and t_t (m, d-1) of the variables x."""
+        """Return t_n (m,) and t_t (m, 1) of the variables x."""
         matrix, offset = self.map
         t = matrix @ x[: matrix.shape[1]] + offset
         m = self.problem.pairs
