@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 
 import concio
 from concio.errors import MethodError
-from concio.problem.contact_problem import ContactProblem
+from concio.problem.contact_problem import ContactProblem, Laws
 from concio.problem.solution import ProgressCallback, Solution, Status, failed
-from concio.solvers.methods import METHODS, find, laws_of, names_for, register
+from concio.solvers.methods import LAWS, METHODS, find, laws_of, names_for, register
 from space_problems import wall
 
 SPACE = [name for name, method in METHODS.items() if 3 in method.dimensions]
@@ -87,6 +89,36 @@ def test_what_it_does_not_treat_never_reaches_it() -> None:
     with pytest.raises(MethodError, match="method 'silent' does not treat stiffness"):
         concio.solve(concio.column(width=0.5, height=1.0, blocks=2, block="rigid"), "silent")
     assert laws_of(problem) == ("friction", "stiffness")
+
+
+LAWED = {
+    "friction": {"friction": 0.5},
+    "cohesion": {"cohesion": 0.3},
+    "tension": {"tension": 0.2},
+    "dilatancy": {"friction": 0.5, "dilatancy": 0.2},
+    "cap": {"cap": 0.9},
+    "stiffness": {"normal_compliance": 0.1, "tangential_compliance": 0.2},
+}
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("name", [name for name, method in METHODS.items() if 2 in method.dimensions])
+def test_the_table_says_which_joint_laws_a_method_refuses(name: str, law: str) -> None:
+    """Asked without the table, a method refuses exactly those problems that the table would not have let through."""
+    none, some = np.zeros(2), {key: np.full(2, value) for key, value in LAWED[law].items()}
+    problem = ContactProblem(
+        K=sp.csr_array(np.diag([2.0, 1.0, 3.0, 1.5])), f=np.array([-1.0, 0.1, -2.0, 0.4]),
+        C_n=sp.csr_array(np.eye(4)[[0, 2]]), C_t=sp.csr_array(np.eye(4)[[1, 3]]), gap=none,
+        laws=replace(Laws.coulomb(none), **some), R=sp.csc_array((4, 0)), bodies=np.array([0, 2, 4]),
+    )  # fmt: skip
+    method = METHODS[name]
+    assert law in laws_of(problem)
+    if method.laws.issuperset(laws_of(problem)):
+        assert method.solver(2)(problem).status in (Status.SOLVED, Status.GAVE_UP)
+    else:
+        for solve in (method, method.solver(2)):
+            with pytest.raises(MethodError):
+                solve(problem)
 
 
 @pytest.mark.parametrize(
