@@ -14,7 +14,6 @@ from concio.plot import style
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from concio.analysis.result import Result
     from concio.display import Units
     from concio.model.model import Body, Load, Model, Periods
 
@@ -92,11 +91,6 @@ def plot_model(model: Model, ax: Axes | None = None, *, names: bool | None = Non
     style.dress(ax, box, model.title or "model", count, units=model.report)
     style.legend(ax, handles, 6)
     return ax
-
-
-def plot_result_model(result: Result, ax: Axes | None = None, *, names: bool | None = None) -> Axes:
-    """Draw the model of a result; see :func:`plot_model`."""
-    return plot_model(result.model, ax, names=names)
 
 
 def _neighbours(ax: Axes, model: Model, periods: Periods) -> None:

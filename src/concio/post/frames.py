@@ -4,30 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from concio.analysis.motion.dynamics_result import DynamicsResult
 from concio.analysis.motion.push_result import PushResult
-from concio.contact.moving.reference import Configuration
 from concio.model.model import Model
 
 Array = np.ndarray
 
 MOST = 400
 """Frames of an animation at most; of more, some evenly chosen."""
-
-
-class Moving(Protocol):
-    """What has frames: :class:`concio.PushResult`, :class:`concio.DynamicsResult`."""
-
-    @property
-    def model(self) -> Model:
-        """What moves."""
-
-    def configuration(self, number: int = -1, /) -> Configuration:
-        """Return where the bodies stand in a frame."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -106,7 +106,7 @@ class Recorder:
         self.points.append(point)
         self.reactions.append(reaction)
 
-    def done(self, points: int, reactions: int, dim: int = 2) -> tuple[Shots, Steps, EnergyBalance]:
+    def done(self, points: int, reactions: int) -> tuple[Shots, Steps, EnergyBalance]:
         """Return everything as arrays."""
         states = [s[0] for s in self.shots]
         shots = Shots(
@@ -117,7 +117,7 @@ class Recorder:
         table = np.array(self.rows, dtype=float).reshape(-1, 5)
         steps = Steps(
             table[:, 0], table[:, 1], table[:, 2].astype(np.int64), tuple(self.methods), table[:, 3].astype(np.int64),
-            table[:, 4], np.array(self.points).reshape(len(table), points, dim),
-            np.array(self.reactions).reshape(len(table), reactions, dim),
+            table[:, 4], np.array(self.points).reshape(len(table), points, 2),
+            np.array(self.reactions).reshape(len(table), reactions, 2),
         )  # fmt: skip
         return shots, steps, EnergyBalance({name: np.array([e[name] for e in self.energies]) for name in NAMES})

@@ -50,7 +50,7 @@ class PairMaker:
             reference.laws, scheme, reference.disc.size, self.width, self.search.skin, lent, yielding(reference)
         )  # fmt: skip
         self.held, self.ties = Held.of(reference), Ties.of(reference)
-        self.nothing = no_pairs(self.n)
+        self.nothing = no_pairs()
 
     @property
     def slots(self) -> Slots:
@@ -142,8 +142,8 @@ def relative(columns: Array, values: Array, x: Array) -> Array:
     return np.asarray(np.einsum("mdw,mw->md", values, padded[columns]))
 
 
-def no_pairs(n: int) -> PairData:
-    """Return no pairs, on n unknowns."""
+def no_pairs() -> PairData:
+    """Return no pairs."""
     none = np.zeros(0)
     return PairData(
         np.zeros((0, 3), dtype=int), np.zeros((0, 2, 3)), np.zeros((0, 2)), Cone(none, none, none, none), none, none,

@@ -271,8 +271,3 @@ def at_rest(reference: Reference) -> MotionState:
         0.0, configuration.placement.centre, configuration.placement.rotation, np.zeros((count, 2)), np.zeros(count),
         np.zeros((nodes, 2)), np.zeros((nodes, 2)), memory, TieMemory.described(Ties.of(reference)),
     )  # fmt: skip
-
-
-def started(state: MotionState, velocity: Array, spin: Array) -> MotionState:
-    """Return a state of rigid bodies with other velocities (B, 2) and spins (B,)."""
-    return replace(state, velocity=np.array(velocity, dtype=float), spin=np.array(spin, dtype=float))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -127,7 +128,7 @@ def follow(linkage: Linkage) -> CapacityCurve:
     reason = "far"
     end, broken = float("nan"), []
     while d[-1] < FARTHEST * linkage.size:
-        q = _ahead(linkage, points, d, step)
+        q = _ahead(linkage, points[-1], step)
         moved = linkage.moved(q, d[-1] + step)
         now = None if moved is None else linkage.balance(moved)
         if now is None:
@@ -144,12 +145,8 @@ def follow(linkage: Linkage) -> CapacityCurve:
             break
         snapped = _breaks(linkage, points[-1], now)
         if snapped:
-            last = points[-1]
-
-            def breaks(p: Point, last: Point = last) -> bool:
-                return bool(_breaks(linkage, last, p))
-
-            at, before, after = _bracket(linkage, last, d[-1], d[-1] + step, breaks)
+            breaks = partial(_breaks, linkage, points[-1])
+            at, before, after = _bracket(linkage, points[-1], d[-1], d[-1] + step, breaks)
             points += [before, after]
             d += [at, at]
             broken.append(at)
@@ -187,9 +184,9 @@ def _first_step(linkage: Linkage, first: Point) -> float:
     return min(max(length, 1e-3 * linkage.size), 0.5 * linkage.size) / STEPS
 
 
-def _ahead(linkage: Linkage, points: list[Point], d: list[float], step: float) -> Array:
+def _ahead(linkage: Linkage, last: Point, step: float) -> Array:
     """Return a guess (G, 3) of the next configuration."""
-    guess: Array = points[-1].q + step * linkage.velocity(points[-1].q).reshape(-1, 3)
+    guess: Array = last.q + step * linkage.velocity(last.q).reshape(-1, 3)
     return guess
 
 
@@ -204,7 +201,7 @@ def _breaks(linkage: Linkage, before: Point, after: Point) -> list[int]:
 
 
 def _bracket(
-    linkage: Linkage, start: Point, low: float, high: float, beyond: Callable[[Point], bool]
+    linkage: Linkage, start: Point, low: float, high: float, beyond: Callable[[Point], object]
 ) -> tuple[float, Point, Point]:
     """Return the displacement at which ``beyond`` becomes true, by bisection, with the points just before and after."""
     before, after = start, start

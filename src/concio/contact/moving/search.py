@@ -71,7 +71,6 @@ class ContactSearch:
             len(reference.body_of_node),
         )  # fmt: skip
         self.layout: Layout | None = None
-        self.searches = 0
         self._moved = ~self.edges.fixed
 
     def update(self, placed: PlacedEdges) -> bool:
@@ -84,7 +83,6 @@ class ContactSearch:
         slots = self.maker.make(found, toucher, touch, placed)
         maker = RowMaker(self.reference.disc, slots, toucher, self.reference.node_column)
         self.layout = Layout(slots, toucher, maker, placed.start, touch.length)
-        self.searches += 1
         return True
 
     def _due(self, layout: Layout, placed: PlacedEdges) -> bool:

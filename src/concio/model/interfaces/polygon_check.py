@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -12,7 +11,7 @@ import shapely
 from concio.errors import GeometryError
 from concio.kinematics.frames import turning
 from concio.kinematics.mass import signed_area
-from concio.model.model import Array, Body
+from concio.model.model import Array
 
 FaultKind = Literal["not finite", "too few", "double vertex", "spike", "crossing", "touching", "no area"]
 SHARPEST = np.deg2rad(1.0)
@@ -64,13 +63,6 @@ def check_polygon(outline: Array, name: str = "", *, tolerance: float = 0.0, sha
         first = faults[0]
         more = f"; {len(faults) - 1} more fault{'s' if len(faults) > 2 else ''} in this outline" if faults[1:] else ""
         raise GeometryError(first.sentence + more, where=f"block '{name}'" if name else None, hint=first.hint)
-
-
-def check_bodies(bodies: Sequence[Body]) -> None:
-    """Raise for the first body whose outline has a fault."""
-    for body in bodies:
-        for ring in body.rings:
-            check_polygon(ring, body.name)
 
 
 def polygon_faults(outline: Array, *, tolerance: float = 0.0, sharpest: float = SHARPEST) -> tuple[Fault, ...]:

@@ -15,6 +15,9 @@ import scipy.sparse.linalg as sla
 from concio.problem.contact_problem import Array
 from concio.solvers.algebra.sparse_factor import nested_dissection
 
+REPEATS = 4
+"""Largest number of times a point is rebalanced."""
+
 
 class NormalEquations:
     """Factorises A Theta A' for changing positive Theta; the rows of A are put in a fill-reducing order once.
@@ -73,7 +76,7 @@ def _products(A: sp.csc_array) -> tuple[sp.csc_matrix, sp.csr_array, Array]:
     return matrix, weights, slot[keys.size :]
 
 
-def rebalance(A: sp.csc_array, x: Array, target: Array, bounds: Array, rounds: int = 4) -> Array:
+def rebalance(A: sp.csc_array, x: Array, target: Array, bounds: Array) -> Array:
     """Remove what is left of A x + target by changes of x in proportion to the room within the bounds.
 
     With D the distance to the nearer bound (cut at the largest held x) and free columns F: x - D A'v for the held and
@@ -86,7 +89,6 @@ def rebalance(A: sp.csc_array, x: Array, target: Array, bounds: Array, rounds: i
     target : (M,) array
     bounds : (n, 2) array
         Columns with two infinite bounds are free.
-    rounds : int
     """
     lower, upper = bounds[:, 0], bounds[:, 1]
     held = np.isfinite(lower) | np.isfinite(upper)
@@ -96,7 +98,7 @@ def rebalance(A: sp.csc_array, x: Array, target: Array, bounds: Array, rounds: i
         return x
     normal = NormalEquations(sp.csc_array(A[:, held]))
     F = A[:, ~held].toarray()[normal.order]
-    for _ in range(rounds):
+    for _ in range(REPEATS):
         room = np.minimum(np.minimum(x - lower, upper - x), np.abs(x[held]).max(initial=1e-300))[held]
         try:
             normal.factorise(room)

@@ -104,15 +104,13 @@ class MixedForm:
         return np.concatenate([y_n, y_t])
 
 
-def mixed_form(reduction: Reduction, name: FormName, tangential: Array | None = None) -> MixedForm:
+def mixed_form(reduction: Reduction, name: FormName) -> MixedForm:
     """Write a reduction in the form called ``name``.
 
     Parameters
     ----------
     reduction : Reduction
     name : {"3m", "4m", "normal"}
-    tangential : (k,) array, optional
-        Given tangential forces of the rough pairs (scaled) for the normal form; zero by default.
 
     Raises
     ------
@@ -130,10 +128,7 @@ def mixed_form(reduction: Reduction, name: FormName, tangential: Array | None = 
         msg = f"there is no form '{name}'"
         raise MethodError(msg, hint="3m or 4m")
     if name == "normal":
-        T, t0 = (
-            np.vstack([np.eye(m), Zk]),
-            np.concatenate([np.zeros(m), np.zeros(k) if tangential is None else tangential]),
-        )
+        T, t0 = np.vstack([np.eye(m), Zk]), np.zeros(m + k)
         rows, extra, q_extra = np.hstack([np.eye(m), Zm]), np.zeros((m, m)), np.zeros(m)
     elif name == "3m":
         T, t0 = np.block([[np.eye(m), Zm, Zm], [-mu_p, I, Z]]), np.concatenate([np.zeros(m), -c])

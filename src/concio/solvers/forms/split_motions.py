@@ -22,10 +22,13 @@ from concio.problem.contact_problem import Array
 from concio.solvers.forms.forms import MixedForm
 from concio.solvers.lcp.linear_problem import LinearComplementarity
 
+NEGLIGIBLE = 1e-14
+"""Entries of the scaled matrix that are rounding."""
 
-def split(form: MixedForm, *, negligible: float = 1e-14) -> LinearComplementarity:
-    """Return the standard problem in (z, alpha+, alpha-), sparse; entries below ``negligible`` are dropped."""
-    M = np.where(np.abs(form.M) > negligible, form.M, 0.0)
+
+def split(form: MixedForm) -> LinearComplementarity:
+    """Return the standard problem in (z, alpha+, alpha-), sparse; entries below ``NEGLIGIBLE`` are dropped."""
+    M = np.where(np.abs(form.M) > NEGLIGIBLE, form.M, 0.0)
     N, E = sp.csr_array(form.N), sp.csr_array(form.E)
     blocks: list[list[Any]] = [[sp.csr_array(M), N, -N], [-E, None, None], [E, None, None]]
     matrix: Any = sp.block_array(blocks)

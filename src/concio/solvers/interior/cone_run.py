@@ -19,6 +19,9 @@ from concio.solvers.states.reading import Finished
 TARGETS = (1e-6, 1e-8, 1e-10)
 """Merits at which the exact finish is tried; a deeper point tells states apart that the one before does not."""
 
+MOST = 100
+"""Largest number of iterations to each target."""
+
 NEAR = 1e-5
 """Merit of a run that stopped by itself at which the exact finish is worth trying."""
 
@@ -111,17 +114,17 @@ class ConeRun(Run):
         super().__init__(scaled, progress)
         self.cones = ConeIteration(scaled)
 
-    def from_start(self, start: Start, most: int = 100) -> Finished | None:
+    def from_start(self, start: Start) -> Finished | None:
         """Iterate from a start; return the exact answer or None. Without pairs there is nothing to iterate."""
         if not self.scaled.problem.pairs:
             return self.settle(self.scaled.glued, np.zeros((0, self.scaled.problem.dim)))
         z = self.cones.start(start.force, start.length)
-        return self.approach(z, f"interior point from {start}", start.share, most)
+        return self.approach(z, f"interior point from {start}", start.share)
 
-    def approach(self, z: ConePoint, stage: str, share: float = 0.99, most: int = 100) -> Finished | None:
+    def approach(self, z: ConePoint, stage: str, share: float) -> Finished | None:
         """Iterate to ever smaller targets, trying the exact finish at each, until it succeeds or nothing moves."""
         for target in TARGETS:
-            outcome = self.cones.run(z, target=target, most=most, share=share, watch=self.watch(stage))
+            outcome = self.cones.run(z, target=target, most=MOST, share=share, watch=self.watch(stage))
             self.iterations += outcome.iterations
             self.trace.append(
                 f"{stage}: {outcome.iterations} iterations, residual {outcome.merit:.1e}"

@@ -17,6 +17,9 @@ from concio.solvers.interior.iterate import Iterate
 LEVEL = 1e-2
 """Mean product at which the walk stays, scaled units."""
 
+MOST = 300
+"""Largest number of iterations in all."""
+
 
 @dataclass(frozen=True)
 class Walk:
@@ -36,8 +39,6 @@ class Walk:
 def walk(
     engine: InteriorPoint,
     *,
-    level: float = LEVEL,
-    most: int = 300,
     watch: Callable[[int, float], bool | None] | None = None,
 ) -> tuple[Iterate, Walk]:
     """Follow the path from theta = 1 to 0.
@@ -45,22 +46,18 @@ def walk(
     Parameters
     ----------
     engine : InteriorPoint
-    level : float
-        Product at which the walk stays.
-    most : int
-        Largest number of iterations in all.
     watch : callable, optional
         See :meth:`InteriorPoint.run`.
     """
     z = engine.start()
-    z, outcome = engine.run(z, theta=1.0, level=level, most=80, watch=watch)
+    z, outcome = engine.run(z, theta=1.0, level=LEVEL, most=80, watch=watch)
     total = outcome.iterations
     if not outcome.converged:
         return z, Walk(1.0, total)
     theta, stride = 1.0, 0.2
-    while theta > 0 and total < most:
+    while theta > 0 and total < MOST:
         new = max(0.0, theta - stride)
-        trial, outcome = engine.run(z, theta=new, level=2 * level, most=25, watch=watch)
+        trial, outcome = engine.run(z, theta=new, level=2 * LEVEL, most=25, watch=watch)
         total += outcome.iterations
         if outcome.converged:
             z, theta = trial, new

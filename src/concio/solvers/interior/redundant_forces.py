@@ -28,12 +28,9 @@ import scipy.sparse.linalg as sla
 
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array
-from concio.problem.tolerances import EXACT
+from concio.problem.tolerances import AT_BOUND, EXACT
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.states.reading import Finished, natural_residual, sizes
-
-MOVES = 1e-9
-"""Share of the largest displacement from which on a pair has opened, or slips."""
 
 DETERMINED = 1e-8
 """Share of a pair's own stiffness that unknowns of its own must give it in every direction to determine its force."""
@@ -66,8 +63,8 @@ def least_forces(s: Scaled, found: Finished) -> Finished:
     y = s.position(found.u, found.t)
     slip = np.linalg.norm(y[:, 1:], axis=1) * s.rough
     opening = y[:, 0] - s.dilatancy * slip
-    chosen = (np.abs(opening) <= MOVES * length) & ~s.compliance.any(axis=1)
-    slips = slip > MOVES * length
+    chosen = (np.abs(opening) <= AT_BOUND * length) & ~s.compliance.any(axis=1)
+    slips = slip > AT_BOUND * length
     direction = np.where(slips[:, None], y[:, 1:] / np.where(slip > 0, slip, 1.0)[:, None], 0.0)
     core = _entangled(s, chosen, slips, direction)
     if not len(core):

@@ -28,6 +28,9 @@ from concio.solvers.iterative.iteration import Record
 LARGEST = 1e3
 """Augmentation beyond which multipliers are not helped by more, in multiples of the typical stiffness."""
 
+UPDATES = 30
+"""Largest number of updates of the multipliers for one convex problem."""
+
 ROUNDING = 1e-8
 """Imbalance over the load below which steps that no longer help are rounding at work."""
 
@@ -166,7 +169,7 @@ def _line_search(law: Augmented, u: Array, step: Array, rest: Array) -> Array:
 
 
 def multipliers(
-    law: Augmented, u: Array, record: Record, *, goal: float, limit: int = 30
+    law: Augmented, u: Array, record: Record, *, goal: float
 ) -> tuple[Array, Array, Augmented]:
     """Solve the convex problem of a projection by the method of multipliers (nested Newton steps).
 
@@ -179,7 +182,7 @@ def multipliers(
     """
     before = np.inf
     t = law.forces(u)
-    for _ in range(limit):
+    for _ in range(UPDATES):
         u, _ = equilibrium(law, u, record, goal=0.1 * goal, limit=50)
         t = law.forces(u) - law.fixed
         change = float((np.abs(t - law.lam) / law.rho).max(initial=0.0))

@@ -31,6 +31,9 @@ from concio.solvers.algebra.scaled import scale
 from concio.solvers.iterative.augmented import Augmented, multipliers
 from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer, require_positive
 
+WINDOW = 20
+"""Changes of a fixed point in which it has to make progress."""
+
 LOOSE = 1e-4
 """Accuracy of the first convex problem: as the fixed point settles, the problems are solved more exactly."""
 
@@ -105,7 +108,7 @@ def inexact(change: float, least: float) -> float:
     return max(0.1 * GOAL, min(least, 0.01 * change))
 
 
-def change_stalls(changes: list[float], change: float, window: int = 20) -> bool:
-    """Append the change of a fixed point and tell whether the last ``window`` of them made no progress."""
+def change_stalls(changes: list[float], change: float) -> bool:
+    """Append the change of a fixed point and tell whether the last ``WINDOW`` of them made no progress."""
     changes.append(change)
-    return len(changes) > 2 * window and min(changes[-window:]) > 0.9 * min(changes[:-window])
+    return len(changes) > 2 * WINDOW and min(changes[-WINDOW:]) > 0.9 * min(changes[:-WINDOW])

@@ -41,6 +41,9 @@ PIVOT = 1e-9
 TIE = 1e-12
 """Ratios that differ by less than this, relative to the size of the vertex, tie."""
 
+EQUILIBRATIONS = 4
+"""Rounds in which rows and columns are brought to one size."""
+
 SOLVED = 1e-11
 """z0, relative to its largest value on the path, that counts as zero."""
 
@@ -164,13 +167,13 @@ def lemke(
     return LemkeResult(outcome, z, w, path.pivots, path.factorisations, ray, problem.residual(z))
 
 
-def equilibrate(M: Matrix, rounds: int = 4) -> tuple[Array, Array, Matrix]:
+def equilibrate(M: Matrix) -> tuple[Array, Array, Matrix]:
     """Return powers of two r, c and diag(r) M diag(c) whose rows and columns have largest entries near one."""
     n = M.shape[0]
     r: Array = np.ones(n)
     c: Array = np.ones(n)
     size: Matrix = abs(sp.csr_array(M)) if is_sparse(M) else np.abs(M)
-    for _ in range(rounds):
+    for _ in range(EQUILIBRATIONS):
         scaled: Matrix = size.multiply(r[:, None]).multiply(c[None, :]) if is_sparse(size) else size * r[:, None] * c
         across = _largest(scaled, 1)
         down = _largest(scaled, 0)

@@ -22,6 +22,7 @@ from concio.problem.certificate import Certificate, Kinematics, certify, scales
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.pair_state import Normal, PairStates
 from concio.problem.solution import Solution
+from concio.problem.tolerances import AT_BOUND
 from concio.representation import short_repr
 
 OPEN, CLOSED, CRUSHED = int(Normal.OPEN), int(Normal.CLOSED), int(Normal.CRUSHED)
@@ -197,7 +198,7 @@ def weakened(problem: ContactProblem, broken: Array | None) -> ContactProblem:
     return replace(problem, laws=replace(law, tension=tension, cohesion=cohesion))
 
 
-def exceeded(path: LinearPath, state: PathState, tolerance: float = 1e-9) -> Array:
+def exceeded(path: LinearPath, state: PathState) -> Array:
     """Return which pairs (m,) are broken after a state: those that were, and those whose strength it uses up.
 
     A pair at its tensile strength, or one with cohesion that slips, keeps them in this step and has lost both in
@@ -205,7 +206,7 @@ def exceeded(path: LinearPath, state: PathState, tolerance: float = 1e-9) -> Arr
     """
     law = path.problem.laws
     force, _ = scales(path.at(state.parameter), state.displacement, state.normal_force, state.friction_force)
-    torn = (law.tension > 0) & (state.normal_force + law.tension <= tolerance * force)
+    torn = (law.tension > 0) & (state.normal_force + law.tension <= AT_BOUND * force)
     sheared = (law.cohesion > 0) & state.states.slips & ~state.states.open
     was = np.zeros(path.problem.pairs, dtype=bool) if state.broken is None else state.broken
     result: Array = was | torn | sheared
@@ -244,7 +245,6 @@ def state_of(
     t_t: Array,
     *,
     before: PathState | None = None,
-    tolerance: float = 1e-9,
 ) -> PathState:
     """Read contact states off an answer u, t_n, t_t at a value of the parameter.
 
@@ -255,20 +255,18 @@ def state_of(
     u, t_n, t_t : arrays (N,), (m,), (m, d-1)
     before : PathState, optional
         Last converged state; its work and dissipation are carried on, and slip directions are measured from it.
-    tolerance : float
-        Forces below this share of the total load count as zero.
     """
     problem = path.problem if before is None else weakened(path.problem, before.broken)
     law = problem.laws
     force, length = scales(path.at(parameter), u, t_n, t_t)
-    contact = np.where(t_n + law.tension > tolerance * force, CLOSED, OPEN)
-    contact = np.where(law.cap - t_n <= tolerance * force, CRUSHED, contact).astype(np.int8)
+    contact = np.where(t_n + law.tension > AT_BOUND * force, CLOSED, OPEN)
+    contact = np.where(law.cap - t_n <= AT_BOUND * force, CRUSHED, contact).astype(np.int8)
     zero, still = np.zeros(problem.pairs), np.zeros_like(t_t)
     state = PathState(parameter, u, t_n, t_t, PairStates(contact, still), still, zero)
     opening, position = plastic_position(path, state)
     start = plastic_position(path, before)[1] if before is not None else still
-    used = sizes(t_t) >= problem.cone.strength(t_n) - tolerance * force
-    moved = sizes(position - start) > tolerance * length
+    used = sizes(t_t) >= problem.cone.strength(t_n) - AT_BOUND * force
+    moved = sizes(position - start) > AT_BOUND * length
     against = -t_t / np.where(sizes(t_t) > 0, sizes(t_t), 1.0)[:, None]
     against[:, 0] = np.where(against.any(axis=1), against[:, 0], 1.0)  # any way where there is no friction to oppose
     direction = np.where((used & moved)[:, None], against, 0.0)

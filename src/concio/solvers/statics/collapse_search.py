@@ -196,7 +196,7 @@ def _drawn(problem: ContactProblem, live: Array, top: LimitLoad, rng: np.random.
     """Return normal forces (m,) drawn from those that are admissible under a random share of the associated load."""
     load = problem.f + rng.uniform(0.0, 1.0) * top.multiplier * live
     if problem.dim == 3:
-        return _drawn_in_space(problem, load, live, top, rng)
+        return _drawn_in_space(problem, load, live, rng)
     programme = StaticProgramme(problem)
     A, e0 = programme.equilibrium
     force = float(np.abs(load).sum()) or 1.0
@@ -209,9 +209,7 @@ def _drawn(problem: ContactProblem, live: Array, top: LimitLoad, rng: np.random.
     return programme.forces(result.x * force)[0] if result.status == 0 else None
 
 
-def _drawn_in_space(
-    problem: ContactProblem, load: Array, live: Array, top: LimitLoad, rng: np.random.Generator
-) -> Array | None:
+def _drawn_in_space(problem: ContactProblem, load: Array, live: Array, rng: np.random.Generator) -> Array | None:
     """Return normal forces (m,) among the admissible ones under ``load``: those that a random push would end with."""
     away = rng.normal(size=problem.unknowns) * float(np.abs(live).max())
     found = associated_limit(problem.with_loads(load), problem.R @ (problem.R.T @ away))

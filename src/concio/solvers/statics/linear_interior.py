@@ -181,9 +181,7 @@ def _direction(
     return _Point(dx, ds, (x_z - p.z * dx) / p.x, np.where(q.capped, (s_w - p.w * ds) / p.s, 0.0), dy, free)
 
 
-def solve_interior(
-    cost: Array, equations: tuple[sp.csc_array, Array], bounds: Array, *, target: float = TARGET
-) -> LinearAnswer | None:
+def solve_interior(cost: Array, equations: tuple[sp.csc_array, Array], bounds: Array) -> LinearAnswer | None:
     """Minimise cost'x subject to A x = b and bounds.
 
     Parameters
@@ -193,8 +191,6 @@ def solve_interior(
         (M, n) CSC array and (M,) array; rows in groups of three coupled alike for the best ordering.
     bounds : (n, 2) array
         Columns with two infinite bounds are free; all others need a finite lower bound.
-    target : float
-        Residuals and relative gap to reach.
 
     Returns
     -------
@@ -218,7 +214,7 @@ def solve_interior(
             narrow = gap if since == 0 else narrow
             if max(primal, dual, relative) < max(best) or (max(primal, dual) <= ENOUGH and relative < best[2]):
                 best, kept = (primal, dual, relative), p
-            if max(dual, relative) < target and primal < ENOUGH:
+            if max(dual, relative) < TARGET and primal < ENOUGH:
                 break
             if since > PATIENCE or iteration == MOST:
                 break
