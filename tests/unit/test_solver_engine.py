@@ -87,6 +87,7 @@ def engines_of(function: Callable[[], object], monkeypatch: pytest.MonkeyPatch) 
 BLOCKS = concio.wall(length=0.8, height=0.4, block_size=(0.4, 0.2), block="rigid", friction=0.6, horizontal=1.0)
 WALLS = {"plane": BLOCKS, "space": concio.extrude(BLOCKS, 0.2)}
 ASKED = {
+    "solve": lambda m: concio.solve(m, factors={"live": 2.0}, on_failure="return"),
     "limit": lambda m: concio.limit(m, path=False, steps=True, search=False),
     "stages": lambda m: list(limit_stages(m, path=False, steps=True, search=False)),
     "margin": lambda m: concio.load_margin(m, tolerance=0.2),
@@ -117,8 +118,10 @@ def test_steps_of_a_motion_are_solved_by_the_engine_of_the_model(asked: str, mon
         assert engines_of(lambda model=model: MOVED[asked](model), monkeypatch) == {engine}
 
 
-def test_assessments_in_space_are_solved_by_the_engine_of_the_model(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_cone_programmes_of_space_are_solved_by_the_engine_of_the_model(monkeypatch: pytest.MonkeyPatch) -> None:
     for engine in ("pardiso", "superlu"):
+        wall = replace(WALLS["space"], engine=engine)
+        assert engines_of(lambda m=wall: concio.friction_margin(m, factor=0.2), monkeypatch) == {engine}
         facade = replace(concio.extrude(overturning(2), 0.5), engine=engine)
         assert engines_of(lambda m=facade: concio.assess(m, site=site(), direction="-x"), monkeypatch) == {engine}
 

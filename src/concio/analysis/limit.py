@@ -227,6 +227,7 @@ def search_collapse(
 
 
 @strict
+@by_its_engine
 def friction_margin(
     model: Model | Assembly, live: str | Sequence[str] | None = None, factor: float = 1.0
 ) -> FrictionMargin:

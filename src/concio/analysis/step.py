@@ -13,6 +13,7 @@ from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import NoEquilibriumError, SolverError
 from concio.model.model import Model
 from concio.problem.solution import ProgressCallback, Solver, Status
+from concio.solvers.algebra.sparse_factor import factorised_by
 from concio.solvers.algebra.stiff_limit import without_compliance
 from concio.solvers.methods import check_options, find
 
@@ -70,15 +71,15 @@ def solve(
     if not problem.pairs:  # K u = f: there are no states to find, whatever the method
         solver, options = find("sparse-lemke" if problem.dim == 2 else "auto"), {}
     assembled = time.perf_counter()
-    solution = solver(problem, progress=progress, **options)
-    stiff = None
-    if lent.lent_compliance and solution.solved:
-        stiff = without_compliance(assembly.problem(factors), problem, solution)
+    engine, stiff = options.get("engine", ""), None
+    with factorised_by(engine or None):  # what a method asks on its way factorises as it does
+        solution = solver(problem, progress=progress, **options)
+        if lent.lent_compliance and solution.solved:
+            stiff = without_compliance(assembly.problem(factors), problem, solution)
     end = time.perf_counter()
     seconds = {"total": end - begin, "assemble": assembled - begin, "solve": end - assembled}
     judged = (lent, solution) if stiff is None else (assembly, stiff)
-    engine = str(options.get("engine", ""))
-    result = Result(judged[0], dict(factors or {}), judged[1], seconds, lent.lent_compliance, engine)
+    result = Result(judged[0], dict(factors or {}), judged[1], seconds, lent.lent_compliance, str(engine))
     if solution.solved or on_failure == "return":
         return result
     detail = "; ".join(solution.trace)
