@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.contact.factors import load_factor
 from concio.contact.periodic import STRAINS
 from concio.fem.body import Shape
 from concio.fem.discretisation import FIXED
@@ -79,7 +80,7 @@ def outlines(result: Result, u: Array | None = None) -> Outlines:
         Displacements to show in place of the result's, such as a mechanism; fixed bodies then stay.
     """
     disc = result.assembly.disc
-    xx, yy, xy = (result.factors.get(name, 0.0) if u is None else 0.0 for name in STRAINS)
+    xx, yy, xy = (load_factor(result.factors, name) if u is None else 0.0 for name in STRAINS)
     own = result.displacement if u is None else u
     motion = body_motions(result, u)
     plane = [_loops(shape) for shape in disc.shapes if isinstance(shape, Shape)]
