@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import gc
+import io
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -18,3 +21,14 @@ def pytest_collection_finish(session: pytest.Session) -> None:
     """Spare the collector of garbage the thousands of tests it would look at again and again: a tenth of the time."""
     gc.freeze()
     gc.set_threshold(20_000, 20, 20)
+
+
+@pytest.fixture
+def blank_figures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Compose figures, but leave their files empty: for tests that look at the places of files, not at figures."""
+
+    def savefig(_: object, place: Path | str | io.BytesIO, **options: Any) -> None:
+        if not isinstance(place, io.BytesIO):
+            Path(place).write_bytes(b"")
+
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", savefig)

@@ -22,14 +22,14 @@ def hung(friction: float, courses: int = 3, blocks: int = 6, joint: float = 0.0)
 
 def pushed(share: float) -> ContactProblem:
     """A low wall that slides on its base at a share of 0.4 of its weight."""
-    wall = concio.wall(length=2.0, height=0.25, block=Elastic(1e6, 0.2, 20.0), friction=0.4, horizontal=share)
+    wall = concio.wall(length=1.0, height=0.25, block=Elastic(1e6, 0.2, 20.0), friction=0.4, horizontal=share)
     return concio.assemble(wall).problem()
 
 
 CASES = {
     "interior-point": (lambda: pushed(0.39), Status.SOLVED),
     "statics": (lambda: pushed(0.41), Status.NO_EQUILIBRIUM),
-    "release": (lambda: hung(0.2), Status.COLLAPSES),
+    "release": (lambda: hung(0.2, 2, 4), Status.COLLAPSES),
 }
 
 

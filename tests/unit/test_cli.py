@@ -90,6 +90,7 @@ def test_out_holds_summary_report_and_figures(panel: Path) -> None:
     assert (code, out.strip()) == (0, str(Path("result") / "report.html"))
 
 
+@pytest.mark.usefixtures("blank_figures")
 def test_a_result_is_replaced_and_anything_else_is_not(panel: Path) -> None:
     assert run("run", panel, "--out", "result", "--no-figures")[0] == 0
     before = (panel.parent / "result" / "result.json").stat().st_mtime_ns
@@ -366,6 +367,7 @@ def test_accidents(panel: Path, monkeypatch: pytest.MonkeyPatch, error: BaseExce
     assert "Traceback" not in err
 
 
+@pytest.mark.usefixtures("blank_figures")
 def test_a_full_disk_leaves_what_was_there(panel: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert run("run", panel, "--out", "result", "--no-figures")[0] == 0
     before = sorted((p.name, p.read_bytes()) for p in Path("result").iterdir() if p.is_file())

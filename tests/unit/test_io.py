@@ -26,6 +26,8 @@ from concio.problem.certificate import certify
 from concio.problem.solution import Status
 from models import sliding_panel
 
+pytestmark = pytest.mark.usefixtures("blank_figures")
+
 
 def _panel(**changes: object) -> Model:
     options: dict = {

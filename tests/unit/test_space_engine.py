@@ -10,7 +10,6 @@ from scipy.linalg import null_space
 
 import concio
 from concio.kinematics.rigid import rotation_matrix
-from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Departure, Status
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.auto.space import best_point_met
@@ -33,18 +32,19 @@ def relative(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.abs(a - b).max() / np.abs(b).max())
 
 
-@pytest.mark.parametrize(
-    ("problem", "name"),
-    [
-        (wall(3, 4, **STIFF).at(0.4), "rigid blocks, joints with stiffness"),
-        (wall(3, 4, elastic=True).at(0.4), "elastic blocks"),
-        (wall(4, 4, elastic=True, sides=True).at(0.0), "wedged between sides, without a base"),
-        (dome(4, 8, **STIFF).at(0.2), "dome"),
-        (barrel(8, 3, elastic=True).at(0.1), "elastic barrel"),
-    ],
-)
+CASES = {
+    "rigid blocks, joints with stiffness": lambda: wall(3, 4, **STIFF).at(0.4),
+    "elastic blocks": lambda: wall(3, 4, elastic=True).at(0.4),
+    "wedged between sides, without a base": lambda: wall(4, 4, elastic=True, sides=True).at(0.0),
+    "dome": lambda: dome(4, 8, **STIFF).at(0.2),
+    "elastic barrel": lambda: barrel(8, 3, elastic=True).at(0.1),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("method", ["interior-point", "alart-curnier"])
-def test_answers_are_certified_and_two_methods_agree(problem: ContactProblem, name: str, method: str) -> None:
+def test_answers_are_certified_and_two_methods_agree(name: str, method: str) -> None:
+    problem = CASES[name]()
     found = find(method)(problem)
     assert found.solved
     reference = find("auto")(problem)

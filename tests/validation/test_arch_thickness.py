@@ -15,6 +15,7 @@ import pytest
 
 from concio.solvers.statics.existence import find_mechanism, statically_admissible
 from rigid_walls import semicircular_arch
+from samples import sample
 
 ROUGH = 20.0
 
@@ -55,7 +56,7 @@ def test_least_thickness_at_400_voussoirs():
 )
 def test_admissible_is_monotone_next_to_the_limit(arch, limit):
     """What left the programme unbalanced by 2e-8 was called "no" above thicknesses that were shown to stand."""
-    for above in np.random.default_rng(0).uniform(1e-7, 3e-6, 10):
+    for above in np.random.default_rng(0).uniform(1e-7, 3e-6, sample(4, 10)):
         assert static_state(arch, 400, limit + above).exists
     for below in (3e-7, 1e-6):
         fallen = static_state(arch, 400, limit - below)

@@ -13,6 +13,7 @@ def test_rows():
     check(wall_and_continuum.rows())
 
 
+@pytest.mark.long  # test_prandtls_strip_footing_is_enclosed of tests/unit sees the same
 def test_bounds_are_on_their_sides():
     low, high = wall_and_continuum.strip()
     assert low < (2 + np.pi) / np.cos(np.pi / 24)
