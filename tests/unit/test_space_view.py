@@ -14,7 +14,8 @@ from concio.analysis.result import Result
 from concio.plot.picture import Picture
 from concio.plot.space_figures import VIEWS, directions, plot_space_model
 from concio.post.joint_faces import joint_faces, pieces_of
-from concio.post.solids import body_motions_in_space, model_solids, moved_ties, solids
+from concio.post.motion import body_motions
+from concio.post.solids import model_solids, moved_ties, solids
 from concio.post.space_states import mechanism_states_in_space
 from concio.problem.solution import Mechanism, Status, failed
 from concio.report.page import report_html
@@ -68,7 +69,7 @@ def test_bodies_are_drawn_where_they_move() -> None:
     turn = (0.1, -0.2, 0.3)
     result = moving(tower(), {"top": ((0.5, 0.0, -0.25), turn)})
     shown = solids(result, result.mechanism_velocity)
-    motion = body_motions_in_space(result, result.mechanism_velocity)
+    motion = body_motions(result, result.mechanism_velocity)
     assert motion[2] == pytest.approx([0.5, 0.0, -0.25, *turn])
     own = shown.body[np.isin(shown.triangles, np.arange(shown.starts[2], shown.starts[3])).all(axis=1)]
     assert set(own) == {2}

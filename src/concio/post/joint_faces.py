@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.kinematics.rigid import swept
-from concio.post.solids import body_motions_in_space
+from concio.post.motion import body_motions
 from concio.representation import short_repr
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def joint_faces(result: Result, u: Array | None = None) -> JointFaces:
         Displacements to show in place of the result's, such as a mechanism.
     """
     corners, pair = pieces_of(result)
-    motion = body_motions_in_space(result, u)
+    motion = body_motions(result, u)
     centroids, pairs = result.assembly.disc.centroids, result.assembly.pairs
     moved = []
     for side in (pairs.body_a[pair], pairs.body_b[pair]):

@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from concio.contact.factors import load_factor
-from concio.fem.discretisation import FIXED, RIGID
 from concio.fem.solid import SolidShape
-from concio.kinematics.frames import cross
-from concio.kinematics.rigid import rigid_operator, swept
+from concio.kinematics.rigid import swept
+from concio.post.motion import body_motions
 from concio.representation import short_repr
 
 if TYPE_CHECKING:
@@ -80,7 +78,7 @@ def solids(result: Result, u: Array | None = None) -> Solids:
     """
     disc = result.assembly.disc
     own = result.displacement if u is None else u
-    motion = body_motions_in_space(result, u)
+    motion = body_motions(result, u)
     surfaces = {s: _of_mesh(shape) for s, shape in enumerate(disc.shapes) if isinstance(shape, SolidShape)}
     blocks, moves = [], []
     for b, s in enumerate(disc.shape_of.tolist()):
@@ -109,45 +107,9 @@ def tie_bodies(model: Model) -> Array:
 def moved_ties(result: Result, u: Array | None, scale: float) -> Array:
     """Return the ends of each tie (t, 2, 3) carried along by their bodies, so many times as far as they move [m]."""
     ends, bodies = tie_ends(result.model), tie_bodies(result.model)
-    motion = np.vstack([body_motions_in_space(result, u), np.zeros(6)])[bodies]
+    motion = np.vstack([body_motions(result, u), np.zeros(6)])[bodies]
     arm = ends - np.vstack([result.assembly.disc.centroids, np.zeros(3)])[bodies]
-    return np.asarray(ends + scale * (motion[..., :3] + cross(motion[..., 3:], arm)))
-
-
-def body_motions_in_space(result: Result, u: Array | None = None) -> Array:
-    """Return (u_x, u_y, u_z, rotation vector) of each body about its centroid (B, 6) [m, rad].
-
-    A deformed body has the rigid motion that fits its nodes best. A fixed body has the movement imposed on it, and none
-    when ``u`` is given.
-
-    Parameters
-    ----------
-    result : Result
-    u : (N_all,) array, optional
-        Other displacements than the result's, such as a mechanism.
-    """
-    disc = result.assembly.disc
-    own = result.displacement if u is None else u
-    motion = np.zeros((len(disc.shape_of), 6))
-    rigid = np.flatnonzero(disc.shape_of == RIGID)
-    motion[rigid] = own[disc.offsets[rigid][:, None] + np.arange(6)]
-    motion[rigid, 3:] /= disc.reach[rigid][:, None]
-    for s, shape in enumerate(disc.shapes):
-        bodies = np.flatnonzero(disc.shape_of == s)
-        if not len(bodies):
-            continue
-        arm = shape.elements.nodes - (disc.centroids[bodies[0]] - disc.origins[bodies[0]])
-        modes = rigid_operator(arm, 1.0).reshape(-1, 6)
-        nodal = own[disc.offsets[bodies][:, None] + np.arange(len(modes))]
-        motion[bodies] = nodal @ np.linalg.pinv(modes).T
-    if u is None:
-        number = {b.name: k for k, b in enumerate(result.model.bodies)}
-        for support in result.model.supports:
-            b = number[support.body]
-            if disc.shape_of[b] == FIXED:
-                factor = load_factor(result.factors, support.group)
-                motion[b] += factor * np.array([*support.displacement, *np.broadcast_to(support.rotation, 3)])
-    return motion
+    return np.asarray(ends + scale * (motion[..., :3] + swept(motion[..., 3:], arm)))
 
 
 Piece = tuple[Array, Array, Array, Array]

@@ -72,16 +72,13 @@ class Tables:
 
         model, stress = self.result.model, self.result.stress
         s1, s2, angle = stress.principal
-        centre = self.result.assembly.disc.centroids
         motion = body_motions(self.result)
         return {
             "body": np.array([b.name for b in model.bodies]),
             "kind": np.array([b.kind for b in model.bodies]),
             "role": np.array([b.role for b in model.bodies]),
-            "x": centre[:, 0],
-            "y": centre[:, 1],
-            "u_x": motion[:, 0],
-            "u_y": motion[:, 1],
+            **vectors("", self.result.assembly.disc.centroids),
+            **vectors("u_", motion[:, :2]),
             "rotation": motion[:, 2],
             "s_x": stress.mean[:, 0],
             "s_y": stress.mean[:, 1],
@@ -96,10 +93,8 @@ class Tables:
         j = self.result.joints
         return {
             **self.names(j.body_a, j.body_b),
-            "x": j.middle[:, 0],
-            "y": j.middle[:, 1],
-            "n_x": j.normal[:, 0],
-            "n_y": j.normal[:, 1],
+            **vectors("", j.middle),
+            **vectors("n_", j.normal),
             "length": j.length,
             "normal_force": j.N,
             "shear_force": j.V,
@@ -117,10 +112,8 @@ class Tables:
             **self.names(p.body_a, p.body_b),
             "interface": p.interface,
             "law": laws[p.law],
-            "x": p.point[:, 0],
-            "y": p.point[:, 1],
-            "n_x": p.normal[:, 0],
-            "n_y": p.normal[:, 1],
+            **vectors("", p.point),
+            **vectors("n_", p.normal),
             "area": p.area,
             "state": np.array(STATE_NAMES)[c.state],
             "normal_force": c.normal_force,
@@ -134,8 +127,8 @@ class Tables:
     def reactions(self) -> Table:
         """Return one row a fixed body or support: its force on the structure."""
         found = self.result.reactions
-        force = np.array(list(found.values()), dtype=float).reshape(-1, 2)
-        return {"support": np.array(list(found), dtype=str), "force_x": force[:, 0], "force_y": force[:, 1]}
+        force = np.array(list(found.values()), dtype=float).reshape(-1, self.result.model.dim)
+        return {"support": np.array(list(found), dtype=str), **vectors("force_", force)}
 
     def all(self) -> dict[str, Table]:
         """Return the four tables by name."""
@@ -157,3 +150,8 @@ def components(name: str, values: Array) -> Table:
     if values.shape[1] == 1:
         return {name: values[:, 0]}
     return {f"{name}_{i + 1}": values[:, i] for i in range(values.shape[1])}
+
+
+def vectors(head: str, values: Array) -> Table:
+    """Return the columns x, y and, in space, z of vectors (n, d)."""
+    return {f"{head}{axis}": values[:, k] for k, axis in enumerate("xyz"[: values.shape[1]])}

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from concio.post.joint_faces import JointFaces, joint_faces
+from concio.post.motion import body_motions
 from concio.post.outlines import display_scale
-from concio.post.solids import Solids, body_motions_in_space, solids, tie_bodies, tie_ends
+from concio.post.solids import Solids, solids, tie_bodies, tie_ends
 from concio.post.space_states import mechanism_states_in_space
 from concio.report.view_data import LOOK, kind_of, pack, steps_within, units_of
 
@@ -113,7 +114,7 @@ def _step(result: Result, label: str) -> dict[str, Any]:
         "status": result.status.name.lower(),
         "largest": float(np.linalg.norm(shown.displacement, axis=1).max(initial=0.0)),
         "move": pack(shown.displacement, "f4"),
-        "motion": pack(body_motions_in_space(result, u), "f8"),
+        "motion": pack(body_motions(result, u), "f8"),
     }
     if not result.solved:
         if velocity is not None:

@@ -133,6 +133,16 @@ def default_tolerance(bodies: Sequence[Body]) -> float:
     return 1e-6 * float((corners[:, 1].max(0) - corners[:, 0].min(0)).max())
 
 
+def check_distances(tolerance: float, reach: float) -> None:
+    """Raise InputError where the tolerance is not positive, or the reach negative or not finite [m]."""
+    if not (0 < tolerance < np.inf):
+        msg = f"gap tolerance = {tolerance:g} must be positive"
+        raise InputError(msg, hint="give about a hundredth of the thinnest joint, in m")
+    if not (0 <= reach < np.inf):
+        msg = f"gap reach = {reach:g} must be zero or positive"
+        raise InputError(msg, hint="give the largest initial gap that should become a joint, in m")
+
+
 def detect_interfaces(
     bodies: Sequence[Body],
     *,
@@ -163,12 +173,7 @@ def detect_interfaces(
     InputError
         Tolerance not positive, or a reach that is negative or not finite.
     """
-    if not (0 < tolerance < np.inf):
-        msg = f"gap tolerance = {tolerance:g} must be positive"
-        raise InputError(msg, hint="give about a hundredth of the thinnest joint, in m")
-    if not (0 <= reach < np.inf):
-        msg = f"gap reach = {reach:g} must be zero or positive"
-        raise InputError(msg, hint="give the largest initial gap that should become a joint, in m")
+    check_distances(tolerance, reach)
     edges = Edges.of(bodies)
     size = size_of_bodies(bodies)
     within = max(tolerance, reach)

@@ -22,10 +22,16 @@ from typing import ClassVar
 import numpy as np
 import shapely
 
-from concio.errors import InputError
 from concio.kinematics.frames import cross, tangents, turned_left
 from concio.kinematics.mass import polygon_moments
-from concio.model.interfaces.detect import FACING_ANGLE, NEAR_ANGLE, NEAR_SHARE, SLIVER_SHARE, Detection
+from concio.model.interfaces.detect import (
+    FACING_ANGLE,
+    NEAR_ANGLE,
+    NEAR_SHARE,
+    SLIVER_SHARE,
+    Detection,
+    check_distances,
+)
 from concio.model.interfaces.faces import FacePairs, Faces, facing_faces, neighbours
 from concio.model.interfaces.near import MissKind, NearMiss
 from concio.model.interfaces.near_space import find_overlaps_in_space, find_touches, miss_in_space
@@ -125,12 +131,7 @@ def detect_patches(
     InputError
         Tolerance not positive, or a reach that is negative or not finite.
     """
-    if not (0 < tolerance < np.inf):
-        msg = f"gap tolerance = {tolerance:g} must be positive"
-        raise InputError(msg, hint="give about a hundredth of the thinnest joint, in m")
-    if not (0 <= reach < np.inf):
-        msg = f"gap reach = {reach:g} must be zero or positive"
-        raise InputError(msg, hint="give the largest initial gap that should become a joint, in m")
+    check_distances(tolerance, reach)
     table = Faces.of(bodies)
     size = sizes(bodies)
     fixed = np.array([b.kind == "fixed" for b in bodies])
