@@ -44,9 +44,77 @@ class UpdatedFactor:
         return corrected
 
 
+class PairsAsked:
+    """The pairs V in question, their rows B, and how these respond: Z = F^-1 B' and G = B Z.
+
+    Parameters
+    ----------
+    p : StepProblem
+    factor : StepFactor
+        Holds F, the matrix with all pairs in their states.
+    D : (m, d, d) array
+        Blocks of F.
+    """
+
+    def __init__(self, p: StepProblem, factor: StepFactor, D: Array) -> None:
+        self.p, self.factor, self.D = p, factor, D
+        self.number = np.zeros(0, dtype=int)
+        self.values, self.columns = p.values[:0], p.columns[:0]
+        self.Z, self.G = np.zeros((len(p.b), 0)), np.zeros((0, 0))
+
+    def join(self, added: Array) -> None:
+        """Take further pairs in: two solves each."""
+        p, d, n = self.p, self.p.dim, len(self.p.b)
+        rhs = np.zeros((n + 1, d * len(added)))
+        for k, pair in enumerate(added.tolist()):
+            for j in range(d):
+                np.add.at(rhs[:, d * k + j], p.columns[pair], p.values[pair, j])
+        self.Z = np.column_stack([self.Z, self.factor.solve(rhs[:n])])
+        self.number = np.concatenate([self.number, added])
+        self.values, self.columns = p.values[self.number], p.columns[self.number]
+        padded = np.vstack([self.Z, np.zeros((1, self.Z.shape[1]))])
+        self.G = np.einsum("vdw,vwk->vdk", self.values, padded[self.columns]).reshape(len(self.number) * d, -1)
+
+    def decided(self, linear: Linear, x0: Array, t0: Array) -> tuple[Array, Array] | None:
+        """Return x (N,) and t (m, d) with these pairs decided by the small problem, all others in their states.
+
+        Parameters
+        ----------
+        linear : Linear
+            The states that gave (x0, t0).
+        x0, t0 : (N,), (m, d) arrays
+        """
+        p, d, V = self.p, self.p.dim, self.number
+        D_V = _diagonal(self.D[V])
+        held = np.linalg.inv(np.eye(len(D_V)) - D_V @ self.G)
+        soft = np.column_stack([p.a_n[V], *[p.a_t[V]] * (d - 1)]).ravel()
+        W = self.G @ held + np.diag(soft)
+        y_n, y_t = p.relative(x0, t0)
+        y = np.column_stack([y_n, y_t])[V].ravel()
+        tau0 = t0[V].ravel()
+        forces, _ = solve_small(
+            W * (p.force / p.length), (y - W @ tau0) / p.length, p.cone[V].in_units(p.force), p.dilatancy[V]
+        )
+        if forces is None:
+            return None
+        tau = forces.ravel() * p.force
+        dx = self.Z @ (held @ (tau - tau0))
+        moved = p.opening(dx)
+        dt_n = -self.D[:, 0, 0] * (moved[:, 0] - linear.open_wide * moved[:, 1])
+        dt_t = np.where(linear.stick, -moved[:, 1] / linear.soft_t, linear.drag * dt_n)
+        t = t0 + np.column_stack([dt_n, dt_t])
+        t[V] = tau.reshape(-1, d)
+        return x0 + dx, t
+
+    def updated(self, D: Array) -> UpdatedFactor:
+        """Return the factor with these pairs in other states, of blocks ``D`` (m, d, d); raises LinAlgError."""
+        change = _diagonal(D[self.number] - self.D[self.number])
+        return UpdatedFactor(self.factor, self.values, self.columns, self.Z, self.G, change)
+
+
 def settle(
     p: StepProblem, factor: StepFactor, states: PairStates, x: Array, t: Array, D: Array
-) -> tuple[Array, Array, PairStates, float, int]:
+) -> tuple[Array, Array, PairStates, float]:
     """Settle the states of a step whose states, factorised, gave (x, t).
 
     Returns
@@ -55,69 +123,31 @@ def settle(
     t : (m, 2) array
     states : PairStates
     residual : float
-    work : int
-        Pairs that took part, summed over the rounds.
     """
-    d, n = p.dim, len(p.b)
-    chosen = np.zeros(0, dtype=int)
-    Z = np.zeros((n, 0))
-    x0, t0 = x, t
-    linear = Linear.of(p, states)
+    x0, t0, linear = x, t, Linear.of(p, states)
     best, laws = p.residual(x, t)
     found = (x, t, states, best)
-    work = 0
+    asked = PairsAsked(p, factor, D)
     for _ in range(ROUNDS):
-        new = read_states(p, x, t)
-        violated = (laws > SETTLED) & new.differ(states)
-        violated[chosen] = False
+        violated = (laws > SETTLED) & read_states(p, x, t).differ(states)
+        violated[asked.number] = False
         added = np.flatnonzero(violated)
-        if not added.size:
+        if not added.size or len(asked.number) + len(added) > MOST:
             break
-        if len(chosen) + len(added) > MOST:
+        asked.join(added)
+        decided = asked.decided(linear, x0, t0)
+        if decided is None:
             break
-        rhs = np.zeros((n + 1, d * len(added)))
-        for k, pair in enumerate(added.tolist()):
-            for j in range(d):
-                np.add.at(rhs[:, d * k + j], p.columns[pair], p.values[pair, j])
-        Z = np.column_stack([Z, factor.solve(rhs[:n])])
-        chosen = np.concatenate([chosen, added])
-        work += len(chosen)
-        values, columns = p.values[chosen], p.columns[chosen]
-        padded = np.vstack([Z, np.zeros((1, Z.shape[1]))])
-        G = np.einsum("vdw,vwk->vdk", values, padded[columns]).reshape(len(chosen) * d, -1)
-        D_V = _diagonal(D[chosen])
-        held = np.linalg.inv(np.eye(len(D_V)) - D_V @ G)
-        W = G @ held
-        soft = np.column_stack([p.a_n[chosen], *[p.a_t[chosen]] * (d - 1)]).ravel()
-        W_c = W + np.diag(soft)
-        y_n, y_t = p.relative(x0, t0)
-        y = np.column_stack([y_n, y_t])[chosen].ravel()
-        tau0 = t0[chosen].ravel()
-        forces, _ = solve_small(
-            W_c * (p.force / p.length),
-            (y - W_c @ tau0) / p.length,
-            p.cone[chosen].in_units(p.force),
-            p.dilatancy[chosen],
-        )
-        if forces is None:
-            break
-        tau = forces.ravel() * p.force
-        dx = Z @ (held @ (tau - tau0))
-        x = x0 + dx
-        moved = p.opening(dx)
-        dt_n = -D[:, 0, 0] * (moved[:, 0] - linear.open_wide * moved[:, 1])
-        dt_t = np.where(linear.stick, -moved[:, 1] / linear.soft_t, linear.drag * dt_n)
-        t = t0 + np.column_stack([dt_n, dt_t])
-        t[chosen] = tau.reshape(-1, d)
+        x, t = decided
         _, laws = p.residual(x, t)
-        small = read_states(p, x, t)
+        small, V = read_states(p, x, t), asked.number
         normal, direction = states.normal.copy(), states.direction.copy()
-        normal[chosen], direction[chosen] = small.normal[chosen], small.direction[chosen]
+        normal[V], direction[V] = small.normal[V], small.direction[V]
         now = PairStates(normal, direction)
         settled = Linear.of(p, now)
         D_now = settled.blocks(p)
         try:
-            updated = UpdatedFactor(factor, values, columns, Z, G, _diagonal(D_now[chosen] - D[chosen]))
+            updated = asked.updated(D_now)
         except np.linalg.LinAlgError:
             break
         x1, t1, errors = solve_states(p, updated, settled, x, t, D_now)
@@ -127,7 +157,7 @@ def settle(
         if residual < SETTLED:
             break
         laws = np.minimum(laws, laws1)
-    return (*found, work)
+    return found
 
 
 def _diagonal(blocks: Array) -> Array:

@@ -78,7 +78,7 @@ class StepSolver:
             changed = int(((laws > SETTLED) & new.differ(states)).sum())
             seen.append(states)
             if changed <= FEW or round_ >= FLIPS or any(not new.differ(s).any() for s in seen):
-                x2, t2, settled, residual, _ = settle(p, factor, states, x1, t1, D)
+                x2, t2, settled, residual = settle(p, factor, states, x1, t1, D)
                 found = keep(x2, t2, settled, residual, "small problem")
                 if residual < SETTLED:
                     return self._count(found)
