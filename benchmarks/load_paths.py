@@ -1,9 +1,11 @@
 """Load paths in steps: each step from the states of the last, against each from nothing, in one run.
 
-    python benchmarks/load_paths.py
+    python benchmarks/load_paths.py [--only NAME]
 
 prints factorisations and CPU seconds of both ways and how far their last states are apart, relative to the largest
-displacement and force; then, for one wall, how far both are from the exact path.
+displacement and force; then, for one wall, how far both are from the exact path. ``--only`` takes the paths whose name
+holds a text, ``exact`` that last comparison. ``--tries`` and ``--beginnings`` print instead what a try from nearby may
+cost in the plane, and where it best begins in space.
 """
 
 from __future__ import annotations
@@ -12,6 +14,8 @@ import argparse
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -21,8 +25,12 @@ from wall_family import wall_model
 
 import concio
 from concio.solvers.algebra.sparse_factor import OrderedFactor
-from concio.solvers.path import near_forces
+from concio.solvers.interior.cone_run import ConeRun
+from concio.solvers.path import near_forces, step_path
 from concio.solvers.path.near_forces import Nearby
+
+EXACT = "the exact path"
+"""Name of the comparison with the exact path."""
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "load_stages.toml"
 
@@ -40,6 +48,31 @@ def small_wall(length: float, block: Any = "rigid") -> concio.Model:
     return concio.extrude(plane, 0.3)
 
 
+def turning_arch() -> concio.Model:
+    """Return an extruded arch of 9 voussoirs on an abutment that turns about the span."""
+    plane = concio.arch(span=4.0, ring=0.6, voussoirs=9, block="rigid", friction=0.6)
+    turns = concio.Support("turns", "right abutment", rotation=(0.02, 0.0, 0.0))
+    return replace(concio.extrude(plane, 0.7), supports=(turns,))
+
+
+def corner(block: Any) -> concio.Model:
+    """Return two bonded walls that meet at a corner, pushed outward."""
+    return concio.walls(
+        lines=[[[0, 0], [1.5, 0]], [[0, 0], [0, 1.0]]],
+        height=0.75,
+        block_size=(0.5, 0.25, 0.25),
+        block=block,
+        friction=0.6,
+        horizontal=0.2,
+        towards=(-1, 0.5),
+    )
+
+
+def settled() -> tuple[concio.Stage, ...]:
+    """Return the weight in one step and a movement of supports in twenty."""
+    return concio.Stage("weight", {"dead": 1.0}, steps=1), concio.Stage("movement", {"settlement": 1.0})
+
+
 def pushed(steps: int, live: float = 1.0) -> tuple[concio.Stage, ...]:
     """Return the weight in one step and a push in several."""
     return concio.Stage("weight", {"dead": 1.0}, steps=1), concio.Stage("push", {"live": live}, steps=steps)
@@ -55,6 +88,11 @@ def cases() -> Iterator[tuple[str, concio.Model, tuple[concio.Stage, ...]]]:
     yield "in space, rigid, 15 blocks", small_wall(1.5), pushed(10, 2.0)
     yield "in space, rigid, 100 blocks", small_wall(4.0), pushed(10, 1.2)
     elastic = concio.Elastic(E=3e6, nu=0.2, unit_weight=20.0)
+    yield "in space, arch on a turning abutment", turning_arch(), settled()
+    dome = concio.dome(span=8.0, ring=0.5, courses=4, blocks=8, oculus=1.5, spread=0.02)
+    yield "in space, elastic dome that spreads", dome, settled()
+    yield "in space, rigid corner, 19 bodies", corner("rigid"), pushed(6, 1.5)
+    yield "in space, elastic corner, 19 bodies", corner(elastic), pushed(6, 1.5)
     yield "in space, elastic, 15 blocks", small_wall(1.5, elastic), pushed(6, 1.2)
 
 
@@ -118,12 +156,40 @@ def tries() -> None:
             print(f"| {name} | " + " | ".join(map(str, found)) + " |", flush=True)
 
 
+def beginnings(only: str) -> None:
+    """Print the factorisations of paths in space by where Newton's method begins and how long it goes on."""
+    settle, extrapolated = ConeRun.settle, step_path.extrapolated
+
+    def from_the_last(states: Any, parameter: float) -> near_forces.State:
+        return extrapolated(states[-1:], parameter)
+
+    def six_steps(self: ConeRun, *args: Any, patience: int | None = None) -> Any:
+        return settle(self, *args) if patience is None else settle(self, *args, 6)
+
+    print("| path | from the last state, six steps | while the residual falls ", end="")
+    print("| from where the last two lead, six steps | while the residual falls |")
+    print("|---" * 5 + "|")
+    for name, model, stages in cases():
+        if model.dim == 3 and only in name:
+            found = []
+            for begin, go in product((from_the_last, extrapolated), (six_steps, settle)):
+                with mock.patch.object(step_path, "extrapolated", begin), mock.patch.object(ConeRun, "settle", go):
+                    found.append(followed(model, stages)[1])
+            print(f"| {name} | " + " | ".join(map(str, found)) + " |", flush=True)
+
+
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--only", default="", help="paths whose name holds this text")
     parser.add_argument("--tries", action="store_true", help="instead: what a try from the last states may cost")
-    if parser.parse_args().tries:
+    parser.add_argument("--beginnings", action="store_true", help="instead: where a try best begins in space")
+    chosen = parser.parse_args()
+    if chosen.tries:
         tries()
+        return
+    if chosen.beginnings:
+        beginnings(chosen.only)
         return
     print(
         "| path | steps | factorisations from nothing | from the last step | CPU s from nothing | from the last step "
@@ -131,6 +197,8 @@ def main() -> None:
     )
     print("|---" * 9 + "|")
     for name, model, stages in cases():
+        if chosen.only not in name:
+            continue
         with from_nothing():
             before, many, slow = followed(model, stages)
         after, few, fast = followed(model, stages)
@@ -141,7 +209,8 @@ def main() -> None:
             f"| {after.certificate:.0e} |",
             flush=True,
         )
-    against_the_exact_path()
+    if chosen.only in EXACT:
+        against_the_exact_path()
 
 
 if __name__ == "__main__":

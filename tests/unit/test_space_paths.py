@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,9 +11,11 @@ import pytest
 import concio
 from concio.cli.path_lines import path_facts, path_lines
 from concio.post.path_curve import most_moving
-from concio.problem.solution import Status
+from concio.problem.solution import Solution, Status
 from concio.report.limit_wording import limit_lines
+from concio.solvers.path.near_forces import Nearby
 from concio.solvers.path.state import LinearPath, at_rest, energy_of_step, state_of
+from concio.solvers.path.step_path import extrapolated
 from space_problems import wall as blocks
 
 THICK = 0.3
@@ -82,19 +85,49 @@ def test_settlement_of_an_extruded_arch() -> None:
         assert np.abs(there[:, 1]).max() < 1e-9 * size
 
 
-def test_settlement_out_of_the_plane_breaks_the_symmetry() -> None:
-    """A support that turns about the span lifts the arch off one edge; forces stay certified and balance the weight."""
+def test_settlement_out_of_the_plane_breaks_the_symmetry(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A support that turns about the span lifts the arch off one edge; forces stay certified and balance the weight.
+
+    Its blocks then move on in proportion at constant forces, so that all but a few steps, those of another direction,
+    are found from where the last two lead; from the last state itself two of three are not.
+    """
+    tried: list[bool] = []
+    solve = Nearby.solve
+
+    def counted(self: Nearby, *args: Any) -> Solution | None:
+        found = solve(self, *args)
+        tried.append(found is not None)
+        return found
+
+    monkeypatch.setattr(Nearby, "solve", counted)
     turning = concio.Support("turns", "right abutment", rotation=(0.02, 0.0, 0.0))
     model = replace(concio.extrude(ARCH, 0.7), supports=(turning,))
     found = concio.settle(model)
     assert found.reached
     assert found.path.certificate < 1e-9
+    assert tried.count(False) <= 6 < 40 <= len(tried)
     last = found.path.result()
     up = sum(reaction[-1] for reaction in found.reactions.values())
     assert up[:2] == pytest.approx([0.0, 0.0], abs=1e-8)
     pairs, n = last.assembly.pairs, last.contacts.normal_force
     to_one_side = np.bincount(pairs.interface, n * np.sign(pairs.point[:, 1]))
     assert np.abs(to_one_side).max() > 0.3 * np.bincount(pairs.interface, n).max(), "thrust has moved to the edges"
+
+
+def test_where_the_last_two_states_lead() -> None:
+    problem = blocks(1, 1, kn=1e4, mu=0.5).problem
+    path = LinearPath(problem.with_loads(0.0 * problem.f), problem.f)
+    rest = at_rest(path.problem)
+    n, pairs = np.ones(problem.pairs), (problem.pairs, 1)
+    first = state_of(path, 0.5, np.full(problem.unknowns, 1e-3), n, np.tile((0.1, -0.2), pairs), before=rest)
+    second = state_of(path, 0.6, np.full(problem.unknowns, 2e-3), 3 * n, np.tile((0.3, -0.1), pairs), before=first)
+    assert extrapolated([first], 0.6)[0] is first.displacement
+    u, t_n, t_t = extrapolated([rest, first, second], 0.65)
+    assert u == pytest.approx(2.5e-3)
+    assert t_n == pytest.approx(4.0)
+    assert t_t == pytest.approx(np.tile((0.4, -0.05), pairs))
+    repeated = extrapolated([first, replace(second, parameter=0.5)], 0.7)
+    assert repeated[1] is second.normal_force  # a step at the same load leads nowhere
 
 
 def test_margins() -> None:

@@ -13,7 +13,7 @@ from concio.solvers.algebra.scaled import Scaled, scale
 from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.interior.cone_iteration import ConeIteration, ConePoint
 from concio.solvers.interior.engine import Cancelled, Run, at_rest
-from concio.solvers.interior.newton_finish import finish
+from concio.solvers.interior.newton_finish import STALE, finish
 from concio.solvers.states.reading import Finished
 
 TARGETS = (1e-6, 1e-8, 1e-10)
@@ -139,10 +139,12 @@ class ConeRun(Run):
                 break
         return None
 
-    def settle(self, u: Array, t: Array, weights: tuple[float, ...] = WEIGHTS, rounds: int = 20) -> Finished | None:
+    def settle(
+        self, u: Array, t: Array, weights: tuple[float, ...] = WEIGHTS, rounds: int = 20, patience: int = STALE
+    ) -> Finished | None:
         """Exact finish of a point by Newton's method; return it if its certificate holds, None if not."""
         for weight in weights:
-            found = finish(self.scaled, u, t, rho=weight, rounds=rounds)
+            found = finish(self.scaled, u, t, rho=weight, rounds=rounds, patience=patience)
             settled = found.error <= EXACT
             exact = settled and self.certified(found)
             left = f", {len(found.undecided)} pairs undecided" if not settled else "" if exact else ", runs off"

@@ -38,7 +38,7 @@ SETTLED = 1e-13
 """Natural-map residual at which Newton's method stops."""
 
 STALE = 6
-"""Rounds without a smaller residual after which Newton's method gives up."""
+"""Rounds without a smaller residual after which Newton's method gives up where nothing else is asked for."""
 
 FURTHER = 10
 """Rounds beyond those asked for in which an exact answer is brought to the last digits, which the least forces need."""
@@ -80,7 +80,14 @@ def _derivative(s: Scaled, w: Array) -> Array:
 
 
 def finish(
-    s: Scaled, u: Array, t: Array, *, rho: float = 1.0, rounds: int = 20, least: bool = True
+    s: Scaled,
+    u: Array,
+    t: Array,
+    *,
+    rho: float = 1.0,
+    rounds: int = 20,
+    patience: int = STALE,
+    least: bool = True,
 ) -> Finished:
     """Turn a point close to a solution into the solution, if Newton's method converges.
 
@@ -93,6 +100,8 @@ def finish(
         Weight of lengths against forces in the natural map, scaled by the largest of both.
     rounds : int
         Largest number of Newton steps.
+    patience : int
+        How many of them in a row may bring no smaller residual.
     least : bool
         Whether forces that are not unique are the least of all; otherwise those near to the point.
     """
@@ -111,7 +120,7 @@ def finish(
         stale = 0 if error < best[2] else stale + 1
         if error < best[2]:
             best = u, t, error, laws
-        if error < SETTLED or stale >= STALE or not np.isfinite(error):
+        if error < SETTLED or stale >= patience or not np.isfinite(error):
             break
     u, t, error, laws = best
     found = Finished(u, t, states_of(s, u, t), error, solves, np.flatnonzero(laws > UNDECIDED))

@@ -41,8 +41,8 @@ TETHER = 1e-8
 FLIPS = 3
 """Factorisations that trying the states of the last step may cost beyond the first."""
 
-STEPS = 6
-"""Newton steps of such a try in space: where more are needed, the state found is no neighbour of the last."""
+PATIENCE = 3
+"""Newton steps in a row that such a try in space goes on without a smaller residual."""
 
 State = tuple[Array, Array, Array]
 
@@ -90,8 +90,9 @@ def softened(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> Conta
 class Nearby:
     """What the steps of one structure share: units, ordering, and the factors of the last one.
 
-    The states of the last step are tried first. Where few of them change, which is what small steps are for, that takes
-    a few updates of the factors at hand instead of an iteration from nothing, and of several answers it is the nearest.
+    The states of a point nearby are tried first. Where few of them change, which is what small steps are for, that
+    takes a few updates of the factors at hand, or in space a few steps of Newton's method, instead of an iteration
+    from nothing, and of several answers it is the nearest.
     """
 
     def __init__(self) -> None:
@@ -103,27 +104,27 @@ class Nearby:
         self._kept[which] = scale(problem) if kept is None else kept.renewed(problem)
         return self._kept[which]
 
-    def solve(self, problem: ContactProblem, near: State, which: str = "as it is") -> Solution | None:
-        """Return the answer of a problem whose states differ in few pairs from those of a state, if it has one.
+    def solve(self, problem: ContactProblem, begin: State, which: str = "as it is") -> Solution | None:
+        """Return the answer of a problem whose states differ in few pairs from those of a point, if it has one.
 
         Parameters
         ----------
         problem : ContactProblem
-        near : arrays
-            Displacements [m], t_n and t_t [kN] of the state.
+        begin : arrays
+            Displacements [m], t_n and t_t [kN] of the point; None is returned where all are zero.
         which : str
             See :meth:`scaled`.
         """
-        if not any(part.any() for part in near):
+        if not any(part.any() for part in begin):
             return None
         s = self.scaled(problem, which)
-        made, point = s.factor.made, s.bring(*near)
+        made, point = s.factor.made, s.bring(*begin)
         if problem.dim == 2:
             run: engine.Run = engine.Run(s)
             found = run.finish(*point, flips=FLIPS)
         else:
             run = cone_run.ConeRun(s)
-            found = run.settle(*point, cone_run.WEIGHTS[:1], STEPS)
+            found = run.settle(*point, cone_run.WEIGHTS[:1], patience=PATIENCE)
         if found is None:
             return None
         return replace(run.solution(found, method=NAME), factorisations=s.factor.made - made)
@@ -137,6 +138,7 @@ def solve_near(
     *,
     starts: tuple[float, ...] = engine.STARTS,
     nearby: Nearby | None = None,
+    begin: State | None = None,
     progress: ProgressCallback | None = None,
 ) -> Solution:
     """Solve one load step, taking of all answers it allows the one near to the state given.
@@ -151,7 +153,9 @@ def solve_near(
     starts : tuple of float
         Sizes of the interior point's starting points, in the plane.
     nearby : Nearby, optional
-        What the steps before kept, where they are small: the states of the last are then tried first.
+        What the steps before kept, where they are small: the states of a point nearby are then tried first.
+    begin : arrays, optional
+        Displacements, t_n and t_t of that point; default is the state given.
     progress : callable, optional
 
     Returns
@@ -159,10 +163,10 @@ def solve_near(
     Solution
         Certified by the problem itself, or GAVE_UP (or CANCELLED).
     """
-    plane, near = problem.dim == 2, (u, t_n, t_t)
+    plane, begin = problem.dim == 2, begin or (u, t_n, t_t)
 
     def solve(step: ContactProblem, which: str) -> Solution:
-        found = None if nearby is None else nearby.solve(step, near, which)
+        found = None if nearby is None else nearby.solve(step, begin, which)
         if not plane:
             return found or cone_run.solve(step, progress=progress)
         return found or engine.solve(step, homotopy=False, starts=starts, progress=progress)

@@ -1,5 +1,8 @@
 """Load paths in steps: one Coulomb problem for each step, slip measured from the last converged state (10, 11).
 
+A step is first tried from a state nearby: in the plane the last one, in space that to which the last two lead in
+proportion (:func:`extrapolated`).
+
 The step is halved where the solver finds no certified answer or where more than ``CHANGES`` of the pairs change state,
 and doubled again after an easy step, never beyond the one asked for.
 
@@ -9,6 +12,7 @@ put off with the load growing meanwhile, the step after it is repeated at the sa
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -92,7 +96,7 @@ def follow_in_steps(
         size = np.sign(whole) * min(abs(size), abs(left)) if not breaking else size
         parameter = until if abs(size) >= abs(left) * (1 - 1e-12) else before.parameter + size
         parameter = before.parameter if breaking else parameter
-        solution = _step(path, before, parameter, solver, nearby)
+        solution = _step(path, states, parameter, solver, nearby)
         smallest = abs(size) <= SMALLEST * abs(whole)
         if not solution.solved:
             if not smallest and not breaking and not _proportional(path, before):
@@ -128,15 +132,42 @@ def follow_in_steps(
 
 
 def _step(
-    path: LinearPath, before: PathState, parameter: float, solver: Solver, nearby: near_forces.Nearby
+    path: LinearPath, states: list[PathState], parameter: float, solver: Solver, nearby: near_forces.Nearby
 ) -> Solution:
     """Solve one step: near the last state, keeping redundant forces near the last ones, or else from nothing."""
-    problem = step_problem(path, before, parameter)
-    last = before.displacement, before.normal_force, before.friction_force
+    problem, last = step_problem(path, states[-1], parameter), _point(states[-1])
+    begin = last if problem.dim == 2 else extrapolated(states, parameter)
     if not near_forces.needed(problem):
-        return nearby.solve(problem, last) or solver(problem)
-    solution = near_forces.solve_near(problem, *last, nearby=nearby)
+        return nearby.solve(problem, begin) or solver(problem)
+    solution = near_forces.solve_near(problem, *last, nearby=nearby, begin=begin)
     return solution if solution.solved else solver(problem)
+
+
+def _point(state: PathState) -> near_forces.State:
+    """Return displacements and forces of a state."""
+    return state.displacement, state.normal_force, state.friction_force
+
+
+def extrapolated(states: Sequence[PathState], parameter: float) -> near_forces.State:
+    """Return the displacements and forces to which the last two states lead; those of the last where there is one.
+
+    Newton's method tells from them which pairs slip on, and which way: at the last state itself none does, slip being
+    measured from there.
+
+    Parameters
+    ----------
+    states : sequence of PathState
+        Of one path, the last one last.
+    parameter : float
+        Load parameter to lead to.
+    """
+    last = _point(states[-1])
+    change = states[-1].parameter - states[-2].parameter if len(states) > 1 else 0.0
+    if change == 0.0:
+        return last
+    share = (parameter - states[-1].parameter) / change
+    u, t_n, t_t = (b + share * (b - a) for a, b in zip(_point(states[-2]), last, strict=True))
+    return u, t_n, t_t
 
 
 def _proportional(path: LinearPath, before: PathState) -> bool:
