@@ -11,9 +11,11 @@ import scipy.sparse as sp
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array, ContactProblem, Laws
 from concio.problem.tolerances import BALANCED
+from concio.solvers.algebra.second_order_cone import product, times
 from concio.solvers.statics.cone_interior import ConeAnswer, maximise
-from concio.solvers.statics.cone_programme import ConeProgramme, Pairs
+from concio.solvers.statics.cone_programme import ConeProgramme, Pairs, Point
 from concio.solvers.statics.cone_statics import ConeStatics, _motions_of_bodies, _room
+from concio.solvers.statics.cone_step import Step
 from concio.solvers.statics.existence import statically_admissible
 from concio.solvers.statics.friction import smallest_friction
 from concio.solvers.statics.limit import associated_limit
@@ -280,6 +282,22 @@ def test_every_iterate_tells_the_residuals_of_its_point_and_the_best_is_given() 
     assert max(found.primal, found.dual, found.gap) == min(worst) < 1e-12
 
 
+@pytest.mark.parametrize("share", [1.0, 0.01])
+def test_the_gap_told_is_that_of_the_two_bounds(share: float) -> None:
+    """Of plain cones -e'v - lambda once balance and velocities are met, over lambda where that is above one."""
+    built = dome(4, 10)
+    statics = ConeStatics(built.problem)
+    e, g = statics.offset(built.problem.f), share * statics.project(built.live)
+    seen: list[ConeAnswer] = []
+    maximise(statics.programme, e, g, stop=lambda answer: bool(seen.append(answer)))
+    met = [a for a in seen if max(a.primal, a.dual) < 1e-3 * a.gap < 1e-5]
+    assert len(met) > 3
+    for answer in met:
+        size = max(1.0, abs(answer.multiplier))
+        assert answer.gap == pytest.approx((-e @ answer.v - answer.multiplier) / size, rel=1e-2)
+    assert (met[-1].multiplier > 50) is (share < 1)
+
+
 @pytest.mark.parametrize(("mu", "cohesion", "cap"), [(0.6, 0.0, np.inf), (0.6, 0.3, np.inf), (0.4, 0.3, 4.0)])
 def test_a_share_of_their_room_never_takes_forces_out_of_the_cones(mu: float, cohesion: float, cap: float) -> None:
     """1/sqrt(2) of it in any direction; of a plain cone no more."""
@@ -307,3 +325,79 @@ def test_motions_are_those_of_one_body_after_another() -> None:
     assert _motions_of_bodies(problem).tolist() == list(range(0, r + 1, 6))
     mixed = replace(problem, R=sp.csc_array(problem.R[:, ::-1]))
     assert _motions_of_bodies(mixed).tolist() == list(range(r + 1))
+
+
+def every_law(seed: int) -> tuple[ConeProgramme, Point, Array, tuple[Array, Array, float]]:
+    """Pairs of every law on two bodies, a point inside all cones, a load, and what is left of the equations there."""
+    rng = np.random.default_rng(seed)
+    mu, cohesion, cap = np.array([
+        (0.6, 0.0, np.inf), (0.4, 0.3, np.inf), (0.7, 0.2, 5.0), (0.5, 0.0, 9.0), (0.0, 0.8, np.inf), (0.0, 0.5, 6.0),
+        (0.0, 0.0, np.inf), (0.0, 0.0, 7.0),
+    ]).repeat(2, axis=0).T  # fmt: skip
+    m = len(mu)
+    C = sp.csr_array(rng.normal(size=(3 * m, 12)))
+    it = ConeProgramme(Pairs(C, Cone(mu, cohesion, 0.0 * mu, cap), np.array([0, 6, 12])))
+    t = np.column_stack([rng.uniform(0.5, 4.0, m), np.zeros((m, 2))])
+    angle, share = rng.uniform(0, 2 * np.pi, m), rng.uniform(0.1, 0.9, m)
+    size = share * it.cone.linear_strength(t[:, 0])
+    t[:, 1:] = np.where(it.rough, size, 0.0)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
+    eta = np.column_stack([np.full(m, 2.0), rng.uniform(-1.2, 1.2, (m, 2))])
+    eta[~it.rough] = 0.0
+    eta[~it.rough, 0] = 1.0
+    p = Point(t, 0.3, rng.normal(size=12), rng.uniform(0.5, 2.0, m), eta, rng.uniform(0.5, 2.0, m))
+    g, rest = rng.normal(size=12), it.rate(rng.normal(size=12))
+    rest[~it.rough, 1:] = 0.0
+    return it, p, g, (rng.normal(size=12), rest, 0.7)
+
+
+@pytest.mark.parametrize("degenerate", [False, True])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_direction_solves_newtons_equations_of_every_law(seed: int, degenerate: bool) -> None:
+    """Balance, velocities, the given power and the three kinds of products, each linearised as it stands."""
+    it, p, g, (r_p, r_d, r_g) = every_law(seed)
+    it.degenerate = degenerate
+    step = Step.at(it, p, g, r_p, r_d, r_g)
+    assert step is not None
+    rng = np.random.default_rng(seed + 9)
+    rc_z, rc_t, rc_w = rng.normal(size=p.z.shape), rng.normal(size=p.t.shape), rng.normal(size=p.w.shape)
+    d = step.direction(rc_z, rc_t, rc_w)
+    assert d is not None
+    rounding = 1e-11 * max(np.abs(d.t).max(), np.abs(d.v).max(), 1.0)
+    assert it.Ct @ d.t.ravel() + g * d.multiplier == pytest.approx(-r_p, abs=rounding)
+    assert g @ d.v == pytest.approx(r_g, abs=rounding)
+    left = it.rate(d.v) + r_d - it.pressed(d.z, d.eta, d.w)
+    assert np.abs(left[it.rough]).max() <= rounding
+    assert np.abs(left[~it.rough, 0]).max() <= rounding
+    line, capped, rough = it.line, it.capped, it.rough
+    assert (p.z * d.t[:, 0] + p.t[:, 0] * d.z)[line] == pytest.approx(rc_z[line], abs=rounding)
+    assert ((it.cap - p.t[:, 0]) * d.w - p.w * d.t[:, 0])[capped] == pytest.approx(rc_w[capped], abs=rounding)
+    turned = times(step.scaling.W, d.eta) + times(step.scaling.inverse, step.of_strength(d.t))
+    assert np.abs(product(step.scaling.point, turned) - rc_t)[rough].max() <= 10 * rounding
+    assert not d.z[~line].any()
+    assert not d.w[~capped].any()
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_longest_step_ends_on_the_first_wall_it_meets(seed: int) -> None:
+    it, p, g, rest = every_law(seed)
+    step = Step.at(it, p, g, *rest)
+    assert step is not None
+    rng = np.random.default_rng(seed)
+    size = 10.0 ** rng.uniform(-1.5, 1.0)
+    d = Point(*(size * rng.normal(size=np.shape(v)) for v in (p.t, p.multiplier, p.v, p.z, p.eta, p.w)))
+    d.eta[~it.rough] = 0.0
+
+    def room(q: Point) -> tuple[float, float]:
+        """How far forces and multipliers are inside their cones."""
+        t, eta = it.strength(q.t)[it.rough], q.eta[it.rough]
+        forces = [q.t[it.line, 0], (it.cap - q.t[:, 0])[it.capped], t[:, 0] - np.hypot(*t[:, 1:].T)]
+        others = [q.z[it.line], q.w[it.capped], eta[:, 0] - np.hypot(*eta[:, 1:].T)]
+        return float(np.concatenate(forces).min()), float(np.concatenate(others).min())
+
+    assert min(room(p)) > 0
+    longest = step.longest(d)
+    for k in range(2):
+        assert 0 < longest[k] <= 1
+        assert room(p.moved(d, *((1 - 1e-9) * np.array(longest))))[k] > 0
+        if longest[k] < 1:
+            assert room(p.moved(d, *((1 + 1e-9) * np.array(longest))))[k] < 0

@@ -412,12 +412,17 @@ def test_equal_blocks_share_their_shape_wherever_they_stand() -> None:
 
 def test_points_of_a_face_are_a_triangular_lattice_in_its_middle() -> None:
     """Each inner one has six neighbours at the distance asked for, and none of the face is far from one."""
-    face = shapely.Polygon([(1, 2), (6, 2), (6, 5), (1, 5)])
+    face = shapely.Polygon([(-6, -3), (-1, -3), (-1, 2.5), (-6, 2.5)])
     flat = _lattice(face, 0.4)
     assert np.allclose(flat.mean(0), face.centroid.coords[0], atol=0.05)
     inner = flat[shapely.distance(face.boundary, shapely.points(flat)) > 0.61]
     distance, _ = cKDTree(flat).query(inner, k=7)
     assert len(inner) > 30
     assert np.allclose(distance[:, 1:], 0.4)
-    sides = np.stack(np.meshgrid(np.linspace(1, 6, 51), np.linspace(2, 5, 31)), -1).reshape(-1, 2)
+    sides = np.stack(np.meshgrid(np.linspace(-6, -1, 51), np.linspace(-3, 2.5, 56)), -1).reshape(-1, 2)
     assert cKDTree(flat).query(sides)[0].max() < 2 * 0.4
+    low, high = flat.min(0) - [-6, -3], [-1, 2.5] - flat.max(0)
+    row = np.array([1.0, 0.75**0.5]) * 0.4
+    assert (low >= 0.2).all()  # half a side of a cell from the edges, where no further row has room
+    assert (low < 0.2 + row).all()
+    assert (high < 0.2 + row).all()

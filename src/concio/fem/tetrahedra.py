@@ -34,6 +34,8 @@ WORST = 0.01
 """Shape below which a mesh is not accepted."""
 ROUNDS = 25
 """Rounds in which slivers are taken away."""
+ROW = 0.75**0.5
+"""Distance of the rows of a triangular lattice, over that of its points."""
 
 
 def tetrahedra(body: Polyhedron, size: float, marks: Sequence[Array] = ()) -> Mesh:
@@ -168,10 +170,10 @@ def _surface_points(body: Polyhedron, size: float, marks: Sequence[Array]) -> Ar
 def _lattice(shape: shapely.Polygon, size: float) -> Array:
     """Return points (k, 2) of a triangular lattice well inside a polygon, or its middle where there is room for one."""
     x0, y0, x1, y1 = shape.bounds
-    rows, columns = int((y1 - y0) / (size * 0.75**0.5)), int((x1 - x0) / size)
+    rows, columns = int((y1 - y0) / (size * ROW)), int((x1 - x0) / size)
     i, j = np.meshgrid(np.arange(columns + 2), np.arange(rows + 1))
     x = 0.5 * (x0 + x1 - columns * size) + (i - 0.25 + 0.5 * (j % 2) - 0.25) * size
-    y = 0.5 * (y0 + y1 - rows * size * 0.75**0.5) + j * size * 0.75**0.5
+    y = 0.5 * (y0 + y1 - rows * size * ROW) + j * size * ROW
     flat = np.column_stack([x.ravel(), y.ravel()])
     flat = flat[shapely.contains_xy(shape, *flat.T)]
     found: Array = flat[shapely.distance(shapely.boundary(shape), shapely.points(flat)) > 0.5 * size]

@@ -213,7 +213,7 @@ class Step:
         if d is None:
             return None
         primal, dual = self.longest(d)
-        return p.moved(d, min(1.0, SHARE * primal), min(1.0, SHARE * dual))
+        return p.moved(d, SHARE * primal, SHARE * dual)
 
 
 def _roots(it: ConeProgramme, p: Point, scaling: Scaling) -> tuple[Array, Array]:
