@@ -180,7 +180,7 @@ def test_a_motion_into_the_ground_is_no_departure() -> None:
     pressed = problem.with_loads(problem.f + problem.inertia * down)
     state = motion.displacement, motion.normal_force, motion.friction_force
     found = verify_departure(pressed, motion.acceleration + down, *state)
-    assert found.violation == pytest.approx(0.01, rel=1e-3)
+    assert found.violation == pytest.approx(0.01, rel=1e-12)
 
 
 def test_what_stands_comes_to_rest() -> None:

@@ -70,12 +70,13 @@ def test_wedge_shaped_gap_is_linear_and_clipped_at_the_reach():
     bodies = [box("lower", 0, 0, 1, 1), turned(box("upper", 0, 1, 1, 2), 0.02, about=(0, 1))]
     found = detect_interfaces(bodies, tolerance=1e-6, reach=0.03)
     (face,) = found.interfaces
-    assert sorted(face.gap) == pytest.approx([0, 0.02], abs=2e-4)
+    assert [face.start[0], face.end[0]] == pytest.approx([1, 0])
+    assert face.gap == pytest.approx([2 * np.sin(0.01), 0], rel=1e-12)  # across the bisector
     assert not found.near_misses
     found = detect_interfaces(bodies, tolerance=1e-6, reach=0.01)
     (face,) = found.interfaces
-    assert face.length == pytest.approx(0.5, rel=1e-2)
-    assert max(face.gap) == pytest.approx(0.01)
+    assert face.length == pytest.approx(0.01 / (2 * np.sin(0.01)), rel=1e-9)
+    assert face.gap == pytest.approx([0.01, 0], rel=1e-9)
     assert [m.kind for m in found.near_misses] == ["partial"]
 
 
