@@ -4,18 +4,24 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
+import concio
 from concio.problem.contact_problem import Array
+from concio.solvers.algebra import sparse_factor
 from concio.solvers.algebra.block_factor import BlockFactor
-from concio.solvers.algebra.sparse_factor import Engine, SingularMatrixError
+from concio.solvers.algebra.scaled import LOOSE, scale
+from concio.solvers.algebra.sparse_factor import Engine, OrderedFactor, Pattern, SingularMatrixError
 
-ENGINES: tuple[Engine, ...] = ("superlu", "pardiso")
+FACTORS = ("band", "superlu", "pardiso")
 
 
-def available(engine: Engine) -> Engine:
-    """Skip where the engine is an extra that is not installed."""
-    if engine == "pardiso":
+def asked(factor: str, monkeypatch: pytest.MonkeyPatch) -> Engine:
+    """Return the engine that factorises this way; skip where it is an extra that is not installed."""
+    if factor == "pardiso":
         pytest.importorskip("pypardiso")
-    return engine
+        return "pardiso"
+    if factor == "superlu":
+        monkeypatch.setattr(sparse_factor, "NARROW", -1)
+    return "superlu"
 
 
 def gram(a: Array) -> Array:
@@ -37,19 +43,22 @@ def blocks(rng: np.random.Generator, kinds: list[int], pairs: int, d: int) -> tu
     return sp.csr_array(sp.block_diag(dense)), sp.csr_array(C), ranges
 
 
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("by", FACTORS)
 @pytest.mark.parametrize("d", [2, 3])
-def test_block_factor_solves_with_unsymmetric_blocks(engine: Engine, d: int) -> None:
+def test_block_factor_solves_with_unsymmetric_blocks(by: str, d: int, monkeypatch: pytest.MonkeyPatch) -> None:
     rng = np.random.default_rng(d)
     K, C, ranges = blocks(rng, [6, 12, 6, 3, 9, 6, 6], 30, d)
     n = K.shape[0]
-    factor = BlockFactor(K, C, 30, ranges, available(engine))
+    factor = BlockFactor(K, C, 30, ranges, asked(by, monkeypatch))
+    assert (factor.pattern.width is not None) == (by == "band")
     for _ in range(2):
         D = rng.standard_normal((30, d, d)) * 0.3 + 2 * np.eye(d)
         added, b = rng.uniform(0.5, 2, n), rng.standard_normal(n)
         matrix = K.toarray() + C.T.toarray() @ sp.block_diag(list(D)).toarray() @ C.toarray() + np.diag(added)
         factor.factorise(D, added)
         np.testing.assert_allclose(factor.solve(b), np.linalg.solve(matrix, b), rtol=1e-10, atol=1e-12)
+        several = rng.standard_normal((n, 5))
+        np.testing.assert_allclose(factor.solve(several), np.linalg.solve(matrix, several), rtol=1e-10, atol=1e-12)
     assert factor.count == 2
     held = factor.with_diagonal(added)
     held.factorise(D, 0.5)
@@ -59,8 +68,11 @@ def test_block_factor_solves_with_unsymmetric_blocks(engine: Engine, d: int) -> 
 
 
 @pytest.mark.parametrize(("kinds", "together"), [([9, 12, 6, 9], 3), ([6, 6, 6, 6, 6], 6)])
-def test_nodes_and_rigid_bodies_in_space_are_ordered_as_wholes(kinds: list[int], together: int) -> None:
+def test_nodes_and_rigid_bodies_in_space_are_ordered_as_wholes(
+    kinds: list[int], together: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """In twos three displacements of a node are torn apart, which costs a third more time."""
+    monkeypatch.setattr(sparse_factor, "NARROW", -1)
     K, C, ranges = blocks(np.random.default_rng(5), kinds, 12, 3)
     order = BlockFactor(K, C, 12, ranges).pattern.order.reshape(-1, together)
     assert (order == order[:, :1] // together * together + np.arange(together)).all()
@@ -78,3 +90,46 @@ def test_values_that_are_not_finite_are_refused() -> None:
     factor = BlockFactor(sp.csr_array((6, 6)), sp.csr_array(np.ones((3, 6))), 1, np.array([0, 6]))
     with pytest.raises(SingularMatrixError):
         factor.factorise(np.full((1, 3, 3), np.nan), 1.0)
+
+
+def ordered(matrix: sp.coo_array) -> tuple[OrderedFactor, Array]:
+    """Return the factor of a matrix, not yet made, and its entries as the factor wants them."""
+    pattern = Pattern.of(matrix.row, matrix.col, matrix.shape[0], "superlu")
+    return OrderedFactor(pattern), np.bincount(pattern.slot, weights=matrix.data, minlength=pattern.nnz)
+
+
+def test_slender_structures_are_bands_however_long_and_large_walls_are_not() -> None:
+    """A chain numbered at random is a band of one; the graph of a square wall has none."""
+    rng = np.random.default_rng(3)
+    n = 20_000
+    name = rng.permutation(n)
+    one, other = name[:-1], name[1:]
+    values = rng.uniform(-1.0, 0.0, n - 1)
+    row, column = np.concatenate([name, one, other]), np.concatenate([name, other, one])
+    chain = sp.coo_array((np.concatenate([np.full(n, 2.1), values, 0.5 * values]), (row, column)), shape=(n, n))
+    factor, data = ordered(chain)
+    assert factor.pattern.width == 1
+    factor.factorise(data)
+    b = rng.standard_normal(n)
+    np.testing.assert_allclose(chain @ factor.solve(b), b, rtol=1e-12, atol=1e-12)
+    side = 150
+    line = sp.diags_array([1.0, 1.0], offsets=[-1, 1], shape=(side, side))
+    wall = sp.coo_array(sp.kronsum(line, line) + 5.0 * sp.eye_array(side**2))
+    assert ordered(wall)[0].pattern.width is None
+
+
+def test_a_singular_band_is_told() -> None:
+    factor, data = ordered(sp.coo_array(np.array([[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 1.0]])))
+    assert factor.pattern.width is not None
+    with pytest.raises(SingularMatrixError, match="singular"):
+        factor.factorise(data)
+
+
+def test_two_solves_of_one_problem_share_the_order_and_no_factors() -> None:
+    problem = concio.assemble(concio.column(width=0.5, height=1.0, blocks=3, friction=0.6, top_pressure=10.0)).problem()
+    one, other = scale(problem), scale(problem)
+    assert one.factor.pattern is other.factor.pattern
+    assert one.factor.numeric is not other.factor.numeric
+    other.factor.factorise(2.0 * other.factor.D, 1.0)
+    assert (one.factor.made, other.factor.made, one.factor.has(one.factor.D, LOOSE)) == (1, 2, True)
+    assert scale(problem.with_loads(2.0 * problem.f)).factor.pattern is not one.factor.pattern

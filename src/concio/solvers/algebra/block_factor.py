@@ -114,7 +114,7 @@ class BlockFactor:
         """Tell whether the factors at hand are those of D (m, d, d) and this diagonal, but for rounding."""
         if self.D is None or not np.array_equal(np.asarray(self.diagonal), diagonal):
             return False
-        return bool(np.allclose(D, self.D, rtol=SAME, atol=0.0))
+        return bool((np.abs(D - self.D) <= SAME * np.abs(self.D)).all())
 
     def with_diagonal(self, diagonal: Array) -> BlockFactor:
         """Return a factor of K + diag(diagonal) that shares ordering and pattern; each keeps factors of its own."""
@@ -122,6 +122,14 @@ class BlockFactor:
         other._base = self._base.copy()
         other._base[self._diagonal] += diagonal
         other.numeric = OrderedFactor(self.pattern, PIVOT)
+        other.D = other.diagonal = None
+        return other
+
+    def afresh(self) -> BlockFactor:
+        """Return a factor of the same matrices that has made nothing yet; pattern and ordering are shared."""
+        other = copy(self)
+        other.numeric = OrderedFactor(self.pattern, PIVOT)
+        other._made = [0]
         other.D = other.diagonal = None
         return other
 

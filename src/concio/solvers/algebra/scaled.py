@@ -17,6 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import scipy.sparse as sp
@@ -26,10 +27,15 @@ from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.tolerances import GRANTED, ROUNDING, SMOOTH
 from concio.solvers.algebra.block_factor import BlockFactor
-from concio.solvers.algebra.sparse_factor import Engine
+from concio.solvers.algebra.sparse_factor import Engine, chosen_engine
 
 LOOSE = 1e-10
 """Stiffness of the springs that keep unknowns which nothing holds where they are, scaled units."""
+
+
+_ORDERED: WeakKeyDictionary[ContactProblem, dict[Engine, tuple[float, sp.csr_array, sp.csr_array, BlockFactor]]]
+_ORDERED = WeakKeyDictionary()
+"""What :func:`scale` works out of the matrices of a problem, for as long as that lives."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -284,9 +290,7 @@ def scale(problem: ContactProblem, engine: Engine | None = None, *, loads: Array
         Loads by which forces are measured where those of the problem are not the measure (a load path) [kN].
     """
     m, d = problem.pairs, problem.dim
-    stiffness = typical_stiffness(problem)
-    K, C = sp.csr_array(problem.K * (1.0 / stiffness)), interleaved(problem)
-    factor = BlockFactor(K, C, m, problem.bodies, engine)
+    stiffness, K, C, factor = _matrices(problem, engine or chosen_engine())
     springs = 1.0 / (_softness(problem) + _compliance(problem) * stiffness)
     factor.factorise(springs[:, :, None] * np.eye(d), LOOSE)
     measured = problem.f if loads is None else loads
@@ -309,6 +313,21 @@ def scale(problem: ContactProblem, engine: Engine | None = None, *, loads: Array
         factor=factor,
         glued=u / length,
     )
+
+
+def _matrices(problem: ContactProblem, engine: Engine) -> tuple[float, sp.csr_array, sp.csr_array, BlockFactor]:
+    """Return the typical stiffness, K over it, C interleaved, and a factor that has made nothing yet.
+
+    They are worked out once for a problem, however often and by whatever it is solved: ordering its matrix takes as
+    long as some factorisations.
+    """
+    ordered = _ORDERED.setdefault(problem, {})
+    if engine not in ordered:
+        stiffness = typical_stiffness(problem)
+        K, C = sp.csr_array(problem.K * (1.0 / stiffness)), interleaved(problem)
+        ordered[engine] = stiffness, K, C, BlockFactor(K, C, problem.pairs, problem.bodies, engine)
+    stiffness, K, C, factor = ordered[engine]
+    return stiffness, K, C, factor.afresh()
 
 
 def _in_units(problem: ContactProblem, C: sp.csr_array, force: float, length: float) -> dict[str, Any]:

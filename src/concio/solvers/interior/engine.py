@@ -96,8 +96,6 @@ class EarlyFinish:
     s : Scaled
     """
 
-    LEAST: ClassVar = 500
-    """Pairs from which on a factorisation costs more than the solves of a try."""
     FLIPS: ClassVar = 2
     """Factorisations that such a try may cost beyond the first."""
     FEW: ClassVar = 0.02
@@ -111,8 +109,7 @@ class EarlyFinish:
     def __init__(self, s: Scaled) -> None:
         self.s = s
         self.states: PairStates | None = None
-        few = max(min(TOGETHER, self.FEW * s.pairs), self.SHARE * s.pairs)
-        self.fewer = few if s.pairs >= self.LEAST else -1.0
+        self.fewer = max(min(TOGETHER, self.FEW * s.pairs), self.SHARE * s.pairs)
 
     def worth_trying(self, z: Iterate, residual: float) -> bool:
         """Note the states of a point; return whether few enough differ from those of the point before."""

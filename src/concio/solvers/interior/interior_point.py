@@ -136,8 +136,8 @@ class InteriorPoint:
     def __init__(self, scaled: Scaled, correctors: int = CORRECTORS) -> None:
         self.problem, self.correctors = scaled, correctors
         rough, capped = scaled.rough, scaled.cone.capped
-        self.used = np.array([np.ones(scaled.pairs, dtype=bool), rough, rough, capped])
-        """Which of the four products of each pair are there, (4, m)."""
+        self.used = np.array([np.ones(scaled.pairs, dtype=bool), rough, rough, capped]).astype(float)
+        """One where a product of a pair is there, else zero, (4, m)."""
 
     def start(self, size: float = START) -> Iterate:
         """Return the point from which the plain iteration starts: every slack and multiplier ``size``.
@@ -153,7 +153,7 @@ class InteriorPoint:
 
     def gap(self, z: Iterate) -> float:
         """Return the mean complementarity product."""
-        return float(z.products()[self.used].sum() / max(int(self.used.sum()), 1))
+        return float((z.products() * self.used).sum() / max(float(self.used.sum()), 1.0))
 
     def residuals(self, z: Iterate, theta: float) -> Residuals:
         """Return what the linear equations leave at a point."""
@@ -228,7 +228,7 @@ class InteriorPoint:
             if why:
                 break
             try:
-                newton = Newton(self.problem, z, rest, self.dilatancy(theta))
+                newton = Newton(self.problem, z, rest, self.dilatancy(theta), self.used)
             except SingularMatrixError:
                 why = "no direction"
                 break
@@ -254,7 +254,7 @@ class InteriorPoint:
                 break
             there = z.moved(d, min(1.0, step + FURTHER)).products()
             pull = np.clip(there, tau / OUTLIER, tau * OUTLIER) - there
-            trial = np.where(self.used, change + np.maximum(pull, -OUTLIER * tau), change)
+            trial = change + self.used * np.maximum(pull, -OUTLIER * tau)
             other = newton.direction(trial)
             longer = z.longest(other, BOUNDARY)
             if longer < step + GAIN * FURTHER:

@@ -24,6 +24,8 @@ class Newton:
     z : Iterate
     rest : Residuals
     dilatancy : (m,) array
+    used : (4, m) array
+        One where a product is there, else zero.
 
     Raises
     ------
@@ -31,13 +33,11 @@ class Newton:
         There is no direction: the path turns back, or the matrix cannot be factorised.
     """
 
-    def __init__(self, s: Scaled, z: Iterate, rest: Residuals, dilatancy: Array) -> None:
-        self.s, self.z, self.rest, self.dilatancy = s, z, rest, dilatancy
-        rough, capped, mu = s.rough, s.cone.capped, s.cone.friction
+    def __init__(self, s: Scaled, z: Iterate, rest: Residuals, dilatancy: Array, used: Array) -> None:
+        self.s, self.z, self.rest, self.dilatancy, self.used = s, z, rest, dilatancy, used
+        rough, mu = s.rough, s.cone.friction
         # how stiff each law is: dual over slack, zero where the law is not there
-        self.ratio = z.dual / z.slack
-        self.ratio[1:3, ~rough] = 0.0
-        self.ratio[3, ~capped] = 0.0
+        self.ratio = z.dual / z.slack * used
         opens, plus, minus, crush = self.ratio
         h_nn = opens + s.compliance[:, 0] + crush + dilatancy * mu * (plus + minus)
         lean = plus - minus
@@ -55,11 +55,8 @@ class Newton:
     def direction(self, change: Array) -> Iterate:
         """Return the direction that changes the products by ``change`` (4, m), to first order."""
         s, z, r, mu = self.s, self.z, self.rest, self.s.cone.friction
-        rough, capped = s.rough, s.cone.capped
         # dual parts: d dual = change / slack - ratio d slack, with ds+ = mu dt_n + dt_t + r+, ..., dq = r_q - dt_n
-        free = change / z.slack
-        free[1:3, ~rough] = 0.0
-        free[3, ~capped] = 0.0
+        free = change / z.slack * self.used
         plus, minus = free[1] - self.ratio[1] * r.p, free[2] - self.ratio[2] * r.m
         b = np.empty((s.pairs, 2))
         b[:, 0] = r.n - free[0] - self.dilatancy * (plus + minus) + free[3] - self.ratio[3] * r.q
@@ -68,8 +65,7 @@ class Newton:
         dt = times(self.D, b + s.along(du))
         slack = np.empty_like(z.slack)
         slack[0] = dt_n = -dt[:, 0]
-        dt_t = np.where(rough, -dt[:, 1], 0.0)
+        dt_t = -dt[:, 1] * self.used[1]
         slack[1], slack[2], slack[3] = mu * dt_n + dt_t + r.p, mu * dt_n - dt_t + r.m, r.q - dt_n
-        slack[1:3, ~rough] = 0.0
-        slack[3, ~capped] = 0.0
+        slack *= self.used
         return Iterate(du, dt_t, slack, free - self.ratio * slack)

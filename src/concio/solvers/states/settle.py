@@ -24,7 +24,7 @@ from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import LOOSE, Scaled
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.states.equations import StateEquations
-from concio.solvers.states.given import TRIED, GivenStates
+from concio.solvers.states.given import REFINED, TRIED, GivenStates
 from concio.solvers.states.reading import Finished, natural_residual, read_states
 from concio.solvers.states.small_problem import decide
 
@@ -185,8 +185,8 @@ class _Run:
         return self._from(found, np.zeros_like(found.t), own=True) or self.near(found)
 
     def near(self, found: Finished) -> Finished:
-        """Return the answer refined once more from its own forces, springs anchored at it."""
-        return self._from(found, found.t, own=False) or found
+        """Return the answer refined once more from its own forces, springs anchored at it, where that can help."""
+        return found if found.error <= REFINED else self._from(found, found.t, own=False) or found
 
     def _from(self, found: Finished, start: Array, *, own: bool) -> Finished | None:
         """Return the answer refined from other forces, None where these do not obey the joint laws."""
