@@ -98,6 +98,9 @@ class EarlyFinish:
 
     FLIPS: ClassVar = 2
     """Factorisations that such a try may cost beyond the first."""
+    LARGE: ClassVar = 500
+    """Pairs from which on such a try decides pairs in question. On few pairs iterations cost no more than deciding, and
+    of several answers they end in the middle: the symmetric one of a symmetric structure."""
     FEW: ClassVar = 0.02
     SHARE: ClassVar = 0.01
     """Shares of the pairs that may differ: up to as many as are decided together, and however many there are."""
@@ -108,6 +111,7 @@ class EarlyFinish:
 
     def __init__(self, s: Scaled) -> None:
         self.s = s
+        self.rounds = ROUNDS if s.pairs >= self.LARGE else 0
         self.states: PairStates | None = None
         self.fewer = max(min(TOGETHER, self.FEW * s.pairs), self.SHARE * s.pairs)
 
@@ -190,7 +194,7 @@ class Run:
                 + ("" if outcome.converged else f", {EARLY}" if handed else ", stopped")
             )
             if outcome.converged or handed or outcome.residual < 1e-5:
-                found = self.finish(z.u, z.t, flips=early.FLIPS if handed else ROUNDS)
+                found = self.finish(z.u, z.t, early.rounds, early.FLIPS) if handed else self.finish(z.u, z.t)
             if outcome.converged:
                 del targets[0]
             elif not handed:
@@ -207,7 +211,7 @@ class Run:
         )
         return self.close_in(z, "interior point from there") if path.theta == 0 else None
 
-    def finish(self, u: Array, t: Array, flips: int = ROUNDS) -> Finished | None:
+    def finish(self, u: Array, t: Array, rounds: int = ROUNDS, flips: int = ROUNDS) -> Finished | None:
         """Exact finish of a point; return it if exact, None (and keep the best) if not.
 
         The finish measures against the largest force and displacement of the point itself. A point that runs off has
@@ -215,7 +219,7 @@ class Run:
         """
         if self.history:
             self.tell("exact finish")
-        found = self.settler.settle(self.scaled, u, t, flips=flips)
+        found = self.settler.settle(self.scaled, u, t, rounds=rounds, flips=flips)
         exact = found.settled and self.certified(found)
         left = f", {len(found.undecided)} pairs undecided" if not found.settled else ", runs off" if not exact else ""
         self.trace.append(f"exact finish: {found.solves} linear solves, residual {found.error:.1e}{left}")

@@ -108,10 +108,10 @@ class Settler:
         least, late = len(t) + 1, 0
         if 0 < chosen.sum() <= TOGETHER:
             states, u, t = run.decided(states, np.flatnonzero(chosen), u, t) or (states, u, t)
-        for _ in range(rounds):
+        for left in range(rounds, -1, -1):
             seen.add(states.key())
             u, t, wrong, shown = run.solved(states, u, t)
-            if not wrong.any():
+            if not wrong.any() or not left:
                 return
             least, late = (int(wrong.sum()), 0) if wrong.sum() < least else (least, late + 1)
             if late >= PATIENCE and wrong.sum() > TOGETHER:
