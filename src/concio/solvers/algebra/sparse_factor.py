@@ -3,8 +3,8 @@ r"""Sparse factorisation of matrices of one pattern, :math:`K + C^T D C + \rho I
 All the engine's time goes into these factorisations. The pattern is the graph of the structure, so the fill-reducing
 ordering is computed once, on the graph of the nodes, and every later matrix is handed over already permuted. Measured
 on running-bond walls (``benchmarks/orderings.py``), nested dissection costs a quarter of the minimum-degree ordering.
-Where the structure is small or slender its matrix is a narrow band, which LAPACK factorises in half to four fifths of
-the time: panels of up to some hundred blocks, columns and arches of any length.
+Where the structure is small or slender its matrix is a narrow band, which LAPACK factorises in a third to two thirds of
+the time: panels of up to some forty elastic or four hundred rigid blocks, columns and arches of any length.
 
 Engines, chosen by name and never by what happens to be installed: ``superlu`` (what comes with SciPy: SuperLU, and
 LAPACK for narrow bands) and ``pardiso`` (extra ``fast``).
@@ -41,7 +41,7 @@ PIVOT = 0.01
 PANEL = 8
 """Columns that SuperLU works on together; its own default of 20 is a tenth slower on walls of every size."""
 
-NARROW = 5e7
+NARROW = 1.1e7
 """Unknowns times the square of half the band up to which LAPACK factorises the band."""
 
 
@@ -102,6 +102,8 @@ def narrow_band(pattern: sp.csr_array) -> tuple[Array, int | None]:
     The width is None where the band is so wide that its factorisation would cost more than a sparse one.
     """
     n = pattern.shape[0]
+    if not n:
+        return np.zeros(0, dtype=np.int32), None
     order = np.asarray(csgraph.reverse_cuthill_mckee(sp.csr_matrix(pattern), symmetric_mode=True))
     place = np.empty(n, dtype=np.int64)
     place[order] = np.arange(n)
