@@ -251,5 +251,6 @@ def test_a_full_step_of_newton_satisfies_all_linear_equations():
     z = replace(z, slack=z.slack * spread[0], dual=z.dual * spread[1])
     rest = iteration.residuals(z, 0.0)
     assert rest.size(1.0, 1.0) > 1.0
-    there = z.moved(Newton(iteration.problem, z, rest, iteration.dilatancy(0.0), iteration.used).direction(-z.products()), 1.0)
+    newton = Newton(iteration.problem, z, rest, iteration.dilatancy(0.0), iteration.used)
+    there = z.moved(newton.direction(-z.products()), 1.0)
     assert iteration.residuals(there, 0.0).size(1.0, 1.0) < 1e-6

@@ -80,9 +80,12 @@ class UpdatedBlocks:
 
     def change(self, pairs: Array, blocks: Array) -> None:
         """Let ``blocks`` (k, d, d) stand for those of ``pairs`` (k,), and all others be as they were factorised."""
-        self._meet(pairs)
         held = self.factor.D
         assert held is not None, "a factor at hand"
+        if not pairs.size:
+            self.D, self._delta = held, np.zeros((0, 0))
+            return
+        self._meet(pairs)
         delta = np.zeros((self.pairs.size, self.d, self.d))
         delta[self._places(pairs)] = blocks - held[pairs]
         self.D = held.copy()

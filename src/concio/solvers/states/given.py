@@ -106,7 +106,8 @@ class GivenStates:
         D, blocks = equations.blocks, self.blocks
         held = blocks.factor.D
         if held is not None and least is not None and blocks.has(springs):
-            other = np.union1d(np.flatnonzero(difference(held, D) > least), columns)
+            same = np.array_equal(held, D)
+            other = columns if same else np.union1d(np.flatnonzero(difference(held, D) > least), columns)
             if blocks.room_for(other):
                 blocks.change(other, D[other])
                 return bool(np.array_equal(held, D))
