@@ -50,8 +50,44 @@ def make_patch_pairs(disc: Discretisation, patches: Sequence[Patch]) -> Pairs:
     normal = np.array([p.normal for p in patches])
     frame = np.concatenate([normal[:, None], tangents(normal)], axis=1)  # (p, 3, 3): n, t1, t2
     points = np.array([_points(model, model.laws[name]) for name in model.laws])[law]
-    meshed = (disc.shape_of[a] >= 0) | (disc.shape_of[b] >= 0)
+    place, area, rule, of_patch = _stated(disc, patches, points)
+    count = np.array([len(x) for x in place])
+    face = np.repeat(np.arange(len(patches)), count)
+    where = np.concatenate(place)
+    C_n, C_t = _operators(disc, (a, b), of_patch, where, face, frame)
+    patch_area = np.concatenate(area)
+    return Pairs(
+        body_a=a[face],
+        body_b=b[face],
+        interface=face,
+        point=where,
+        normal=normal[face],
+        tangents=frame[face, 1:],
+        length=np.sqrt(patch_area),
+        area=patch_area,
+        gap=np.concatenate([patches[k].gap_at(place[k]) for k in range(len(patches))]) + opening[face],
+        law=law[face],
+        law_names=tuple(model.laws),
+        C_n=C_n,
+        C_t=C_t,
+        rule=rule[face],
+    )
 
+
+def _stated(
+    disc: Discretisation, patches: Sequence[Patch], points: Array
+) -> tuple[list[Array], list[Array], Array, dict[int, PatchCoupling]]:
+    """Return where contact is stated on each patch, with areas, the rule, and the couplings of meshed patches.
+
+    Parameters
+    ----------
+    disc : Discretisation
+    patches : sequence of Patch
+    points : (p,) integer array
+        Points along each side of patches that are not meshed; 0 for their corners.
+    """
+    a, b = np.array([(p.a, p.b) for p in patches]).T
+    meshed = (disc.shape_of[a] >= 0) | (disc.shape_of[b] >= 0)
     place: list[Array] = [np.zeros((0, 3))] * len(patches)
     area: list[Array] = [np.zeros(0)] * len(patches)
     rule = np.zeros(len(patches), dtype=int)
@@ -73,15 +109,19 @@ def make_patch_pairs(disc: Discretisation, patches: Sequence[Patch]) -> Pairs:
         axes = tangents(patches[k].normal)
         place[k], area[k] = patches[k].polygon[0] + coupling.at @ axes, coupling.area
         rule[k] = CONTACT_MODELS.index(coupling.model)
+    return place, area, rule, of_patch
 
-    count = np.array([len(x) for x in place])
-    face = np.repeat(np.arange(len(patches)), count)
-    begin = np.concatenate([[0], np.cumsum(count)])
-    where = np.concatenate(place)
+
+def _operators(
+    disc: Discretisation, bodies: tuple[Array, Array], of_patch: Mapping[int, PatchCoupling], where: Array, face: Array,
+    frame: Array,
+) -> tuple[sp.csr_array, sp.csr_array]:  # fmt: skip
+    """Return C_n (m, N) and C_t (2 m, N) of pairs at ``where`` (m, 3) on patches ``face`` (m,), in frames (p, 3, 3)."""
+    begin = np.searchsorted(face, np.arange(len(frame)))
     blocks = []
-    for body, sign, side in ((a, -1.0, "a"), (b, 1.0, "b")):
+    for body, sign, side in zip(bodies, (-1.0, 1.0), ("a", "b"), strict=True):
         own = {k: s for k, c in of_patch.items() if (s := getattr(c, side)) is not None}
-        rigid = np.ones(len(patches), dtype=bool)
+        rigid = np.ones(len(frame), dtype=bool)
         rigid[list(own)] = False
         rigid &= disc.shape_of[body] != FIXED
         blocks.append(_rigid_rows(disc, np.flatnonzero(rigid[face]), body[face], where, frame[face], sign))
@@ -93,8 +133,6 @@ def make_patch_pairs(disc: Discretisation, patches: Sequence[Patch]) -> Pairs:
     row, column = (np.concatenate([block[k] for block in blocks]) for k in (0, 1))
     value = np.concatenate([block[2] for block in blocks], axis=1)
     total = len(where)
-    gap = np.concatenate([patches[k].gap_at(place[k]) for k in range(len(patches))]) + opening[face]
-    patch_area = np.concatenate(area)
     C_n = sp.csr_array((value[0], (row, column)), shape=(total, disc.unknowns))
     C_t = sp.csr_array(
         (np.concatenate([value[1], value[2]]), (np.concatenate([2 * row, 2 * row + 1]), np.tile(column, 2))),
@@ -103,22 +141,7 @@ def make_patch_pairs(disc: Discretisation, patches: Sequence[Patch]) -> Pairs:
     for matrix in (C_n, C_t):
         matrix.sum_duplicates()
         matrix.eliminate_zeros()
-    return Pairs(
-        body_a=a[face],
-        body_b=b[face],
-        interface=face,
-        point=where,
-        normal=normal[face],
-        tangents=frame[face, 1:],
-        length=np.sqrt(patch_area),
-        area=patch_area,
-        gap=gap,
-        law=law[face],
-        law_names=tuple(model.laws),
-        C_n=C_n,
-        C_t=C_t,
-        rule=rule[face],
-    )
+    return C_n, C_t
 
 
 def _points(model: Model, law: JointLaw) -> int:

@@ -7,6 +7,7 @@ A bar that yields is a pair with a cap.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +18,7 @@ from concio.contact.pairs import CONTACT_MODELS, Pairs
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, Discretisation
 from concio.kinematics.frames import tangents
+from concio.model.model import Tie
 from concio.problem.contact_problem import Laws
 
 Array = np.ndarray
@@ -33,52 +35,10 @@ def add_ties(disc: Discretisation, pairs: Pairs, laws: Laws) -> tuple[Pairs, Law
     ties = disc.model.ties
     if not ties:
         return pairs, laws
-    number = {b.name: i for i, b in enumerate(disc.model.bodies)}
-    rows: list[Array] = []
-    columns: list[Array] = []
-    values: list[Array] = []
-    normals = np.zeros((len(ties), disc.dim))
-    ends = np.zeros((len(ties), 2), dtype=int)
-    for k, tie in enumerate(ties):
-        where = f"tie '{tie.name}'"
-        a, b = np.array(tie.at_a, dtype=float), np.array(tie.at_b, dtype=float)
-        length = float(np.linalg.norm(b - a))
-        if not length > 0:
-            msg = "its ends coincide"
-            raise InputError(msg, where=where, hint="give two different points")
-        if tie.body_a == tie.body_b != "":
-            msg = f"both of its ends are on '{tie.body_a}'"
-            raise InputError(msg, where=where, hint="a bar within one block pulls on nothing else: name two bodies")
-        if not (0 < tie.stiffness < np.inf) or not (0 <= tie.prestress < np.inf):
-            msg = f"stiffness {tie.stiffness:g} must be positive and prestress {tie.prestress:g} not negative"
-            raise InputError(msg, where=where)
-        if not tie.prestress <= tie.most or not tie.most > 0:
-            msg = f"yield_force {tie.most:g} must be positive and not below the prestress {tie.prestress:g}"
-            raise InputError(msg, where=where, hint="both in kN; leave yield_force out for a bar that never yields")
-        if tie.break_elongation is not None and not 0 < tie.break_elongation < np.inf:
-            msg = f"break_elongation {tie.break_elongation:g} must be positive"
-            raise InputError(msg, where=where, hint="in m; leave it out for a bar that never breaks")
-        direction = (b - a) / length
-        normals[k] = -direction  # the force on b points back to a
-        for side, (name, point, sign) in enumerate(((tie.body_a, a, 1.0), (tie.body_b, b, -1.0))):
-            if name and name not in number:
-                msg = f"there is no body called '{name}'"
-                hint = closest(name, number, otherwise="leave body_b empty for a fixed point")
-                raise InputError(msg, where=where, hint=hint)
-            ends[k, side] = number.get(name, -1)
-            if name:
-                dofs, operator = disc.point_operator(number[name], point)
-                rows.append(np.full(len(dofs), k))
-                columns.append(dofs)
-                values.append(sign * direction @ operator)  # -elongation
-        if all(e < 0 or disc.shape_of[e] == FIXED for e in ends[k]):
-            msg = "neither end is fastened to a block that can move"
-            raise InputError(msg, where=where, hint="name a block at one end at least")
-    shape = (len(ties), disc.unknowns)
-    C_n = sp.csr_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape)
+    n = len(ties)
+    normals, ends, C_n = _fastened(disc, ties)
     stiffness = np.array([t.stiffness for t in ties])
     prestress = np.array([t.prestress for t in ties])
-    n = len(ties)
     zero, one = np.zeros(n), np.ones(n)
     joined = replace(
         pairs,
@@ -99,3 +59,55 @@ def add_ties(disc: Discretisation, pairs: Pairs, laws: Laws) -> tuple[Pairs, Law
     tie_laws = Laws(zero, zero, zero, zero, 1.0 / stiffness, zero, np.array([t.most for t in ties]))
     names = Laws.__dataclass_fields__
     return joined, Laws(*(np.concatenate([getattr(laws, name), getattr(tie_laws, name)]) for name in names))
+
+
+def _fastened(disc: Discretisation, ties: Sequence[Tie]) -> tuple[Array, Array, sp.csr_array]:
+    """Return normals (t, d), bodies at both ends (t, 2) and minus the elongations (t, N) of ties, all checked."""
+    number = {b.name: i for i, b in enumerate(disc.model.bodies)}
+    rows: list[Array] = []
+    columns: list[Array] = []
+    values: list[Array] = []
+    normals = np.zeros((len(ties), disc.dim))
+    ends = np.zeros((len(ties), 2), dtype=int)
+    for k, tie in enumerate(ties):
+        where = f"tie '{tie.name}'"
+        _check(tie, where)
+        a, b = np.array(tie.at_a, dtype=float), np.array(tie.at_b, dtype=float)
+        direction = (b - a) / float(np.linalg.norm(b - a))
+        normals[k] = -direction  # the force on b points back to a
+        for side, (name, point, sign) in enumerate(((tie.body_a, a, 1.0), (tie.body_b, b, -1.0))):
+            if name and name not in number:
+                msg = f"there is no body called '{name}'"
+                hint = closest(name, number, otherwise="leave body_b empty for a fixed point")
+                raise InputError(msg, where=where, hint=hint)
+            ends[k, side] = number.get(name, -1)
+            if name:
+                dofs, operator = disc.point_operator(number[name], point)
+                rows.append(np.full(len(dofs), k))
+                columns.append(dofs)
+                values.append(sign * direction @ operator)  # -elongation
+        if all(e < 0 or disc.shape_of[e] == FIXED for e in ends[k]):
+            msg = "neither end is fastened to a block that can move"
+            raise InputError(msg, where=where, hint="name a block at one end at least")
+    shape = (len(ties), disc.unknowns)
+    C_n = sp.csr_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape)
+    return normals, ends, C_n
+
+
+def _check(tie: Tie, where: str) -> None:
+    """Raise InputError where a tie has no length, pulls on one block alone, or has numbers that cannot be."""
+    if not float(np.linalg.norm(np.array(tie.at_b, dtype=float) - np.array(tie.at_a, dtype=float))) > 0:
+        msg = "its ends coincide"
+        raise InputError(msg, where=where, hint="give two different points")
+    if tie.body_a == tie.body_b != "":
+        msg = f"both of its ends are on '{tie.body_a}'"
+        raise InputError(msg, where=where, hint="a bar within one block pulls on nothing else: name two bodies")
+    if not (0 < tie.stiffness < np.inf) or not (0 <= tie.prestress < np.inf):
+        msg = f"stiffness {tie.stiffness:g} must be positive and prestress {tie.prestress:g} not negative"
+        raise InputError(msg, where=where)
+    if not tie.prestress <= tie.most or not tie.most > 0:
+        msg = f"yield_force {tie.most:g} must be positive and not below the prestress {tie.prestress:g}"
+        raise InputError(msg, where=where, hint="both in kN; leave yield_force out for a bar that never yields")
+    if tie.break_elongation is not None and not 0 < tie.break_elongation < np.inf:
+        msg = f"break_elongation {tie.break_elongation:g} must be positive"
+        raise InputError(msg, where=where, hint="in m; leave it out for a bar that never breaks")
