@@ -19,13 +19,13 @@ to be small beside that of their bodies, and is gone in the limit.
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sp
 
 from concio.problem.certificate import scales
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Solution, judge, pair_states
 from concio.problem.tolerances import AT_BOUND
 from concio.solvers.algebra.block_factor import BlockFactor
+from concio.solvers.algebra.scaled import interleaved
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 
 ROUNDS = 12
@@ -72,7 +72,6 @@ class _States:
     """The linear equations of the states of an answer; t is (m, d), normal force first."""
 
     def __init__(self, hard: ContactProblem, lent: ContactProblem, answer: Solution) -> None:
-        m, d = hard.pairs, hard.dim
         self.hard, cone = hard, hard.cone
         states = pair_states(lent, answer)
         force, _ = scales(lent, answer.displacement, answer.normal_force, answer.friction_force)
@@ -80,7 +79,7 @@ class _States:
             states.open, states.closed, states.crushed, states.direction,
         )  # fmt: skip
         self.stick = cone.rough & ~states.slips & (cone.strength(answer.normal_force) > AT_BOUND * force)
-        self.C = sp.csr_array(sp.vstack([hard.C_n, hard.C_t]))[_interleaved(m, d)]
+        self.C = interleaved(hard)
         self.a = _compliance(hard)
         self.added = _compliance(lent) - self.a
         self.added[self.a + self.added == 0] = self.added.min(initial=np.inf, where=self.added > 0)
@@ -146,12 +145,6 @@ class _States:
         elastic = hard.K @ u
         elastic = elastic - hard.R @ (hard.R.T @ elastic)
         return elastic - hard.f - self.C.T @ t.ravel(), y
-
-
-def _interleaved(m: int, d: int) -> Array:
-    """Return the rows of [C_n; C_t] in the order pair by pair, normal first, (m d,)."""
-    k = np.arange(m)
-    return np.column_stack([k, *(m + k * (d - 1) + a for a in range(d - 1))]).ravel()
 
 
 def _compliance(problem: ContactProblem) -> Array:

@@ -28,7 +28,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from concio.problem.contact_problem import Array
-from concio.solvers.path.scaling import Scaled
+from concio.solvers.path.scaling import ScaledPath
 from concio.solvers.path.state import CLOSED, CRUSHED, OPEN, STICK
 
 REGULAR = 1e-8
@@ -55,14 +55,14 @@ class PathEquations:
 
     Parameters
     ----------
-    scaled : Scaled
+    scaled : ScaledPath
     contact, sliding : (m,) integer arrays
         States; changed only through :meth:`set_state`.
     control : (size,) array
         Functional of the scaled unknowns that is prescribed; changed only through :meth:`set_control`.
     """
 
-    def __init__(self, scaled: Scaled, contact: Array, sliding: Array, control: Array) -> None:
+    def __init__(self, scaled: ScaledPath, contact: Array, sliding: Array, control: Array) -> None:
         problem = scaled.path.problem
         self.scaled, self.data = scaled, scaled.data
         self.n, self.m = problem.unknowns, problem.pairs

@@ -10,14 +10,14 @@ from concio.problem.contact_problem import Array
 from concio.problem.pair_state import PairStates
 from concio.solvers.path.equations import PathEquations
 from concio.solvers.path.rates import Rates, Values, grips, holds
-from concio.solvers.path.scaling import Scaled
+from concio.solvers.path.scaling import ScaledPath
 from concio.solvers.path.state import CLOSED, CRUSHED, OPEN, STICK, LinearPath, PathState, certify_step, energy_of_step
 
 ON_EQUATIONS = 1e-14
 """Residual of the equations of the present states, relative to their largest term, that needs no correction."""
 
 DUST = 1e-16
-"""Scaled displacements below this are rounding of zero and are recorded as zero."""
+"""ScaledPath displacements below this are rounding of zero and are recorded as zero."""
 
 ALL_DUST = 1e-13
 """Where all scaled displacements are below this, nothing has moved."""
@@ -52,7 +52,7 @@ class PathPoint:
 
     def __init__(self, path: LinearPath, start: PathState, until: float, control: Array | None) -> None:
         self.path, self.state = path, start
-        self.scaled = Scaled.of(path)
+        self.scaled = ScaledPath.of(path)
         functional = None if control is None else np.asarray(control, dtype=float)
         contact, sliding = states_in_use(path, start)
         self.by_load = functional is None

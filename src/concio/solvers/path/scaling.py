@@ -42,7 +42,7 @@ class ScaledData:
 
 
 @dataclass(frozen=True, eq=False)
-class Scaled:
+class ScaledPath:
     """The path in scaled units: displacement unit ``length``, force unit ``force``; tau as it is.
 
     Parameters
@@ -57,7 +57,7 @@ class Scaled:
     length: float
 
     @classmethod
-    def of(cls, path: LinearPath) -> Scaled:
+    def of(cls, path: LinearPath) -> ScaledPath:
         """Choose the units: a typical nodal or joint force, and the displacement it causes."""
         problem = path.problem
         loads = np.abs(np.concatenate([problem.f, path.load_rate]))

@@ -9,7 +9,7 @@ import numpy as np
 from concio.problem.contact_problem import Array
 from concio.problem.pair_state import PairStates
 from concio.solvers.path.equations import PathEquations
-from concio.solvers.path.scaling import Scaled
+from concio.solvers.path.scaling import ScaledPath
 from concio.solvers.path.state import LinearPath
 
 
@@ -42,7 +42,7 @@ def state_rates(path: LinearPath, states: PairStates) -> StateRates:
     path : LinearPath
     states : PairStates
     """
-    scaled = Scaled.of(path)
+    scaled = ScaledPath.of(path)
     driven = float(max(np.abs(path.gap_rate).max(initial=0.0), np.abs(path.tangent_rate).max(initial=0.0)))
     pushed = float(np.abs(path.load_rate).max(initial=0.0))
     unit = max(driven / scaled.length, pushed / scaled.force) or 1.0
