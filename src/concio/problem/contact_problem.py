@@ -159,6 +159,10 @@ class ContactProblem:
             if found != wanted:
                 msg = f"{name} has shape {found}, expected {wanted}"
                 raise InputError(msg)
+        for name in Laws.__dataclass_fields__:
+            if (found := np.shape(getattr(self.laws, name))) != (m,):
+                msg = f"{name} of the joint laws has shape {found}, expected {(m,)}"
+                raise InputError(msg, hint="one value for each pair")
         for name in ("f", "gap", "slip_origin"):
             if not np.isfinite(getattr(self, name)).all():
                 msg = f"{name} holds a value that is not finite"
