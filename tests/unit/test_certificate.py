@@ -139,7 +139,7 @@ def test_problems_that_make_no_sense():
         one_pair(gap=np.inf)
     with pytest.raises(InputError, match=r"friction of the joint laws has shape \(2,\), expected \(1,\)"):
         replace(one_pair(), laws=Laws.coulomb(0.5, 2))
-    small = replace(one_pair().laws, tension=np.full(1, 3e-13), cohesion=np.zeros(1))  # no strength is too small to count
+    small = replace(one_pair().laws, tension=np.full(1, 3e-13), cohesion=np.zeros(1))  # none is too small
     with pytest.raises(InputError, match="friction x tension"):
         replace(one_pair(), laws=small)
     with pytest.raises(InputError, match="f has shape"):

@@ -165,7 +165,6 @@ def checks_of(
     *,
     onset: float,
     limit: Displacement | None,
-    linear: bool = True,
     branch: ElasticBranch | None = None,
 ) -> list[Check]:
     """Return the checks of a limit state.
@@ -180,55 +179,54 @@ def checks_of(
         a_0* [m/s2].
     limit : Displacement or None
         None where there is no curve that ends, or for the limit state of onset.
-    linear : bool
-        Whether the check with the behaviour factor is made.
     branch : ElasticBranch, optional
         Of an element that is free to vibrate: a_y is its capacity then, and the demand is read at its own period.
     """
+    places: list[Place] = ["ground"]
+    if site.at_height(site.spectrum(site.at(level)), z) is not None:
+        places.append("height")
+    return [check for place in places for check in _checks_at(place, site, level, z, onset, limit, branch)]
+
+
+def _checks_at(
+    place: Place, site: Site, level: str, z: float, onset: float, limit: Displacement | None,
+    branch: ElasticBranch | None,
+) -> list[Check]:  # fmt: skip
+    """Return the checks of a limit state with the spectrum of the ground, or with that at the height z."""
     own, xi = (0.0, 5.0) if branch is None else (branch.T0, branch.xi)
     onset = onset if branch is None else branch.a
-    rules = site.rules
+    rules, hazard = site.rules, site.at(level)
     rule = rules.tables["levels"][level]
-    hazard = site.at(level)
+    floor = "; " + rules.clause("floor") if place == "height" else ""
     found = []
-    places: list[Place] = ["ground"]
-    if site.at_height(site.spectrum(hazard), z) is not None:
-        places.append("height")
-    for place in places:
 
-        def of_site(h: Hazard, place: Place = place) -> Any:
-            ground = site.spectrum(h)
-            return site.at_height(ground, z) if place == "height" else ground
+    def spectrum(h: Hazard) -> Any:
+        ground = site.spectrum(h)
+        return site.at_height(ground, z) if place == "height" else ground
 
-        floor = "; " + rules.clause("floor") if place == "height" else ""
-        if rule["kind"] == "onset" or linear:
-            q = float(rule.get("q", 1.0))
-            kind: Kind = "onset" if rule["kind"] == "onset" else "linear"
-            if kind == "onset" or "q" in rule:
+    def begins(h: Hazard) -> float:
+        return float(spectrum(h).acceleration(own, xi))
 
-                def demand(h: Hazard, of: Callable[[Hazard], Any] = of_site, q: float = q) -> float:
-                    return float(of(h).acceleration(own, xi)) / q
+    kind: Kind = "onset" if rule["kind"] == "onset" else "linear"
+    if kind == "onset" or "q" in rule:
+        q = float(rule.get("q", 1.0))
+        free = "" if branch is None else "; " + rules.clause("onset_free")
+        clause = rules.clause("onset_free") if branch and kind == "onset" else rules.clause(kind) + free
+        made = _check(site, level, kind, place, onset, lambda h: begins(h) / q, hazard, clause + floor)
+        found.append(replace(made, T=own, xi=xi))
+    if limit is not None and kind != "onset":
+        at = limit
 
-                free = "" if branch is None else "; " + rules.clause("onset_free")
-                clause = rules.clause("onset_free") if branch and kind == "onset" else rules.clause(kind) + free
-                made = _check(site, level, kind, place, onset, demand, hazard, clause + floor)
-                found.append(replace(made, T=own, xi=xi))
-        if limit is not None and rule["kind"] != "onset":
+        def moved(h: Hazard) -> float:
+            if not math.isfinite(at.T):
+                return math.inf
+            periods = np.linspace(min(own, at.T), at.T, PERIODS) if own > 0 else at.T
+            return float(np.max(spectrum(h).displacement(periods, at.xi)))
 
-            def moved(h: Hazard, of: Callable[[Hazard], Any] = of_site, at: Displacement = limit) -> float:
-                if not math.isfinite(at.T):
-                    return math.inf
-                periods = np.linspace(min(own, at.T), at.T, PERIODS) if own > 0 else at.T
-                return float(np.max(of(h).displacement(periods, at.xi)))
-
-            clause = rules.clause("height" if place == "height" else "displacement") + floor
-            made = _check(site, level, "displacement", place, limit.d, moved, hazard, clause)
-
-            def begins(h: Hazard, of: Callable[[Hazard], Any] = of_site) -> float:
-                return float(of(h).acceleration(own, xi))
-
-            least = capacity_acceleration(site, hazard, onset, begins)
-            found.append(replace(made, T=limit.T, xi=limit.xi, least=least))
+        clause = rules.clause("height" if place == "height" else "displacement") + floor
+        made = _check(site, level, "displacement", place, at.d, moved, hazard, clause)
+        least = capacity_acceleration(site, hazard, onset, begins)
+        found.append(replace(made, T=at.T, xi=at.xi, least=least))
     return found
 
 
