@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import settings
 
 import samples
 
@@ -15,6 +16,8 @@ import samples
 def pytest_configure(config: pytest.Config) -> None:
     """Draw fewer cases where the long tests are left out: the quick suite."""
     samples.whole = "not long" not in config.getoption("markexpr").replace("long or not long", "")
+    settings.register_profile("untimed", deadline=None)  # a busy machine is no fault of what is tested
+    settings.load_profile("untimed")
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:

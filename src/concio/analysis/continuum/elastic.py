@@ -109,13 +109,7 @@ def solve_elastic(wall: Continuum, matrix: Array, factors: Mapping[str, float]) 
     facet = _facets(mesh, wall)
     pull = wall.pull(factors)
     for k in np.flatnonzero(np.abs(pull).any(axis=1)):
-        px, py = pull[k]
-
-        def edge(v: Any, _: Any, px: float = px, py: float = py) -> Any:
-            return t * (px * v[0] + py * v[1])
-
-        own = skfem.FacetBasis(mesh, basis.elem, facets=facet[k : k + 1], intorder=4)
-        f += skfem.LinearForm(edge).assemble(own)
+        f += _edge_load(skfem.FacetBasis(mesh, basis.elem, facets=facet[k : k + 1], intorder=4), pull[k], t)
     held = _supports(wall, basis, facet, wall.moved(factors), K.shape[0])
     springs, spring_load = sp.csr_array(K.shape), np.zeros(K.shape[0])
     for h in held:
@@ -197,21 +191,31 @@ def _supports(wall: Continuum, basis: skfem.Basis, facet: Array, moved: Array, n
                     value = ux - turn * y if axis == 0 else uy + turn * x
                     glued |= dict(zip(own.tolist(), np.broadcast_to(value, own.shape).tolist(), strict=True))
                     continue
-                stiff = k * wall.thickness
-
-                def spring(u: Any, v: Any, _: Any, axis: int = axis, stiff: float = stiff) -> Any:
-                    return stiff * u[axis] * v[axis]
-
-                def pushed(v: Any, w: Any, axis: int = axis, stiff: float = stiff, own: Array = moved[number]) -> Any:
-                    given = own[0] - own[2] * w.x[1] if axis == 0 else own[1] + own[2] * w.x[0]
-                    return stiff * given * v[axis]
-
                 edge = skfem.FacetBasis(basis.mesh, basis.elem, facets=chosen, intorder=4)
-                springs = sp.csr_array(springs + skfem.BilinearForm(spring).assemble(edge))
-                load += skfem.LinearForm(pushed).assemble(edge)
+                stiffness, pushed = _springs(edge, axis, k * wall.thickness, moved[number])
+                springs, load = sp.csr_array(springs + stiffness), load + pushed
         order = np.array(sorted(glued), dtype=int)
         found.append(Held(order, np.array([glued[k] for k in order.tolist()]), springs, load))
     return found
+
+
+def _edge_load(edge: skfem.FacetBasis, pull: Array, thickness: float) -> Array:
+    """Return the nodal forces (n,) of a constant traction (2,) on an edge."""
+    px, py = pull
+    return np.asarray(skfem.LinearForm(lambda v, _: thickness * (px * v[0] + py * v[1])).assemble(edge))
+
+
+def _springs(edge: skfem.FacetBasis, axis: int, stiff: float, moved: Array) -> tuple[Any, Array]:
+    """Return stiffness (n, n) and loads (n,) of springs along x or y on edges, whose other ends have moved (3,)."""
+
+    def spring(u: Any, v: Any, _: Any) -> Any:
+        return stiff * u[axis] * v[axis]
+
+    def pushed(v: Any, w: Any) -> Any:
+        given = moved[0] - moved[2] * w.x[1] if axis == 0 else moved[1] + moved[2] * w.x[0]
+        return stiff * given * v[axis]
+
+    return skfem.BilinearForm(spring).assemble(edge), np.asarray(skfem.LinearForm(pushed).assemble(edge))
 
 
 def _reactions(
