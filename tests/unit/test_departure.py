@@ -6,12 +6,14 @@ import re
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import scipy.sparse as sp
 
 import concio
+import concio.solvers.motion.release as slow_motion
 from concio import Body, Elastic, JointLaw, Load, Model, Rigid, Status
 from concio.cli.lines import result_lines
 from concio.contact.inertia import GRAVITY, lumped_masses
@@ -181,6 +183,30 @@ def test_a_motion_into_the_ground_is_no_departure() -> None:
     state = motion.displacement, motion.normal_force, motion.friction_force
     found = verify_departure(pressed, motion.acceleration + down, *state)
     assert found.violation == pytest.approx(0.01, rel=1e-12)
+
+
+def test_a_joint_that_crushes_without_end_is_a_departure() -> None:
+    """A block that weighs 14 kN/m2 on a bed that carries 8: it sinks with what is left of its weight."""
+    bodies = (box("ground", -1.0, -0.2, 4.0, 0.2, "fixed"), box("block", 1.0, 0.0, 0.8, 0.7, "rigid"))
+    law = JointLaw(0.3, compressive_strength=8.0)
+    loads = (Load("weight", (0.0, -1.0)),)
+    problem = concio.assemble(Model(bodies, {"brick": Rigid(unit_weight=20.0)}, {"joint": law}, loads=loads)).problem()
+    sinks, none = np.array([0.0, -GRAVITY * (1 - 8.0 / 14.0), 0.0]), np.zeros((problem.pairs, 1))
+    crushed = verify_departure(problem, sinks, np.array([0.0, -0.3, 0.0]), problem.cone.cap, none)
+    assert crushed.violation <= 1e-14
+    carried = verify_departure(problem, 0.0 * sinks, np.array([0.0, -0.3, 0.0]), 14.0 / 8.0 * problem.cone.cap, none)
+    assert not carried.certified
+
+
+@pytest.mark.parametrize(("error", "taken"), [(0.5, True), (2.0, False)])
+def test_a_step_is_taken_from_the_best_iterate_where_that_is_near_enough(
+    monkeypatch: pytest.MonkeyPatch, error: float, taken: bool
+) -> None:
+    run = Run(scale(pushed_wall(0.1)))
+    best = SimpleNamespace(error=error * slow_motion.STEP)
+    gives_up = SimpleNamespace(plain=lambda start: None, best=best, iterations=3, history=[])
+    monkeypatch.setattr(slow_motion, "Run", lambda *_: gives_up)
+    assert slow_motion._iterate(run, run.scaled) is (best if taken else None)
 
 
 def test_what_stands_comes_to_rest() -> None:

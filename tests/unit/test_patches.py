@@ -10,6 +10,7 @@ import pytest
 from concio import InputError, Polyhedron
 from concio.model import convex_pieces
 from concio.model.interfaces.detect import Detection
+from concio.model.interfaces.near_space import distance_to_surface
 from concio.model.interfaces.patches import detect_patches
 from concio.model.surfaces import prism
 from solids import TURN, box, frame_block, l_block, tetrahedron, turned
@@ -197,3 +198,15 @@ def test_bad_tolerances() -> None:
         detect_patches([A], tolerance=0.0)
     with pytest.raises(InputError, match="gap reach = -1"):
         detect_patches([A], tolerance=1e-6, reach=-1.0)
+
+
+def test_the_distance_from_a_box_is_that_of_its_nearest_place() -> None:
+    """Beside faces, beyond edges and corners, and inside, where the nearest face counts."""
+    low, high = np.array([-1.0, 2.0, 0.5]), np.array([2.0, 3.0, 1.1])
+    body = Polyhedron.box("a", tuple(low), tuple(high))
+    points = np.random.default_rng(4).uniform(low - 3.0, high + 3.0, (400, 3))
+    points[:100] = np.random.default_rng(5).uniform(low, high, (100, 3))
+    points[100:200, 1:] = low[1:]  # on the lines of edges, beyond their ends
+    outside = np.linalg.norm(np.maximum(np.maximum(low - points, points - high), 0.0), axis=1)
+    inside = np.minimum(points - low, high - points).min(axis=1)
+    assert distance_to_surface(body, points) == pytest.approx(np.where(inside > 0, inside, outside), abs=1e-14)

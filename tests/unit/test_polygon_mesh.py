@@ -8,6 +8,7 @@ import pytest
 from concio.errors import GeometryError, InputError
 from concio.fem.mapped_mesh import _paired
 from concio.fem.polygon_mesh import mesh_polygon, mesh_quality
+from concio.fem.triangulate import _worst_around
 from concio.kinematics.mass import signed_area
 from concio.model.interfaces.polygon_check import check_polygon, polygon_faults
 from meshes import assert_good_mesh
@@ -148,3 +149,14 @@ def test_marks_without_a_partner_get_one_at_the_same_fraction():
     assert (np.diff(g) > 0).all()
     assert {0.30, 0.42} <= set(f.tolist())
     assert {0.40, 0.52} <= set(g.tolist())
+
+
+def test_the_shape_of_triangles_at_a_point_is_that_of_the_worst():
+    """1 where equilateral, wherever that is; smaller where flat, negative where turned over."""
+    third = np.array([(0.0, 0.0), (2.0, 0.0), (1.0, 3**0.5), (3.0, 3**0.5), (1.2, -0.1)])
+    third += np.array([30.0, -70.0])
+    assert _worst_around(third, np.array([(0, 1, 2), (1, 3, 2)]))[:4] == pytest.approx(np.ones(4), rel=1e-12)
+    flat = 2 * 3**0.5 * 0.2 / (4.0 + 1.2**2 + 0.01 + 0.8**2 + 0.01)
+    found = _worst_around(third, np.array([(0, 1, 2), (1, 3, 2), (0, 4, 1)]))
+    assert found == pytest.approx([flat, flat, 1.0, 1.0, flat], rel=1e-9)
+    assert _worst_around(third, np.array([(0, 2, 1)]))[:3] == pytest.approx(-np.ones(3), rel=1e-12)

@@ -426,3 +426,15 @@ def test_points_of_a_face_are_a_triangular_lattice_in_its_middle() -> None:
     assert (low >= 0.2).all()  # half a side of a cell from the edges, where no further row has room
     assert (low < 0.2 + row).all()
     assert (high < 0.2 + row).all()
+
+
+def test_a_gap_of_a_rule_is_added_to_that_of_the_outlines() -> None:
+    """A block 3 mm above the ground in a rule of 2 mm, and one beside it on the ground in none."""
+    ground = Polyhedron.box("ground", (-1, -1, -1), (6, 3, 0), kind="fixed")
+    high = Polyhedron.box("high", (0, 0, 0.003), (1, 2, 1.5), kind="rigid")
+    low = Polyhedron.box("low", (3, 0, 0), (4, 1, 0.5), kind="rigid")
+    rules = (concio.JointRule("joint"), concio.JointRule("joint", ("ground", "high"), 0.002))
+    laws, materials = {"joint": JointLaw(0.5)}, {"block": Rigid(20.0)}
+    pairs = concio.assemble(Model((ground, high, low), materials, laws, rules=rules, gap_reach=0.01)).pairs
+    assert set(pairs.body_b) == {1, 2}
+    assert pairs.gap == pytest.approx(np.where(pairs.body_b == 1, 0.005, 0.0), abs=1e-15)
