@@ -29,7 +29,7 @@ from concio.problem.contact_problem import ContactProblem, Laws
 from concio.problem.solution import Solution, Status
 from concio.solvers.methods import find
 from concio.solvers.path.event_path import EventPath, follow
-from concio.solvers.path.state import LinearPath, state_of_solution
+from concio.solvers.path.state import LinearPath, state_of
 from concio.solvers.statics.existence import statically_admissible
 from validation_cases.row import Row
 
@@ -110,7 +110,9 @@ def distance(mu: float, f_t: float, method: str) -> float:
 def path(mu: float, until: float) -> EventPath:
     """Grow f_t from 0 under constant q."""
     line = LinearPath(problem(mu, 0.0), np.array([1.0, 0.0]))
-    return follow(line, state_of_solution(line, 0.0, find("auto")(problem(mu, 0.0))), until=until)
+    first = find("auto")(problem(mu, 0.0))
+    start = state_of(line, 0.0, first.displacement, first.normal_force, first.friction_force)
+    return follow(line, start, until=until)
 
 
 def rows() -> list[Row]:

@@ -110,13 +110,19 @@ class PathEquations:
         return matrix.indices[span], matrix.data[span]
 
     def _lent(self, row: int) -> float:
-        """Return the regularisation on the diagonal of a row in its present state."""
+        """Return what is lent to the diagonal of a row in its present state."""
         n, m = self.n, self.m
         if row < n:
             return REGULAR
         if row < n + m:
             return float(self.lent[row - n]) if self.contact[row - n] == CLOSED else 0.0
         return float(self.lent[row - n - m]) if row < n + 2 * m and self.sliding[row - n - m] == STICK else 0.0
+
+    def _lent_to_all(self) -> Array:
+        """Return what is lent to the diagonals (size,) in the present states."""
+        closed, stick = self.contact == CLOSED, self.sliding == STICK
+        bodies = np.full(self.n, REGULAR)
+        return np.concatenate([bodies, np.where(closed, self.lent, 0.0), np.where(stick, self.lent, 0.0), [0.0]])
 
     # -- factors --------------------------------------------------------------------------------------------------
 
@@ -150,14 +156,9 @@ class PathEquations:
     def factorise(self, *, careful: bool = False) -> None:
         """Factorise the matrix of the present states; ``careful`` pivots for stability at the price of fill."""
         self.base = self.assemble()
-        n, m = self.n, self.m
-        lent = np.zeros(self.size)
-        lent[:n] = REGULAR
-        lent[n : n + m] = np.where(self.contact == CLOSED, self.lent, 0.0)
-        lent[n + m : -1] = np.where(self.sliding == STICK, self.lent, 0.0)
-        self.base_lent = lent
+        self.base_lent = self._lent_to_all()
         self.factors = splu(  # the lent terms make it quasidefinite: pivots stay on the diagonal, fill stays small
-            sp.csc_matrix(self.base + sp.diags_array(lent)),
+            sp.csc_matrix(self.base + sp.diags_array(self.base_lent)),
             permc_spec="MMD_AT_PLUS_A",
             diag_pivot_thresh=0.01 if careful else 0.0,
             options={"SymmetricMode": True},
@@ -270,12 +271,7 @@ class PathEquations:
 
     def null_motion(self, runaway: Array) -> Array:
         """Return the answer (size,) of a singular matrix cleared, by inverse iteration, of all that is no motion."""
-        n, m = self.n, self.m
-        lent = np.zeros(self.size)
-        lent[:n] = REGULAR
-        lent[n : n + m] = np.where(self.contact == CLOSED, self.lent, 0.0)
-        lent[n + m : -1] = np.where(self.sliding == STICK, self.lent, 0.0)
-        x = runaway
+        lent, x = self._lent_to_all(), runaway
         for _ in range(INVERSE):
             y = self.approximate(lent * x)
             size = float(np.abs(y).max())

@@ -45,8 +45,10 @@ PATIENCE = 3
 """Newton steps in a row that such a try in space goes on without a smaller residual."""
 
 State = tuple[Array, Array, Array]
+"""Displacements (N,) [m], t_n (m,) and t_t (m, d-1) [kN]."""
 
 NAME = "interior-point near the last forces"
+"""Method of the solutions found here."""
 
 
 def needed(problem: ContactProblem) -> bool:

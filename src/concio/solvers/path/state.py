@@ -21,7 +21,6 @@ from concio.errors import InputError
 from concio.problem.certificate import Certificate, Kinematics, certify, scales
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.pair_state import Normal, PairStates
-from concio.problem.solution import Solution
 from concio.problem.tolerances import AT_BOUND
 from concio.representation import short_repr
 
@@ -279,8 +278,3 @@ def state_of(
     work, dissipation = energy_of_step(path, before, state)
     state = replace(state, work=before.work + work, dissipation=before.dissipation + dissipation)
     return replace(state, broken=before.broken)
-
-
-def state_of_solution(path: LinearPath, parameter: float, solution: Solution) -> PathState:
-    """Return the state of a certified :class:`Solution` of ``path.at(parameter)``."""
-    return state_of(path, parameter, solution.displacement, solution.normal_force, solution.friction_force)

@@ -193,6 +193,7 @@ def _side(state: PathState) -> Array:
 
 
 def _named(before: PathState, after: PathState, k: int, step: int) -> list[Event]:
+    """Return what pair k did in a step: change its contact, begin to slip, stick."""
     found = []
     was, now = int(before.contact[k]), int(after.contact[k])
     kinds = {(CLOSED, OPEN): "opens", (OPEN, CLOSED): "closes", (CLOSED, CRUSHED): "crushes"}
