@@ -291,7 +291,7 @@ def scale(problem: ContactProblem, engine: Engine | None = None, *, loads: Array
     """
     m, d = problem.pairs, problem.dim
     stiffness, K, C, factor = _matrices(problem, engine or chosen_engine())
-    springs = 1.0 / (_softness(problem) + _compliance(problem) * stiffness)
+    springs = 1.0 / (_softness(problem) + compliances(problem) * stiffness)
     factor.factorise(springs[:, :, None] * np.eye(d), LOOSE)
     measured = problem.f if loads is None else loads
     gaps = np.column_stack([problem.gap, -problem.slip_origin])
@@ -333,7 +333,7 @@ def _matrices(problem: ContactProblem, engine: Engine) -> tuple[float, sp.csr_ar
 def _in_units(problem: ContactProblem, C: sp.csr_array, force: float, length: float) -> dict[str, Any]:
     """Return loads, gaps and laws of :class:`Scaled` for given units."""
     law, m, d = problem.laws, problem.pairs, problem.dim
-    compliance = _compliance(problem) * (force / length)
+    compliance = compliances(problem) * (force / length)
     shift = np.column_stack([law.tension / force, np.zeros((m, d - 1))])
     cone = law.cone.shifted.in_units(force)
     cone = replace(cone, friction=np.where(cone.friction > SMOOTH, cone.friction, 0.0))
@@ -346,7 +346,7 @@ def _in_units(problem: ContactProblem, C: sp.csr_array, force: float, length: fl
     }
 
 
-def _compliance(problem: ContactProblem) -> Array:
+def compliances(problem: ContactProblem) -> Array:
     """Return a_n and a_t of each pair, (m, d) [m/kN]."""
     law = problem.laws
     return np.column_stack([law.normal_compliance, *[law.tangential_compliance] * (problem.dim - 1)])

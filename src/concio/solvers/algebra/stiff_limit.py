@@ -25,7 +25,7 @@ from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Solution, judge, pair_states
 from concio.problem.tolerances import AT_BOUND
 from concio.solvers.algebra.block_factor import BlockFactor
-from concio.solvers.algebra.scaled import interleaved
+from concio.solvers.algebra.scaled import compliances, interleaved
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 
 ROUNDS = 12
@@ -80,8 +80,8 @@ class _States:
         )  # fmt: skip
         self.stick = cone.rough & ~states.slips & (cone.strength(answer.normal_force) > AT_BOUND * force)
         self.C = interleaved(hard)
-        self.a = _compliance(hard)
-        self.added = _compliance(lent) - self.a
+        self.a = compliances(hard)
+        self.added = compliances(lent) - self.a
         self.added[self.a + self.added == 0] = self.added.min(initial=np.inf, where=self.added > 0)
         self._blocks()
 
@@ -145,9 +145,3 @@ class _States:
         elastic = hard.K @ u
         elastic = elastic - hard.R @ (hard.R.T @ elastic)
         return elastic - hard.f - self.C.T @ t.ravel(), y
-
-
-def _compliance(problem: ContactProblem) -> Array:
-    """Return the compliances of each pair, (m, d), normal first [m/kN]."""
-    law = problem.laws
-    return np.column_stack([law.normal_compliance, *[law.tangential_compliance] * (problem.dim - 1)])

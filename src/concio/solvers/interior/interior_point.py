@@ -162,7 +162,7 @@ class InteriorPoint:
         y = s.position(z.u, t)
         t_n, s_p, s_m, q = z.slack
         y_n, y_p, y_m, p = z.dual
-        strength = s.cone.cohesion + s.cone.friction * t_n
+        strength = s.cone.linear_strength(t_n)
         return Residuals(
             u=s.imbalance(z.u, t),
             n=y[:, 0] - self.dilatancy(theta) * (y_p + y_m) - y_n + np.where(capped, p, 0.0),

@@ -34,7 +34,7 @@ FIRST = 3e-2
 GROWTH = 10.0
 """Largest factor by which steps grow after two that succeeded; where a step fails, the factor becomes its root."""
 
-LEAST = 1e-8
+LEAST = 1e-9
 """Least resistance e."""
 
 STEP = 1e-10

@@ -39,6 +39,10 @@ CHANGES = 0.1
 SMALLEST = 2.0**-12
 """Smallest step, as a share of the step asked for."""
 
+NEAR = 2.0**-3
+"""Share of the step asked for above which a step that nothing solves near the last state is halved, not solved from
+nothing: of several equilibria that might end in another one."""
+
 
 @dataclass(frozen=True, eq=False)
 class StepPath:
@@ -96,7 +100,8 @@ def follow_in_steps(
         size = np.sign(whole) * min(abs(size), abs(left)) if not breaking else size
         parameter = until if abs(size) >= abs(left) * (1 - 1e-12) else before.parameter + size
         parameter = before.parameter if breaking else parameter
-        solution = _step(path, states, parameter, solver, nearby)
+        halved = abs(size) > NEAR * abs(whole) and not (breaking or _proportional(path, before))
+        solution = _step(path, states, parameter, solver, nearby, near_only=halved)
         smallest = abs(size) <= SMALLEST * abs(whole)
         if not solution.solved:
             if not smallest and not breaking and not _proportional(path, before):
@@ -132,15 +137,24 @@ def follow_in_steps(
 
 
 def _step(
-    path: LinearPath, states: list[PathState], parameter: float, solver: Solver, nearby: near_forces.Nearby
+    path: LinearPath,
+    states: list[PathState],
+    parameter: float,
+    solver: Solver,
+    nearby: near_forces.Nearby,
+    *,
+    near_only: bool,
 ) -> Solution:
-    """Solve one step: near the last state, keeping redundant forces near the last ones, or else from nothing."""
+    """Solve one step near the last state, keeping redundant forces near the last ones, or else from nothing.
+
+    With ``near_only`` a step that is not solved near the last state is returned as it is, to be halved.
+    """
     problem, last = step_problem(path, states[-1], parameter), _point(states[-1])
     begin = last if problem.dim == 2 else extrapolated(states, parameter)
     if not near_forces.needed(problem):
         return nearby.solve(problem, begin) or solver(problem)
     solution = near_forces.solve_near(problem, *last, nearby=nearby, begin=begin)
-    return solution if solution.solved else solver(problem)
+    return solution if solution.solved or near_only else solver(problem)
 
 
 def _point(state: PathState) -> near_forces.State:

@@ -139,7 +139,7 @@ class ConeStatics:
 
     def velocity(self, v: Array) -> Array:
         """Return the motion (N,) of one of the programme, largest entry 1."""
-        moved = self.problem.R @ (v / self.scale)
+        moved: Array = self.problem.R @ (v / self.scale)
         return moved / (float(np.abs(moved).max(initial=0.0)) or 1.0)
 
     def excess(self, t: Array, load: Array) -> float:
