@@ -138,6 +138,7 @@ class InteriorPoint:
         rough, capped = scaled.rough, scaled.cone.capped
         self.used = np.array([np.ones(scaled.pairs, dtype=bool), rough, rough, capped]).astype(float)
         """One where a product of a pair is there, else zero, (4, m)."""
+        self.cap = np.where(capped, scaled.cone.cap, 0.0)
 
     def start(self, size: float = START) -> Iterate:
         """Return the point from which the plain iteration starts: every slack and multiplier ``size``.
@@ -157,7 +158,7 @@ class InteriorPoint:
 
     def residuals(self, z: Iterate, theta: float) -> Residuals:
         """Return what the linear equations leave at a point."""
-        s, rough, capped = self.problem, self.problem.rough, self.problem.cone.capped
+        s, (_, rough, _, capped) = self.problem, self.used
         t = z.t
         y = s.position(z.u, t)
         t_n, s_p, s_m, q = z.slack
@@ -165,11 +166,11 @@ class InteriorPoint:
         strength = s.cone.linear_strength(t_n)
         return Residuals(
             u=s.imbalance(z.u, t),
-            n=y[:, 0] - self.dilatancy(theta) * (y_p + y_m) - y_n + np.where(capped, p, 0.0),
-            t=np.where(rough, y[:, 1] - y_p + y_m, 0.0),
-            p=np.where(rough, strength + z.t_t - s_p, 0.0),
-            m=np.where(rough, strength - z.t_t - s_m, 0.0),
-            q=np.where(capped, np.where(capped, s.cone.cap, 0.0) - t_n - q, 0.0),
+            n=y[:, 0] - self.dilatancy(theta) * (y_p + y_m) - y_n + capped * p,
+            t=rough * (y[:, 1] - y_p + y_m),
+            p=rough * (strength + z.t_t - s_p),
+            m=rough * (strength - z.t_t - s_m),
+            q=capped * (self.cap - t_n - q),
         )
 
     def dilatancy(self, theta: float) -> Array:

@@ -77,8 +77,5 @@ class Residuals:
 
     def size(self, force: float, length: float) -> float:
         """Return the largest, forces relative to ``force`` and lengths to ``length``."""
-        forces, lengths = (self.u, self.p, self.m, self.q), (self.n, self.t)
-        return max(
-            *(float(np.abs(v).max(initial=0.0)) / force for v in forces),
-            *(float(np.abs(v).max(initial=0.0)) / length for v in lengths),
-        )
+        forces, lengths = np.concatenate([self.u, self.p, self.m, self.q]), np.concatenate([self.n, self.t])
+        return max(float(np.abs(forces).max(initial=0.0)) / force, float(np.abs(lengths).max(initial=0.0)) / length)
