@@ -62,6 +62,16 @@ def test_the_result_says_why_no_collapse_state_was_sought(slender, monkeypatch):
     assert found.summary()["collapse_state_search"] == found.search
 
 
+def test_a_column_that_topples_moves_alike_in_both_theories():
+    """About its toe as a whole: centres at heights of 0.5 and 1.5 m, half the width across."""
+    column = concio.column(width=0.5, height=2.0, blocks=2, block="rigid", friction=0.9, horizontal=1.0)
+    found = concio.limit(column, path=True)
+    moved = found.collapse_motion().reshape(2, 3)
+    assert moved[:, :2] / moved[1, 0] == pytest.approx(np.array([[1 / 3, 1 / 6], [1.0, 1 / 6]]), abs=1e-9)
+    assert moved.ravel() == pytest.approx(found.mechanism(), abs=1e-9)
+    assert concio.limit(column, path=False).collapse_motion() is None
+
+
 def test_two_bounds_that_do_not_meet_are_both_told(slender):
     found = concio.limit(slender, path=False)
     still = Mechanism(np.zeros(3), 0.0, 0.0)

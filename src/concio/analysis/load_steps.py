@@ -30,6 +30,9 @@ from concio.solvers.path.state import LinearPath, PathState, state_of, step_prob
 FIRST = 1 / 4
 """First step, as a share of the associated bound; steps of an eighth carry no more, and cost a quarter more."""
 
+SMALLEST = 0.01
+"""Step that is too small to be tried, as a share of the bound."""
+
 START = (10.0,)
 """Starting points of the interior point: a step that needs others is halved instead."""
 
@@ -79,7 +82,6 @@ def load_steps(
     live: Array,
     bound: float,
     *,
-    width: float = 0.02,
     progress: ProgressCallback | None = None,
     found: Callable[[float], None] | None = None,
 ) -> LoadSteps:
@@ -92,8 +94,6 @@ def load_steps(
     live : (N,) array
     bound : float
         Associated multiplier, finite and positive: no step goes beyond it.
-    width : float
-        Size of the smallest step, as a share of the bound.
     progress : callable, optional
     found : callable, optional
         Called with every multiplier that is shown to be carried.
@@ -104,7 +104,7 @@ def load_steps(
     path = LinearPath(dead, live)
     state = state_of(path, 0.0, first.displacement, first.normal_force, first.friction_force)
     reached, failed, solves, worst = [0.0], float("nan"), 1, first.certificate.worst
-    size, smallest = FIRST * bound, 0.5 * width * bound
+    size, smallest = FIRST * bound, SMALLEST * bound
     while size > smallest:
         trial = reached[-1] + size
         if trial >= bound * (1 - 1e-9):  # at the bound itself every state is about to move
