@@ -140,9 +140,10 @@ def _support(ax: Axes, model: Model, support: Any, size: float) -> None:
     ax.plot(*points.T, marker=marker, ls="none", color=style.INK, ms=6, zorder=6)
     move = np.array(support.displacement)
     if move.any():
-        start = points.mean(0)
+        x, y = points.mean(0)
+        dx, dy = 0.08 * size * move / np.hypot(*move)
         ax.annotate(
-            model.report.text("motion", float(np.hypot(*move))), start + 0.08 * size * move / np.hypot(*move), start,
+            model.report.text("motion", float(np.hypot(*move))), (x + dx, y + dy), (x, y),
             arrowprops={"arrowstyle": "<-", "color": style.INK, "lw": 1.2}, fontsize=8, ha="center", zorder=6,
         )  # fmt: skip
 
@@ -161,8 +162,8 @@ def _loads(ax: Axes, model: Model, size: float) -> bool:
             *tails.T, *(length * direction).T, color=style.LOAD.colour, angles="xy", scale_units="xy", scale=1,
             width=0.0022, headwidth=4, headlength=5, zorder=5, clip_on=False,
         )  # fmt: skip
-        place = tails.mean(0) - 0.25 * length * direction.mean(0)
-        ax.annotate(word, place, ha="center", va="center", fontsize=8, color=style.LOAD.colour, annotation_clip=False)
+        x, y = tails.mean(0) - 0.25 * length * direction.mean(0)
+        ax.annotate(word, (x, y), ha="center", va="center", fontsize=8, color=style.LOAD.colour, annotation_clip=False)
         drawn = True
     return drawn
 

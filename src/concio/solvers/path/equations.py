@@ -23,6 +23,8 @@ error out, and what remains undetermined is changed as little as possible (proxi
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
@@ -135,7 +137,7 @@ class PathEquations:
         tilt = np.where(closed, d.dilatancy * sigma, 0.0)
         column_n = np.where(closed, d.gap_rate, 0.0) - tilt * d.tangent_rate
         column_t = np.where(stick, d.tangent_rate, 0.0)
-        blocks = [
+        blocks: list[list[Any]] = [
             [self.K, -self.C_n.T, -self.C_t.T, sp.csr_array(-d.load_rate[:, None])],
             [
                 keep_n @ self.C_n - sp.diags_array(tilt) @ self.C_t,

@@ -152,7 +152,8 @@ class ConeStatics:
 
     def offset(self, load: Array) -> Array:
         """Return R'(load - C' of the shift of the forces) in units of the programme (r,)."""
-        return self.project(load) - self.programme.Ct @ self.shift.ravel()
+        offset: Array = self.project(load) - self.programme.Ct @ self.shift.ravel()
+        return offset
 
     def forces(self) -> Balance:
         """Search forces in balance with the load of the problem."""
