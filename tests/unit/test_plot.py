@@ -27,7 +27,7 @@ from concio.post.mechanism import mechanism_states
 from concio.post.motion import body_motions
 from concio.post.outlines import display_scale, outlines
 from concio.post.pressure import pressure_diagrams
-from concio.post.struts import balanced, struts
+from concio.post.struts import Pushed, balanced, struts
 from concio.post.thrust import thrust_lines
 from concio.problem.solution import Status
 from models import bearing_panel, box, on_ground, sliding_panel, weight
@@ -134,6 +134,15 @@ def test_force_chains_pass_through_a_lintel_to_the_ground() -> None:
     assert (np.isclose(ends[:, 1], 1.0) & (ends[:, 0] <= 0.5)).any()  # to the left pier
     assert (np.isclose(ends[:, 1], 1.0) & (ends[:, 0] >= 2.0)).any()  # and to the right one
     assert (chains.force[inside] < 0).any()  # a lintel bends
+
+
+def test_in_a_block_whose_joints_carry_nothing_no_force_flows() -> None:
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.4], [0.0, 0.4]])
+    pressed = np.array([[0.0, 2.0], [0.0, 0.0], [0.0, -2.0]])
+    idle, busy = (Pushed(corners[[0, 1, 3]], force, corners) for force in (0.0 * pressed, pressed))
+    found = struts([idle, busy])
+    assert found.force[found.body == 0] == pytest.approx(0.0, abs=1e-12)
+    assert found.force[found.body == 1].max() == pytest.approx(2.0)
 
 
 def test_force_chains_cross_a_bed_of_mortar_on_the_spot() -> None:

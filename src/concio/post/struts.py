@@ -203,7 +203,7 @@ def _lightest(bodies: Sequence[tuple[Pushed, Array]]) -> list[tuple[Array, float
             matrix[2 * bars[:, 0] + axis, k] = arm[:, axis] / length
             matrix[2 * bars[:, 1] + axis, k] = -arm[:, axis] / length
         one = np.eye(len(matrix))
-        unit = float(np.abs(pushed.force).max())
+        unit = float(np.abs(pushed.force).max()) or 1.0  # forces that are all zero need no bars
         blocks.append(np.hstack([matrix, -matrix, one, -one]))
         right.append(-pushed.force.ravel() / unit)
         cost += [length / size, TIE * length / size, np.full(2 * len(matrix), LEFT)]

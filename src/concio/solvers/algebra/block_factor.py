@@ -118,11 +118,10 @@ class BlockFactor:
 
     def with_diagonal(self, diagonal: Array) -> BlockFactor:
         """Return a factor of K + diag(diagonal) that shares ordering and pattern; each keeps factors of its own."""
-        other = copy(self)
+        other = self.afresh()
+        other._made = self._made
         other._base = self._base.copy()
         other._base[self._diagonal] += diagonal
-        other.numeric = OrderedFactor(self.pattern, PIVOT)
-        other.D = other.diagonal = None
         return other
 
     def afresh(self) -> BlockFactor:

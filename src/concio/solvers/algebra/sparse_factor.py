@@ -3,8 +3,8 @@ r"""Sparse factorisation of matrices of one pattern, :math:`K + C^T D C + \rho I
 All the engine's time goes into these factorisations. The pattern is the graph of the structure, so the fill-reducing
 ordering is computed once, on the graph of the nodes, and every later matrix is handed over already permuted. Measured
 on running-bond walls (``benchmarks/orderings.py``), nested dissection costs a quarter of the minimum-degree ordering.
-Where the structure is small or slender its matrix is a narrow band, which LAPACK factorises in a third to two thirds of
-the time: panels of up to some forty elastic or four hundred rigid blocks, columns and arches of any length.
+Where the structure is small or slender its matrix is a narrow band, which LAPACK factorises in a seventh to three
+quarters of the time: panels of some thirty elastic or four hundred rigid blocks, columns and arches of any length.
 
 Engines, chosen by name and never by what happens to be installed: ``superlu`` (what comes with SciPy: SuperLU, and
 LAPACK for narrow bands) and ``pardiso`` (extra ``fast``).
