@@ -10,6 +10,7 @@ from concio.solvers.algebra import sparse_factor
 from concio.solvers.algebra.block_factor import BlockFactor
 from concio.solvers.algebra.scaled import LOOSE, scale
 from concio.solvers.algebra.sparse_factor import Engine, OrderedFactor, Pattern, SingularMatrixError
+from concio.solvers.methods import find
 
 FACTORS = ("band", "superlu", "pardiso")
 
@@ -133,3 +134,12 @@ def test_two_solves_of_one_problem_share_the_order_and_no_factors() -> None:
     other.factor.factorise(2.0 * other.factor.D, 1.0)
     assert (one.factor.made, other.factor.made, one.factor.has(one.factor.D, LOOSE)) == (1, 2, True)
     assert scale(problem.with_loads(2.0 * problem.f)).factor.pattern is not one.factor.pattern
+
+
+def test_a_problem_whose_matrices_are_changed_is_solved_as_it_is_now() -> None:
+    problem = concio.assemble(concio.running_bond_panel(courses=3, blocks=3, top_pressure=10.0)).problem()
+    before = find("interior-point")(problem)
+    problem.K.data *= 2.0
+    after = find("interior-point")(problem)
+    assert (before.solved, after.solved) == (True, True)
+    np.testing.assert_allclose(2.0 * after.displacement, before.displacement, rtol=1e-9, atol=1e-15)

@@ -119,8 +119,9 @@ def imbalance(problem: ContactProblem, u: Array, t_n: Array, t_t: Array, force: 
     moved = problem.R.T @ applied
     rest = problem.K @ u - (applied - problem.R @ moved)
     rest = rest - problem.R @ (problem.R.T @ rest)
-    known = np.minimum(ROUNDING * (problem.stiffness_size @ np.abs(u)), GRANTED * force)
-    return moved / problem.reach, np.maximum(np.abs(rest) - known, 0.0)
+    known = np.minimum(ROUNDING * (abs(problem.K) @ np.abs(u)), GRANTED * force)
+    farthest = abs(problem.R).max(axis=0).toarray().ravel() if problem.rigid_motions else np.zeros(0)
+    return moved / farthest, np.maximum(np.abs(rest) - known, 0.0)
 
 
 def certify(

@@ -217,16 +217,6 @@ class ContactProblem:
         return sp.csr_array(sp.vstack([self.C_n, self.C_t]))
 
     @cached_property
-    def stiffness_size(self) -> sp.csr_array:
-        """Absolute values of K: what rounding of displacements is multiplied by [kN/m]."""
-        return sp.csr_array(abs(self.K))
-
-    @cached_property
-    def reach(self) -> Array:
-        """Largest entry of each rigid motion (r,): the distance of the farthest node where it is a turn."""
-        return np.asarray(abs(self.R).max(axis=0).toarray()).ravel() if self.rigid_motions else np.zeros(0)
-
-    @cached_property
     def area_share(self) -> Array:
         """Area of each pair over the mean, kept between 0.05 and 20: weighs forces where these are not unique (m,)."""
         share: Array = np.clip(self.area / (self.area.mean() if self.pairs else 1.0), 0.05, 20.0)

@@ -33,9 +33,9 @@ LOOSE = 1e-10
 """Stiffness of the springs that keep unknowns which nothing holds where they are, scaled units."""
 
 
-_ORDERED: WeakKeyDictionary[ContactProblem, dict[Engine, tuple[float, sp.csr_array, sp.csr_array, BlockFactor]]]
+_ORDERED: WeakKeyDictionary[ContactProblem, dict[Engine, tuple[sp.csr_array, sp.csr_array, BlockFactor]]]
 _ORDERED = WeakKeyDictionary()
-"""What :func:`scale` works out of the matrices of a problem, for as long as that lives."""
+"""Matrices of a problem and their factor, ordered, for as long as the problem lives."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -318,16 +318,21 @@ def scale(problem: ContactProblem, engine: Engine | None = None, *, loads: Array
 def _matrices(problem: ContactProblem, engine: Engine) -> tuple[float, sp.csr_array, sp.csr_array, BlockFactor]:
     """Return the typical stiffness, K over it, C interleaved, and a factor that has made nothing yet.
 
-    They are worked out once for a problem, however often and by whatever it is solved: ordering its matrix takes as
-    long as some factorisations.
+    The matrix is put in order once for a problem, however often and by whatever it is solved, unless its entries have
+    been changed: that takes as long as some factorisations.
     """
+    stiffness = typical_stiffness(problem)
+    K, C = sp.csr_array(problem.K * (1.0 / stiffness)), interleaved(problem)
     ordered = _ORDERED.setdefault(problem, {})
-    if engine not in ordered:
-        stiffness = typical_stiffness(problem)
-        K, C = sp.csr_array(problem.K * (1.0 / stiffness)), interleaved(problem)
-        ordered[engine] = stiffness, K, C, BlockFactor(K, C, problem.pairs, problem.bodies, engine)
-    stiffness, K, C, factor = ordered[engine]
-    return stiffness, K, C, factor.afresh()
+    kept = ordered.get(engine)
+    if kept is None or not (_same(kept[0], K) and _same(kept[1], C)):
+        kept = ordered[engine] = K, C, BlockFactor(K, C, problem.pairs, problem.bodies, engine)
+    return stiffness, K, C, kept[2].afresh()
+
+
+def _same(a: sp.csr_array, b: sp.csr_array) -> bool:
+    """Tell whether two matrices of one shape have the same entries at the same places."""
+    return all(np.array_equal(getattr(a, part), getattr(b, part)) for part in ("data", "indices", "indptr"))
 
 
 def _in_units(problem: ContactProblem, C: sp.csr_array, force: float, length: float) -> dict[str, Any]:
