@@ -60,7 +60,7 @@ def condense(problem: ContactProblem) -> tuple[ContactProblem, Callable[[Solutio
         C_t=sp.csr_array(problem.C_t)[:, keep],
         R=sp.csc_array(R),
         bodies=bodies,
-        inertia=problem.inertia[keep],
+        inertia=problem.inertia[keep][:, keep],
         load=problem.load or float(np.abs(problem.f).sum()),
     )
 

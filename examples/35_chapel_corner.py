@@ -25,7 +25,7 @@ def main(figure: Path | None = None) -> dict[str, float]:
         height=3.0, block_size=(0.75, 0.5, 0.25), **common,
     )  # fmt: skip
     vault = concio.barrel(span=3.5, ring=0.3, length=3.75, voussoirs=15, blocks=5, **common)
-    vault = concio.place(vault, at=(0.25, 2.0, 3.0), turn=-90, name="vault", without="right abutment")
+    vault = concio.place(vault, at=(0.25, 2.0, 3.0), turn=-90, name="vault", without="right abutment", loads="world")
     chapel = concio.merge(walls, vault, title="Corner of a chapel")
     ties = [
         concio.Tie(f"tie {k}", body, (x, 0.0, 2.875), "vault-left abutment", (x, 4.0, 2.875), stiffness=20e3)

@@ -156,7 +156,7 @@ def in_units(model, force, length):
         ),
         mesh_size=None if model.mesh_size is None else model.mesh_size * length,
         gap_tolerance=None if model.gap_tolerance is None else model.gap_tolerance * length,
-        gap_reach=model.gap_reach * length,
+        gap_reach=None if model.gap_reach is None else model.gap_reach * length,
     )  # fmt: skip
 
 

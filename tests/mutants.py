@@ -1,8 +1,8 @@
-"""A sample of mutants of the core: small faults put in on purpose, which the tests must see.
+"""A sample of mutants of the package: small faults put in on purpose, which the tests must see.
 
 python tests/mutants.py [--count 60] [--seed 0] [--jobs 2] [--only PATH] [--named] [--minutes M]
 
-Each mutant changes one operator, comparison, constant or function of one line of the core (a minus for a plus, a
+Each mutant changes one operator, comparison, constant or function of one line (a minus for a plus, a
 maximum for a minimum, a factor of two where a number is no threshold: between
 a thousandth and a million); the tests of its room are run on a copy of the
 package that holds it, until one fails. A test that fails without the mutant, too, has killed nothing: the run ends, and

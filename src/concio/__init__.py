@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from concio.errors import ConcioError, GeometryError, InputError, MethodError, NoEquilibriumError, SolverError
     from concio.io.motion_file import load_motion, save_motion
     from concio.io.solids_out import write_solids
-    from concio.model.compose import merge, place
+    from concio.model.compose import place
     from concio.model.drawing.drawing import model_from_dxf
     from concio.model.file.reading import load, loads
     from concio.model.file.writing import dumps, save
@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from concio.model.generate.drums import drums
     from concio.model.generate.extrusion import extrude
     from concio.model.generate.groins import cloister_vault, cross_vault
+    from concio.model.generate.merging import merge
     from concio.model.generate.panel import running_bond_panel
     from concio.model.generate.plan_walls import tower, walls
     from concio.model.generate.rubble import rubble
@@ -66,6 +67,7 @@ if TYPE_CHECKING:
     from concio.studies.study import Stop, study
     from concio.studies.study_result import StudyResult, load_study
     from concio.studies.variables import Variable, variable
+    from concio.verdict.verdict import Outcome, Verdict
 
 __version__ = "0.1.0"
 
@@ -108,6 +110,7 @@ _HOMES = {
     "concio.studies.study": ("Stop", "study"),
     "concio.studies.study_result": ("StudyResult", "load_study"),
     "concio.studies.variables": ("Variable", "variable"),
+    "concio.verdict.verdict": ("Outcome", "Verdict"),
     "concio.model.generate.arch_on_piers": ("arch_on_piers",),
     "concio.model.generate.arches": ("arch",),
     "concio.model.generate.barrel": ("barrel",),
@@ -118,7 +121,8 @@ _HOMES = {
     "concio.model.generate.cells": ("cell",),
     "concio.model.generate.columns": ("buttress", "column"),
     "concio.model.generate.extrusion": ("extrude",),
-    "concio.model.compose": ("merge", "place"),
+    "concio.model.compose": ("place",),
+    "concio.model.generate.merging": ("merge",),
     "concio.model.drawing.drawing": ("model_from_dxf",),
     "concio.model.solids.importing": ("model_from_solids",),
     "concio.io.solids_out": ("write_solids",),
@@ -149,6 +153,7 @@ __all__ = [
     "MethodError",
     "Model",
     "NoEquilibriumError",
+    "Outcome",
     "PathResult",
     "Polyhedron",
     "Pulse",
@@ -166,6 +171,7 @@ __all__ = [
     "Tie",
     "Units",
     "Variable",
+    "Verdict",
     "__version__",
     "arch",
     "arch_on_piers",

@@ -27,7 +27,7 @@ CHOICES: dict[str, tuple[str, ...]] = {
     "force": ("kN", "N", "MN", "kgf", "tf"),
     "length": ("m", "cm", "mm", "ft", "in"),
     "motion": ("mm", "m", "cm", "in"),
-    "stress": ("auto", "kN/m2", "MPa", "N/mm2", "kPa", "Pa", "bar"),
+    "stress": ("auto", "kN/m2", "MPa", "N/mm2", "kPa", "Pa", "bar", "kgf/cm2", "tf/m2"),
 }
 """Units that may be chosen for each kind of quantity, the default first."""
 
@@ -59,6 +59,11 @@ def number(value: float, digits: int = 3, *, size: float = 0.0) -> str:
     return f"{float(mantissa):g}e{int(exponent)}"
 
 
+def counted(count: int, one: str, several: str | None = None) -> str:
+    """Return a number and its noun, such as ``"1 joint"`` or ``"1,024 joints"``."""
+    return f"{count:,} {one if count == 1 else several or one + 's'}"
+
+
 @strict_class
 @dataclass(frozen=True)
 class Units:
@@ -74,7 +79,7 @@ class Units:
         "mm", "m", "cm" or "in": displacements, openings, slips.
     stress : str
         "auto" tells stresses in kN/m2 where they are small and in MPa where they are not, moduli in MPa or GPa; or
-        "kN/m2", "MPa", "N/mm2", "kPa", "Pa", "bar".
+        "kN/m2", "MPa", "N/mm2", "kPa", "Pa", "bar", "kgf/cm2", "tf/m2".
 
     Raises
     ------

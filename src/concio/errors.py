@@ -2,6 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any, Protocol
+
+
+class Told(Protocol):
+    """A verdict: :class:`concio.Verdict`."""
+
+    @property
+    def exit_code(self) -> int:
+        """Exit code of a command that ends with it."""
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return it as plain types."""
+
 
 class ConcioError(Exception):
     """Base of every exception concio raises on purpose.
@@ -14,12 +27,16 @@ class ConcioError(Exception):
         The place: file and key, block or joint by name.
     hint : str, optional
         What to do about it.
+    verdict : Verdict, optional
+        The question that was asked and what was found of it.
     """
 
     exit_code = 1
 
-    def __init__(self, what: str, *, where: str | None = None, hint: str | None = None) -> None:
-        self.what, self.where, self.hint = what, where, hint
+    def __init__(
+        self, what: str, *, where: str | None = None, hint: str | None = None, verdict: Told | None = None
+    ) -> None:
+        self.what, self.where, self.hint, self.verdict = what, where, hint, verdict
         text = f"{where}: {what}" if where else what
         if hint:
             text += f" ({hint})"

@@ -169,7 +169,7 @@ def test_what_is_carried_without_end_and_what_is_not_carried_at_all():
     cell = concio.cell(block="rigid", friction=0.6)
     found = concio.strength(cell, [(-1, -1, 0), (1, 0, 0)], faces=False)
     assert [r.multiplier for r in found.rays] == [np.inf, pytest.approx(0.0, abs=1e-12)]
-    with pytest.raises(NoEquilibriumError, match="cannot be carried"):
+    with pytest.raises(NoEquilibriumError, match="beyond the strength"):
         concio.strength(cell, [(0, 0, 1)], stress=(0, 1.0, 0))
     smooth = concio.strength(concio.cell(block="rigid", friction=0.0), coulomb=False)
     assert smooth.domain is None

@@ -256,7 +256,8 @@ def test_run_tells_of_joints_that_were_nearly_made(tmp_path: Path) -> None:
     text = "[column]\nwidth=1\nheight=1\nblocks=1\n[[blocks]]\nname='floating'\nrectangle=[[-0.5,1.001],[0.5,2]]\n"
     path.write_text(text)
     code, out, _ = run("run", path)
-    assert "attention    1 joint nearly made, and not: see 'concio check'" in out
+    assert "attention    1 joint nearly made, and not made or made in part: 'b01' and 'floating' at" in out
+    assert "with the joints that were made" in out
     path.write_text(text.replace("1.001", "1.0"))
     code, out, _ = run("run", path)
     assert code == 0
@@ -295,7 +296,7 @@ def test_run_tells_of_blocks_that_a_drawing_lost(tmp_path: Path) -> None:
     )
     code, out, err = run("run", path)
     assert (code, err) == (0, "")
-    assert "attention    1 fault of the drawing mended or left out: see 'concio check'" in out
+    assert "attention    the drawing: 1 fault mended or left out, first: " in out
 
 
 def test_faults_of_a_drawing_and_the_remedy_are_printed_without_a_gap(capsys: pytest.CaptureFixture[str]) -> None:

@@ -52,7 +52,7 @@ def test_moduli_strength_and_directions_in_words(dry):
     assert "+0.65 s_yy +1 s_xy <= 0" in out
     assert "associated bound 41.4343, checked from both sides" in out
     assert "Coulomb path collapses at 41.4343" in out
-    assert "xx -1, yy -1: any multiple is carried" in out
+    assert "xx -1, yy -1: no associated bound" in out
     code, out, _ = run("cell", dry, "--direction", "xy=1", "--no-coulomb", "--no-strength")
     assert code == 0
     assert "exactly" not in out
@@ -116,7 +116,7 @@ def test_rigid_blocks_on_hard_joints_have_strength_but_no_moduli(dry):
         (["--direction", "xx"], "'xx' is no component"),
         (["--direction", "xx=a"], "'a'"),
         (["--direction", "xx=0"], "is zero"),
-        (["--stress", "yy=1"], "cannot be carried"),
+        (["--stress", "yy=1"], "beyond the strength"),
         (["--stage", "strain"], "neither a strain nor a stress"),
         (["--stage", "strain zz=1"], "neither a strain nor a stress"),
         (["--stage", "stress xx=1,strain xx=1"], "both strain xx and stress xx"),

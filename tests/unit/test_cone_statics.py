@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array, ContactProblem, Laws
 from concio.problem.tolerances import BALANCED
-from concio.solvers.algebra.second_order_cone import product, times
+from concio.solvers.algebra.second_order_cone import product, reach, times
 from concio.solvers.statics.cone_interior import ConeAnswer, maximise
 from concio.solvers.statics.cone_programme import ConeProgramme, Pairs, Point
 from concio.solvers.statics.cone_statics import ConeStatics, _motions_of_bodies, _room
@@ -401,3 +401,13 @@ def test_the_longest_step_ends_on_the_first_wall_it_meets(seed: int) -> None:
         assert room(p.moved(d, *((1 - 1e-9) * np.array(longest))))[k] > 0
         if longest[k] < 1:
             assert room(p.moved(d, *((1 + 1e-9) * np.array(longest))))[k] < 0
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_the_way_to_the_edge_of_a_cone_keeps_its_digits_next_to_it(sense: float) -> None:
+    """Of the two roots of the quadratic equation the small one is not a difference of large ones."""
+    x = np.array([[1.0, sense * (1.0 - 2.0**-40)]])
+    dx = np.array([[-0.25, sense * 0.25]])
+    assert reach(x, dx) == pytest.approx(2.0**-39, rel=1e-9)
+    assert reach(x, -dx + np.array([[-1.0, 0.0]])) == pytest.approx(2.0**-40 / 0.5, rel=1e-9)
+    assert reach(x, np.array([[0.5, sense * 0.25]])) == np.inf

@@ -178,7 +178,7 @@ def test_what_is_carried_without_end_and_what_is_not_carried_at_all():
     assert found.strength.bracket == (np.inf, np.inf)
     assert found.strength.proven == (True, True)
     assert found.checked
-    with pytest.raises(concio.InputError, match="any multiple"):
+    with pytest.raises(concio.InputError, match="none to draw"):
         found.plot.mechanism()
     door = pushed(openings=[{"x": 1.2, "y": 0.0, "width": 0.8, "height": 1.4}], lintel=concio.Rigid(25.0))
     found = concio.compare_with_continuum(door, elastic=False, mesh_size=0.7)

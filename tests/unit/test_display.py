@@ -172,3 +172,17 @@ def test_units_on_the_command_line(tmp_path: Path) -> None:
     done = CliRunner().invoke(app, ["run", str(file), "--units", "MN"])
     assert done.exit_code == 0
     assert " MN along y" in done.output
+
+
+def test_every_unit_that_may_be_chosen_is_told_in_reports(tmp_path: Path) -> None:
+    """1 kgf/cm2 is 98.0665 kN/m2, and every choice of the table converts, by itself and from the command line."""
+    from concio.display import CHOICES
+
+    assert Units(stress="kgf/cm2").text("stress", 98.0665) == "1 kgf/cm2"
+    assert Units(stress="tf/m2").text("stress", 9.80665) == "1 tf/m2"
+    for unit in CHOICES["stress"][1:]:
+        assert Units.parse(unit).stress == unit
+        assert Units.parse(unit).text("stress", 50.0).endswith(unit)
+    path = tmp_path / "c.toml"
+    path.write_text("[column]\nwidth = 1.0\nheight = 1.0\nblocks = 1\n")
+    assert CliRunner().invoke(app, ["run", str(path), "--units", "kgf/cm2"]).exit_code == 0

@@ -64,9 +64,12 @@ def test_wall_with_gaps_of_a_tenth_of_a_millimetre(tmp_path):
     assert [(f.a, f.b) for f in found.interfaces] == [(f.a, f.b) for f in wanted.interfaces]
     assert [f.length for f in found.interfaces] == pytest.approx([f.length for f in wanted.interfaces], abs=1e-3)
     assert not found.report()
-    # without mending every joint is missed, and every miss is reported
+    # without mending joints are open at first or missed; without reach each is missed, and every miss is reported
     as_drawn = model_from_dxf(loose)
     raw = detect_interfaces(as_drawn.bodies, tolerance=as_drawn.gap_tolerance)
+    assert len(raw.interfaces) + sum(m.kind == "gap" for m in raw.near_misses) >= len(wanted.interfaces)
+    assert max(f.gap.max() for f in raw.interfaces) >= 1e-4 * (1 - 1e-9)
+    raw = detect_interfaces(as_drawn.bodies, tolerance=as_drawn.gap_tolerance, reach=0.0)
     assert len(raw.interfaces) + sum(m.kind == "gap" for m in raw.near_misses) >= len(wanted.interfaces)
     assert any("0.1 mm" in m.sentence for m in raw.near_misses)
 

@@ -72,7 +72,7 @@ def test_rocking_block_meets_housner():
     peak = ALPHA - np.arccos(np.cos(ALPHA) + kept**2 * (np.cos(ALPHA - first) - np.cos(ALPHA)))
     assert (wanted, peak / ALPHA) == pytest.approx((0.38730, 0.32387), abs=5e-6)
     model = standing(tilt=first)
-    found = concio.dynamics(model, duration=0.9, step=5e-4, start="as described", gravity=G, every=5e-4)
+    found = concio.dynamics(model, duration=0.9, step=5e-4, start="as described", gravity=G, every=1e-6)
     theta, time = 0.5 * ALPHA + found.rotation("block"), found.shots.time
     k = int(np.flatnonzero(theta < 0)[0])
     zero = time[k - 1] + (time[k] - time[k - 1]) * theta[k - 1] / (theta[k - 1] - theta[k])

@@ -11,6 +11,7 @@ import scipy.sparse as sp
 from concio.errors import InputError
 from concio.problem.contact_problem import ContactProblem, Laws
 from concio.problem.pair_state import PairStates
+from concio.solvers.path import direction
 from concio.solvers.path.event_path import follow
 from concio.solvers.path.record import Outcome
 from concio.solvers.path.state import CRUSHED, OPEN, LinearPath, PathState
@@ -72,6 +73,21 @@ def test_cohesion_and_tension():
     assert found.end.normal_force.min() == pytest.approx(-0.1, rel=1e-12)
     assert worst_certificate(path, found) <= 1e-12
     assert energy_error(path, found) <= 1e-12
+
+
+@pytest.mark.parametrize(("cap", "mu"), [(0.8, 0.9), (0.62, 0.9), (np.inf, 0.3), (np.inf, 0.9)])
+def test_pivots_alone_find_the_way_that_flips_find(cap, mu, monkeypatch):
+    """At every corner of a path Lemke's method on all critical pairs: opening, slipping and crushing ones."""
+    given = {"until": 0.02, "control": np.array([1.0, 0.0, 0.0]), "cap": cap, "compliance": 1e-3}
+    _, flipped = weight_then(PUSH, mu, PUSH.load(1, 0), **given)
+    monkeypatch.setattr(direction, "ROUNDS_ALL", 0)
+    monkeypatch.setattr(direction, "ROUNDS_ONE", 0)
+    path, found = weight_then(PUSH, mu, PUSH.load(1, 0), **given)
+    assert found.peak == pytest.approx(flipped.peak, rel=1e-9)
+    assert found.end.parameter == pytest.approx(flipped.end.parameter, rel=1e-9)
+    assert found.end.displacement == pytest.approx(flipped.end.displacement, rel=1e-7, abs=1e-10)
+    assert [(e.kind, e.pair) for e in found.events] == [(e.kind, e.pair) for e in flipped.events]
+    assert worst_certificate(path, found) <= 1e-12
 
 
 K1, K2, H1, H2 = 10.0, 20.0, 2.0, 1.0

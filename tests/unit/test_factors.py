@@ -50,7 +50,9 @@ def test_block_factor_solves_with_unsymmetric_blocks(by: str, d: int, monkeypatc
     rng = np.random.default_rng(d)
     K, C, ranges = blocks(rng, [6, 12, 6, 3, 9, 6, 6], 30, d)
     n = K.shape[0]
-    factor = BlockFactor(K, C, 30, ranges, asked(by, monkeypatch))
+    spread = sp.random_array((n, n), density=0.05, rng=rng)
+    mass = sp.csr_array(sp.block_diag([np.ones((3, 3))] * (n // 3)) + spread + spread.T)
+    factor = BlockFactor(K, C, 30, ranges, asked(by, monkeypatch), added=mass)
     assert (factor.pattern.width is not None) == (by == "band")
     for _ in range(2):
         D = rng.standard_normal((30, d, d)) * 0.3 + 2 * np.eye(d)
@@ -61,11 +63,15 @@ def test_block_factor_solves_with_unsymmetric_blocks(by: str, d: int, monkeypatc
         several = rng.standard_normal((n, 5))
         np.testing.assert_allclose(factor.solve(several), np.linalg.solve(matrix, several), rtol=1e-10, atol=1e-12)
     assert factor.count == 2
-    held = factor.with_diagonal(added)
+    held, bare = factor.with_added(0.1 * mass), matrix - np.diag(added)
     held.factorise(D, 0.5)
-    wanted = np.linalg.solve(matrix + 0.5 * np.eye(n), b)
-    np.testing.assert_allclose(held.solve(b), wanted, rtol=1e-10, atol=1e-12)
+    wanted = np.linalg.solve(bare + 0.1 * mass.toarray() + 0.5 * np.eye(n), b)
+    np.testing.assert_allclose(held.solve(b), wanted, rtol=1e-9, atol=1e-11)
     assert (factor.count, held.count, factor.made, held.made) == (2, 1, 3, 3)
+    held.factorise(D, 0.2 * mass)
+    np.testing.assert_allclose(held.solve(b), np.linalg.solve(bare + 0.3 * mass.toarray(), b), rtol=1e-9, atol=1e-11)
+    assert held.may_add(3.0 * mass)
+    assert not held.may_add(sp.csr_array(sp.eye_array(n)))
 
 
 @pytest.mark.parametrize(("kinds", "together"), [([9, 12, 6, 9], 3), ([6, 6, 6, 6, 6], 6)])

@@ -48,8 +48,8 @@ def by_formula(n: int, share: float) -> float:
 
 def test_interlocked_blocks_hold_what_the_full_weight_above_their_joints_does() -> None:
     """Joint k of a comb carries k courses, n (n + 1)/2 in all: the Circolare counts 0.4 of it in place of 0.5."""
-    worst = concio.assess(toothed(6), site=site(), levels=["SLD"], direction="right").worst
-    assert worst is not None
+    found = concio.assess(toothed(6), site=site(), levels=["SLD"], direction="right", live="live")
+    worst = next(m for m in found.mechanisms if m.name == "weakest of all")
     assert worst.found.flow == "Coulomb"
     assert by_formula(6, 0.0) == pytest.approx(T / 1.5)  # no friction: one facade that topples alone
     assert by_formula(6, 0.4) < worst.multiplier < worst.found.associated.multiplier

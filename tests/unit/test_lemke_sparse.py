@@ -15,8 +15,10 @@ from concio.errors import InputError, MethodError
 from concio.model.generate.panel import running_bond_panel
 from concio.problem.pair_state import PairState, PairStates
 from concio.problem.solution import Status, pair_states
+from concio.solvers.algebra.scaled import scale
 from concio.solvers.algebra.updated_factor import UpdatedFactor
 from concio.solvers.methods import find
+from concio.solvers.pivoting.pair_rows import PairSystem
 from concio.solvers.pivoting.sparse_lemke import solve
 from contact_problems import rigid, wall
 from lcp_problems import small_wall
@@ -72,6 +74,22 @@ def test_every_answer_is_certified_or_a_proven_fall(seed: int, laws: set[str], a
         assert answer.certificate.worst <= 1e-9
     if "dilatancy" not in laws and "cap" not in laws and alpha <= 0.2 and mu >= 0.5:
         assert answer.solved, answer.trace
+
+
+def test_the_ground_holds_each_rigid_motion_by_a_pair_of_its_own() -> None:
+    """Its row of C is nothing along the normal and the motion itself along the tangent; it has no cap, no strength."""
+    s = scale(wall(2, 2, sides=True))
+    system = PairSystem(s, ground=True)
+    r = s.problem.rigid_motions
+    own = system.C[2 * s.pairs :].toarray()
+    assert own.shape == (2 * r, len(s.f))
+    assert not own[0::2].any()
+    np.testing.assert_array_equal(own[1::2], s.problem.R.T.toarray())
+    assert (system.C[: 2 * s.pairs] != s.C).nnz == 0
+    assert (system.m, system.size) == (s.pairs + r, len(s.f) + 2 * (s.pairs + r) + 1)
+    assert (system.x[s.pairs :] == [1.0, 0.0]).all()
+    assert np.isinf(system.cone.cap[s.pairs :]).all()
+    assert not system.cone.cohesion[s.pairs :].any()
 
 
 def test_crushing_stops_at_the_cap() -> None:

@@ -16,9 +16,9 @@ from concio.analysis import load_steps as stepping
 from concio.analysis.limit import dead_and_live, limit_stages
 from concio.analysis.load_steps import load_steps
 from concio.cli.main import app
+from concio.errors import InputError
 from concio.problem.certificate import certify
 from concio.problem.solution import Status
-from concio.report.limit_wording import as_given, limit_lines
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.path.event_path import follow
 from concio.solvers.path.ray import homogeneous, ray
@@ -26,6 +26,7 @@ from concio.solvers.path.record import Outcome
 from concio.solvers.path.state import LinearPath, at_rest, step_problem
 from concio.solvers.states import settle
 from concio.solvers.states.settle import Settler
+from concio.verdict.limit_words import as_given, limit_lines
 
 
 @pytest.fixture(scope="module")
@@ -75,13 +76,17 @@ def test_a_collapse_state_is_not_told_as_what_is_carried() -> None:
     slender = concio.wall(length=0.5, height=1.0, block_size=(0.5, 1.0), friction=0.9, horizontal=0.5, block="rigid")
     found = limits.limit(slender)
     text = "\n".join(limit_lines(found))
-    assert "it can begin to move at 1 times the load of 'live', and nothing holds beyond" in text
+    assert "Design with 1 times 'live' (5 kN) at most: as the load grows it is carried up to there" in text
+    assert "Nothing is in equilibrium beyond it either" in text
     state = found.collapse_state
     assert state is not None
-    lower = replace(found, collapse_state=replace(state, multiplier=0.5))
-    assert any("begin to move at 0.5, and nothing holds beyond 1 times" in line for line in limit_lines(lower))
-    unknown = replace(found, collapse_state=None)
-    assert any("it collapses as the load grows at 1 times" in line for line in limit_lines(unknown))
+    lower = replace(found, collapse_state=replace(state, multiplier=0.5)).verdict.sentence
+    assert "Design with 0.5 times" in lower
+    assert "lets the structure begin to move, though 1 is carried where the load grows from rest" in lower
+    assert "1 times is an upper bound only: nothing is in equilibrium beyond it" in lower
+    unknown = replace(found, collapse_state=None).verdict.sentence
+    assert "Design with 1 times" in unknown
+    assert "there it collapses" in unknown
 
 
 @pytest.mark.parametrize(("friction", "expected"), [(0.9, 0.5), (0.3, 0.3)])
@@ -147,7 +152,7 @@ def test_what_has_a_size_of_its_own_is_no_ray(wall: concio.Model) -> None:
     ("multiplier", "said"),
     [
         (4.77, "21 % of that bound: it could grow 4.77 times at most"),
-        (1 / 1.648, "1.65 times that bound: it is not carried"),
+        (1 / 1.648, "1.65 times that bound: only 60.7 % of it can be carried at most"),
         (0.0, "not carried, nor is any part of it"),
     ],
 )
@@ -206,3 +211,13 @@ def test_settling_stops_where_every_round_contradicts_more_pairs(monkeypatch) ->
     quick = solves()
     monkeypatch.setattr(settle, "PATIENCE", 10**6)
     assert quick < solves()
+
+
+def test_a_live_group_that_moves_supports_is_refused():
+    """A multiplier multiplies loads; what the group moves would be left out of the bound without a word."""
+    model = concio.wall(
+        length=0.8, height=0.4, block_size=(0.4, 0.2), friction=0.6, horizontal=1.0, block="rigid"
+    )
+    moved = concio.Support("sinks", "ground", displacement=(0.0, -1e-3), group="live")
+    with pytest.raises(InputError, match="moves supports"):
+        concio.limit(replace(model, supports=(moved,)))

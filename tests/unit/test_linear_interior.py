@@ -8,6 +8,7 @@ import scipy.sparse as sp
 from scipy.optimize import OptimizeResult, linprog
 
 from concio.solvers.algebra.normal_equations import NormalEquations, rebalance
+from concio.solvers.statics import linear_interior
 from concio.solvers.statics import programme as statics
 from concio.solvers.statics.linear_interior import solve_interior
 from concio.solvers.statics.programme import optimise
@@ -51,6 +52,25 @@ def test_against_a_programme_whose_answer_is_known(seed):
     assert equations[1] @ found.y + (low + high)[held].sum() == pytest.approx(cost @ x, abs=1e-9 * (1 + abs(cost @ x)))
 
 
+@pytest.mark.parametrize("power", [-40, 40])
+def test_the_unit_of_the_loads_changes_no_digit(power):
+    """Right sides, bounds and answers in units 2^40 times smaller or larger: the same steps, the same bits."""
+    cost, equations, bounds, _ = programme(3)
+    A, b = equations
+    b = np.where(np.arange(len(b)) == 1, 0.0, b)  # a row without load, as most have
+    A = sp.csc_array(sp.hstack([A, sp.eye_array(len(b)), -sp.eye_array(len(b))]))
+    cost = np.concatenate([cost, np.full(2 * len(b), 30.0)])
+    bounds = np.vstack([bounds, np.tile([0.0, np.inf], (2 * len(b), 1))])
+    bounds[bounds[:, 0] > -np.inf, 0] = 0.0
+    here, there = (solve_interior(cost, (A, unit * b), unit * bounds) for unit in (1.0, 2.0**power))
+    assert here is not None
+    assert there is not None
+    assert here.close
+    assert there.iterations == here.iterations
+    assert (there.x == 2.0**power * here.x).all()
+    assert (there.y == here.y).all()
+
+
 @pytest.mark.parametrize("method", ["interior", "highs"])
 def test_inequalities_and_fixed_columns(method):
     """Maximise x0 + x1 with x0 + x2 = 2, x1 = 0.25 fixed, x0 + x1 <= 1."""
@@ -70,6 +90,20 @@ def test_what_has_no_answer_gets_none():
     assert found is None or not found.close
     assert optimise(np.array([1.0]), contradiction, bounds, method="interior").status == 4
     assert optimise(np.array([1.0]), contradiction, bounds).status == 2
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_more_iterations_never_return_a_worse_point(seed, monkeypatch):
+    """Equations that contradict each other a little: where the iteration runs off, the best point met is kept."""
+    cost, (A, b), bounds, _ = programme(seed)
+    equations = sp.csc_array(sp.vstack([A, A[[0]]])), np.append(b, b[0] + 0.3)
+    worst = []
+    for most in range(0, 48, 4):
+        monkeypatch.setattr(linear_interior, "MOST", most)
+        found = solve_interior(cost, equations, bounds)
+        worst.append(max(found.primal, found.dual, found.gap))
+    assert min(worst) > linear_interior.ENOUGH
+    assert worst == sorted(worst, reverse=True)
 
 
 def test_normal_equations_are_those_of_springs():

@@ -11,8 +11,8 @@ import concio
 from concio.analysis import limit as limits
 from concio.analysis.margins import friction_by_solving, load_margin
 from concio.problem.solution import Mechanism
-from concio.report.limit_wording import limit_lines
 from concio.solvers.statics.limit import LimitLoad
+from concio.verdict.limit_words import limit_lines
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +44,7 @@ def test_a_load_without_limit():
     pressed = concio.wall(length=1.0, height=0.5, friction=0.6, block="rigid", top_pressure=10.0)
     found = load_margin(pressed, "top")
     assert found.holds == np.inf
-    assert found.solves == 0
+    assert found.solves > 0, "a bound that is locked says nothing of Coulomb friction"
 
 
 def test_the_result_says_why_no_collapse_state_was_sought(slender, monkeypatch):

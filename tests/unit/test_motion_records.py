@@ -29,7 +29,9 @@ def test_at2_is_read_in_g(tmp_path):
 def test_text_of_two_columns_and_of_one(tmp_path):
     two = tmp_path / "two.csv"
     two.write_text("time;acceleration\n0.00;1.0\n0.02;2.0\n0.04;-1.0\n")
-    assert concio.read_record(two).values.tolist() == [1.0, 2.0, -1.0]
+    assert concio.read_record(two, unit="m/s2").values.tolist() == [1.0, 2.0, -1.0]
+    with pytest.raises(concio.InputError, match="does not say its unit; its largest value is 2 "):
+        concio.read_record(two)
     one = tmp_path / "one.txt"
     one.write_text("# cm/s2\n100\n200\n-100\n")
     record = concio.read_record(one, unit="cm/s2", step=0.02)

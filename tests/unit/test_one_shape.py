@@ -22,6 +22,8 @@ ONE_PLACE = {
     "problem/pair_state.py": (r"\b(?:contact|normal)(?:\[\w+\])? [!=]= \d\b",),
 }
 """What only one file of the package writes out."""
+ALONE = {"proof/verify.py"}
+"""The program that checks exact certificates imports nothing of the rest."""
 
 @pytest.mark.parametrize("home", ONE_PLACE)
 def test_written_out_in_one_place_only(home: str) -> None:
@@ -31,7 +33,7 @@ def test_written_out_in_one_place_only(home: str) -> None:
         for pattern in ONE_PLACE[home]
         if re.search(pattern, path.read_text(encoding="utf-8"))
     }
-    assert found <= {home}
+    assert found - ALONE <= {home}
 
 
 @pytest.mark.parametrize(

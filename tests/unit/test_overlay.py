@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 import shapely
 
+import concio
+from concio.model.interfaces.near import find_overlaps
 from concio.model.overlay import common, without
 from samples import sample
 
@@ -39,3 +42,42 @@ def test_random_triangles_beside_each_other_and_upon_each_other():
     assert (shapely.area(common(upper, lower)) < 1e-9 * area).all()
     assert np.abs(shapely.area(common(upper, twin)) / area - 1).max() < 1e-8
     assert np.abs(shapely.area(without(upper, lower)) / area - 1).max() < 1e-8
+
+
+def test_what_two_polygons_share_is_areas_alone():
+    """An L and a square that lies on one arm and against the other: the line between them is no part, nor a point."""
+    el = shapely.Polygon([(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)])
+    beside, corner = shapely.box(1, 0.5, 2, 2), shapely.box(2, 1, 3, 2)
+    assert el.intersection(beside).geom_type == "GeometryCollection"
+    found = common(np.array([el, el, el]), np.array([beside, corner, shapely.box(0, 2, 1, 3)]))
+    assert shapely.area(found) == pytest.approx([0.5, 0.0, 0.0], abs=1e-15)
+    assert shapely.length(found) == pytest.approx([3.0, 0.0, 0.0], abs=1e-15)
+    again = common(found, shapely.box(0, 0, 1.5, 3))
+    assert shapely.area(again) == pytest.approx([0.25, 0.0, 0.0], abs=1e-15)
+    left = without(np.array([shapely.GeometryCollection([el, shapely.LineString([(5, 5), (6, 6)])])]), beside)
+    assert shapely.length(left)[0] == pytest.approx(8.0)
+
+
+def test_a_side_that_two_blocks_share_hides_no_overlap():
+    """Where they also share a side of 10 m, an overlap of 20 x 20 mm was taken for one of 0.04 mm and said nothing."""
+    long = concio.Body("long", np.array([(0.0, 0), (11, 0), (11, 1), (0, 1)]))
+    other = concio.Body("other", np.array([(0.5, 1.0), (10.5, 1), (10.5, 0.98), (10.52, 0.98), (10.52, 2), (0.5, 2)]))
+    (found,) = find_overlaps([long, other], tolerance=1e-3)
+    assert found.area == pytest.approx(4e-4)
+    assert found.depth == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize("seed", range(sample(12, 60)))
+def test_cuts_of_cuts_do_not_fail(seed: int):
+    """Grids of squares turned by any angle, their own halves, and a third cut: the areas sum up, nothing is refused."""
+    rng = np.random.default_rng(seed)
+    turn = np.exp(1j * rng.uniform(0, 2 * np.pi))
+    x = np.arange(5.0)
+    low = (x[:-1, None] + 1j * x[:-1]).ravel()
+    square = np.array([0, 1, 1 + 1j, 1j])
+    cells = np.array([shapely.Polygon(np.column_stack([(z := turn * (p + square)).real, z.imag])) for p in low])
+    ends = turn * np.array([0.5, 3.5, 3.5 + 3j, 2 + 3j, 2 + 2j, 0.5 + 2j])
+    el = shapely.Polygon(np.column_stack([ends.real, ends.imag]))
+    once = common(cells, el)
+    k, m = (v.ravel() for v in np.meshgrid(np.arange(len(once)), np.arange(len(cells))))
+    assert shapely.area(common(once[k], cells[m])).sum() == pytest.approx(7.5, rel=1e-9)

@@ -110,9 +110,18 @@ def test_a_wedge_shaped_gap_is_cut_where_the_reach_ends() -> None:
     assert [m.kind for m in detection.near_misses] == ["partial"]
 
 
+def test_faces_that_touch_and_are_turned_a_little_are_joined_with_the_gap_between_them() -> None:
+    for degrees in (0.01, 0.1, 3, 4.9):
+        (patch,) = found(A, tilted(degrees)).patches
+        half = np.deg2rad(degrees) / 2
+        assert patch.area == pytest.approx(1.0, rel=2 * half)
+        assert sorted(patch.gap)[:2] == [0, 0]
+        assert sorted(patch.gap)[2:] == pytest.approx([2 * np.sin(half)] * 2, rel=1e-2)
+
+
 def test_faces_at_an_angle_are_told() -> None:
-    for degrees in (3, 10):
-        detection = found(A, tilted(degrees))
+    for degrees, options in ((3, {"reach": 0.0}), (10, {})):
+        detection = found(A, tilted(degrees), **options)
         assert not detection.patches
         assert "turned by" in detection.report()[0]
         assert detection.near_misses[0].angle == pytest.approx(np.deg2rad(degrees))
@@ -181,11 +190,14 @@ def test_a_ridge_and_a_corner_on_a_face_are_told() -> None:
     sides = [[0.3, 0.2, 1.5], [0.7, 0.2, 1.5], [0.3, 0.8, 1.5], [0.7, 0.8, 1.5]]
     points = np.array([[0.3, 0.5, 1], [0.7, 0.5, 1], *sides])
     faces = [(0, 1, 3, 2), (0, 4, 5, 1), (2, 3, 5, 4), (0, 2, 4), (1, 5, 3)]
-    for stretch, at in ((1.0, 0.3), (3.0, 0.5)):
+    for stretch, length in ((1.0, 0.4), (3.0, 1.0)):
         ridge = Polyhedron("ridge", (points - (0.5, 0, 0)) * (stretch, 1, 1) + (0.5, 0, 0), faces)
         (miss,) = found(A, ridge).near_misses
-        assert miss.kind == "corner"
-        assert miss.at[0] == pytest.approx(at)
+        assert miss.kind == "edge"
+        assert miss.length == pytest.approx(length)
+        assert miss.at == pytest.approx([0.5, 0.5, 1.0])
+        assert f"along an edge of {length:g} m only" in miss.sentence
+        assert miss.place == "'a' on 'ridge' at (0.5, 0.5, 1) m"
 
 
 def test_fixed_bodies_do_not_meet_each_other() -> None:

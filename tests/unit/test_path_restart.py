@@ -9,9 +9,9 @@ import pytest
 
 import concio
 from concio.analysis.limit import limit
-from concio.report.limit_wording import limit_lines
 from concio.solvers.path.record import Outcome
 from concio.solvers.path.restart import look_beyond, moves_freely
+from concio.verdict.limit_words import limit_lines
 from path_helpers import energy_error, least_dissipation, weight_then, worst_certificate
 from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, wall
 

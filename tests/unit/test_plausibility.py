@@ -123,3 +123,11 @@ def test_check_run_and_the_report_tell(tmp_path):
     from concio.report.page import report_html
 
     assert said in report_html(concio.solve(concio.load(path)), figures=False)
+
+
+def test_a_block_is_as_long_as_its_longest_side():
+    """A beam of 60 m, one of 0.3 m that is 1 mm thick: the thin side tells nothing about the unit."""
+    beam, lath = box("beam", 0, 60, 0, 0.4, material="m"), box("lath", 0, 0.3, 1, 1.001, material="m")
+    found = implausible(model_of(GROUND, beam, lath, materials={"m": Elastic(E=5e6, unit_weight=22.0)}))
+    assert any("block 'beam' is 60 m long" in said for said in found)
+    assert not any("lath" in said for said in found)

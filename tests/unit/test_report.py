@@ -19,7 +19,11 @@ from concio.errors import InputError
 from concio.problem.solution import Status
 from concio.report.page import report_html, write_report
 from concio.report.view_data import unpack
-from concio.report.wording import VERDICTS, certificate_sentence, checks, verdict
+from concio.verdict.step_verdict import checks
+from concio.verdict.step_verdict import proof as certificate_sentence
+from concio.verdict.step_verdict import step_verdict as verdict
+from concio.verdict.step_words import OUTCOMES
+from concio.verdict.step_words import WORDS as VERDICTS
 from models import bearing_panel, sliding_panel
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -110,7 +114,7 @@ def test_every_outcome_has_words(status: Status) -> None:
     assert words.headline.endswith(".")
     assert words.next_steps
     bad = (Status.NO_EQUILIBRIUM, Status.COLLAPSES, Status.NO_COULOMB_STATE)
-    assert words.tone == ("good" if status is Status.SOLVED else "bad" if status in bad else "unsure")
+    assert OUTCOMES[status].tone == ("good" if status is Status.SOLVED else "bad" if status in bad else "unsure")
 
 
 @pytest.mark.parametrize("status", [Status.UNDECIDED, Status.GAVE_UP, Status.CANCELLED])
@@ -293,7 +297,8 @@ def test_collapse_opens_without_errors(sliding: Result, tmp_path: Path) -> None:
 def test_joints_that_were_nearly_made_come_first_of_what_to_do_next() -> None:
     text = "[column]\nwidth=1\nheight=1\nblocks=1\n[[blocks]]\nname='floating'\nrectangle=[[-0.5,1.001],[0.5,2]]\n"
     fallen = concio.solve(concio.loads(text), on_failure="return")
-    assert verdict(fallen).next_steps[0].startswith("At 1 place bodies nearly touch and have no joint")
-    assert "nearly touch and have no joint" in report_html(fallen)
+    assert verdict(fallen).next_steps[0].startswith("1 joint nearly made, and not made")
+    assert "1 joint nearly made, and not made" in report_html(fallen)
     touching = concio.solve(concio.loads(text.replace("1.001", "1.0")), on_failure="return")
-    assert verdict(touching) == VERDICTS[touching.status]
+    assert not any("nearly made" in line for line in (*verdict(touching).limits, *verdict(touching).attention))
+    assert verdict(touching).headline == VERDICTS[touching.status].headline

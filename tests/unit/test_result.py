@@ -16,8 +16,8 @@ from concio.errors import InputError, NoEquilibriumError, SolverError
 from concio.model.materials import Elastic, JointLaw
 from concio.model.model import Load
 from concio.problem.solution import Status
-from concio.report.wording import verdict
 from concio.solvers.statics.mechanism import proves, verify_mechanism
+from concio.verdict.step_verdict import step_verdict as verdict
 from models import box, on_ground, weight
 
 STONE = {"kind": "rigid", "material": "stone"}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from hypothesis import strategies as st
 from concio.analysis.seismic.code import find_code
 from concio.analysis.seismic.floor import FloorSpectrum, Mode, Storeys
 from concio.analysis.seismic.site import Hazard, Site
+from concio.analysis.seismic.variations import _way_of
 from concio.errors import InputError
 
 SLV = {"a_g": 0.20, "F0": 2.45, "Tc": 0.32}
@@ -124,3 +126,15 @@ def test_acceleration_may_be_given_with_its_unit() -> None:
     place = site(hazard={"SLV": {"a_g": "1.962 m/s2", "F0": 2.45, "Tc": "0.32 s"}})
     assert place.at("SLV").a_g == pytest.approx(0.20)
     assert Hazard(475.0, 0.2).F0 == 2.5
+
+
+def test_the_one_direction_of_an_assessment_is_asked_for_again_as_it_was() -> None:
+    """Its name has three digits; where a mechanism and a locked part were pushed along two, names tell which."""
+    way = (0.61234567, 0.79059847)
+    pushed = [SimpleNamespace(direction="(0.612, 0.791)")]
+    found = SimpleNamespace(mechanisms=pushed, locked=[], arguments={"direction": way})
+    assert _way_of(found, "(0.612, 0.791)") == way
+    assert _way_of(SimpleNamespace(mechanisms=pushed, locked=pushed, arguments={"direction": way}), "") == way
+    two = SimpleNamespace(mechanisms=pushed, locked=[SimpleNamespace(direction="+x")], arguments={"direction": None})
+    assert _way_of(two, "(0.612, 0.791)") == (0.612, 0.791)
+    assert _way_of(two, "+x") == "+x"

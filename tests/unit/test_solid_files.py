@@ -362,6 +362,7 @@ body_a = "wall-w1-c06-b02"
 at_a = [1, 0, {}]
 at_b = [1, 3, 1.4]
 stiffness = 1000
+yield_force = 30
 """
 SOUND = ("height = 1, lintel = 0.25", "[0.5, 0.25, 0.25]", "[0.5, 1.1, 1.5]", "1.4")
 MISTAKES = {

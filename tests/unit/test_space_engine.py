@@ -238,3 +238,24 @@ def test_the_best_point_met_is_an_answer_only_where_it_is_certified() -> None:
     for size, solved in ((1e-11, True), (1e-3, False)):
         run.best = replace(found, u=found.u * (1 + size), error=size)
         assert (best_point_met(run) is not None) is solved
+
+
+@pytest.mark.parametrize("build", [lambda: wall(2, 3, elastic=True).at(0.4), lambda: wall(2, 3, **STIFF).at(0.4)])
+def test_a_direction_meets_both_of_its_equations(build, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Balance and opening, written out again: refinement ends where both are met, not where one is."""
+    missed = []
+    solve = NewtonStep.solve
+
+    def watched(self: NewtonStep, r: np.ndarray, b: np.ndarray, enough: float):
+        found = solve(self, r, b, enough)
+        assert found is not None
+        (du, dt), s = found, self.iteration.s
+        balance = r - s.K @ du + s.C.T @ dt.ravel()
+        opening = b - (s.C @ du).reshape(dt.shape) - np.einsum("mij,mj->mi", self.H, dt)
+        missed.append(max(np.abs(balance).max(), np.abs(opening[s.rough]).max() / self.residuals.length) / enough)
+        return found
+
+    monkeypatch.setattr(NewtonStep, "solve", watched)
+    ConeRun(scale(build())).from_start(STARTS[0])
+    assert len(missed) > 5
+    assert max(missed) < 1.5

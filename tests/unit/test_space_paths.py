@@ -12,10 +12,10 @@ import concio
 from concio.cli.path_lines import path_facts, path_lines
 from concio.post.path_curve import most_moving
 from concio.problem.solution import Solution, Status
-from concio.report.limit_wording import limit_lines
 from concio.solvers.path.near_forces import Nearby
 from concio.solvers.path.state import LinearPath, at_rest, energy_of_step, state_of
 from concio.solvers.path.step_path import extrapolated
+from concio.verdict.limit_words import limit_lines
 from space_problems import wall as blocks
 
 THICK = 0.3

@@ -57,3 +57,16 @@ def test_nothing_is_written_into_files_that_got_the_number_of_a_closed_stream(tm
 def test_a_reader_that_has_gone_is_no_error(tmp_path: Path) -> None:
     found = shell(tmp_path, "CONCIO schema | head -1")
     assert (found.returncode, found.stdout, found.stderr) == (0, "{\n", "")
+
+
+@pytest.mark.parametrize("title", ["\u77f3\u9020", "\U0001f9f1 wall"])
+def test_letters_that_the_font_lacks_are_told_once(title: str, tmp_path: Path) -> None:
+    path = tmp_path / "m.toml"
+    path.write_text(f'title = "{title}"\n[column]\nwidth = 1.0\nheight = 1.0\nblocks = 1\n', encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-m", "concio", "check", str(path), "--out", str(tmp_path / "p.png")],
+        capture_output=True, text=True, encoding="utf-8", check=False, timeout=120,
+    )  # fmt: skip
+    assert done.returncode == 0
+    assert "Glyph" not in done.stderr
+    assert done.stderr.count("has no letter for") == 1

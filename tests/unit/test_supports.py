@@ -163,6 +163,23 @@ def test_refused(supports, message):
         assemble(beam(*supports))
 
 
+@pytest.mark.parametrize("stone", [False, True])
+@pytest.mark.parametrize("moved", [1e-9, 1e-3, 0.05])
+def test_how_far_two_movements_may_differ_goes_by_their_size(stone, moved):
+    """A millionth of the movement contradicts it, whatever its size; what rounding makes of one number does not."""
+
+    def twice(share):
+        same = [
+            Support(n, "beam", LEFT, displacement=(moved * k, moved * k)) for n, k in (("A", 1.0), ("B", 1.0 + share))
+        ]
+        return beam(*same, stone=stone)
+
+    for share in (1e-6, -1e-6):
+        with pytest.raises(InputError, match="contradictory"):
+            assemble(twice(share))
+    assemble(twice(4e-16))
+
+
 def test_contradictory_movements_of_a_rigid_body():
     stretch = (Support("A", "beam", LEFT), Support("B", "beam", RIGHT, displacement=(1e-3, 0)))
     with pytest.raises(InputError, match="contradictory"):

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 import concio
+from concio.analysis.motion.state import TieMemory
 from concio.contact.assembly import assemble
 from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Load, Support, Tie
@@ -103,3 +106,10 @@ def test_the_end_of_a_tie_moves_with_its_anchor():
 def test_refused(tie, message):
     with pytest.raises(InputError, match=rf"tie 'rod'.*{message}"):
         assemble(hung(tie))
+
+
+def test_a_slack_or_broken_tie_stores_no_energy() -> None:
+    """Stretched by 2 mm, slack by 3 mm, broken while stretched by 4 mm: k s^2 / 2 of the first alone."""
+    ties = SimpleNamespace(stiffness=np.array([1000.0, 2000.0, 500.0]))
+    memory = TieMemory(np.array([-2e-3, 3e-3, -4e-3]), np.zeros(3), np.array([False, False, True]))
+    assert memory.stored(ties) == pytest.approx(0.5 * 1000.0 * 4e-6, rel=1e-12)

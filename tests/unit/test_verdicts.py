@@ -15,7 +15,7 @@ from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Body, Load, Support
 from concio.problem.certificate import certify
 from concio.problem.solution import Status
-from concio.report.limit_wording import limit_lines
+from concio.verdict.limit_words import limit_lines
 from models import box, model_of, on_ground, weight
 from rigid_walls import BLOCK, FERRIS_TIN_LOI, MU
 
@@ -144,7 +144,8 @@ def test_settled_rigid_blocks_are_exact():
     assert result.reactions["left"][1] + result.reactions["right"][1] == pytest.approx(4.0, abs=1e-12)
     slope = -0.01 / 0.8  # it turns about the edge of the left support and rests on the edge of the right one
     drop = result.node_displacement("beam")[:, 1]
-    assert sorted(drop) == pytest.approx(sorted([slope * (x - 0.2) for x in (0, 1, 1, 0)]), abs=2e-5)
+    x = result.assembly.disc.nodes([b.name for b in result.model.bodies].index("beam"))[:, 0]
+    assert drop == pytest.approx(slope * (x - 0.2), abs=2e-5)
 
 
 @pytest.mark.parametrize("name", ["wall 3"])
@@ -204,7 +205,7 @@ def test_a_bound_without_a_path_beside_a_structure_that_falls():
     assert found.associated.multiplier > 1
     assert found.associated.checked
     assert found.path is None
-    assert "proves nothing about another history" in found.path_note
+    assert "says nothing of another history" in found.path_note
 
 
 def test_limit_tells_the_bound_where_the_path_is_not_begun():
@@ -220,7 +221,7 @@ def test_limit_tells_the_bound_where_the_path_is_not_begun():
     assert found.associated.checked
     assert found.path is None
     assert found.path_note.startswith("not begun")
-    assert "proves nothing" in found.path_note
+    assert "says nothing of another history" in found.path_note
     assert np.isnan(found.coulomb)
     told = "\n".join(limit_lines(found))
     assert "associated bound     40" in told
@@ -249,7 +250,7 @@ def test_a_panel_pushed_sideways_has_a_limit_by_default():
 
 def test_locked_is_a_word():
     pressed = concio.wall(length=1.0, height=0.5, friction=0.6, block="rigid", top_pressure=10.0)
-    assert concio.load_margin(pressed, "top").words == "locked: any multiple of the load is carried"
+    assert concio.load_margin(pressed, "top").words.startswith("any multiple of the load is carried")
     found = concio.limit(pressed, "top")
     assert found.associated.words.startswith("locked")
     summary = found.summary()

@@ -82,9 +82,8 @@ class Contacts:
         return force
 
     def count(self, name: str) -> int:
-        """Return how many pairs are in the state called "open", "stick", "slip" or "crushed"."""
-        return int((self.state == STATE_NAMES.index(name)).sum())
-
+        """Return how many pairs of joints are in the state called "open", "stick", "slip" or "crushed"; no ties."""
+        return int(((self.state == STATE_NAMES.index(name)) & (self.pairs.interface >= 0)).sum())
 
     @property
     def counted(self) -> str:

@@ -59,7 +59,7 @@ def dead_state(
         return None, "stopped on request before the dead load was reached"
     return None, (
         f"not begun: growing from nothing, the dead load itself is followed to {found.end.parameter:.4g} of its value "
-        "only; that proves nothing about another history"
+        "only; that says nothing of another history"
     )
 
 

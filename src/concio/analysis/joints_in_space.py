@@ -9,7 +9,7 @@ import numpy as np
 
 from concio.analysis.contacts import Contacts
 from concio.kinematics.frames import cross
-from concio.model.interfaces.patches import Patch
+from concio.model.interfaces.patch import Patch
 from concio.problem.pair_state import PairState
 from concio.representation import short_repr
 
@@ -41,6 +41,8 @@ class SpaceResultants:
         Where the resultant meets the joint, the centre of pressure; the middle where N is zero [m].
     open_share : (j,) array
         Share of the area whose pairs are open.
+    slipping : (j,) boolean array
+        True where every closed pair slips.
     """
 
     body_a: Array
@@ -54,6 +56,7 @@ class SpaceResultants:
     middle: Array
     point: Array
     open_share: Array
+    slipping: Array
 
     @property
     def torsion(self) -> Array:
@@ -85,6 +88,7 @@ def joint_resultants_in_space(contacts: Contacts, patches: Sequence[Patch]) -> S
     pressed = summed(contacts.normal_force[own, None] * (pairs.point[own] - middle[of]))
     point = middle + np.where((N != 0)[:, None], pressed / safe[:, None], 0.0)
     area = summed(pairs.area[own])
+    closed, slips = ~contacts.states.open[own], contacts.states.slips[own]
     opened = summed(pairs.area[own] * (contacts.state[own] == PairState.OPEN))
     return SpaceResultants(
         np.array([p.a for p in patches], dtype=int),
@@ -98,4 +102,5 @@ def joint_resultants_in_space(contacts: Contacts, patches: Sequence[Patch]) -> S
         middle,
         point,
         opened / np.where(area > 0, area, 1.0),
+        (summed(closed & ~slips) == 0) & (summed(closed) > 0),
     )

@@ -17,6 +17,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
 
 from concio.contact.assembly import Assembly, as_assembly
 from concio.model.model import Model
@@ -26,7 +28,7 @@ SHEAR_TO_NORMAL = 2.5
 """Tangential over normal compliance lent: that of an elastic layer with Poisson's ratio 0.25."""
 
 CLOSING = 1e-9
-"""Closing of a pair of mean area under the heaviest nodal load [m]..."""
+"""Closing of a pair of mean area under the heaviest nodal load of its connected part [m]..."""
 
 OF_MOVEMENTS = 1e-4
 """...or, where supports move, this share of the largest movement imposed on a joint: less, and double precision could
@@ -49,19 +51,71 @@ def lend(assembly: Assembly) -> Assembly:
     Returns
     -------
     Assembly
-        Its ``lent_compliance`` says how much [m/kN, a pair of mean area], 0 where none was needed.
+        Its ``lent_compliance`` says how much [m/kN, a pair of mean area], 0 where none was needed, and the most where
+        connected parts, each by its own loads and areas, were lent different ones.
     """
     pairs, law = assembly.pairs, assembly.laws
     if assembly.lent_compliance or not len(pairs):
         return assembly
     deforms = np.array([body.kind == "elastic" for body in assembly.model.bodies] + [False])  # the last: a fixed point
     stiff = ~(deforms[pairs.body_a] | deforms[pairs.body_b])
-    normal, tangential = stiff & (law.normal_compliance == 0), stiff & (law.tangential_compliance == 0)
-    force = max((float(np.abs(load).max(initial=0.0)) for load in assembly.loads.values()), default=0.0)
-    if not (normal | tangential).any() or not force:
+    hard = stiff & ((law.normal_compliance == 0) | (law.tangential_compliance == 0))
+    if not hard.any():
         return assembly
-    lent = max(CLOSING, OF_MOVEMENTS * _movements(assembly)[stiff].max(initial=0.0)) / force
-    return replace(assembly, laws=_softer(law, pairs.area, stiff, lent), lent_compliance=lent)
+    of_body, of_pair = connected_bodies(assembly)
+    owner = np.repeat(of_body, np.diff(assembly.disc.offsets))
+    count = int(max(of_body.max(initial=0), of_pair.max(initial=0))) + 1
+    force, movement = np.zeros(count), np.zeros(count)
+    for load in assembly.loads.values():
+        np.maximum.at(force, owner, np.abs(load))
+    np.maximum.at(movement, of_pair[stiff], _movements(assembly)[stiff])
+    force = np.where((force == 0) & (movement > 0), 1.0, force)  # only moved: any force will do as a unit
+    closing = np.maximum(CLOSING, OF_MOVEMENTS * movement)
+    lent = np.where(force > 0, closing / np.where(force > 0, force, 1.0), 0.0)
+    if not lent[of_pair[hard]].any():
+        return assembly
+    laws = _softer(law, pairs.area, stiff, lent[of_pair], of_pair)
+    return replace(assembly, laws=laws, lent_compliance=float(lent[of_pair[hard]].max()))
+
+
+def stiffened(lent: Assembly, hard: Assembly, left: Array) -> Assembly:
+    """Return the assembly that keeps the compliance lent to some pairs only, and says how much if to any.
+
+    Parameters
+    ----------
+    lent, hard : Assembly
+        With and without it.
+    left : (m,) boolean array
+        Pairs that keep it.
+    """
+    if not left.any():
+        return hard
+    if left.all():
+        return lent
+    softer, law = lent.laws, hard.laws
+    kept = replace(
+        law,
+        normal_compliance=np.where(left, softer.normal_compliance, law.normal_compliance),
+        tangential_compliance=np.where(left, softer.tangential_compliance, law.tangential_compliance),
+    )
+    names = ("normal_compliance", "tangential_compliance")
+    changed = any((getattr(kept, name) != getattr(law, name)).any() for name in names)
+    return replace(hard, laws=kept, lent_compliance=lent.lent_compliance) if changed else hard
+
+
+def connected_bodies(assembly: Assembly) -> tuple[Array, Array]:
+    """Return the number of the connected part of each body (B,) and of each pair (m,).
+
+    Bodies without free unknowns connect nothing, and are parts of their own; so are pairs between two of them.
+    """
+    pairs, free = assembly.pairs, np.append(np.diff(assembly.supported.bodies) > 0, False)
+    bodies, m = len(free) - 1, len(pairs)
+    ends = [(np.arange(m), body) for body in (pairs.body_a, pairs.body_b)]
+    row, column = (np.concatenate(c) for c in zip(*((k[free[b]], b[free[b]]) for k, b in ends), strict=True))
+    size = bodies + m
+    graph = sp.csr_array((np.ones(row.size, dtype=np.int8), (bodies + row, column)), shape=(size, size))
+    _, label = connected_components(graph, directed=False)
+    return label[:bodies], label[bodies:]
 
 
 def with_compliance(problem: ContactProblem, live: Array) -> tuple[ContactProblem, float]:
@@ -85,13 +139,17 @@ def with_compliance(problem: ContactProblem, live: Array) -> tuple[ContactProble
     force = float(np.abs(problem.f).max(initial=0.0)) or float(np.abs(live).max(initial=0.0))
     if (problem.K.nnz and np.abs(problem.K.data).any()) or not hard.any() or not force:
         return problem, 0.0
-    everywhere = np.ones(problem.pairs, dtype=bool)
-    return replace(problem, laws=_softer(law, problem.area, everywhere, CLOSING / force)), CLOSING / force
+    everywhere, one = np.ones(problem.pairs, dtype=bool), np.zeros(problem.pairs, dtype=int)
+    return replace(problem, laws=_softer(law, problem.area, everywhere, CLOSING / force, one)), CLOSING / force
 
 
-def _softer(law: Laws, area: Array, where: Array, lent: float) -> Laws:
-    """Return the laws with compliance lent to the hard pairs among ``where`` (m,), in proportion to 1 / area."""
-    compliance = lent * area[where].mean() / area
+def _softer(law: Laws, area: Array, where: Array, lent: Array | float, part: Array) -> Laws:
+    """Return the laws with compliance lent to the hard pairs among ``where`` (m,), in proportion to 1 / area.
+
+    ``lent`` (m,) belongs to a pair of the mean area of its ``part`` (m,).
+    """
+    total, count = (np.bincount(part[where], weights=w, minlength=part.max() + 1) for w in (area[where], None))
+    compliance = lent * (total / np.maximum(count, 1))[part] / area
     normal, tangential = where & (law.normal_compliance == 0), where & (law.tangential_compliance == 0)
     return replace(
         law,

@@ -27,18 +27,24 @@ from concio.analysis.coulomb_path import coulomb_path, dead_state, live_load_pat
 from concio.analysis.engine import by_its_engine, step_by_step
 from concio.analysis.lent_compliance import lent_assembly
 from concio.analysis.limit_result import LimitResult
-from concio.analysis.load_steps import in_one_step, load_steps
+from concio.analysis.limit_ties import whole_up_to
+from concio.analysis.limit_torsion import spread_steps, twisted_joints
+from concio.analysis.load_steps import by_scale, in_one_step, load_steps
+from concio.analysis.tie_forces import without_breakable
 from concio.arguments import closest, strict
 from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
-from concio.problem.solution import Progress, ProgressCallback
+from concio.problem.solution import PROVEN_FAILURES, Progress, ProgressCallback, Status
+from concio.solvers.methods import find
 from concio.solvers.statics.collapse_search import WORK_OF_ALL, find_collapse_state
 from concio.solvers.statics.collapse_state import CollapseState
 from concio.solvers.statics.existence import find_mechanism
 from concio.solvers.statics.friction import FrictionMargin, smallest_friction
 from concio.solvers.statics.limit import LimitLoad, associated_limit
+from concio.verdict.limit_verdict import DEAD_NOT_CARRIED
+from concio.verdict.not_standing import not_standing
 
 __all__ = [
     "LimitResult", "coulomb_path", "dead_and_live", "friction_margin", "limit", "limit_stages", "search_collapse"
@@ -62,7 +68,7 @@ UNASKED_IN_SPACE = 1_500
 """Up to this number of pairs in space collapse states are searched for unasked, and the least load that was not reached
 is put on in one step: beyond, the few programmes of some seconds end far from a state."""
 
-Found = Literal["bound", "friction", "steps", "collapse state", "in one step", "path"]
+Found = Literal["bound", "friction", "steps", "collapse state", "in one step", "spread", "path"]
 """The numbers of a limit load, in the order in which they are found: the quick ones first."""
 
 
@@ -144,24 +150,28 @@ def limit_stages(
     tell("associated bound")
     mechanism = find_mechanism(dead)
     if mechanism is not None:
-        msg = "the dead load alone cannot be carried: a mechanism proves it"
-        raise NoEquilibriumError(msg, hint="solve the model with the live load factor 0 and look at the mechanism")
+        hint = "solve the model with the live load factor 0 and look at it"
+        asked = "the largest multiplier"
+        told = not_standing(assembly, asked, DEAD_NOT_CARRIED, multiplied=groups)
+        raise NoEquilibriumError(DEAD_NOT_CARRIED, hint=hint, verdict=told)
     found = LimitResult(assembly, associated_limit(dead, load), groups, lent_compliance=assembly.lent_compliance)
+    if (bare := without_breakable(assembly, dead)) is not None:
+        found = replace(found, untied=associated_limit(bare, load))
     yield "bound", found
     if friction:
         tell("smallest friction")
         found = replace(found, friction=smallest_friction(dead.with_loads(dead.f + load)))
         yield "friction", found
     bound = found.associated.multiplier
-    if not np.isfinite(bound):
-        none = "not tried: no load is the last"
+    if np.isnan(bound):
+        none = "not tried: no multiple of the load is in balance"
         yield "bound", replace(found, search=none, path_note=none)
         return
     if path and dead.dim != 2:
         msg = "exact paths are for models in the plane; the model is in space"
         raise InputError(msg, hint="load steps are followed instead: leave path out")
     exact = path if path is not None else dead.dim == 2 and dead.pairs <= LARGEST_PATH
-    stepped = steps if steps is not None else path is None and not exact
+    stepped = steps if steps is not None else path is None and (not exact or found.associated.locked)
     quick = dead.dim == 2 or dead.pairs <= UNASKED_IN_SPACE
     searched, top = bool(search) or (search is None and path is not False and quick), found.associated
     if search is None and path is not False and not quick:
@@ -175,7 +185,7 @@ def limit_stages(
         searching = stack.enter_context(Beside(seek)) if searched else None  # both take long, and neither the other
         if stepped and bound > 0:
             tell("load steps")
-            found = replace(found, steps=load_steps(dead, load, bound, progress=progress))
+            found = _with_steps(found, dead, load, progress)
             yield "steps", found
         if searching is not None:
             tell("collapse states")
@@ -187,6 +197,12 @@ def limit_stages(
             tell("the least load not reached, in one step")
             found = replace(found, steps=in_one_step(dead, load, found.steps, progress=progress))
         yield "in one step", found
+    found = replace(found, twisting=twisted_joints(assembly, _motions(found)))
+    if found.twisting and found.steps is not None and found.steps.multipliers and bound > 0:
+        tell("load steps with pressure spread over the joints")
+        most = UNASKED_IN_SPACE if steps is None else LARGEST_SEARCH
+        found = replace(found, spread=spread_steps(assembly, groups, bound, most, progress=progress))
+        yield "spread", found
     if exact:
         tell("Coulomb path")
         start, note = dead_state(dead, progress=progress)
@@ -194,11 +210,36 @@ def limit_stages(
         if start is not None:
             way, shown = live_load_path(dead, load, start, progress=progress)
             first = min((e.parameter for e in way.jumps), default=way.peak)
-            found = replace(found, path=way, collapse_shown=shown, first_limit=first)
+            found = replace(found, path=way, collapse_shown=shown, first_limit=first, dead=Status.SOLVED)
+            found = replace(found, ties_whole=whole_up_to(assembly, way, groups))
+        elif found.steps is None and steps is not False and bound > 0:
+            tell("load steps")
+            found = _with_steps(found, dead, load, progress)
+            yield "steps", found
     elif path is None:
         many = f"not followed unasked: {dead.pairs:,} contact pairs"
         found = replace(found, path_note=many if dead.dim == 2 else "not tried: exact paths are plane")
     yield "path", found
+
+
+def _with_steps(
+    found: LimitResult, dead: ContactProblem, load: Array, progress: ProgressCallback | None
+) -> LimitResult:
+    """Return the result with load steps, and with what comes of the dead load alone by whatever it takes."""
+    steps = by_scale(dead, load, progress=progress) if found.associated.locked else None
+    if steps is None:
+        steps = load_steps(dead, load, found.associated.multiplier, progress=progress)
+    alone = steps.dead
+    if not steps.multipliers and alone is not Status.CANCELLED and alone not in PROVEN_FAILURES:
+        alone = find("auto")(dead, progress=progress).status
+    return replace(found, steps=steps, dead=alone)
+
+
+def _motions(found: LimitResult) -> list[Array]:
+    """Return the motions (N_all,) in which the structure is known to begin to move."""
+    motions = [] if found.associated.mechanism is None else [found.associated.mechanism.velocity]
+    motions += [] if found.collapse_state is None else [found.collapse_state.velocity]
+    return [np.asarray(found.assembly.supported.T @ velocity) for velocity in motions]
 
 
 def _telling(progress: ProgressCallback | None) -> Callable[[str], None]:
@@ -271,7 +312,11 @@ def dead_and_live(assembly: Assembly, live: str | Sequence[str]) -> tuple[Contac
             msg = f"there is no load group '{group}'"
             raise InputError(msg, hint=closest(group, assembly.groups, names="groups"))
     dead = assembly.problem(dict.fromkeys(groups, 0.0))
-    load = assembly.problem(dict.fromkeys(groups, 1.0)).f - dead.f
+    whole = assembly.problem(dict.fromkeys(groups, 1.0), like=dead)
+    load = whole.f - dead.f
+    if not (np.array_equal(whole.gap, dead.gap) and np.array_equal(whole.slip_origin, dead.slip_origin)):
+        msg = f"the live load ({', '.join(groups)}) moves supports, which no load multiplier multiplies"
+        raise InputError(msg, hint="give moved supports a group of their own; 'concio path' moves them in a stage")
     if not np.abs(load).any():
         msg = f"the live load ({', '.join(groups)}) is zero"
         raise InputError(msg, hint="give the model a load in that group, for example horizontal = 1.0")

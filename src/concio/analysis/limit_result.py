@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from concio.analysis.limit_torsion import SPREAD, SpreadSteps, twisting
 from concio.analysis.load_steps import LoadSteps
 from concio.contact.assembly import Assembly
+from concio.problem.solution import PROVEN_FAILURES, Status
 from concio.solvers.path.record import EventPath
 from concio.solvers.statics.collapse_state import CollapseState
 from concio.solvers.statics.friction import FrictionMargin
 from concio.solvers.statics.limit import LimitLoad
+from concio.verdict.limit_verdict import limit_verdict
+from concio.verdict.limit_words import NOT_ASKED, limit_lines
+from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from concio.plot.limit_accessor import LimitPlots
 
 Array = np.ndarray
-
-NOT_ASKED = "not asked for"
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +57,16 @@ class LimitResult:
         Smallest friction with which admissible forces carry the load as given; None where that was not asked for.
     lent_compliance : float
         Normal compliance lent to hard joints of rigid blocks [m/kN]; 0 where none was needed.
+    dead : Status or None
+        What Coulomb friction says of all other loads alone; None where neither path nor steps asked.
+    twisting : int
+        Joints stated at their corners that a mechanism or the collapse state twists; their torsion is too strong.
+    spread : SpreadSteps or None
+        Load steps with pressure spread over the joints, taken where some twist and the size allows.
+    untied : LimitLoad or None
+        The bound without the ties that can break; None where none can.
+    ties_whole : float
+        Largest multiplier that the exact path reaches before a tie breaks; ``nan`` where none does on it.
     """
 
     assembly: Assembly
@@ -68,10 +81,13 @@ class LimitResult:
     collapse_shown: bool = False
     friction: FrictionMargin | None = None
     lent_compliance: float = 0.0
+    dead: Status | None = None
+    twisting: int = 0
+    spread: SpreadSteps | None = None
+    untied: LimitLoad | None = None
+    ties_whole: float = float("nan")
 
     def __repr__(self) -> str:
-        from concio.report.limit_wording import limit_lines
-
         title, *lines = limit_lines(self)
         return "\n".join([f"LimitResult: {title}", *lines])
 
@@ -88,12 +104,32 @@ class LimitResult:
         return LimitPlots(self)
 
     @property
+    def verdict(self) -> Verdict:
+        """The answer with its question: what acts, what to design with, what is an upper bound only."""
+        return limit_verdict(self)
+
+    @property
     def carried(self) -> float:
-        """Largest multiplier that Coulomb friction was found to carry on a path or in steps; ``nan`` without both."""
+        """Largest multiplier that Coulomb friction was found to carry on a path or in steps; ``nan`` without both.
+
+        With the joints as the model states them: where some twist, :attr:`design` is that of pressure spread over them.
+        """
         path = self.path.peak if self.path is not None else -np.inf
         steps = self.steps.carried if self.steps is not None and self.steps.multipliers else -np.inf
         most = max(path, steps)
         return most if np.isfinite(most) else float("nan")
+
+    @property
+    def endless(self) -> bool:
+        """Whether the load grows on in certified steps without end: the associated bound is locked, and rightly so."""
+        return self.associated.locked and self.steps is not None and bool(np.isfinite(self.steps.endless))
+
+    @property
+    def none_of_it(self) -> bool:
+        """Whether it is proven that no multiple of the load is carried: nothing else acts, and one is not."""
+        steps = self.steps
+        alike = self.associated.locked and steps is not None and steps.state is None and len(steps.multipliers) == 1
+        return alike and steps is not None and steps.outcome in PROVEN_FAILURES
 
     @property
     def coulomb(self) -> float:
@@ -101,16 +137,52 @@ class LimitResult:
         return self.path.peak if self.path is not None and self.collapse_shown else float("nan")
 
     @property
+    def state_counts(self) -> bool:
+        """Whether the collapse state says something of the structure, and not of the contact points of its joints.
+
+        In a joint stated at points over its patch a state that twists it finds the points nearest to the middle: its
+        multiplier falls without end as points are added (:mod:`concio.analysis.limit_torsion`).
+        """
+        if self.collapse_state is None:
+            return False
+        if self.assembly.model.dim == 2:
+            return True
+        motion = np.asarray(self.assembly.supported.T @ self.collapse_state.velocity)
+        return not len(twisting(self.assembly, motion, SPREAD))
+
+    @property
+    def design(self) -> float:
+        """Multiplier to design with: the least of what path, steps and collapse state say; ``nan`` where none does.
+
+        ``inf`` where certified steps grow without end; 0 where all other loads alone are not carried.
+        """
+        if self.dead in PROVEN_FAILURES:
+            return 0.0
+        if self.none_of_it:
+            return 0.0
+        state = self.collapse_state.multiplier if self.collapse_state is not None and self.state_counts else np.inf
+        shown = [self.coulomb if self.collapse_shown else self.carried]
+        if self.endless:
+            shown = [np.inf]
+        if self.spread is not None and self.spread.steps.multipliers:
+            shown.append(self.spread.steps.carried)
+        if not np.isnan(self.ties_whole):
+            shown.append(self.ties_whole)
+        elif self.path is None and self.untied is not None:  # nobody knows how far they are stretched
+            less = self.untied.multiplier
+            state = min(state, 0.0 if np.isnan(less) else less)
+        known = [value for value in shown if not np.isnan(value)]
+        low = min([*known, state])
+        return max(float(low), 0.0) if known or np.isfinite(low) else float("nan")
+
+    @property
     def bracket(self) -> tuple[float, float]:
-        """(least Coulomb multiplier found, associated multiplier): what was carried or a collapse state, the lesser.
+        """(what to design with, associated multiplier): the least Coulomb multiplier found, and the upper bound.
 
         The peak of a path that was lost counts, and the last certified load step: the structure carries it, and
         collapses at it or above.
         """
-        state = self.collapse_state.multiplier if self.collapse_state is not None else np.inf
-        carried = self.coulomb if self.collapse_shown else self.carried
-        low = min(carried if np.isfinite(carried) else np.inf, state)
-        return (low if np.isfinite(low) else float("nan")), self.associated.multiplier
+        return self.design, self.associated.multiplier
 
     def mechanism(self) -> Array | None:
         """Velocity (N_all,) of the associated mechanism on all unknowns, largest entry 1; None where there is none."""
@@ -126,11 +198,41 @@ class LimitResult:
         velocity: Array = self.assembly.supported.T @ self.path.direction
         return velocity
 
+    def proof(self, numbers: Literal["binary", "decimal"] = "binary") -> dict[str, Any]:
+        """Return an exact certificate of the associated multiplier, for ``concio verify``.
+
+        Parameters
+        ----------
+        numbers : {"binary", "decimal"}
+            Numbers of the model as the computer holds them, or rounded to twelve decimal digits.
+
+        Raises
+        ------
+        InputError
+            The model has something that is not proved exactly yet.
+        SolverError
+            No exact forces and no exact motion were found.
+        """
+        from concio.proof.certificate import prove_limit
+
+        return prove_limit(self.assembly, self.groups, numbers=numbers, directions=self._ways())
+
+    def _ways(self) -> tuple[Array, Array]:
+        """Return directions (m, d) of friction forces, and of what would oppose the slips of the mechanism."""
+        pairs, a = self.assembly.pairs, self.associated
+        m = len(pairs)
+        slip = np.zeros((m, pairs.normal.shape[1] - 1))
+        if a.mechanism is not None:
+            slip = (pairs.C_t @ (self.assembly.supported.T @ a.mechanism.velocity)).reshape(m, -1)
+        frame = pairs.tangents
+        return np.einsum("ki,kij->kj", a.friction_force, frame), -np.einsum("ki,kij->kj", slip, frame)
+
     def summary(self) -> dict[str, Any]:
         """Return the numbers of ``--json``."""
         a = self.associated
         return {
             "engine": self.assembly.model.engine,
+            "verdict": self.verdict.as_dict(),
             "associated": "locked" if a.locked else "bounded",
             "associated_multiplier": _finite(a.multiplier),
             "associated_upper_bound": _finite(a.upper),
@@ -138,6 +240,12 @@ class LimitResult:
             "static_residual": a.residual,
             "mechanism_violation": None if a.mechanism is None else a.mechanism.violation,
             "checked": a.checked,
+            "design_multiplier": _finite(self.design),
+            "dead_load_alone": None if self.dead is None else self.dead.name.lower(),
+            "grows_without_end": self.endless,
+            "ties_whole_up_to": _finite(self.ties_whole),
+            "joints_that_twist": self.twisting,
+            "coulomb_spread_steps_carry": None if self.spread is None else _finite(self.spread.steps.carried),
             "coulomb_path_multiplier": self.coulomb if self.collapse_shown else None,
             "coulomb_path_carries": None if self.path is None else self.path.peak,
             "coulomb_steps_carry": None if self.steps is None else _finite(self.steps.carried),

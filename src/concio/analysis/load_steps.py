@@ -18,20 +18,31 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from concio.problem.certificate import certify
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution, Status
+from concio.problem.tolerances import CERTIFIED
 from concio.representation import short_repr
 from concio.solvers.interior import cone_run, engine
 from concio.solvers.methods import find
 from concio.solvers.path.near_forces import needed, solve_near
-from concio.solvers.path.ray import solve_from_rest
+from concio.solvers.path.ray import homogeneous, solve_from_rest
 from concio.solvers.path.state import LinearPath, PathState, state_of, step_problem
 
 FIRST = 1 / 4
 """First step, as a share of the associated bound; steps of an eighth carry no more, and cost a quarter more."""
 
 SMALLEST = 0.01
-"""Step that is too small to be tried, as a share of the bound."""
+"""Step that is too small to be tried, as a share of what is carried already, or of the bound where that is less."""
+
+NOTHING = 1 / 8
+"""Share of the bound below which what is carried already is no measure of steps: they would shrink without end."""
+
+FAR = 1e6
+"""Where there is no bound, loads grow to this multiple of the dead load."""
+
+FURTHER = (1.0, 1e3, 1e6)
+"""Times the last step that one further step of the same direction is certified at, to show that loads grow on."""
 
 START = (10.0,)
 """Starting points of the interior point: a step that needs others is halved instead."""
@@ -61,6 +72,9 @@ class LoadSteps:
         Outcome of the dead load in one step.
     outcome : Status or None
         What comes of ``failed`` put on in one step (:func:`in_one_step`); None where that was not tried.
+    endless : float
+        Where the associated bound is locked, the largest certificate entry of further steps in the direction of the
+        last one, up to a million times as long; ``nan`` where that was not tried or is not certified.
     """
 
     multipliers: tuple[float, ...]
@@ -70,6 +84,7 @@ class LoadSteps:
     solves: int
     dead: Status
     outcome: Status | None = None
+    endless: float = float("nan")
 
     @property
     def carried(self) -> float:
@@ -93,7 +108,8 @@ def load_steps(
         With its dead load.
     live : (N,) array
     bound : float
-        Associated multiplier, finite and positive: no step goes beyond it.
+        Associated multiplier, positive: no step goes beyond it. Where it is ``inf`` steps grow fourfold, up to
+        :data:`FAR` times the dead load.
     progress : callable, optional
     found : callable, optional
         Called with every multiplier that is shown to be carried.
@@ -103,9 +119,11 @@ def load_steps(
         return LoadSteps((), float("nan"), None, float("nan"), 1, first.status)
     path = LinearPath(dead, live)
     state = state_of(path, 0.0, first.displacement, first.normal_force, first.friction_force)
-    reached, failed, solves, worst = [0.0], float("nan"), 1, first.certificate.worst
-    size, smallest = FIRST * bound, SMALLEST * bound
-    while size > smallest:
+    before, reached, failed, solves, worst = state, [0.0], float("nan"), 1, first.certificate.worst
+    locked = not np.isfinite(bound)
+    unit = _unit(dead, live) if locked else bound
+    size = FIRST * unit
+    while size > (smallest := _smallest(reached[-1], failed if locked and failed == failed else unit)):
         trial = reached[-1] + size
         if trial >= bound * (1 - 1e-9):  # at the bound itself every state is about to move
             failed = float(np.nanmin([failed, bound]))
@@ -123,12 +141,74 @@ def load_steps(
         elif trial + size >= failed * (1 - 1e-9) and 2 * smallest < size <= 4 * smallest:
             size *= 0.5  # there it failed already, and one half is left to try
         u, t_n, t_t = solution.displacement, solution.normal_force, solution.friction_force
-        state = state_of(path, trial, u, t_n, t_t, before=state)
+        before, state = state, state_of(path, trial, u, t_n, t_t, before=state)
         reached.append(trial)
         worst = max(worst, solution.certificate.worst)
         if found is not None:
             found(trial)
-    return LoadSteps(tuple(reached), failed, state, worst, solves, first.status)
+        if locked and trial > FAR * unit:
+            break
+        size *= 4.0 if locked and failed != failed else 1.0
+    steps = LoadSteps(tuple(reached), failed, state, worst, solves, first.status)
+    return replace(steps, endless=_endless(path, before, state)) if locked and failed != failed else steps
+
+
+def by_scale(
+    dead: ContactProblem, live: Array, *, progress: ProgressCallback | None = None
+) -> LoadSteps | None:
+    """Return what is known of every multiple of a load from one of them; None where multiples are not alike.
+
+    Where nothing else acts and nothing has a size of its own, an answer times any factor is the answer to the load
+    times that factor, and the proof that there is none likewise.
+
+    Parameters
+    ----------
+    dead : ContactProblem
+        With its dead load.
+    live : (N,) array
+    progress : callable, optional
+    """
+    if dead.f.any() or not homogeneous(LinearPath(dead, live)):
+        return None
+    answer = find("auto")(dead.with_loads(live), progress=progress)
+    nan, worst = float("nan"), answer.certificate.worst
+    if answer.solved:
+        return LoadSteps((0.0, 1.0), nan, None, worst, 1, Status.SOLVED, endless=worst)
+    return LoadSteps((0.0,), 1.0, None, 0.0, 1, Status.SOLVED, outcome=answer.status)
+
+
+def _unit(dead: ContactProblem, live: Array) -> float:
+    """Return the multiplier at which the live load is as large as the dead one; 1 where nothing else acts."""
+    own = float(np.abs(dead.f).sum())
+    return own / float(np.abs(live).sum()) if own > 0 else 1.0
+
+
+def _smallest(carried: float, bound: float) -> float:
+    """Return the least step: the share of the bound, halved as often as what is carried is less than half of it."""
+    halvings = int(np.log2(bound / max(carried, NOTHING * bound, 1e-300)))
+    return SMALLEST * bound * 0.5 ** max(halvings, 0)
+
+
+def _endless(path: LinearPath, before: PathState, after: PathState) -> float:
+    """Return the largest certificate entry of further steps in the direction of the last one; nan if any fails.
+
+    All equations are linear while no pair changes its state: what holds for a step a million times as long holds for
+    those between, and its size is then that of a load without dead load, which holds at any multiple.
+    """
+    worst = 0.0
+    for times in FURTHER:
+        u, t_n, t_t = (
+            y + times * (y - x)
+            for x, y in (
+                (before.displacement, after.displacement),
+                (before.normal_force, after.normal_force),
+                (before.friction_force, after.friction_force),
+            )
+        )
+        far = after.parameter + times * (after.parameter - before.parameter)
+        problem = step_problem(path, after, far)
+        worst = max(worst, certify(problem, u, t_n, t_t, moved=path.moved(far)).worst)
+    return worst if worst <= CERTIFIED else float("nan")
 
 
 def in_one_step(

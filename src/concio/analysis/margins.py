@@ -15,6 +15,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from concio.analysis.engine import by_its_engine
 from concio.analysis.lent_compliance import lent_assembly
 from concio.analysis.limit import dead_and_live, factored_problem
@@ -27,9 +29,12 @@ from concio.representation import short_repr
 from concio.solvers.methods import find
 from concio.solvers.statics.friction import smallest_friction
 from concio.solvers.statics.limit import associated_limit
+from concio.verdict.limit_words import margin_words
+
+Array = np.ndarray
 
 FAR = 1e6
-"""A load that can grow beyond this factor counts as unlimited."""
+"""A load that holds at this multiple of all other loads, and that no mechanism bounds, counts as unlimited."""
 
 
 @short_repr
@@ -66,12 +71,7 @@ class Margin:
     @property
     def words(self) -> str:
         """What was found, in words."""
-        if self.locked:
-            return "locked: any multiple of the load is carried"
-        if self.holds != self.holds:
-            return "no certified equilibrium was found"
-        found = f"a certified equilibrium at {self.holds:.6g}"
-        return found if self.fails != self.fails else f"{found}, none found at {self.fails:.6g}"
+        return margin_words(self)
 
 
 @strict
@@ -97,8 +97,10 @@ def load_margin(model: Model | Assembly, live: str | Sequence[str] = "live", tol
     assembly = lent_assembly(model)
     dead, load = dead_and_live(assembly, live)
     limit = associated_limit(dead, load).multiplier
-    if not (limit < FAR):
-        return Margin(float("inf") if limit > 0 else float("nan"), float("nan"), None, limit, 0)
+    if np.isnan(limit):
+        return Margin(float("nan"), float("nan"), None, limit, 0)
+    if np.isinf(limit):
+        return _without_bound(dead, load, tolerance)
     return _bisect(lambda factor: dead.with_loads(dead.f + factor * load), 0.0, limit, tolerance * abs(limit))
 
 
@@ -127,6 +129,26 @@ def friction_by_solving(
     loaded = factored_problem(lent_assembly(model), live, factor)
     least = smallest_friction(loaded).factor
     return _bisect(loaded.with_friction, 1.0, least, tolerance)
+
+
+def _without_bound(dead: ContactProblem, load: Array, tolerance: float) -> Margin:
+    """Return the margin of a load that associated friction does not bound, which says nothing of Coulomb friction.
+
+    It grows by tens from a share of the other loads on, until one is not found to hold, or :data:`FAR` times them is.
+    """
+    auto, unit = find("auto"), (float(np.abs(dead.f).sum()) or float(np.abs(load).sum())) / float(np.abs(load).sum())
+    safe, count = 0.0, 0
+    for factor in (0.0, *(unit * 10.0 ** np.arange(-2, np.log10(FAR) + 1))):
+        found = auto(dead.with_loads(dead.f + factor * load))
+        count += 1
+        if not found.solved and factor == 0.0:
+            return Margin(float("nan"), 0.0, found.status, float("inf"), count)
+        if not found.solved:
+            between = _bisect(lambda f: dead.with_loads(dead.f + f * load), safe, factor, tolerance * factor)
+            fails = float(factor) if between.outcome is None else between.fails
+            return Margin(between.holds, fails, between.outcome or found.status, float("inf"), count + between.solves)
+        safe = float(factor)
+    return Margin(float("inf"), float("nan"), None, float("inf"), count)
 
 
 def _bisect(problem: Callable[[float], ContactProblem], safe: float, limit: float, width: float) -> Margin:

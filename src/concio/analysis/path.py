@@ -21,16 +21,19 @@ import numpy as np
 from concio.analysis.engine import by_its_engine
 from concio.analysis.lent_compliance import SHEAR_TO_NORMAL, lent_assembly
 from concio.analysis.path_result import NamedEvent, PathResult, PathStep, control_functional, named_event
+from concio.analysis.path_ties import breaking, until_a_tie_breaks
 from concio.arguments import closest, strict
-from concio.contact.assembly import Assembly
+from concio.contact.assembly import PRESTRESS, Assembly
+from concio.contact.factors import load_factor
 from concio.errors import InputError, SolverError
 from concio.model.model import Model
 from concio.model.stages import ControlPoint, Stage
 from concio.problem.solution import ProgressCallback
 from concio.solvers.methods import find
 from concio.solvers.path.event_path import follow
+from concio.solvers.path.proof import certify_between, obstacles_moved
 from concio.solvers.path.record import EventPath, Outcome
-from concio.solvers.path.state import LinearPath, PathState, at_rest, certify_step, elastic_energy
+from concio.solvers.path.state import LinearPath, PathState, at_rest, elastic_energy
 from concio.solvers.path.step_path import StepPath, follow_in_steps
 
 __all__ = ["ControlPoint", "NamedEvent", "PathResult", "PathStep", "Stage", "control_functional", "run_path"]
@@ -57,7 +60,8 @@ def run_path(
     ----------
     model : Model or Assembly
     stages : sequence of Stage
-        By default those that come with the model.
+        By default those that come with the model. The prestress of ties grows with the first of them, unless one names
+        the factor "prestress".
     method : {"events", "steps"}, optional
         By default events in the plane, steps in space.
     solver : str
@@ -90,11 +94,13 @@ def run_path(
     if brittle and method == "events":
         msg = "joints that break are followed in steps only"
         raise InputError(msg, hint="use method='steps'")
-    factors = dict.fromkeys(assembly.groups, 0.0)
+    factors = at_zero(assembly)
     state: PathState | None = None
     if restart is not None:
         earlier = restart[0].steps[restart[1]]
         factors, state = dict(earlier.factors), earlier.state
+    stages = with_prestress(factors, stages)
+    rough = assembly.pairs.interface >= 0
     steps: list[PathStep] = []
     events: list[NamedEvent] = []
     outcomes: list[Outcome] = []
@@ -108,16 +114,20 @@ def run_path(
     for number, stage in enumerate(stages):
         target = _target(assembly, factors, stage)
         path = _linear(assembly, factors, target)
+        start = then = assembly.problem(factors)
         state = _at_rest(path) if state is None else replace(state, parameter=0.0)
-        found = _walk(assembly, path, state, stage, method, solver, max_events, brittle, progress, notes)
+        found = _walk(
+            assembly, path, state, stage, (factors, target), method, solver, max_events, brittle, progress, notes
+        )
         first = len(steps)
         for before, after in zip((found.states[0], *found.states), found.states, strict=False):
             if after is found.states[0] and steps:
                 first -= 1
                 continue
             at = {g: factors[g] + after.parameter * (target[g] - factors[g]) for g in factors}
-            certificate = certify_step(path, before, after)
-            stored = elastic_energy(path.problem, after)
+            now = assembly.problem(at, like=then)
+            certificate = certify_between(then, now, before, after, moved=obstacles_moved(start, now, rough))
+            then, stored = now, elastic_energy(now, after)
             steps.append(PathStep(number, after.parameter, at, after, certificate, stored))
         events.extend(named_event(assembly, number, first, event) for event in found.events)
         outcomes.append(found.outcome)
@@ -137,6 +147,7 @@ def _walk(
     path: LinearPath,
     state: PathState,
     stage: Stage,
+    ends: tuple[Mapping[str, float], Mapping[str, float]],
     method: str,
     solver: str,
     max_events: int,
@@ -144,7 +155,7 @@ def _walk(
     progress: ProgressCallback | None,
     notes: list[str],
 ) -> StepPath:
-    """Follow one stage, by events and where there are too many on in steps."""
+    """Follow one stage, by events and where there are too many on in steps; ``ends`` are its load factors."""
     control, until = None, 1.0
     if stage.control is not None:
         control, _ = control_functional(assembly, stage.control)
@@ -153,19 +164,23 @@ def _walk(
         if control is not None:
             msg = f"stage '{stage.name}' is controlled by a displacement, which steps cannot follow"
             raise InputError(msg, hint="use method='events'")
-        return follow_in_steps(
+        found = follow_in_steps(
             path, state, until=until, steps=stage.steps, solver=find(solver), brittle=brittle, progress=progress
         )
-    exact = follow(path, state, until=until, control=control, max_events=max_events, progress=progress)
+        return until_a_tie_breaks(assembly, path, found, *ends, solver=solver, exact=False)
+    stop = breaking(assembly, *ends)
+    exact = follow(path, state, until=until, control=control, max_events=max_events, progress=progress, stop=stop)
     found = StepPath(exact.states, exact.events, exact.outcome, exact.direction)
+    found = until_a_tie_breaks(assembly, path, found, *ends, solver=solver, exact=True)
     notes.extend(_finite_steps(stage, exact))
-    if control is not None or exact.outcome is not Outcome.TOO_MANY:
+    if control is not None or found.outcome is not Outcome.TOO_MANY:
         return found
     notes.append(
         f"stage '{stage.name}': after {len(exact.events)} events, at {exact.end.parameter:.6g} of its load the path "
         f"was continued in {stage.steps} steps"
     )
     rest = follow_in_steps(path, exact.end, until=until, steps=stage.steps, solver=find(solver), progress=progress)
+    rest = until_a_tie_breaks(assembly, path, rest, *ends, solver=solver, exact=False)
     moved = tuple(replace(e, step=e.step + len(exact.states) - 1) for e in rest.events)
     return StepPath(exact.states + rest.states[1:], exact.events + moved, rest.outcome, rest.direction)
 
@@ -196,6 +211,27 @@ def _target(assembly: Assembly, factors: Mapping[str, float], stage: Stage) -> d
     return {**factors, **{g: float(v) for g, v in stage.factors.items()}}
 
 
+def at_zero(assembly: Assembly) -> dict[str, float]:
+    """Return the factors before anything acts: 0 for each load group, and for the prestress of ties if there is any."""
+    stretched = (PRESTRESS,) if assembly.prestress.any() else ()
+    return dict.fromkeys((*assembly.groups, *stretched), 0.0)
+
+
+def with_prestress(factors: Mapping[str, float], stages: Sequence[Stage]) -> tuple[Stage, ...]:
+    """Return the stages, the first of which puts on the prestress of ties unless a stage names it or it acts already.
+
+    Parameters
+    ----------
+    factors : mapping of str to float
+        Where the path begins.
+    stages : sequence of Stage
+    """
+    if load_factor(factors, PRESTRESS) or any(PRESTRESS in stage.factors for stage in stages):
+        return tuple(stages)
+    first = replace(stages[0], factors={**stages[0].factors, PRESTRESS: 1.0})
+    return (first, *stages[1:])
+
+
 def _linear(assembly: Assembly, start: Mapping[str, float], end: Mapping[str, float]) -> LinearPath:
     """Return the path of a stage: everything a problem holds is linear in the load factors."""
     a, b = assembly.problem(start), assembly.problem(end)
@@ -206,6 +242,7 @@ def _at_rest(path: LinearPath) -> PathState:
     """Return the state before any load: pairs without a gap touch, nothing carries force."""
     problem = path.problem
     if (problem.gap < 0).any() or np.abs(problem.f).any():
-        msg = "the path does not begin at rest: loads or overlaps are there before the first stage"
-        raise SolverError(msg, hint="give every load and imposed displacement a load group")
+        deep = float(np.maximum(-problem.gap, 0.0).max(initial=0.0))
+        msg = f"the path does not begin at rest: before anything acts, joints overlap by up to {deep:.3g} m"
+        raise SolverError(msg, hint="move the blocks apart, or solve one load step, which overlaps may begin")
     return at_rest(problem)

@@ -9,25 +9,29 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.analysis.path_loads import GroupLoad, loads_of_stage
 from concio.analysis.result import Result
 from concio.arguments import closest
 from concio.contact.assembly import Assembly
 from concio.errors import InputError
 from concio.model.stages import ControlPoint, Stage
+from concio.model.weights import weight_groups, weightless
 from concio.problem.certificate import Certificate
 from concio.problem.solution import Status, judge
 from concio.problem.tolerances import CERTIFIED
 from concio.representation import short_repr
 from concio.solvers.path.record import Event, Outcome
 from concio.solvers.path.state import LinearPath, PathState, path_kinematics, weakened
+from concio.verdict.path_verdict import path_lines, path_verdict
+from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from concio.plot.path_accessor import PathPlots
 
 Array = np.ndarray
 
-MOST_STAGES = 8
-"""More stages than this are counted in a short text."""
+TIE_EVENTS = {"opens": "slackens", "closes": "tightens", "crushes": "yields", "recovers": "unloads"}
+"""What a pair does is called where it stands for a tie."""
 
 DUST = 1e-12
 """Motions below this share of the largest displacement of the path are rounding, and zero."""
@@ -71,7 +75,8 @@ class NamedEvent:
         Stage, and index of the step at which it happens.
     parameter : float
     kind : str
-        "opens", "closes", "slips", "sticks", "crushes", "recovers", "breaks"; "jumps" and "restarts" are finite steps
+        "opens", "closes", "slips", "sticks", "crushes", "recovers", "breaks"; of ties "slackens", "tightens", "yields",
+        "unloads", "breaks"; "jumps" and "restarts" are finite steps
         of the whole structure, named after the joint that moves most.
     bodies : (str, str)
     at : (x, y) or (x, y, z)
@@ -120,17 +125,7 @@ class PathResult:
     direction: Array
 
     def __repr__(self) -> str:
-        size = f"{len(self.steps):,} states, {len(self.events):,} events"
-        lines = [
-            f"PathResult: {self.sentence}",
-            f"  {self.assembly.model.title or 'model without a title'}: {size}, certified to {self.certificate:.1e}",
-        ]
-        for k, outcome in enumerate(self.outcomes[:MOST_STAGES]):
-            name, values = self.load(k)
-            lines.append(f"  stage '{self.stages[k].name}': {outcome.name}, {name} = {values.max():.6g} at most")
-        if len(self.outcomes) > MOST_STAGES:
-            lines.append(f"  ... and {len(self.outcomes) - MOST_STAGES} more stages")
-        return "\n".join(lines)
+        return "\n".join(path_lines(self))
 
     def _repr_html_(self) -> str:
         from concio.report.notebook import path_html
@@ -139,8 +134,15 @@ class PathResult:
 
     @property
     def complete(self) -> bool:
-        """True when every stage reached its end."""
-        return len(self.outcomes) == len(self.stages) and all(o is Outcome.REACHED for o in self.outcomes)
+        """True when every stage reached its end: its loads in full, and the motion of its control point."""
+        walked = len(self.outcomes) == len(self.stages) and all(o is Outcome.REACHED for o in self.outcomes)
+        return walked and not self.short
+
+    @property
+    def short(self) -> tuple[int, ...]:
+        """Stages that moved their control point as far as asked without reaching the loads asked for."""
+        reached = (k for k, outcome in enumerate(self.outcomes) if outcome is Outcome.REACHED)
+        return tuple(k for k in reached if not all(load.applied for load in self.group_loads(k)))
 
     @property
     def collapsed(self) -> bool:
@@ -152,20 +154,44 @@ class PathResult:
         """True when every state of the path passes its check."""
         return bool(self.certificate <= CERTIFIED)
 
+    @cached_property
+    def verdict(self) -> Verdict:
+        """The answer with its question: the stages asked for, what was reached of them, what proves and limits it."""
+        return path_verdict(self)
+
     @property
     def sentence(self) -> str:
-        """How the path ended, and at which load, in one sentence."""
-        if self.complete:
-            whole = "The stage is" if len(self.stages) == 1 else f"All {len(self.stages)} stages are"
-            return f"{whole} carried to the end."
-        name, values = self.load()
-        stage = self.stages[len(self.outcomes) - 1].name
-        most = f"{name} = {float(values.max()):.6g}"
-        if self.collapsed:
-            return f"Collapses in stage '{stage}': it carries no more than {most}."
-        if self.outcomes[-1] is Outcome.LOST:
-            return f"Lost in stage '{stage}': at least {most} is carried, and what follows is not known."
-        return f"Stopped in stage '{stage}', which was carried up to {most}."
+        """How the path ended, at which load, and what of the question is left open."""
+        return self.verdict.sentence
+
+    def group_loads(self, stage: int = -1) -> tuple[GroupLoad, ...]:
+        """Return what a stage that was begun asked of each load group it changes, and what was reached of it."""
+        return loads_of_stage(self.stages, self.steps, stage % len(self.outcomes))
+
+    @property
+    def broken_ties(self) -> tuple[tuple[str, float], ...]:
+        """The tie that breaks where the path ends, with how far it is stretched [m]; empty where none does."""
+        if self.outcomes[-1] is not Outcome.BROKEN:
+            return ()
+        last, own = self.steps[-1], self.assembly.ties.tolist()
+        far = self.assembly.elongations(last.state.displacement, last.factors)
+        k = own.index(self.events[-1].pair)
+        return ((self.assembly.model.ties[k].name, float(far[k])),)
+
+    @property
+    def never_applied(self) -> tuple[str, ...]:
+        """Load groups that act in no state of the path, and that no stage asks for."""
+        asked = {g for stage in self.stages for g, v in stage.factors.items() if v}
+        acted = {g for step in self.steps for g, v in step.factors.items() if v}
+        return tuple(g for g in self.assembly.groups if g not in asked | acted)
+
+    @property
+    def weightless_stages(self) -> tuple[int, ...]:
+        """Stages that were begun and end with loads but without any own weight, though the model has some."""
+        groups = weight_groups(self.assembly.model)
+        ends = {step.stage: step.factors for step in self.steps}
+        without = (k for k, factors in ends.items() if set(weightless(self.assembly.model, factors)) == set(groups))
+        return tuple(without) if groups else ()
 
     def load(self, stage: int = -1) -> tuple[str, Array]:
         """Return what changes in a stage, in words, and its value where the stage begins and at each of its steps.
@@ -273,10 +299,11 @@ def named_event(assembly: Assembly, stage: int, first: int, event: Event) -> Nam
     pairs, bodies = assembly.pairs, assembly.model.bodies
     k = event.pair
     names = (bodies[int(pairs.body_a[k])].name, _other(assembly, k))
+    kind = TIE_EVENTS.get(event.kind, event.kind) if pairs.interface[k] < 0 else event.kind
     size = float(np.abs(pairs.point).max(initial=0.0))
     place = tuple(float(v) if abs(v) > DUST * size else 0.0 for v in pairs.point[k])
     parameter = event.parameter if abs(event.parameter) > DUST else 0.0
-    return NamedEvent(stage, first + event.step, parameter, event.kind, names, place, k)
+    return NamedEvent(stage, first + event.step, parameter, kind, names, place, k)
 
 
 def _other(assembly: Assembly, k: int) -> str:

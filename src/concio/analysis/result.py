@@ -12,11 +12,11 @@ import numpy as np
 from concio.analysis.contacts import STATE_NAMES, Contacts, JointResultants, joint_resultants
 from concio.analysis.joints_in_space import SpaceResultants, joint_resultants_in_space
 from concio.analysis.stress import Stress
-from concio.analysis.verdict import attention, result_lines, self_stress, sentence
+from concio.analysis.tie_forces import TieForces, tie_forces
 from concio.arguments import closest
 from concio.contact.assembly import Assembly
 from concio.contact.factors import load_factor
-from concio.contact.outline_gaps import outline_gaps
+from concio.contact.outline_gaps import WEIGHTED, outline_gaps
 from concio.display import Units
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID
@@ -27,6 +27,8 @@ from concio.problem.solution import Mechanism, Solution, Status, pair_states
 from concio.representation import short_repr
 from concio.solvers.statics.self_stress import SelfStress
 from concio.solvers.statics.sufficient import SufficientCondition, sufficient_condition
+from concio.verdict.step_verdict import result_lines, self_stress, step_verdict
+from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from concio.plot.accessor import Plots
@@ -54,7 +56,7 @@ class JointMotion:
     motion : float
         Opening beyond the initial gap or slip, whichever is larger [m].
     share : float
-        The same over the length of the joint.
+        The same over the length of the joint, in space over its least width.
     """
 
     joint: str
@@ -95,6 +97,8 @@ class Result:
         holds the compliance.
     engine : str
         What factorised the linear systems ("superlu", "pardiso"), where the method leaves the choice; else empty.
+    broken_ties : tuple of (str, float)
+        Ties that were stretched to where they break, with how far they would be [m]; ``assembly`` is without them.
     """
 
     assembly: Assembly
@@ -103,6 +107,7 @@ class Result:
     seconds: Mapping[str, float]
     lent_compliance: float = 0.0
     engine: str = ""
+    broken_ties: tuple[tuple[str, float], ...] = ()
 
     def __repr__(self) -> str:
         return "\n".join(result_lines(self))
@@ -144,7 +149,11 @@ class Result:
 
     @cached_property
     def displacement(self) -> Array:
-        """Displacements of all unknowns (N_all,), body after body, (x, y) node by node [m]."""
+        """Displacements of all unknowns (N_all,), body after body [m].
+
+        Node by node in the order of the axes; of a rigid body the displacement of its centroid and its rotation times
+        its reach (:mod:`concio.kinematics.rigid`).
+        """
         return self.assembly.displacement(self.solution.displacement, self.factors)
 
     @cached_property
@@ -167,8 +176,11 @@ class Result:
         """Largest difference between a gap and that of the displaced outlines at the same place [m].
 
         Zero where meshes match; else gaps are means weighted along the joint, see :mod:`concio.contact.outline_gaps`.
+        Not worked out in space: nan where meshes there do not match.
         """
         pairs = self.assembly.pairs
+        if self.model.dim == 3:
+            return float("nan") if (pairs.rule == WEIGHTED).any() else 0.0
         chosen, apart = outline_gaps(self.assembly.disc, self.assembly.detection.segments, pairs)
         difference = apart @ self.displacement - pairs.C_n[chosen] @ self.displacement
         return float(np.abs(difference).max(initial=0.0))
@@ -182,7 +194,7 @@ class Result:
             return JointMotion("", 0.0, 0.0)
         contacts = self.contacts
         motion = np.maximum(contacts.gap - pairs.gap, np.linalg.norm(contacts.slip, axis=1))[real]
-        length = np.array([face.size for face in interfaces])[pairs.interface[real]]
+        length = np.array([face.width for face in interfaces])[pairs.interface[real]]
         worst = int(np.argmax(motion / length))
         face = interfaces[int(pairs.interface[real[worst]])]
         names = [self.model.bodies[b].name for b in (face.a, face.b)]
@@ -190,7 +202,16 @@ class Result:
 
     @cached_property
     def joints(self) -> JointResultants:
-        """Resultants of each interface."""
+        """Resultants of each interface of a plane model.
+
+        Raises
+        ------
+        InputError
+            The model is in space, where shear and moments are vectors.
+        """
+        if self.model.dim != 2:
+            msg = "the joints of a model in space have shear forces and moments of three components"
+            raise InputError(msg, hint="they are in result.joints_in_space; concio.thrust_surface draws their thrust")
         return joint_resultants(self.contacts)
 
     @cached_property
@@ -262,14 +283,19 @@ class Result:
     @cached_property
     def max_settlement(self) -> float:
         """Largest downward displacement of any point of a free body [m]; zero if everything rises."""
-        lowest = 0.0
+        lowest, dust = 0.0, np.finfo(float).eps * self.model.size
         disc = self.assembly.disc
         elastic = np.concatenate([np.repeat(disc.shape_of >= 0, np.diff(disc.offsets)), np.zeros(1, dtype=bool)])[:-1]
         if elastic.any():
             lowest = min(lowest, float(self.displacement[elastic].reshape(-1, disc.dim)[:, -1].min()))
         for b in np.flatnonzero(disc.shape_of == RIGID).tolist():
             lowest = min(lowest, float(self.node_displacement(b)[:, -1].min()))
-        return -lowest
+        return -lowest if -lowest > dust else 0.0
+
+    @cached_property
+    def ties(self) -> TieForces:
+        """The ties with their tension, elongation and state; those that broke are not among them."""
+        return tie_forces(self.assembly, self.solution.displacement, self.contacts.normal_force, self.factors)
 
     @cached_property
     def reactions(self) -> dict[str, tuple[float, ...]]:
@@ -325,15 +351,20 @@ class Result:
         """Forces that would hold a structure which collapses as it is loaded, least compression; None otherwise."""
         return self_stress(self)
 
+    @cached_property
+    def verdict(self) -> Verdict:
+        """The answer with its question: what acts, what proves it, what limits it, what is odd about the model."""
+        return step_verdict(self)
+
     @property
     def sentence(self) -> str:
-        """The outcome in words, with what is known of it here."""
-        return sentence(self)
+        """The outcome in words, with the loads it is about and what it leaves out."""
+        return self.verdict.sentence
 
     @property
     def attention(self) -> tuple[str, ...]:
-        """What asks for attention, a sentence each: numbers hardly meant, large motions, forces far above the loads."""
-        return attention(self)
+        """What asks for attention, a sentence each: joints not made, numbers hardly meant, large motions and forces."""
+        return self.verdict.attention
 
     @cached_property
     def existence(self) -> SufficientCondition:
@@ -346,6 +377,7 @@ class Result:
         data: dict[str, Any] = {
             "status": self.status.name.lower(),
             "sentence": self.sentence,
+            "verdict": self.verdict.as_dict(),
             "method": self.method,
             "engine": self.engine,
             "title": self.model.title,
@@ -363,13 +395,15 @@ class Result:
             "trace": list(self.solution.trace),
             "lent_compliance": self.lent_compliance,
             "attention": list(self.attention),
+            "broken_ties": [{"name": name, "elongation": far} for name, far in self.broken_ties],
             "units": {"force": "kN", "length": "m", "stress": "kN/m2"},
         }
         if contacts is not None:
             data["max_settlement"] = self.max_settlement
             data["joint_motion"] = asdict(self.joint_motion)
-            data["outline_gap_difference"] = self.outline_gap_difference
+            data["outline_gap_difference"] = _finite(self.outline_gap_difference)
             data["reactions"] = {name: list(force) for name, force in self.reactions.items()}
+            data["ties"] = self.ties.as_list()
             data["pairs"] = {name: contacts.count(name) for name in STATE_NAMES}
         if 0 < len(self.assembly.pairs) <= EXISTENCE:  # without pairs there is nothing to guarantee
             condition = self.existence

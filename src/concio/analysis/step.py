@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, Literal
 
-from concio.analysis.lent_compliance import lend
+from concio.analysis.lent_compliance import lend, stiffened
 from concio.analysis.result import Result
+from concio.analysis.tie_forces import broken_ties
 from concio.arguments import options_of, strict
 from concio.contact.assembly import Assembly, as_assembly
-from concio.errors import NoEquilibriumError, SolverError
+from concio.errors import InputError, NoEquilibriumError, SolverError
 from concio.model.model import Model
-from concio.problem.solution import ProgressCallback, Solver, Status
+from concio.problem.solution import PROVEN_FAILURES, ProgressCallback, Solver, Status
 from concio.solvers.algebra.sparse_factor import factorised_by
 from concio.solvers.algebra.stiff_limit import without_compliance
 from concio.solvers.methods import check_options, find
@@ -50,6 +52,8 @@ def solve(
     Returns
     -------
     Result
+        A tie that would be stretched to where it breaks is taken away, the farthest one first, and the step solved
+        again; :attr:`Result.broken_ties` names them.
 
     Raises
     ------
@@ -60,36 +64,82 @@ def solve(
     SolverError
         The solver stopped without an answer.
     """
-    solver: Solver = find(method)
     check_options(method, options, function="solve()", others=("method", *options_of(solve)))
     begin = time.perf_counter()
     assembly = as_assembly(model, jointless=True, periodic=bool(factors))
+    assembled = time.perf_counter() - begin
+    result = _solve(assembly, method, factors, progress, options)
+    while broken := _breaking(result):
+        result = _without(result, broken, method, factors, progress, options)
+    seconds = {**result.seconds, "assemble": result.seconds["assemble"] + assembled}
+    result = replace(result, seconds={**seconds, "total": result.seconds["total"] + assembled})
+    solution = result.solution
+    if solution.solved or on_failure == "return":
+        return result
+    if solution.status in PROVEN_FAILURES:
+        place = "solution.info" if solution.status is Status.NO_COULOMB_STATE else "mechanism"
+        hint = f"solve with on_failure='return' and look at result.{place}"
+        raise NoEquilibriumError(result.sentence, hint=hint, verdict=result.verdict)
+    msg = f"{result.sentence} Tried: {'; '.join(solution.trace)}"
+    raise SolverError(msg, hint="see result.certificate with on_failure='return'", verdict=result.verdict)
+
+
+def _breaking(result: Result) -> tuple[str, float] | None:
+    """Return the tie of a solved step that is stretched farthest past where it breaks, with how far [m]; or None."""
+    if not result.solved or not result.model.ties:
+        return None
+    found = broken_ties(result.assembly, result.ties.elongation)
+    return found[0] if found else None
+
+
+def _without(
+    result: Result,
+    broken: tuple[str, float],
+    method: str,
+    factors: Mapping[str, float] | None,
+    progress: ProgressCallback | None,
+    options: dict[str, Any],
+) -> Result:
+    """Return the answer without a tie that breaks; the ties that broke before it stay away.
+
+    Raises
+    ------
+    NoEquilibriumError
+        Nothing else held the structure.
+    """
+    model = result.model
+    left = replace(model, ties=tuple(t for t in model.ties if t.name != broken[0]))
+    try:
+        again = _solve(as_assembly(left, jointless=True, periodic=bool(factors)), method, factors, progress, options)
+    except InputError as error:
+        msg = f"tie '{broken[0]}' is stretched by {1e3 * broken[1]:.4g} mm and breaks; without it {error.what}"
+        raise NoEquilibriumError(msg, hint="give it more stiffness, or the structure another support") from None
+    return replace(again, broken_ties=(*result.broken_ties, broken))
+
+
+def _solve(
+    assembly: Assembly,
+    method: str,
+    factors: Mapping[str, float] | None,
+    progress: ProgressCallback | None,
+    given: dict[str, Any],
+) -> Result:
+    """Solve one load step with every tie whole."""
+    solver: Solver = find(method)
+    options, begin = dict(given), time.perf_counter()
     if "engine" in find(method).options:
         options.setdefault("engine", assembly.model.engine)
     lent = lend(assembly)
-    problem = lent.problem(factors)
+    compliance, problem = lent.lent_compliance, lent.problem(factors)
     if not problem.pairs:  # K u = f: there are no states to find, whatever the method
         solver, options = find("sparse-lemke" if problem.dim == 2 else "auto"), {}
     assembled = time.perf_counter()
-    engine, stiff = options.get("engine", ""), None
+    engine = options.get("engine", "")
     with factorised_by(engine or None):  # what a method asks on its way factorises as it does
         solution = solver(problem, progress=progress, **options)
         if lent.lent_compliance and solution.solved:
-            stiff = without_compliance(assembly.problem(factors), problem, solution)
+            solution, left = without_compliance(assembly.problem(factors), problem, solution)
+            lent = stiffened(lent, assembly, left)
     end = time.perf_counter()
     seconds = {"total": end - begin, "assemble": assembled - begin, "solve": end - assembled}
-    judged = (lent, solution) if stiff is None else (assembly, stiff)
-    result = Result(judged[0], dict(factors or {}), judged[1], seconds, lent.lent_compliance, str(engine))
-    if solution.solved or on_failure == "return":
-        return result
-    detail = "; ".join(solution.trace)
-    if solution.status in (Status.NO_EQUILIBRIUM, Status.COLLAPSES):
-        raise NoEquilibriumError(
-            result.sentence, hint="solve with on_failure='return' and look at result.mechanism"
-        )
-    if solution.status is Status.NO_COULOMB_STATE:
-        raise NoEquilibriumError(
-            result.sentence, hint="solve with on_failure='return' and look at result.solution.info"
-        )
-    msg = f"{solution.status.value} Tried: {detail}"
-    raise SolverError(msg, hint="see result.certificate with on_failure='return'")
+    return Result(lent, dict(factors or {}), solution, seconds, compliance, str(engine))

@@ -15,7 +15,17 @@ from concio.cli.run import EngineOf, File, Json, Quiet
 
 if TYPE_CHECKING:
     from concio.analysis.seismic.assessment import Assessment
+    from concio.analysis.seismic.local_mechanism import LocalMechanism
     from concio.analysis.seismic.variations import TieForce, Variation
+
+MOST_FINDINGS = 12
+"""More lines of one kind than this are counted; the report holds all."""
+
+CONFIDENCE = {
+    "given": "as given",
+    "knowledge": "of the level of knowledge",
+    "crushing": "that of least knowledge: joints do not crush",
+}
 
 
 @guarded
@@ -53,7 +63,8 @@ def assess(
         varied: tuple[Variation, ...] = ()
         if asked.sensitivity and out is not None:
             varied = variations(found, progress=progress)
-    told: dict[str, Any] = {"status": "solved", **found.summary()}
+    verdict = found.verdict
+    told: dict[str, Any] = {"status": verdict.status, **found.summary()}
     if tie is not None:
         finite = tie.force if tie.force < float("inf") else None
         told["tie_force"] = {"tie": tie.tie, "force": finite, "zeta_E": tie.reached}
@@ -71,42 +82,26 @@ def assess(
             say(line)
         if written:
             say(f"  written              {out}: {', '.join(written)}")
-    return 0
+    return verdict.exit_code
 
 
 def assess_lines(found: Assessment, tie: TieForce | None = None) -> list[str]:
-    """Return what an assessment found, in words."""
+    """Return what an assessment found, in words: the verdict with what pushes, then each mechanism."""
     from concio.display import number
 
-    lines = [found.model.title or "model without a title"]
-    lines += [f"  attention            {note}" for note in found.notes]
-    lines.append(f"  code                 {found.site.rules.name}, FC {number(found.confidence)}")
+    verdict = found.verdict
+    lines = [found.model.title or "model without a title", verdict.sentence]
+    lines += verdict.lines(found.model.report, most=MOST_FINDINGS)
+    lines.append(f"  proof        {verdict.proof}")
+    by = CONFIDENCE[found.confidence_by]
+    lines.append(f"  code         {found.site.rules.name}, {found.knowledge}, FC {number(found.confidence)} ({by})")
     for m in found.mechanisms:
-        lines.append(f"  {m.name}, push {m.direction}")
-        lines.append(
-            f"    alpha_0            {m.multiplier:.6g}, e* {number(m.e_star, 4)}, a_0* {number(m.onset, 4)} m/s2"
-        )
-        for c in m.checks:
-            word = "verified" if c.holds else "not verified"
-            place = "" if c.place == "ground" else ", at height"
-            lines.append(
-                f"    {c.level + ', ' + c.kind + place:18s} demand {number(c.demand, 4)} {c.unit}, capacity "
-                f"{number(c.capacity, 4)} {c.unit}: {word}, {number(c.ratio, 4)}"
-            )
-        if not m.followed.ends:
-            from concio.analysis.seismic.curve import REASONS
-
-            lines.append(f"    no check in displacements: {REASONS[m.followed.reason]}")
-        for o in m.outcomes:
-            period = f", return period {number(o.T_R)} years" if o.T_R == o.T_R else ""
-            lines.append(f"    {o.level:18s} a_g of capacity {number(o.a_g, 4)} g, zeta_E {number(o.zeta, 4)}{period}")
-        lines += [f"    {level:18s} not checked" for level in m.unchecked]
-        if m.found.flow == "associated":
-            lines.append("    upper bound        a joint slides, and no Coulomb state was found: alpha_0 may be less")
+        lines += mechanism_lines(m)
     lines += [f"  {n.name}, push {n.direction}: {n.sentence}" for n in found.locked]
-    if found.worst is not None:
-        word = "verified" if found.holds else "not verified" if found.zeta < 1 else "not settled"
-        lines.append(f"  in short             {word}: zeta_E {number(found.zeta, 4)} of '{found.worst.name}'")
+    if found.others:
+        least = number(min(m.zeta for m in found.others), 4)
+        lines.append(f"  followed beside      {len(found.others)} more in parts of the structure, zeta_E from {least}")
+    lines.append(f"  in short             {verdict.headline}")
     if tie is not None:
         if tie.force == 0:
             lines.append(f"  tie '{tie.tie}'          not needed: zeta_E is {number(tie.reached, 4)} without it")
@@ -119,4 +114,29 @@ def assess_lines(found: Assessment, tie: TieForce | None = None) -> list[str]:
             lines.append(
                 f"  tie '{tie.tie}'          {number(tie.force, 4)} kN bring zeta_E to {number(tie.reached, 4)}"
             )
+    return lines
+
+
+def mechanism_lines(m: LocalMechanism) -> list[str]:
+    """Return one mechanism in words."""
+    from concio.analysis.seismic.curve import REASONS
+    from concio.display import number
+    from concio.verdict.assessment_verdict import check_words
+
+    lines = [f"  {m.name}, push {m.direction}"]
+    lines.append(f"    alpha_0            {m.multiplier:.6g}, e* {number(m.e_star, 4)}, a_0* {number(m.onset, 4)} m/s2")
+    for c in m.checks:
+        place = "" if c.place == "ground" else ", at height"
+        lines.append(
+            f"    {c.level + ', ' + c.kind + place:18s} demand {number(c.demand, 4)} {c.unit}, capacity "
+            f"{number(c.capacity, 4)} {c.unit}: {check_words(c, decides=m.decided_by(c))}"
+        )
+    if not m.followed.ends:
+        lines.append(f"    no check in displacements: {REASONS[m.followed.reason]}")
+    for o in m.outcomes:
+        period = f", return period {number(o.T_R)} years" if o.T_R == o.T_R else ""
+        lines.append(f"    {o.level:18s} a_g of capacity {number(o.a_g, 4)} g, zeta_E {number(o.zeta, 4)}{period}")
+    lines += [f"    {level:18s} not checked" for level in m.unchecked]
+    if m.found.flow == "associated":
+        lines.append("    upper bound        a joint slides, and no Coulomb state was found: alpha_0 may be less")
     return lines

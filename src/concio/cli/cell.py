@@ -57,6 +57,7 @@ def cell(
     from concio.cli.cell_files import write_cell
     from concio.cli.cell_lines import cell_facts, cell_lines
     from concio.errors import InputError
+    from concio.verdict.cell_verdict import cell_verdict
 
     if out is not None:
         check_directory(out)
@@ -90,7 +91,7 @@ def cell(
             say(line)
         if written:
             say(f"  written      {out}: {', '.join(written)}")
-    return exit_code(domain, path)
+    return cell_verdict(own, moduli, domain, path, none=none).exit_code
 
 
 def _moduli(cell: PeriodicCell) -> tuple[Moduli | None, str]:
@@ -102,13 +103,6 @@ def _moduli(cell: PeriodicCell) -> tuple[Moduli | None, str]:
         return homogenise(cell), ""
     except InputError as error:
         return None, error.what
-
-
-def exit_code(domain: StrengthDomain | None, path: CellPath | None) -> int:
-    """Return 0, 3 where a path ended because the cell carries no more, 4 where something was not decided."""
-    if path is not None and not path.complete:
-        return 3 if path.outcomes[-1].name in ("LIMIT", "MECHANISM") else 4
-    return 0 if domain is None or domain.checked else 4
 
 
 def components(text: str, where: str) -> tuple[float, float, float]:

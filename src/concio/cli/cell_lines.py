@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ from concio.analysis.cells.path_result import CellPath
 from concio.analysis.cells.periodic_cell import PeriodicCell
 from concio.analysis.cells.strength import StrengthDomain, StrengthRay
 from concio.contact.periodic import COMPONENTS
+from concio.verdict.cell_verdict import cell_verdict, direction_words, domain_words, ray_words
 
 Array = np.ndarray
 
@@ -24,9 +24,10 @@ def cell_facts(
     cell: PeriodicCell, moduli: Moduli | None, domain: StrengthDomain | None, path: CellPath | None
 ) -> dict[str, Any]:
     """Return everything as plain types: the object of ``--json``."""
-    done = (domain is None or domain.checked) and (path is None or path.complete)
+    verdict = cell_verdict(cell, moduli, domain, path)
     return {
-        "status": "solved" if done else "incomplete",
+        "status": verdict.status,
+        "verdict": verdict.as_dict(),
         "title": cell.model.title,
         "bodies": len(cell.model.bodies),
         "contacts": len(cell.assembly.pairs),
@@ -50,6 +51,8 @@ def cell_lines(
         f"  cell         {count} {'body' if count == 1 else 'bodies'}, {len(cell.assembly.pairs):,} contact pairs; "
         f"repeats by ({a:.6g}, {b:.6g}) and ({c:.6g}, {d:.6g}) m",
     ]
+    verdict = cell_verdict(cell, moduli, domain, path, none=none)
+    lines += [verdict.headline, *verdict.lines(cell.model.report)]
     lines += [f"  moduli       none: {none}"] if moduli is None else moduli_lines(moduli)
     if domain is not None:
         lines += strength_lines(domain)
@@ -84,16 +87,10 @@ def moduli_lines(moduli: Moduli) -> list[str]:
 
 def strength_lines(domain: StrengthDomain) -> list[str]:
     """Return the half-spaces of the strength domain and the strength in directions."""
-    lines = []
-    found = domain.domain
-    if found is not None:
-        word = (
-            "exactly" if found.exact else f"within it by at most {100 * found.shortfall:.2g} % of the way to a corner"
-        )
-        lines.append(f"  strength     the stresses carried (associated friction) are those with, {word}")
-        lines += _faces(found.faces)
-    elif not domain.rays:
-        lines.append("  strength     no stress is carried with something to spare: there is no domain")
+    words = domain_words(domain)
+    lines = [f"  strength     {words}"] if words else []
+    if domain.domain is not None:
+        lines += _faces(domain.domain.faces)
     for ray in domain.rays:
         lines += ray_lines(ray)
     return lines
@@ -101,24 +98,8 @@ def strength_lines(domain: StrengthDomain) -> list[str]:
 
 def ray_lines(ray: StrengthRay) -> list[str]:
     """Return the strength in one direction."""
-    words = ", ".join(f"{name} {v:g}" for name, v in zip(COMPONENTS, ray.direction, strict=True) if v)
-    head = f"  direction    {words}: "
-    if math.isinf(ray.multiplier):
-        return [head + "any multiple is carried"]
-    bound = ray.associated
-    state = "checked from both sides" if bound.checked else "NOT checked"
-    lines = [f"{head}associated bound {ray.multiplier:.6g}, {state}: {bound.worst:.0e}"]
-    if math.isfinite(ray.carried):
-        shown = "collapses at" if ray.collapse_shown else "carries at least"
-        lines.append(f"               Coulomb path {shown} {ray.carried:.6g}")
-    if ray.collapse_state is not None:
-        least = (
-            0.0 if abs(ray.collapse_state.multiplier) < 1e-9 * abs(ray.multiplier) else ray.collapse_state.multiplier
-        )
-        lines.append(f"               Coulomb collapse state at {least:.6g} ({ray.search})")
-    elif ray.search != "not asked for":
-        lines.append(f"               Coulomb collapse state: {ray.search}")
-    return lines
+    first, *rest = ray_words(ray)
+    return [f"  direction    {direction_words(ray)}: {first}", *(f"               {line}" for line in rest)]
 
 
 def path_lines(path: CellPath) -> list[str]:

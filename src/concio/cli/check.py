@@ -32,9 +32,10 @@ def check(
     Example: concio check wall.toml --out wall.png
     """
     import concio
-    from concio.cli.check_lines import check_facts, check_lines, resultants
+    from concio.cli.check_lines import check_facts, check_lines
     from concio.contact.assembly import assemble, detect
     from concio.errors import ConcioError
+    from concio.verdict.question import resultants
 
     if out is not None:
         _check_picture(out, force=force)

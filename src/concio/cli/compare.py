@@ -21,23 +21,42 @@ def compare(
     factor: Factors = None,
     json: Json = False,
 ) -> int:
-    """Solve one model by several methods and print one table.
+    """Decide one model as 'concio run' does, solve the same problem by several methods, and print one table.
+
+    The exit code is that of 'concio run'.
+
+    Every method gets the problem that ``run`` solves: hard joints between rigid blocks with the same vanishing
+    compliance, each connected part by itself.
 
     Example: concio compare panel.toml --methods lemke,uzawa,admm
     """
     import concio
+    from concio.analysis.lent_compliance import lend
     from concio.contact.assembly import as_assembly
     from concio.solvers.algebra.sparse_factor import factorised_by
+    from concio.solvers.methods import find
     from concio.studies.compare import compare as compared
     from concio.studies.compare import format_table
 
     names = None if methods is None else [name.strip() for name in methods.split(",") if name.strip()]
+    for name in names or ():
+        find(name)
     model = concio.load(file)
-    problem = as_assembly(model).problem(factors_of(factor))
+    assembly = as_assembly(model)
     with factorised_by(model.engine), progress_bar(shown=not json) as progress:
-        table = compared(problem, names, time_limit=time_limit, progress=progress, title=model.title or str(file))
+        result = concio.solve(assembly, factors=factors_of(factor), on_failure="return", progress=progress)
+        lent = lend(result.assembly)
+        problem = lent.problem(result.factors)  # the one that 'concio run' decides
+        table = compared(
+            problem, names, time_limit=time_limit, progress=progress, title=model.title or str(file),
+            decided=result.verdict,
+        )  # fmt: skip
     if json:
-        print_json(table.as_dict())
+        print_json({**table.as_dict(), "lent_compliance": lent.lent_compliance})
     else:
-        say(format_table(table))
-    return 0
+        verdict = table.verdict
+        for line in (verdict.sentence, *verdict.lines(model.report), "", format_table(table)):
+            say(line)
+        if lent.lent_compliance:
+            say(f"  lent: {lent.lent_compliance:.3g} m/kN to hard joints between rigid blocks, as 'concio run' does")
+    return table.verdict.exit_code

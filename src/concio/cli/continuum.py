@@ -47,6 +47,7 @@ def continuum(
     from concio.cli.halved import halved_file
     from concio.errors import InputError
     from concio.units import quantity
+    from concio.verdict.continuum_verdict import continuum_verdict
 
     if out is not None:
         check_directory(out)
@@ -85,5 +86,4 @@ def continuum(
             say(line)
         if written:
             say(f"  written      {out}: {', '.join(written)}")
-    done = all(c.checked for c in halving.comparisons) if halving is not None else found.checked
-    return 0 if done else 4
+    return continuum_verdict(found, halving).exit_code

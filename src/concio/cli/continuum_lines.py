@@ -9,14 +9,16 @@ import numpy as np
 from concio.analysis.continuum.answers import ElasticComparison, StrengthComparison
 from concio.analysis.continuum.comparison import ContinuumComparison
 from concio.analysis.continuum.halving import BlockHalving
+from concio.verdict.continuum_verdict import continuum_strength_words, continuum_verdict
 
 
 def continuum_facts(found: ContinuumComparison, halving: BlockHalving | None) -> dict[str, Any]:
     """Return everything as plain types: the object of ``--json``."""
-    done = all(c.checked for c in halving.comparisons) if halving is not None else found.checked
+    verdict = continuum_verdict(found, halving)
     return {
-        "status": "solved" if done else "incomplete",
+        "status": verdict.status,
         **found.summary(),
+        "verdict": verdict.as_dict(),
         "halving": None if halving is None else halving.summary(),
         "units": {"force": "kN", "length": "m", "stress": "kN/m2"},
     }
@@ -30,6 +32,8 @@ def continuum_lines(found: ContinuumComparison, halving: BlockHalving | None) ->
         f"  blocks       {count:,}, {len(found.assembly.pairs):,} contact pairs",
         f"  continuum    {len(found.wall.triangles):,} triangles; {found.cell.model.title}",
     ]
+    verdict = continuum_verdict(found, halving)
+    lines += [verdict.headline, *verdict.lines(found.assembly.model.report)]
     lines += [f"  elastic      none: {found.elastic_note}"] if found.elastic is None else elastic_lines(found.elastic)
     if found.strength is None:
         lines.append(f"  limit load   none: {found.strength_note}")
@@ -70,24 +74,8 @@ def _force(value: Any) -> str:
 
 def strength_lines(found: StrengthComparison) -> list[str]:
     """Return the limit loads."""
-    named, (low, high) = "' and '".join(found.live), found.bracket
-    own = found.blocks.associated.multiplier
-    lower, upper = found.proven
-    words = "any multiple" if np.isinf(own) else f"{own:.6g}"
-    lines = [f"  limit load   of '{named}' (associated): blocks {words}"]
-    if high == -np.inf:
-        said = "a mechanism proves it" if upper else "NOT proven"
-        lines.append(f"               continuum: does not even carry the dead load ({said}); it has no lintels")
-        return lines
-    carries = "not even the dead load, on these meshes" if np.isnan(low) else "any multiple"
-    carries = f"{low:.6g}" if np.isfinite(low) else carries
-    bound = "no mechanism found" if np.isinf(high) else f"no equilibrium beyond {high:.6g} ({_proven(upper)})"
-    lines.append(f"               continuum: carries {carries} ({_proven(lower)}); {bound}")
-    return lines
-
-
-def _proven(yes: bool) -> str:
-    return "proven" if yes else "NOT proven"
+    first, *rest = continuum_strength_words(found)
+    return [f"  limit load   {first}", *(f"               {line}" for line in rest)]
 
 
 def halving_lines(halving: BlockHalving) -> list[str]:

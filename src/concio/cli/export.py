@@ -44,7 +44,8 @@ def export(
 
     Example: concio export result --to vtu
     """
-    from concio.io.owned_dir import CONTENTS, add_own
+    from concio.io.listing import CONTENTS
+    from concio.io.owned_dir import add_own
     from concio.io.result_file import load_result
 
     target = out if out is not None else directory / NAMES.get(to, f"deformed.{to}")

@@ -62,7 +62,7 @@ def limit(
     from concio.analysis.limit import limit_stages
     from concio.analysis.margins import friction_by_solving, load_margin
     from concio.cli.limit_files import write_limit
-    from concio.report.limit_wording import head_lines, short_lines, solving_line, stage_lines
+    from concio.verdict.limit_words import answer_lines, head_lines, question_lines, solving_line, stage_lines
 
     groups = list(group or ["live"])
     if out is not None:
@@ -77,20 +77,23 @@ def limit(
         sys.stdout.flush()
 
     tell(head_lines(assembly))
+    asked = False
     try:
         with progress_bar(shown=not json) as progress:
             stages = limit_stages(
                 assembly, groups, path=path, steps=steps, search=search, friction=wanted, progress=progress
             )
             for name, found in stages:
-                tell(stage_lines(name, found))
+                tell([*(question_lines(found) if not asked else []), *stage_lines(name, found)])
+                asked = True
     except KeyboardInterrupt:
         if found is not None:
-            tell(short_lines(found))
+            tell(answer_lines(found))
         raise
     assert found is not None  # the bound comes first, or an error
-    tell(short_lines(found))
-    told = {"status": "solved" if found.associated.checked else "gave_up", "groups": groups, **found.summary()}
+    verdict = found.verdict
+    tell(answer_lines(found))
+    told = {"status": verdict.status, "groups": groups, **found.summary()}
     if solves:
         for word, margin in (("load", load_margin), ("friction", friction_by_solving)):
             solved = margin(assembly, groups)
@@ -103,4 +106,4 @@ def limit(
         tell([f"  written              {out}: {', '.join(written)}"])
     if json:
         print_json(told)
-    return 0 if found.associated.checked else 4
+    return verdict.exit_code

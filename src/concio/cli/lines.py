@@ -6,14 +6,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.display import counted
 from concio.problem.solution import Status
-from concio.report.wording import power_words
+from concio.verdict.step_verdict import power_words
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
 
 MOST_REACTIONS = 12
 """More supports than this are not listed one by one."""
+MOST_FINDINGS = 12
+"""More lines of one kind than this are counted; the report holds all."""
 MOST_MOVING = 6
 SLOW = 0.01
 """Bodies slower than this share of the fastest are not said to move."""
@@ -29,6 +32,7 @@ def result_lines(result: Result) -> list[str]:
         f"{counted(len(assembly.detection.interfaces), 'joint')}, "
         f"{counted(len(assembly.pairs), 'contact pair')}, {counted(assembly.disc.unknowns, 'displacement')}",
         result.sentence,
+        *result.verdict.lines(units, most=MOST_FINDINGS),
         f"  {result.solved_by}: {s.iterations} iterations, {seconds['solve']:.2f} s; "
         f"assembled in {seconds['assemble']:.2f} s",
     ]
@@ -51,9 +55,7 @@ def result_lines(result: Result) -> list[str]:
             lines.append(f"  {'reactions' if k == 0 else '':<12} {name:<{width}}  {told}")
         if len(reactions) > len(shown):
             lines.append(f"  {'':<12} ... and {len(reactions) - len(shown)} more")
-        lines += _ties(result)
-        if result.lent_compliance:
-            lines.append("  rigid joints decided with a vanishing compliance, as the limit of stiff joints")
+        lines += tie_lines(result)
     elif result.mechanism is not None:
         word = "motion" if result.status is Status.COLLAPSES else "mechanism"
         moving = [f"'{name}'" for name, speed in moving_bodies(result) if speed > SLOW]
@@ -66,21 +68,7 @@ def result_lines(result: Result) -> list[str]:
         lines += [f"  tried        {line}" for line in s.trace]
         if np.isfinite(certificate["worst"]):
             lines.append(f"  certificate  worst {certificate['worst']:.1e}: not an equilibrium")
-    lines += [f"  attention    {told}" for told in result.attention]
-    faults = result.model.generator.get("faults", ())
-    if isinstance(faults, tuple | list) and faults:
-        lines.append(
-            f"  attention    {counted(len(faults), 'fault')} of the drawing mended or left out: see 'concio check'"
-        )
-    missed = len(assembly.detection.near_misses)
-    if missed:
-        lines.append(f"  attention    {counted(missed, 'joint')} nearly made, and not: see 'concio check'")
     return lines
-
-
-def counted(number: int, one: str, several: str | None = None) -> str:
-    """Return a number and its noun."""
-    return f"{number:,} {one if number == 1 else several or one + 's'}"
 
 
 def _existence(result: Result) -> list[str]:
@@ -98,20 +86,20 @@ def _existence(result: Result) -> list[str]:
     return [f"  existence    guaranteed: positive normal forces alone balance the loads, {margin}"]
 
 
-def _ties(result: Result) -> list[str]:
-    """Return the force in each tie, which are the pairs without an interface in the order of the model."""
-    contacts, ties = result.contacts, result.model.ties
-    forces = contacts.normal_force[contacts.pairs.interface < 0].tolist()
-    width = max((len(tie.name) for tie in ties), default=0)
-    units, largest = result.model.report, max(map(abs, forces), default=0.0)
-
-    def told(value: float) -> str:
-        return units.text("force", value, 4, size=largest)
-
-    return [
-        f"  {'ties' if k == 0 else '':<12} {tie.name:<{width}}  {told(value)} of tension"
-        for k, (tie, value) in enumerate(zip(ties, forces, strict=True))
-    ]
+def tie_lines(result: Result) -> list[str]:
+    """Return the force in each tie, whether it yields, and how far it is stretched."""
+    ties, units = result.ties, result.model.report
+    largest = float(np.abs(ties.tension).max(initial=0.0))
+    width = max((len(name) for name in ties.names), default=0)
+    lines = []
+    for k, (name, tension, far, state) in enumerate(
+        zip(ties.names, ties.tension.tolist(), ties.elongation.tolist(), ties.state, strict=True)
+    ):
+        told = f"{units.text('force', tension, 4, size=largest)} of tension"
+        stretched = "" if state == "slack" else f", stretched by {units.text('motion', far, 4)}"
+        word = {"slack": ", slack", "yields": ", yields"}.get(state, "")
+        lines.append(f"  {'ties' if k == 0 else '':<12} {name:<{width}}  {told}{word}{stretched}")
+    return lines
 
 
 def moving_bodies(result: Result) -> list[tuple[str, float]]:
@@ -131,4 +119,3 @@ def moving_bodies(result: Result) -> list[tuple[str, float]]:
 def _states(result: Result) -> str:
     words = {"open": "open", "stick": "sticking", "slip": "slipping"}
     return ", ".join(f"{result.contacts.count(name):,} {word}" for name, word in words.items())
-

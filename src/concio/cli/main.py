@@ -19,11 +19,13 @@ from concio.cli import (
     new,
     outcome,
     path,
+    prove,
     push,
     run,
     schema,
     shake,
     study,
+    verify,
     view,
 )
 
@@ -39,8 +41,8 @@ app = typer.Typer(
         "Start:  concio new panel  |  concio check panel.toml  |  concio run panel.toml --out result"
     ),
     epilog=(
-        "Exit codes: 0 solved, 2 bad input, 3 no equilibrium (proved), 4 gave up or undecided, 130 interrupted, "
-        "1 anything else."
+        "Exit codes: 0 what was asked for is shown, 2 bad input, 3 it is shown not to hold, 4 it is left open (not "
+        "reached, not checked, undecided, still moving), 130 interrupted, 1 anything else."
     ),
 )
 
@@ -70,6 +72,8 @@ app.command("shake")(shake.shake)
 app.command("cell")(cell.cell)
 app.command("continuum")(continuum.continuum)
 app.command("assess")(assess.assess)
+app.command("prove")(prove.prove)
+app.command("verify")(verify.verify)
 app.command("compare")(compare.compare)
 app.command("study")(study.study)
 app.command("view")(view.view)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from concio.analysis.motion.dynamics_result import DynamicsResult
-from concio.analysis.motion.push_result import PushResult
+from concio.analysis.motion.push_result import PushEnding, PushResult
 from concio.cli.outcome import note
 from concio.display import number
 from concio.errors import InputError
@@ -17,6 +17,10 @@ from concio.io.motion_file import save_motion
 from concio.io.motion_series import write_motion_series
 from concio.plot.motion_figure import plot_capacity, plot_energy, plot_ground, plot_history, write_film
 from concio.report.motion_page import write_motion_report
+from concio.units import GRAVITY
+
+MOST_LINES = 6
+"""Lines of one kind in a short text."""
 
 EVENTS = 12
 """Events listed unasked."""
@@ -27,10 +31,13 @@ def push_lines(result: PushResult, *, every: bool = False) -> list[str]:
     units = result.model.report
     d, load = result.displacement, result.multiplier
     what = ", ".join(result.live) if result.live else "a share of the weights"
+    verdict = result.verdict
+    peak = "peak     " if result.peak_passed or result.ending is PushEnding.NO_LARGER_LOAD else "largest  "
     lines = [
-        result.ending.value,
+        verdict.sentence,
+        *verdict.lines(units, most=MOST_LINES),
         f"  multiplied   {what}: {units.force_vector(result.force.tolist())} at multiplier 1",
-        f"  peak         {number(result.peak, 6)} at {units.text('motion', float(d[result.peak_step]))}",
+        f"  {peak}    {number(result.peak, 6)} at {units.text('motion', float(d[result.peak_step]))}",
         f"  end          {number(float(load[-1]), 4, size=result.peak)} at {units.text('motion', float(d[-1]))}",
         f"  certificate  {result.certificate:.1e} (worst of {len(result)} points, where the bodies stand)",
     ]
@@ -51,8 +58,15 @@ def shake_lines(result: DynamicsResult) -> list[str]:
     name, turned = result.largest_rotation
     shares = ", ".join(f"{word} {100 * share:.1f} %" for word, share in result.steps.shares().items())
     told = result.summary()
-    lines = [
-        result.ending.value,
+    verdict = result.verdict
+    return [
+        verdict.sentence,
+        *(
+            [f"  ground       {result.asked}; largest acceleration {number(result.ground_peak / GRAVITY, 4)} g"]
+            if result.asked
+            else []
+        ),
+        *verdict.lines(units, most=MOST_LINES),
         f"  time         {number(float(result.end.time), 6)} s in {len(result.steps):,} steps, "
         f"{result.seconds:.1f} s of work",
         f"  turned most  {name}: {number(float(np.rad2deg(turned)), 4)} degrees",
@@ -63,7 +77,6 @@ def shake_lines(result: DynamicsResult) -> list[str]:
         "over",
         f"  steps by     {shares}; {float(result.steps.factorisations.mean()):.2f} factorisations a step",
     ]
-    return lines + [f"Note: {n}" for n in result.notes]
 
 
 def write_motion(result: PushResult | DynamicsResult, place: Path, films: tuple[str, ...], series: bool) -> list[str]:

@@ -7,7 +7,9 @@ import functools
 import json as json_text
 import math
 import os
+import re
 import sys
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from typing import Any, NoReturn, ParamSpec
@@ -15,6 +17,8 @@ from typing import Any, NoReturn, ParamSpec
 import typer
 
 P = ParamSpec("P")
+
+_GLYPH = re.compile(r"Glyph (?P<code>\d+) ")
 
 INTERRUPTED = 130
 INTERNAL = 1
@@ -36,7 +40,8 @@ def guarded(command: Callable[P, int]) -> Callable[P, None]:
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
         as_json = bool(kwargs.get("json"))
         try:
-            code = command(*args, **kwargs)
+            with _letters_told():
+                code = command(*args, **kwargs)
             flush()
         except KeyboardInterrupt:
             fail({"kind": "Interrupted", "what": "stopped on request; nothing was written"}, INTERRUPTED, as_json)
@@ -55,12 +60,39 @@ def guarded(command: Callable[P, int]) -> Callable[P, None]:
     return run
 
 
+@contextmanager
+def _letters_told() -> Iterator[None]:
+    """Say once which letters of names the font of figures lacks, where matplotlib warns of each at each drawing."""
+    missing: dict[str, None] = {}
+    show = warnings.showwarning
+
+    def told(message: Warning | str, *rest: Any, **more: Any) -> None:
+        found = _GLYPH.match(str(message))
+        if found is None:
+            show(message, *rest, **more)
+        else:
+            missing[chr(int(found["code"]))] = None
+
+    with warnings.catch_warnings():
+        warnings.filterwarnings("always", message="Glyph ", category=UserWarning)
+        warnings.showwarning = told
+        try:
+            yield
+        finally:
+            if missing:
+                letters = "".join(c if c.isprintable() else f"(U+{ord(c):04X})" for c in list(missing)[:20])
+                note(f"Note: the font of the figures has no letter for {letters}: PNG and PDF show boxes there")
+
+
 def _told(error: Exception) -> tuple[dict[str, Any], int]:
     """Return what to say about an exception, and the exit code."""
     from concio.errors import ConcioError
 
     if isinstance(error, ConcioError):
-        told = {"kind": type(error).__name__, "what": error.what, "where": error.where, "hint": error.hint}
+        told: dict[str, Any] = {"kind": type(error).__name__, "what": error.what}
+        told |= {"where": error.where, "hint": error.hint}
+        if error.verdict is not None:
+            told["verdict"] = error.verdict.as_dict()
         return told, error.exit_code
     if isinstance(error, MemoryError):
         hint = "use fewer elements per block, or a machine with more memory"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -44,12 +43,15 @@ def check_writable(target: Path) -> None:
     InputError
         The nearest directory that exists cannot be written to.
     """
+    from concio.io.hidden_dir import hidden_name
+
     try:
         nearest = target.resolve()
         while not nearest.is_dir():
             nearest = nearest.parent
-        with tempfile.TemporaryDirectory(dir=nearest, prefix=".concio."):
-            pass
+        tried = nearest / hidden_name()  # a name that is known for what it is where the process dies here
+        tried.mkdir()
+        tried.rmdir()
     except (OSError, RuntimeError, ValueError) as error:
         msg = f"cannot write there: {getattr(error, 'strerror', None) or error}"
         raise InputError(msg, where=str(target), hint="give another place") from None

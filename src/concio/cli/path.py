@@ -13,7 +13,7 @@ from concio.cli.progress import progress_bar
 from concio.cli.run import EngineOf, File, Json, UnitsOf, factors_of, loaded
 
 if TYPE_CHECKING:
-    from concio.analysis.path import ControlPoint, PathResult
+    from concio.analysis.path import ControlPoint
 
 
 @guarded
@@ -48,11 +48,11 @@ def path(
 ) -> int:
     """Follow a load path from event to event: which joint opens, closes, slips or sticks at which load.
 
-    Without --stage, the [[stages]] of the file are followed; where there are none, each load group is a stage, in the
-    order of the file.
+    Without --stage, the [[stages]] of the file are followed; where there are none, each load group is a stage: own
+    weight first, then the others in the order of the file.
 
-    The exit code is 0 where the end was reached, 3 where the structure carries no more before it, 4 where the path was
-    lost.
+    The exit code is 0 where every stage reached its load, 3 where the structure is shown to carry no more before that,
+    4 where something asked for was not reached, where own weight never acts, or where the path was lost.
 
     Example: concio path wall.toml --stage dead=1 --stage live=5 --point c10-b05,2.0,2.5 --until "20 mm"
     """
@@ -60,6 +60,7 @@ def path(
     from concio.analysis.path import Stage, run_path
     from concio.cli.path_lines import path_facts, path_lines, write_path
     from concio.errors import InputError
+    from concio.model.weights import usual_order
     from concio.post.path_curve import most_moving
     from concio.units import quantity
 
@@ -70,7 +71,9 @@ def path(
     if control is None and until is not None:
         msg = "--until is the motion of a control point, and there is none"
         raise InputError(msg, where="--until", hint="add --point BODY,X,Y")
-    wanted = [factors_of(text.split(",")) for text in stage or ()] or [{group: 1.0} for group in assembly.groups]
+    wanted = [factors_of(text.split(",")) for text in stage or ()] or [
+        {group: 1.0} for group in usual_order(assembly.model, assembly.groups)
+    ]
     stages = [Stage(f"{k}: {_words(factors)}", factors, steps=steps) for k, factors in enumerate(wanted, 1)]
     if not stage and assembly.model.stages:
         stages = list(assembly.model.stages)
@@ -91,14 +94,7 @@ def path(
             say(line)
         if out is not None:
             say(f"  written      {out}: summary.json, path.csv, events.csv, path.png, path.svg, report.html, end/")
-    return exit_code(found)
-
-
-def exit_code(found: PathResult) -> int:
-    """Return 0 where the end was reached, 3 where the structure carries no more, 4 where the path was lost."""
-    if found.complete:
-        return 0
-    return 3 if found.collapsed else 4
+    return found.verdict.exit_code
 
 
 def _words(factors: dict[str, float]) -> str:

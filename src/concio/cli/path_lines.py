@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -10,11 +11,15 @@ import numpy as np
 
 from concio.analysis.path import ControlPoint, PathResult
 from concio.analysis.path_result import NamedEvent
-from concio.cli.lines import counted
-from concio.display import number
+from concio.cli.lines import tie_lines
+from concio.display import counted, number
 from concio.io.csv_table import write_csv
 from concio.io.result_dir import write_result
-from concio.report.path_page import event_load, path_verdict, story, write_path_report
+from concio.report.path_page import event_load, write_path_report
+from concio.verdict.path_verdict import stage_loads, stage_sentence
+
+MOST_FINDINGS = 12
+"""More lines of one kind than this are counted; the report holds all."""
 
 MOST_EVENTS = 30
 """More events than this are counted, unless all are asked for."""
@@ -22,16 +27,17 @@ MOST_EVENTS = 30
 
 def path_lines(found: PathResult, point: ControlPoint, *, every: bool) -> list[str]:
     """Return the path as lines of text."""
-    lines = [found.assembly.model.title or "model without a title", path_verdict(found).headline, f"  {found.sentence}"]
+    verdict, title = found.verdict, found.assembly.model.title or "model without a title"
+    lines = [title, verdict.headline, f"  {verdict.sentence}"]
+    lines += verdict.lines(found.assembly.model.report, most=MOST_FINDINGS)
     motion, _ = found.curve(point)
-    units = found.assembly.model.report
-    for k, outcome in enumerate(found.outcomes):
+    units, farthest = found.assembly.model.report, float(np.abs(motion).max(initial=0.0))
+    for k in range(len(found.outcomes)):
         own = [i for i, step in enumerate(found.steps) if step.stage == k]
         events = [e for e in found.events if e.stage == k]
-        moved = f"; the point has moved {units.text('motion', motion[own[-1]], 4)}" if own else ""
-        name, values = found.load(k)
-        most = f"most {name} = {number(float(values.max()), 6)}, {counted(len(events), 'event')}{moved}"
-        lines += [f"stage {found.stages[k].name}: {outcome.value}", f"  {most}"]
+        moved = f"; the point has moved {units.text('motion', motion[own[-1]], 4, size=farthest)}" if own else ""
+        most = f"{stage_loads(found, k)}; {counted(len(events), 'event')}{moved}"
+        lines += [f"stage {found.stages[k].name}: {stage_sentence(found, k)}", f"  {most}"]
         shown = events if every else [e for e in events if e.parameter > 0]
         if at_once := len(events) - len(shown):
             lines.append(f"  at once: {counted(at_once, 'change')} of state as the stage begins")
@@ -40,9 +46,10 @@ def path_lines(found: PathResult, point: ControlPoint, *, every: bool) -> list[s
             lines.append(f"  ... and {len(shown) - MOST_EVENTS:,} more")
         if not every and (at_once or len(shown) > MOST_EVENTS):
             lines.append("  (--all lists every event)")
-    lines += [f"  {note}" for note in story(found)]
     for later in found.stages[len(found.outcomes) :]:
         lines.append(f"stage {later.name}: not begun")
+    if found.assembly.model.ties:
+        lines += tie_lines(found.result())
     at, along = ", ".join(f"{x:.4g}" for x in point.at), ", ".join(f"{x:.3g}" for x in point.direction)
     lines += [
         f"  point        '{point.body}' at ({at}) m, moving along ({along})",
@@ -62,8 +69,9 @@ def path_facts(found: PathResult, point: ControlPoint) -> dict[str, Any]:
     """Return the path as plain types."""
     motion, parameter = found.curve(point)
     return {
-        "status": "solved" if found.complete else found.outcomes[-1].name.lower(),
+        "status": found.verdict.status,
         "sentence": found.sentence,
+        "verdict": found.verdict.as_dict(),
         "title": found.assembly.model.title,
         "engine": found.assembly.model.engine,
         "stages": [
@@ -74,11 +82,15 @@ def path_facts(found: PathResult, point: ControlPoint) -> dict[str, Any]:
                 "peak": found.peak(k),
                 "load": found.load(k)[0],
                 "most": float(found.load(k)[1].max()),
+                "control": None if stage.control is None else {"body": stage.control.body, "until": stage.until},
+                "loads": [asdict(load) | {"applied": load.applied} for load in found.group_loads(k)],
             }
             for k, (stage, outcome) in enumerate(zip(found.stages, found.outcomes, strict=False))
         ],
         "certificate": {"worst": found.certificate},
         "energy_error": found.energy_error,
+        "ties": found.result().ties.as_list(),
+        "broken_ties": [{"name": name, "elongation": far} for name, far in found.broken_ties],
         "point": {"body": point.body, "at": list(point.at), "direction": list(point.direction)},
         "curve": {
             "stage": [step.stage for step in found.steps],
@@ -92,6 +104,12 @@ def path_facts(found: PathResult, point: ControlPoint) -> dict[str, Any]:
         "notes": list(found.notes),
         "lent_compliance": found.assembly.lent_compliance,
     }
+
+
+def _tensions(found: PathResult) -> dict[str, np.ndarray]:
+    """Return the tension of each tie at every step, as columns."""
+    forces = np.array([step.state.normal_force[found.assembly.ties] for step in found.steps])
+    return {f"tension {tie.name} [kN]": forces[:, k] for k, tie in enumerate(found.assembly.model.ties)}
 
 
 def write_path(found: PathResult, point: ControlPoint, place: Path) -> None:
@@ -108,6 +126,7 @@ def write_path(found: PathResult, point: ControlPoint, place: Path) -> None:
         "parameter [-]": parameter,
         "displacement [m]": motion,
         **{f"factor {g} [-]": np.array([s.factors[g] for s in found.steps]) for g in found.assembly.groups},
+        **_tensions(found),
     }
     write_csv(curve, place / "path.csv")
     events = {

@@ -46,8 +46,9 @@ def push(
         bool, typer.Option("--weights", help="Multiply a horizontal share of the weights, whatever groups there are.")
     ] = False,
     direction: Annotated[
-        Literal["x", "-x", "y", "-y"], typer.Option("--direction", "-d", help="Direction of a share of the weights.")
-    ] = "x",
+        Literal["x", "-x", "y", "-y"] | None,
+        typer.Option("--direction", "-d", help="Side to which the load pushes; of a share of the weights, x."),
+    ] = None,
     point: Annotated[str | None, typer.Option("--point", "-p", help="Control point: BODY,X,Y.")] = None,
     along: Annotated[Literal["x", "y", "-x", "-y"], typer.Option("--along", help="Direction of its motion.")] = "x",
     load: Annotated[bool, typer.Option("--load", help="Let the load grow instead of a displacement.")] = False,
@@ -68,7 +69,7 @@ def push(
     What is multiplied is the load group "live", other groups by --group, or a horizontal share of all weights.
 
     The exit code is 0 where the curve was followed to its end, 3 where the structure does not stand to begin with, 4
-    where the curve was lost.
+    where the curve was lost or stopped before its end.
 
     Example: concio push pillar.toml --out pushed --film gif
     """
@@ -85,7 +86,8 @@ def push(
     model = loaded(file, units, engine)
     kind = "number" if load else "length"
     sizes = [None if t is None else quantity(t, kind, where=w) for t, w in ((step, "--step"), (until, "--until"))]
-    towards = {"x": (1.0, 0.0), "-x": (-1.0, 0.0), "y": (0.0, 1.0), "-y": (0.0, -1.0)}[direction]
+    sides = {"x": (1.0, 0.0), "-x": (-1.0, 0.0), "y": (0.0, 1.0), "-y": (0.0, -1.0)}
+    towards = None if direction is None else sides[direction]
     with progress_bar(shown=not json) as progress:
         found = concio.push(
             model, control="load" if load else None if point is None else control_of(point, along),
@@ -105,4 +107,4 @@ def push(
             say(f"  written      {out}: {', '.join(written)}")
     if found.ending is PushEnding.STOPPED:
         return 130
-    return 4 if found.ending is PushEnding.NO_EQUILIBRIUM else 0
+    return found.verdict.exit_code

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -51,8 +52,8 @@ def shake(
     What the table [motion] of the file says holds where no option says otherwise. Ctrl-C stops the motion, and what was
     computed is kept.
 
-    The exit code is 0 where the motion was computed to its end, 3 where a block overturned, 4 where a step could not be
-    solved.
+    Without a duration the motion is followed until everything rests or a block has fallen. The exit code is 0 where the
+    structure comes to rest, 3 where it falls or does not stand to begin with, 4 where it still moves or a step failed.
 
     Example: concio shake pillar.toml --motion record.at2 --scale 0.3 --out shaken --film gif
     """
@@ -95,11 +96,16 @@ def shake(
             msg = "this is a push, no motion in time"
             raise InputError(msg, where=str(start), hint="give the motion.npz that shake wrote")
         options["start"] = earlier.end
+    own = motion is not None or pulse is not None or vertical is not None
+    factor_of_motion = (1.0 if own else table.scale) if scale is None else scale
     with progress_bar(shown=not json) as progress:
         found = concio.dynamics(
-            model, ground, scale=table.scale if scale is None else scale, factors=factors_of(factor), progress=progress,
+            model, ground, scale=factor_of_motion, factors=factors_of(factor), progress=progress,
             **options,
         )  # fmt: skip
+    if own and scale is None and table.scale != 1.0:
+        left = f"the scale of {table.scale:g} in the file belongs to its own ground motion and was not applied: --scale"
+        found = replace(found, notes=(*found.notes, left))
     written: list[str] = []
     if out is not None:
         with replaced_directory(out) as fresh:
@@ -111,7 +117,7 @@ def shake(
             say(line)
         if out is not None:
             say(f"  written      {out}: {', '.join(written)}")
-    return {Ending.STOPPED: 130, Ending.UNSOLVED: 4, Ending.OVERTURNED: 3}.get(found.ending, 0)
+    return 130 if found.ending is Ending.STOPPED else found.verdict.exit_code
 
 
 def _time(text: str, where: str) -> float:

@@ -11,12 +11,17 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from concio.cli.outcome import guarded, print_json, say
+from concio.cli.output import replaced_file
 from concio.cli.progress import duration
 from concio.cli.run import File, Json, Quiet
 
 if TYPE_CHECKING:
     from concio.studies.study import Progress, StudyProgress
     from concio.studies.study_result import StudyResult
+
+
+WRITTEN = ("table.csv", "report.html")
+"""What is written beside the rows when a sitting ends."""
 
 
 @guarded
@@ -39,52 +44,50 @@ def study(
     Example: concio study wall.toml --workers 2
     """
     import concio
+    from concio.errors import InputError
     from concio.io.csv_table import write_csv
+    from concio.io.owned_dir import add_own, is_own
     from concio.report.study_page import write_study_report
 
     directory = out if out is not None else file.with_name(f"{file.stem}-study")
+    for name in WRITTEN:
+        if (directory / name).exists() and not is_own(directory / name):
+            msg = "there is a file of that name that concio did not write, or that was changed since"
+            raise InputError(msg, where=str(directory / name), hint="move it, or give another directory with --out")
     executor = "dask" if scheduler == "local" else scheduler
     with study_bar(shown=not (json or quiet)) as progress:
         found = concio.study(
             file, directory=directory, executor=executor, workers=workers, resume=resume, progress=progress
         )
-    write_csv(found.table(), directory / "table.csv")
-    write_study_report(found, directory / "report.html", title=f"Study of {file.name}", figures=figures)
+    table, report = (directory / name for name in WRITTEN)
+    with replaced_file(table) as fresh:
+        write_csv(found.table(), fresh)
+    with replaced_file(report) as fresh:
+        write_study_report(found, fresh, title=f"Study of {file.name}", figures=figures)
+    add_own(directory, [table, report], begin=True)
     if json:
-        print_json({"status": "solved" if not found.failures else "undecided", **found.summary()})
+        print_json({"status": found.verdict.status, **found.summary()})
     elif not quiet:
         for line in study_lines(found, directory):
             say(line)
-    return 0 if not found.failures else 4
+    return found.verdict.exit_code
 
 
 def study_lines(found: StudyResult, directory: Path) -> list[str]:
     """Return what a study found, in words."""
-    import numpy as np
+    from concio.verdict.study_verdict import WORDS, output_words
 
-    from concio.display import number
-
+    verdict = found.verdict
     of = "" if len(found) == len(found.sample) else f" of {len(found.sample)}"
-    lines = [f"{len(found)}{of} runs, {found.sample.design} sample, seed {found.sample.seed}"]
+    lines = [f"{len(found)}{of} runs, {found.sample.design} sample, seed {found.sample.seed}", verdict.headline]
+    lines += [f"  {line}" for line in verdict.lines(indent="")]
     if found.stopped:
         lines.append("  stopped early: enough was known")
-    for word, count in found.verdicts.items():
-        lines.append(f"  {word.replace('_', ' '):22s} {count}")
-    random = found.sample.design in ("monte-carlo", "latin-hypercube", "sobol", "given")
-    for o in found.outputs:
-        values = found.values(o.name)
-        known = values[np.isfinite(values)]
-        unit = "" if o.unit == "-" else o.unit
-        if not len(known):
-            lines.append(f"  {o.name:22s} no run has a value")
-        elif random and np.isin(known, (0.0, 1.0)).all():
-            lines.append(f"  {o.name:22s} probability {found.probability(o.name)}")
-        else:
-            low, middle, high = (f"{number(float(x))} {unit}".strip() for x in np.quantile(known, (0.05, 0.5, 0.95)))
-            lines.append(f"  {o.name:22s} median {middle}, 5 to 95 % of runs from {low} to {high}")
+    lines += [f"  {WORDS.get(word, word.replace('_', ' ')):22s} {n}" for word, n in found.verdicts.items()]
+    lines += [f"  {o.name:22s} {output_words(found, o)}" for o in found.outputs]
     failed = found.failures
     if failed:
-        lines.append(f"  {len(failed)} runs came to no answer; the first: run {failed[0].index}, {failed[0].message}")
+        lines.append(f"  {len(failed)} runs have a fault; the first: run {failed[0].index}, {failed[0].message}")
     lines.append(f"  report                 {directory / 'report.html'}")
     lines.append(f"  table                  {directory / 'table.csv'}")
     return lines

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,10 +12,11 @@ import scipy.sparse as sp
 from concio.arguments import closest, strict
 from concio.contact.factors import load_factor
 from concio.contact.geometry import GEOMETRIES
-from concio.contact.inertia import lumped_masses
+from concio.contact.inertia import masses
 from concio.contact.loads import load_vectors
-from concio.contact.pairs import Pairs, pair_laws
+from concio.contact.pairs import CONTACT_MODELS, Pairs, pair_laws
 from concio.contact.periodic import held_at_a_point, strain_groups
+from concio.contact.separate import bare, merged, separate_groups
 from concio.contact.supports import Supported, apply_supports, moved_obstacles
 from concio.contact.ties import add_ties
 from concio.errors import GeometryError, InputError
@@ -26,6 +27,11 @@ from concio.problem.contact_problem import ContactProblem, Laws
 from concio.representation import short_repr
 
 Array = np.ndarray
+
+PRESTRESS = "prestress"
+"""Name of the factor of the prestress of ties, which is no load group: 1 but where a path puts it on."""
+
+TIE = CONTACT_MODELS.index("tie")
 
 
 @short_repr
@@ -69,6 +75,26 @@ class Assembly:
         """Names of the groups that load factors scale."""
         return tuple(dict.fromkeys([*self.loads, *self.moved, *self.supported.imposed]))
 
+    @cached_property
+    def prestress(self) -> Array:
+        """Part of the initial gap of each pair (m,) that the prestress of ties makes, none positive [m]."""
+        shortened = np.zeros(len(self.pairs))
+        shortened[self.ties] = [-t.prestress / t.stiffness for t in self.model.ties]
+        return shortened
+
+    @cached_property
+    def ties(self) -> Array:
+        """Numbers (k,) of the pairs that stand for the ties of the model, in its order."""
+        return np.flatnonzero(self.pairs.rule == TIE)
+
+    def elongations(self, q: Array, factors: Mapping[str, float] | None = None) -> Array:
+        """Return how far the ties (k,) are stretched, of the free unknowns q (N,), prestress not counted [m]."""
+        closing = self.pairs.C_n @ self.displacement(q, factors)
+        for group, (normal, _) in self.moved.items():
+            closing = closing + load_factor(factors, group) * normal
+        found: Array = -closing[self.ties]
+        return found
+
     def imposed(self, factors: Mapping[str, float] | None = None) -> Array:
         """Return the imposed part u0 (N_all,) of the displacements under load factors [m]."""
         u0 = np.zeros(self.disc.unknowns)
@@ -83,8 +109,17 @@ class Assembly:
             f += load_factor(factors, group) * vector
         return f
 
-    def problem(self, factors: Mapping[str, float] | None = None) -> ContactProblem:
+    def problem(
+        self, factors: Mapping[str, float] | None = None, *, like: ContactProblem | None = None
+    ) -> ContactProblem:
         """Return the contact problem under load factors; a group that is not named has factor 1 (a strain 0).
+
+        Parameters
+        ----------
+        factors : mapping of str to float, optional
+            That of :data:`PRESTRESS` multiplies the prestress of ties, besides loads of that group.
+        like : ContactProblem, optional
+            A problem of this assembly under other factors: its matrices are shared, which no factor changes.
 
         Raises
         ------
@@ -92,22 +127,25 @@ class Assembly:
             A factor names a group that does not exist.
         """
         for group in factors or {}:
-            if group not in self.groups:
+            if group not in self.groups and group != PRESTRESS:
                 msg = f"there is no load group '{group}'"
                 raise InputError(msg, hint=closest(group, self.groups, names="groups"))
         T = self.supported.T
         u0 = self.imposed(factors)
         C_n, C_t = self.pairs.C_n, self.pairs.C_t
-        gap = self.pairs.gap + C_n @ u0
+        gap = self.pairs.gap + (load_factor(factors, PRESTRESS) - 1.0) * self.prestress + C_n @ u0
         origin = -(C_t @ u0).reshape(len(gap), self.model.dim - 1)
         for group, (normal, tangential) in self.moved.items():
             gap = gap + load_factor(factors, group) * normal
             origin = origin - load_factor(factors, group) * tangential
         loads = T.T @ self.load(factors)
+        f = loads - T.T @ (self.K @ u0)
+        if like is not None:
+            return replace(like, f=f, load=loads, gap=gap, slip_origin=origin)
         return ContactProblem(
             K=sp.csr_array(T.T @ self.K @ T),
-            f=loads - T.T @ (self.K @ u0),
-            load=float(np.abs(loads).sum()),
+            f=f,
+            load=loads,
             C_n=sp.csr_array(C_n @ T),
             C_t=sp.csr_array(C_t @ T),
             gap=gap,
@@ -120,11 +158,10 @@ class Assembly:
         )
 
     @cached_property
-    def inertia(self) -> Array:
-        """Mass that goes with each free unknown (N,) [t]."""
+    def inertia(self) -> sp.csr_array:
+        """Mass matrix of the free unknowns (N, N) [t]."""
         T = self.supported.T
-        masses: Array = T.multiply(T).T @ lumped_masses(self.disc)
-        return masses
+        return sp.csr_array(T.T @ masses(self.disc) @ T)
 
     def displacement(self, q: Array, factors: Mapping[str, float] | None = None) -> Array:
         """Return the displacements (N_all,) of all bodies from the free unknowns q (N,) [m]."""
@@ -152,8 +189,20 @@ def default_tolerance(model: Model) -> float:
 
 
 def detect(model: Model) -> Detection:
-    """Return the interfaces of a model with the report of what was dropped or overlaps."""
-    return GEOMETRIES[model.dim].detect(model, default_tolerance(model))
+    """Return the interfaces of a model with the report of what was dropped or overlaps.
+
+    Structures that stand apart are looked at one by one: the tolerance of each is 1e-6 of its own size, unless the
+    model gives one.
+    """
+    geometry = GEOMETRIES[model.dim]
+    groups = [np.arange(len(model.bodies))] if model.periods is not None else separate_groups(model)
+    if not groups or len(groups[0]) == len(model.bodies):
+        return geometry.detect(model, default_tolerance(model))
+    found = []
+    for group in groups:
+        part = bare(model, group)
+        found.append((group, geometry.detect(part, default_tolerance(part))))
+    return merged(found)
 
 
 def detect_without_overlap(model: Model) -> Detection:
@@ -228,6 +277,10 @@ def assemble(model: Model) -> Assembly:
     held = bool(model.ties) or bool({s.body for s in model.supports} & {b.name for b in model.free_bodies})
     if not detection.interfaces and not held:
         msg = "no two bodies touch: there is no interface at all"
+        if detection.near_misses:
+            first = detection.near_misses[0].sentence
+            others = len(detection.near_misses) - 1
+            msg = f"no joint was made at all: {first}" + (f"; {others} more such places" if others else "")
         raise InputError(msg, hint="look at the model with 'concio check'; raise gap_tolerance if the drawing has gaps")
     pairs = geometry.pairs(disc, detection) if detection.interfaces else _no_pairs(disc)
     laws = pair_laws(model, pairs)

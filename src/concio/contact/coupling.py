@@ -21,6 +21,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from concio.contact.joint_points import joint_rule
 from concio.fem.edge_integral import edge_weights, gauss, lagrange, pieces
 
 Array = np.ndarray
@@ -115,7 +116,8 @@ def couple(a: Line | None, b: Line | None, length: float, points: int = 2) -> Co
     a, b = (None if line is None else cut(line, length) for line in (a, b))
     if a is None and b is None:
         model = "ends of the joint" if points == 2 else "points along the joint"
-        return Coupling(np.linspace(0.0, length, points), simpson(points) * length, None, None, model)
+        at, share = joint_rule(points)
+        return Coupling(at * length, share * length, None, None, model)
     if a is not None and b is not None and match(a, b, length):
         weights = edge_weights(a.at, a.order, 0.0, length)
         pair = np.arange(len(a.at))
@@ -127,15 +129,6 @@ def couple(a: Line | None, b: Line | None, length: float, points: int = 2) -> Co
         return Coupling(at, weights, other, own)
     at, weights, own, other = _mortar(a, b, length)
     return Coupling(at, weights, own, other)
-
-
-def simpson(points: int) -> Array:
-    """Return the weights of the pairs between two rigid sides: trapezium for two, composite Simpson for odd numbers."""
-    if points == 2:
-        return np.array([0.5, 0.5])
-    weights = np.ones(points)
-    weights[1:-1:2], weights[2:-1:2] = 4.0, 2.0
-    return weights / (3.0 * (points - 1))
 
 
 def _mortar(slave: Line, master: Line | None, length: float) -> tuple[Array, Array, Side, Side | None]:

@@ -14,12 +14,13 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.contact.coupling import Line, Side, couple
+from concio.contact.joint_points import points_along
 from concio.contact.sides import FacingSides
+from concio.errors import InputError
 from concio.fem.discretisation import FIXED, Discretisation
 from concio.kinematics.frames import turned_left
 from concio.kinematics.rigid import rigid_row
 from concio.model.interfaces.detect import Interface
-from concio.model.materials import JointLaw
 from concio.model.model import Model
 from concio.problem.contact_problem import Laws
 from concio.representation import short_repr
@@ -52,7 +53,7 @@ class Pairs:
     tangents : (m, d-1, d) array
         Unit vectors: in the plane n turned left, in space two that are right-handed with n.
     length : (m,) array
-        Tributary length along the interface; in space the root of the tributary area [m].
+        Tributary length along the interface [m]; nan in space, where an area is what a pair has.
     area : (m,) array
         Tributary area [m2].
     gap : (m,) array
@@ -88,7 +89,16 @@ class Pairs:
 
     @property
     def tangent(self) -> Array:
-        """The first tangent of each pair (m, d); in the plane the only one."""
+        """The tangent of each pair (m, 2), of plane models; in space each pair has two, see ``tangents``.
+
+        Raises
+        ------
+        InputError
+            The model is in space.
+        """
+        if self.tangents.shape[1] != 1:
+            msg = "a contact pair in space has two tangents, and friction a component along each"
+            raise InputError(msg, hint="they are in pairs.tangents (m, 2, 3)")
         first: Array = self.tangents[:, 0]
         return first
 
@@ -119,7 +129,7 @@ def make_pairs(disc: Discretisation, interfaces: Sequence[Interface]) -> Pairs:
     unit = 1e-9 * float(np.median(disc.reach))
     first_a, forwards_a, key_a = place(disc, sides.a, sides.edge_a, sides.p_a, sides.q_a, sides.start, along, unit)
     first_b, forwards_b, key_b = place(disc, sides.b, sides.edge_b, sides.p_b, sides.q_b, sides.start, along, unit)
-    points = np.array([_points(model.laws[name]) for name in model.laws])[law]
+    points = np.array([points_along(x.compressive_strength, x.normal_stiffness) for x in model.laws.values()])[law]
     keys = np.column_stack([key_a, key_b, np.round(length / unit).astype(np.int64), points])
     _, example, group = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     couplings = [
@@ -182,7 +192,10 @@ def make_pairs(disc: Discretisation, interfaces: Sequence[Interface]) -> Pairs:
 
 
 def pair_laws(model: Model, pairs: Pairs) -> Laws:
-    """Return the laws of the pairs as forces and lengths: strengths times area, compliance over area."""
+    """Return the laws of the pairs as forces and lengths: strengths times area, compliance over area.
+
+    What is apart at first is not bonded: pairs with an initial gap have friction, but no cohesion and no tension.
+    """
     laws = [model.laws[name] for name in pairs.law_names]
 
     def table(name: str, missing: float = 0.0) -> Array:
@@ -196,20 +209,16 @@ def pair_laws(model: Model, pairs: Pairs) -> Laws:
         stiffness = table(name, np.inf) * area
         return np.where(np.isfinite(stiffness), 1.0 / stiffness, 0.0)
 
+    bonded = np.where(pairs.gap > 0, 0.0, area)
     return Laws(
         friction=table("friction"),
-        cohesion=table("cohesion") * area,
-        tension=table("tensile_strength") * area,
+        cohesion=table("cohesion") * bonded,
+        tension=table("tensile_strength") * bonded,
         dilatancy=table("dilatancy"),
         normal_compliance=compliance("normal_stiffness"),
         tangential_compliance=compliance("tangential_stiffness"),
         cap=table("compressive_strength", np.inf) * area,
     )
-
-
-def _points(law: JointLaw) -> int:
-    """Return how many pairs an interface of two rigid sides gets under a law."""
-    return 9 if law.compressive_strength is not None else 5 if law.normal_stiffness is not None else 2
 
 
 def laws_of(model: Model, a: Array, b: Array) -> tuple[Array, Array]:

@@ -16,7 +16,7 @@ from concio.fem.solid import SolidShape
 from concio.fem.solid_mesh import Mark
 from concio.kinematics.frames import tangents
 from concio.kinematics.rigid import motions, rigid_row
-from concio.model.interfaces.patches import Patch
+from concio.model.interfaces.patch import Patch
 from concio.model.materials import JointLaw
 from concio.model.model import Model
 
@@ -50,7 +50,8 @@ def make_patch_pairs(disc: Discretisation, patches: Sequence[Patch]) -> Pairs:
     normal = np.array([p.normal for p in patches])
     frame = np.concatenate([normal[:, None], tangents(normal)], axis=1)  # (p, 3, 3): n, t1, t2
     points = np.array([_points(model, model.laws[name]) for name in model.laws])[law]
-    place, area, rule, of_patch = _stated(disc, patches, points)
+    crushes = np.array([x.compressive_strength is not None for x in model.laws.values()])[law]
+    place, area, rule, of_patch = _stated(disc, patches, points, crushes)
     count = np.array([len(x) for x in place])
     face = np.repeat(np.arange(len(patches)), count)
     where = np.concatenate(place)
@@ -63,7 +64,7 @@ def make_patch_pairs(disc: Discretisation, patches: Sequence[Patch]) -> Pairs:
         point=where,
         normal=normal[face],
         tangents=frame[face, 1:],
-        length=np.sqrt(patch_area),
+        length=np.full(len(patch_area), np.nan),
         area=patch_area,
         gap=np.concatenate([patches[k].gap_at(place[k]) for k in range(len(patches))]) + opening[face],
         law=law[face],
@@ -75,7 +76,7 @@ def make_patch_pairs(disc: Discretisation, patches: Sequence[Patch]) -> Pairs:
 
 
 def _stated(
-    disc: Discretisation, patches: Sequence[Patch], points: Array
+    disc: Discretisation, patches: Sequence[Patch], points: Array, crushes: Array
 ) -> tuple[list[Array], list[Array], Array, dict[int, PatchCoupling]]:
     """Return where contact is stated on each patch, with areas, the rule, and the couplings of meshed patches.
 
@@ -85,6 +86,8 @@ def _stated(
     patches : sequence of Patch
     points : (p,) integer array
         Points along each side of patches that are not meshed; 0 for their corners.
+    crushes : (p,) boolean array
+        Patches whose pressure has a cap: there points are graded towards the boundary.
     """
     a, b = np.array([(p.a, p.b) for p in patches]).T
     meshed = (disc.shape_of[a] >= 0) | (disc.shape_of[b] >= 0)
@@ -99,7 +102,7 @@ def _stated(
             place[k], area[k] = x, w
         rule[corner] = CONTACT_MODELS.index("corners of the patch")
     for k in np.flatnonzero(~meshed & (points > 0)).tolist():
-        place[k], area[k] = spread_points(patches[k], int(points[k]))
+        place[k], area[k] = spread_points(patches[k], int(points[k]), graded=bool(crushes[k]))
         rule[k] = CONTACT_MODELS.index("points over the patch")
     couplings: dict[tuple[object, ...], PatchCoupling] = {}
     of_patch: dict[int, PatchCoupling] = {}

@@ -2,7 +2,7 @@
 
 A bar of stiffness k and prestress T0 between points a and b carries ``T = max(0, T0 + k e)`` with the elongation e. As
 a pair: C_n u = -e, compliance 1/k, initial gap -T0/k, so ``0 <= y_n = -T0/k - e + T/k _|_ T >= 0``. It has no friction.
-A bar that yields is a pair with a cap.
+A bar that yields is a pair with a cap, and so is one that breaks: it never carries more than as it breaks.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def add_ties(disc: Discretisation, pairs: Pairs, laws: Laws) -> tuple[Pairs, Law
         C_t=sp.csr_array(sp.vstack([pairs.C_t, sp.csr_array((n * (disc.dim - 1), disc.unknowns))])),
         rule=np.concatenate([pairs.rule, np.full(n, CONTACT_MODELS.index("tie"))]),
     )
-    tie_laws = Laws(zero, zero, zero, zero, 1.0 / stiffness, zero, np.array([t.most for t in ties]))
+    tie_laws = Laws(zero, zero, zero, zero, 1.0 / stiffness, zero, np.array([t.strength for t in ties]))
     names = Laws.__dataclass_fields__
     return joined, Laws(*(np.concatenate([getattr(laws, name), getattr(tie_laws, name)]) for name in names))
 

@@ -76,6 +76,16 @@ class Meshed:
         return weights
 
     @cached_property
+    def mass(self) -> sp.csr_array:
+        """Integrals of the products of two shape functions (n, n) [m3]: the mass of density one, symmetric."""
+        el = self.elements
+        if el.connectivity.shape[1] == self.dim + 1:  # linear on simplices: fewer points than products need
+            mass = _mass_of_simplices(el, self.thickness)
+        else:
+            mass = el.N.T @ (sp.diags_array(el.weights * self.thickness) @ el.N)
+        return sp.csr_array((mass + mass.T) * 0.5)
+
+    @cached_property
     def stress_operator(self) -> sp.csr_array:
         """D B (s q, d n): stresses at the integration points from displacements."""
         return sp.csr_array(sp.kron(sp.eye_array(len(self.elements.weights)), self.D) @ self.elements.B)
@@ -92,6 +102,16 @@ class Meshed:
         w = self.elements.weights / self.elements.weights.sum()
         mean = sp.csr_array(sp.kron(w[None, :], np.eye(len(self.D))))
         return np.asarray((mean @ self.stress_operator).todense())
+
+
+def _mass_of_simplices(el: Elements, thickness: float) -> sp.csr_array:
+    """Return the mass (n, n) of linear triangles or tetrahedra: V (1 + delta_ij) / ((d + 1) (d + 2)) each."""
+    nodes = el.connectivity
+    k = nodes.shape[1]
+    volume = np.bincount(el.cell_of_point, el.weights, len(nodes)) * thickness
+    value = volume[:, None, None] * (1.0 + np.eye(k)) / (k * (k + 1))
+    row, column = np.repeat(nodes, k, axis=1), np.tile(nodes, (1, k))
+    return sp.csr_array((value.ravel(), (row.ravel(), column.ravel())), shape=(len(el.nodes), len(el.nodes)))
 
 
 @short_repr

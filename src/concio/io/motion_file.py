@@ -55,6 +55,11 @@ def _event(v: object) -> bool:
 
 PLAIN: dict[str, Callable[[object], bool]] = {
     "gravity": _number, "seconds": _number, "lent_compliance": _number,
+    "begun": _number, "ground_ends": _number, "stated": lambda v: v is None or _number(v),
+    "until": lambda v: v is None or _number(v), "by_load": lambda v: isinstance(v, bool),
+    "reversed": lambda v: isinstance(v, bool), "asked": lambda v: isinstance(v, str), "fallen": _words,
+    "rests": lambda v: isinstance(v, bool),
+    "stands": lambda v: v is None or isinstance(v, bool),
     "reactions_of": _words, "notes": _words, "live": _words,
     "points": _all(ControlPoint),
     "events": lambda v: isinstance(v, tuple) and all(_event(e) for e in v),
@@ -73,7 +78,15 @@ UNREADABLE = (
 _PARTS = {
     c.__name__: c
     for c in (
-        Shots, Steps, EnergyBalance, Scheme, Memory, TieMemory, MotionState, ControlPoint, JointEvent,
+        Shots,
+        Steps,
+        EnergyBalance,
+        Scheme,
+        Memory,
+        TieMemory,
+        MotionState,
+        ControlPoint,
+        JointEvent,
     )
 }
 _ENDINGS: dict[str, type[Ending] | type[PushEnding]] = {"Ending": Ending, "PushEnding": PushEnding}

@@ -8,35 +8,33 @@ A later run into the same place replaces what is listed and unchanged, and keeps
 holds other things and no such list, one whose listed files were changed by hand, and one in which something else has a
 name that it needs.
 
-Files are written into a hidden directory inside the wanted one and moved into place when all of them are complete; the
-list goes first and comes last. An interruption leaves what was there before. A run that is killed leaves its hidden
-directory, which the next run into that place removes.
+Files are written into a hidden directory inside the wanted one (:mod:`concio.io.hidden_dir`) and take their place when
+all of them are complete. Before the first file moves, the list says what is to come: the files that were there
+(``before``), those that will be (``files``), and the hidden directory they come from (``swap``). Then the old files go
+aside, the new ones come, and a list without these two words ends it. A fault on the way undoes all of it. A process
+that is killed leaves the list that says what was to come: whoever looks next finds every listed file either as it was
+or as it will be, and the next run into that place, or whoever reads from it, carries on from there. A new file never
+replaces another: it is linked to its place, which fails where something is. A file that goes aside is compared with its
+checksum once more there, so that one that was changed in the last moment goes back. Runs that write into one directory
+at the same time put their files there one after the other.
 """
 
 from __future__ import annotations
 
-import hashlib
-import json
+import errno
 import os
-import re
-import shutil
-import socket
-import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
-import concio
 from concio.errors import ConcioError, InputError
+from concio.io.hidden_dir import hidden_directory, is_hidden, is_left, locked, remove
+from concio.io.listing import CONTENTS, Listing, checksum_of, read_list, write_list
 
-CONTENTS = "concio.json"
-FORMAT, VERSION = "concio contents", 1
-LARGEST_LIST = 50_000_000
-"""A longer list of contents is not believed [bytes]."""
-FORGOTTEN = 86_400.0
-"""Where processes cannot be asked whether they live, what they left is removed after a day [s]."""
-_HIDDEN = re.compile(r"\.concio-(?P<host>.*)-(?P<pid>\d+)")
+
+class UnfinishedError(Exception):
+    """A fault that could not be undone: the hidden directory is kept, and the next run goes on from it."""
 
 
 @dataclass(frozen=True)
@@ -86,25 +84,32 @@ def look_at(directory: Path | str) -> Place:
         msg = "this is a file; results need a directory"
         raise InputError(msg, where=where, hint="give another name")
     try:
-        left = tuple(p for p in path.iterdir() if _forgotten(p))
-        files = _files(path)
-        listed = contents(path)
+        with locked(path, where):
+            return _look(path, where)
     except OSError as error:
         msg = f"the directory cannot be looked at: {error.strerror or error}"
         raise InputError(msg, where=where) from None
-    if listed is None:
+
+
+def _look(path: Path, where: str) -> Place:
+    left = tuple(p for p in path.iterdir() if is_left(p))
+    files = _files(path)
+    listing = read_list(path)
+    if listing is None:
         if files:
             msg = "the directory holds other things than results of concio"
             hint = "give the name of a new or empty directory; nothing was changed"
             raise InputError(msg, where=where, hint=hint)
         return Place(path, left=left)
-    own = [name for name in files if name in listed]
-    changed = [name for name in own if _checksum(path / name) != listed[name]]
+    own = [name for name in files if name in listing.names]
+    changed = [name for name in own if not listing.own(name, checksum_of(path / name))]
     if changed:
         names = ", ".join(changed[:5])
         msg = f"{names} {'was' if len(changed) == 1 else 'were'} changed since concio wrote the directory"
         raise InputError(msg, where=where, hint="move what you want to keep, or give another directory")
-    return Place(path, tuple(own), tuple(name for name in files if name not in listed and name != CONTENTS), left)
+    folders = {f"{p.as_posix()}/" for name in listing.names for p in Path(name).parents}  # emptied by a killed run
+    kept = [name for name in files if name not in own and name != CONTENTS and name not in folders]
+    return Place(path, tuple(own), tuple(kept), left)
 
 
 @contextmanager
@@ -114,72 +119,116 @@ def owned_directory(directory: Path | str) -> Iterator[Path]:
     Raises
     ------
     InputError
-        As :func:`look_at`; or something that concio did not write has a name that is needed.
+        As :func:`look_at`; or something that concio did not write has a name that is needed; or another run keeps the
+        directory locked.
     ConcioError
         The files cannot be written, for instance because the disk is full; what was there is as it was.
     """
-    place = look_at(directory)
-    made: list[Path] = []
-    hidden = place.path / f".concio-{_host()}-{os.getpid()}"
+    place, where = look_at(directory), str(directory)
+    missing = [p for p in (place.path, *place.path.parents) if not p.exists()]
     try:
-        made = _make(place.path)
-        for left in (*place.left, hidden):
-            shutil.rmtree(left, ignore_errors=True)
-        hidden.mkdir()
-        new = hidden / "new"
-        new.mkdir()
-        yield new
-        _put_in_place(place, new, hidden, str(directory))
+        with hidden_directory(place.path) as hidden:
+            try:
+                with locked(place.path, where):
+                    _clear(place.path)
+                new = hidden / "new"
+                new.mkdir()
+                yield new
+                with locked(place.path, where):
+                    _clear(place.path)
+                    _swap(place.path, hidden, where)
+            except UnfinishedError:
+                raise
+            except BaseException:
+                remove(hidden)
+                _remove_made(missing)
+                raise
+            remove(hidden)
+    except UnfinishedError as error:
+        msg = f"the result cannot be written, and what was there could not be put back: {error}"
+        raise ConcioError(msg, where=where, hint="the next run into this directory goes on from it") from error
     except OSError as error:
-        _clean(hidden, made)
         msg = f"the result cannot be written: {error.strerror or error}"
         hint = "choose another place; nothing was changed"
-        raise ConcioError(msg, where=str(directory), hint=hint) from error
-    except BaseException:
-        _clean(hidden, made)
-        raise
-    shutil.rmtree(hidden, ignore_errors=True)
+        raise ConcioError(msg, where=where, hint=hint) from error
+
+
+def settle(directory: Path | str) -> None:
+    """End what a killed run had begun to move in a directory, before it is read; nothing where there is no such thing.
+
+    Raises
+    ------
+    InputError
+        Files are on the move and do not come to rest, or what was begun cannot be ended.
+    """
+    root, where = Path(os.path.realpath(directory)), str(directory)
+    listing = read_list(root) if root.is_dir() else None
+    if listing is None or not listing.swap:
+        return
+    hint = "make the directory writable, or run again into it"
+    try:
+        with locked(root, where):
+            _finish(root)
+    except OSError as error:
+        msg = f"a run was killed while it put its files there, and they cannot be moved: {error.strerror or error}"
+        raise InputError(msg, where=where, hint=hint) from None
+    listing = read_list(root)
+    if listing is not None and listing.swap:
+        msg = "a run was killed while it put its files there: some are of another run"
+        raise InputError(msg, where=where, hint=hint)
 
 
 def contents(path: Path) -> dict[str, str] | None:
     """Return the files that concio wrote into a directory with their checksums, None where it has no list of them."""
-    listing = path / CONTENTS
-    if listing.is_symlink() or not listing.is_file() or listing.stat().st_size > LARGEST_LIST:
-        return None
-    try:
-        data = json.loads(listing.read_text(encoding="utf-8"))
-    except (ValueError, RecursionError):
-        return None
-    files = data.get("files") if isinstance(data, dict) and data.get("format") == FORMAT else None
-    if not isinstance(files, dict) or not all(isinstance(k, str) and isinstance(v, str) for k, v in files.items()):
-        return None
-    return {name: checksum for name, checksum in files.items() if _is_inside(name)}
+    listing = read_list(path)
+    return None if listing is None else {**listing.before, **listing.files}
 
 
 def is_own(path: Path) -> bool:
     """Tell whether a file is one that concio wrote into a directory of its own, and nobody changed."""
     real = Path(os.path.realpath(path))
-    listed = contents(real.parent)
-    return listed is not None and real.is_file() and listed.get(real.name) == _checksum(real)
+    listing = read_list(real.parent)
+    return listing is not None and listing.own(real.name, checksum_of(real))
 
 
-def add_own(directory: Path, paths: Sequence[Path]) -> None:
-    """Add files to the list of a directory, where it has one: what is exported into a result goes when it goes."""
+def add_own(directory: Path, paths: Sequence[Path], *, begin: bool = False) -> None:
+    """Add files to the list of a directory: what is exported into a result goes when it goes.
+
+    Parameters
+    ----------
+    directory : Path
+    paths : sequence of Path
+    begin : bool
+        Whether a list is begun where there is none; otherwise nothing is done there.
+    """
     root = Path(os.path.realpath(directory))
-    listed = contents(root)
-    if listed is None:
+    if not begin and read_list(root) is None:
         return
-    for path in paths:
-        real = Path(os.path.realpath(path))
-        if real.is_relative_to(root) and real.is_file():
-            listed[real.relative_to(root).as_posix()] = _checksum(real)
-    _write_list(root, listed)
+    with hidden_directory(root) as hidden:
+        with locked(root, str(directory)):
+            _finish(root)
+            listing = read_list(root) or Listing()
+            for path in paths:
+                real = Path(os.path.realpath(path))
+                if real.is_relative_to(root) and real.is_file():
+                    listing.files[real.relative_to(root).as_posix()] = checksum_of(real)
+            write_list(root, hidden, listing)
+        remove(hidden)
 
 
-def _is_inside(name: str) -> bool:
-    """Tell whether a name in a list is one of a file in the directory."""
-    pure = PurePosixPath(name)
-    return bool(name) and not pure.is_absolute() and ".." not in pure.parts and "\\" not in name and "\0" not in name
+def _clear(root: Path) -> None:
+    """End what killed runs had begun, and remove what they left; the caller holds the lock."""
+    _finish(root)
+    for path in root.iterdir():
+        if is_left(path):
+            remove(path)
+
+
+def _remove_made(made: Sequence[Path]) -> None:
+    """Remove directories that were made, the innermost first, as far as they are empty."""
+    with suppress(OSError):
+        for path in made:
+            path.rmdir()
 
 
 def _files(path: Path) -> list[str]:
@@ -188,7 +237,7 @@ def _files(path: Path) -> list[str]:
     for folder, folders, names in os.walk(path):
         here = Path(folder)
         if here == path:
-            folders[:] = [name for name in folders if not _HIDDEN.fullmatch(name)]
+            folders[:] = [name for name in folders if not is_hidden(name)]
         links = [name for name in folders if (here / name).is_symlink()]
         found += [(here / name).relative_to(path).as_posix() for name in (*names, *links)]
         if here != path and not folders and not names:
@@ -196,91 +245,141 @@ def _files(path: Path) -> list[str]:
     return sorted(found)
 
 
-def _forgotten(path: Path) -> bool:
-    """Tell whether a path is the hidden directory of a run that is over."""
-    match = _HIDDEN.fullmatch(path.name)
-    if match is None or path.is_symlink() or not path.is_dir():
-        return False
-    old = time.time() - path.stat().st_mtime > FORGOTTEN
-    if os.name != "posix" or match["host"] != _host():
-        return old
-    try:
-        os.kill(int(match["pid"]), 0)
-    except (ProcessLookupError, OverflowError):
-        return True
-    except OSError:
-        return False
-    return int(match["pid"]) == os.getpid()
+def _swap(root: Path, hidden: Path, where: str) -> None:
+    """Put the files of ``hidden/new`` into ``root`` in place of those that concio wrote; the caller holds the lock.
 
-
-def _host() -> str:
-    return re.sub(r"[^A-Za-z0-9]", "", socket.gethostname())[:40]
-
-
-def _checksum(path: Path) -> str:
-    if path.is_symlink() or not path.is_file():
-        return ""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def _make(path: Path) -> list[Path]:
-    """Make a directory with its parents; return those that were made, the innermost first."""
-    missing = [p for p in (path, *path.parents) if not p.exists()]
-    path.mkdir(parents=True, exist_ok=True)
-    return missing
-
-
-def _clean(hidden: Path, made: Sequence[Path]) -> None:
-    shutil.rmtree(hidden, ignore_errors=True)
-    with suppress(OSError):
-        for path in made:
-            path.rmdir()
-
-
-def _write_list(path: Path, files: Mapping[str, str]) -> None:
-    tree = {"format": FORMAT, "format_version": VERSION, "concio": concio.__version__, "files": dict(files)}
-    fresh = path / f"{CONTENTS}.{os.getpid()}"
-    fresh.write_text(json.dumps(tree, indent=1) + "\n", encoding="utf-8")
-    fresh.replace(path / CONTENTS)
-
-
-def _put_in_place(place: Place, new: Path, hidden: Path, where: str) -> None:
-    """Move what concio wrote before out of the way and the new files into place; undo all of it where one fails."""
-    root = place.path
+    Raises
+    ------
+    InputError
+        Something that concio did not write, or that was changed since, has a name that is needed; all is as it was.
+    OSError
+        A file cannot be moved; all is as it was.
+    UnfinishedError
+        Neither the swap nor its undoing could be ended.
+    """
+    new, listing = hidden / "new", read_list(root) or Listing()
     names = sorted(p.relative_to(new).as_posix() for p in new.rglob("*") if p.is_file())
-    listed = {name: _checksum(new / name) for name in names}
-    own = set(place.owned)
-    for name in names:
-        in_the_way = [p for p in (root / name, *(root / name).parents) if p.is_relative_to(root) and p != root]
-        for p in in_the_way:
-            folder = p != root / name
-            if os.path.lexists(p) and p.relative_to(root).as_posix() not in own and not (folder and _is_folder(p)):
-                msg = f"'{p.relative_to(root)}' is in the way, which concio did not write"
-                raise InputError(msg, where=where, hint="move it, or give another directory")
+    files = {name: checksum_of(new / name) for name in names}
+    found = {name: checksum_of(root / name) for name in sorted(listing.names)}
+    before = {name: checksum for name, checksum in found.items() if listing.own(name, checksum)}
+    _check_way(root, names, set(before), where)
     done: list[tuple[Path, Path]] = []
     try:
-        for name in place.owned:
+        write_list(root, hidden, Listing(files, before, hidden.name))
+        for name, checksum in before.items():
             _move(root / name, hidden / "old" / name, done)
+            if checksum_of(hidden / "old" / name) != checksum:
+                msg = f"{name} was changed while the run put its files there"
+                raise InputError(msg, where=where, hint="move what you want to keep, or give another directory")
+        _remove_empty(root, before)
         for name in names:
-            _move(new / name, root / name, done)
-        _write_list(root, listed)
-    except BaseException:
-        for start, end in reversed(done):
-            with suppress(OSError):
-                end.rename(start)
+            try:
+                _move(new / name, root / name, done)
+            except (FileExistsError, NotADirectoryError):
+                raise _in_the_way(Path(name), where) from None
+        write_list(root, hidden, Listing(files))
+    except BaseException as error:
+        if not _undone(root, hidden, listing, done):
+            raise UnfinishedError(str(error)) from error
         raise
-    for emptied in sorted({p for name in place.owned for p in (root / name).parents}, reverse=True):
-        if emptied.is_relative_to(root) and emptied != root:
-            with suppress(OSError):
-                emptied.rmdir()
 
 
-def _is_folder(path: Path) -> bool:
-    return path.is_dir() and not path.is_symlink()
+def _finish(root: Path) -> None:
+    """End a swap that was killed, as far as its files are there; the caller holds the lock."""
+    listing = read_list(root)
+    if listing is None or not listing.swap:
+        return
+    left = root / listing.swap
+    if not is_hidden(left.name) or (left.exists() and not is_left(left)):
+        return
+    new = left / "new"
+    done: list[tuple[Path, Path]] = []
+    for name, checksum in listing.before.items():
+        waiting = name not in listing.files or (new / name).is_file()
+        if waiting and checksum_of(root / name) == checksum:
+            try:
+                _move(root / name, left / "old" / name, done)
+            except FileExistsError:  # killed between its two steps
+                (root / name).unlink()
+    _remove_empty(root, listing.before)
+    for name in listing.files:
+        if (new / name).is_file():
+            with suppress(OSError):  # what stands in the way by now is the user's, and stays
+                _move(new / name, root / name, done)
+    files = {name: c for name, c in listing.files.items() if checksum_of(root / name) == c}
+    left.mkdir(exist_ok=True)
+    write_list(root, left, Listing(files))
+    remove(left)
+
+
+def _check_way(root: Path, names: Iterable[str], own: set[str], where: str) -> None:
+    """Raise where something that is not concio's has a name that is needed."""
+    for name in names:
+        way = [p for p in (root / name, *(root / name).parents) if p.is_relative_to(root) and p != root]
+        for p in way:
+            if p.is_dir() and not p.is_symlink() and (p != root / name or _is_own_folder(root, p, own)):
+                continue
+            if os.path.lexists(p) and p.relative_to(root).as_posix() not in own:
+                raise _in_the_way(p.relative_to(root), where)
+
+
+def _is_own_folder(root: Path, folder: Path, own: set[str]) -> bool:
+    """Tell whether a folder holds files of concio's alone: it goes when they go."""
+    held = list(folder.rglob("*"))
+    return all(p.relative_to(root).as_posix() in own or (p.is_dir() and not p.is_symlink()) for p in held)
+
+
+def _in_the_way(name: Path, where: str) -> InputError:
+    msg = f"'{name}' is in the way, which concio did not write"
+    return InputError(msg, where=where, hint="move it, or give another directory")
 
 
 def _move(start: Path, end: Path, done: list[tuple[Path, Path]]) -> None:
+    """Move a file to a place that is free; raise FileExistsError where it is not, whoever was quicker."""
     end.parent.mkdir(parents=True, exist_ok=True)
-    start.rename(end)
-    done.append((start, end))
+    try:
+        end.hardlink_to(start)
+    except FileExistsError:
+        raise
+    except OSError:  # a disk without links
+        if os.path.lexists(end):
+            raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(end)) from None
+        start.rename(end)
+        done.append((start, end))
+    else:
+        done.append((start, end))
+        start.unlink()
+
+
+def _undone(root: Path, hidden: Path, listing: Listing, done: list[tuple[Path, Path]]) -> bool:
+    """Move everything back and write the list that was there; tell whether all of it could be done."""
+    well = True
+    for start, end in reversed(done):
+        try:
+            if not os.path.lexists(start):
+                start.parent.mkdir(parents=True, exist_ok=True)
+                end.rename(start)
+            elif hidden in start.parents:  # linked and not yet unlinked; else it is there, or a file of the user's is
+                end.unlink()
+        except OSError:
+            well = False
+        if hidden in start.parents:
+            _remove_empty(root, [end.relative_to(root).as_posix()])
+    if not well:
+        return False
+    try:
+        if listing.names:
+            write_list(root, hidden, listing)
+        else:
+            (root / CONTENTS).unlink(missing_ok=True)
+    except OSError:
+        return False
+    return True
+
+
+def _remove_empty(root: Path, names: Iterable[str]) -> None:
+    """Remove the folders that the files of these names left empty."""
+    folders = {p for name in names for p in (root / name).parents if p.is_relative_to(root) and p != root}
+    for folder in sorted(folders, reverse=True):
+        with suppress(OSError):
+            folder.rmdir()

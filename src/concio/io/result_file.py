@@ -33,9 +33,10 @@ from concio.fem.discretisation import Discretisation
 from concio.fem.elements import Elements
 from concio.fem.solid import SolidShape
 from concio.io.codec import Decoder, Encoder
+from concio.io.owned_dir import settle
 from concio.model.interfaces.detect import Detection, Interface
 from concio.model.interfaces.near import NearMiss, Overlap
-from concio.model.interfaces.patches import Patch
+from concio.model.interfaces.patch import Patch
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Body, JointRule, Load, Model, Support, Tie
 from concio.model.polyhedron import Polyhedron
@@ -113,6 +114,7 @@ def load_result(directory: Path | str) -> Result:
         There is no result, it is damaged, or a newer concio wrote it in a format this one does not know.
     """
     directory = Path(directory)
+    settle(directory)
     text, arrays = directory / "result.json", directory / "result.npz"
     for path in (text, arrays):
         if not path.is_file():

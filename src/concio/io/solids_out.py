@@ -144,13 +144,16 @@ def _dxf(path: Path, blocks: Sequence[Drawn]) -> None:
         msg = "writing DXF needs the package ezdxf, which is not installed"
         raise InputError(msg, where=str(path), hint="pip install ezdxf") from None
     from concio.io.dxf_out import FORBIDDEN
+    from concio.model.solids.dxf3d import NAMES
 
     document = ezdxf.new("R2010", units=6)
+    document.appids.add(NAMES)
     for block in blocks:
         mesh = MeshBuilder()
         mesh.add_mesh(vertices=block.points.tolist(), faces=[list(map(int, f)) for f in block.faces])
         layer = "CONCIO_FIXED" if block.fixed else FORBIDDEN.sub("_", block.layer) or "BLOCKS"
-        mesh.render_mesh(document.modelspace(), dxfattribs={"layer": layer})
+        entity = mesh.render_mesh(document.modelspace(), dxfattribs={"layer": layer})
+        entity.set_xdata(NAMES, [(1000, block.name)])
     document.saveas(path)
 
 

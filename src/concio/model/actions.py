@@ -117,7 +117,7 @@ class Tie:
     yield_force : float or None
         Largest tension, of the bar or of its anchors [kN]; None is unlimited.
     break_elongation : float or None
-        Elongation at which it breaks [m], which counts where a mechanism is followed far; None is never.
+        Elongation at which it breaks [m]; None is never.
     """
 
     name: str
@@ -134,6 +134,13 @@ class Tie:
     def most(self) -> float:
         """Largest tension [kN]; ``inf`` where it is unlimited."""
         return math.inf if self.yield_force is None else self.yield_force
+
+    @property
+    def strength(self) -> float:
+        """Largest tension it ever has [kN]: the least of its yield force and of what it carries as it breaks."""
+        if self.break_elongation is None:
+            return self.most
+        return min(self.most, self.prestress + self.stiffness * self.break_elongation)
 
     def force(self, elongation: float) -> float:
         """Return the tension [kN] at an elongation [m] that was never larger: elastic, then plastic, then broken."""

@@ -1,28 +1,27 @@
-"""Structures put together from parts: a model moved, turned, mirrored, thinned out, and several made one.
+"""A part of a structure: a model moved, turned, mirrored and thinned out.
 
-Loads and supports move with their part. Weights do not turn: gravity stays where it is.
+Supports, ties, loads and the controls of stages move with their part, and their directions are turned and mirrored with
+it: what pushed outwards pushes outwards still. Gravity stays with the world, whatever is turned: of a weight the
+vertical part. ``loads = "world"`` keeps the directions of all forces: for an earthquake along x that acts on all parts.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from itertools import combinations
-from typing import TypeVar
+from typing import Literal
 
 import numpy as np
 
 from concio.arguments import closest, strict
 from concio.errors import InputError
 from concio.kinematics.rigid import plane_rotation, rotation_matrix
-from concio.model.materials import JointLaw
-from concio.model.model import Body, JointRule, Load, Model, Point, Support, Tie, called
+from concio.model.model import Body, Load, Model, Point, Support, Tie, called
 from concio.model.polyhedron import Polyhedron
 from concio.model.stages import Stage
 from concio.units import degrees, quantity
 
 Array = np.ndarray
-T = TypeVar("T")
 AXES = "xyz"
 
 
@@ -36,6 +35,7 @@ def place(
     mirror: str = "",
     name: str = "",
     without: str | Sequence[str] = (),
+    loads: Literal["body", "world"] = "body",
 ) -> Model:
     """Return a model mirrored, turned, moved, in this order, and without some of its bodies.
 
@@ -55,6 +55,10 @@ def place(
     without : str or sequence of str
         Bodies to leave out, by name, role, layer or a pattern of names such as ``"b0*"``; with them go their supports
         and ties, and loads that name nothing else.
+    loads : {"body", "world"}
+        Whether the directions of forces are turned and mirrored with the bodies or stay those of the world. Places move
+        in either case, pressures push against their faces, imposed displacements go with the body, and the vertical
+        part of weights, which is gravity, stays with the world.
 
     Raises
     ------
@@ -62,6 +66,10 @@ def place(
         A word of ``without`` names nothing, nothing would be left, or a number cannot be used.
     """
     matrix, shift = _motion(model, at, turn, axis, mirror)
+    if loads not in ("body", "world"):
+        msg = f"loads = {loads!r} is not 'body' or 'world'"
+        raise InputError(msg, where="place")
+    ways = matrix if loads == "body" else np.eye(model.dim)
     words = [without] if isinstance(without, str) else list(without)
     gone = _named(model, words)
     label = f"{name}-" if name else ""
@@ -80,13 +88,13 @@ def place(
         return label + word if word in own else word
 
     supports = [_moved_support(s, matrix, shift, label) for s in model.supports if s.body not in gone]
-    loads = []
+    kept_loads = []
     left = [b for b in model.bodies if b.name not in gone]
     for load in model.loads:
         if load.bodies and not any(called(word, b) for word in load.bodies for b in left):
             continue
         kept = tuple(renamed(w) for w in load.bodies if any(called(w, b) for b in left))
-        loads.append(replace(_moved_load(load, matrix, shift), bodies=kept))
+        kept_loads.append(replace(_moved_load(load, matrix, shift, ways), bodies=kept))
     ties = [_moved_tie(t, matrix, shift, label, renamed) for t in model.ties if not {t.body_a, t.body_b} & gone]
     rules = [
         replace(rule, between=(renamed(rule.between[0]), renamed(rule.between[1])))
@@ -95,7 +103,7 @@ def place(
     ]
     stages = tuple(_moved_stage(s, matrix, shift, renamed) for s in model.stages)
     return replace(
-        model, bodies=bodies, supports=tuple(supports), loads=tuple(loads), ties=tuple(ties), rules=tuple(rules),
+        model, bodies=bodies, supports=tuple(supports), loads=tuple(kept_loads), ties=tuple(ties), rules=tuple(rules),
         stages=stages,
     )  # fmt: skip
 
@@ -193,10 +201,14 @@ def _moved_support(support: Support, matrix: Array, shift: Array, label: str) ->
     )
 
 
-def _moved_load(load: Load, matrix: Array, shift: Array) -> Load:
+def _moved_load(load: Load, matrix: Array, shift: Array, ways: Array) -> Load:
+    """Return a load moved with its body, its direction by a matrix of its own (d, d); gravity keeps it."""
     value = load.value
-    if load.kind in ("traction", "point"):
-        value = _point(load.value, matrix)
+    if load.kind == "weight" and len(value) == len(ways):
+        level = np.array([*value[:-1], 0.0])
+        value = _point(level.tolist(), ways, np.array(value) - level) if level.any() else value
+    elif load.kind in ("traction", "point", "body"):
+        value = _point(value, ways)
     return replace(
         load,
         value=value,
@@ -221,149 +233,3 @@ def _moved_stage(stage: Stage, matrix: Array, shift: Array, renamed: Callable[[s
         control, body=renamed(control.body), at=_point(control.at, matrix, shift),
         direction=_point(control.direction, matrix),
     ))  # fmt: skip
-
-
-@strict
-def merge(*models: Model, title: str = "", joint: JointLaw | float | None = None) -> Model:
-    """Return several models as one.
-
-    Bodies that touch are joined like any others. Materials and joint laws of one name but different content are kept
-    apart: the later one gets the number of its part. A load on all bodies stays a load on all where every part has it,
-    else it names the bodies of its part.
-
-    Parameters
-    ----------
-    *models : Model
-        Their bodies, supports and ties must have different names: see ``name`` of :func:`place`.
-    title : str
-        That of the first by default.
-    joint : JointLaw, float, optional
-        Law between bodies of different parts; a number is a Coulomb coefficient. By default that of the first part.
-
-    Raises
-    ------
-    InputError
-        Names clash, or the parts differ in dimension, element, plane or refinement.
-    """
-    if not models:
-        msg = "there is nothing to merge"
-        raise InputError(msg, where="merge", hint="give two models or more")
-    first = models[0]
-    for k, model in enumerate(models[1:], 2):
-        if model.dim != first.dim:
-            msg = f"part 1 is {'in the plane' if first.dim == 2 else 'in space'}, part {k} is not"
-            raise InputError(msg, where="merge", hint="concio.extrude makes a model in space of a plane one")
-        for key in ("element", "plane", "refinement", "periods", "contact_points"):
-            if getattr(model, key) != getattr(first, key):
-                msg = f"part 1 has {key} = {getattr(first, key)!r}, part {k} {getattr(model, key)!r}"
-                raise InputError(msg, where="merge", hint="one model has one of it")
-    _different([b.name for m in models for b in m.bodies], "bodies")
-    _different([s.name for m in models for s in m.supports], "supports")
-    _different([t.name for m in models for t in m.ties], "ties")
-    materials, material_names = _united([m.materials for m in models])
-    laws, law_names = _united([m.laws for m in models])
-    bodies = [
-        replace(b, material=material_names[k].get(b.material, b.material), mesh_size=b.mesh_size or m.mesh_size)
-        for k, m in enumerate(models)
-        for b in m.bodies
-    ]
-    rules = _rules(models, law_names)
-    if joint is not None:
-        law = joint if isinstance(joint, JointLaw) else JointLaw(joint)
-        laws["between parts"] = law
-        rules += [
-            JointRule("between parts", (_everything(models, i), _everything(models, j)))
-            for i, j in combinations(range(len(models)), 2)
-        ]
-    tolerances = [m.gap_tolerance for m in models if m.gap_tolerance is not None]
-    return replace(
-        first,
-        bodies=tuple(bodies),
-        materials=materials,
-        laws=laws,
-        rules=tuple(rules),
-        supports=tuple(s for m in models for s in m.supports),
-        loads=_loads(models),
-        ties=tuple(t for m in models for t in m.ties),
-        stages=tuple(s for m in models for s in m.stages),
-        mesh_size=None,
-        gap_tolerance=max(tolerances) if tolerances else None,
-        gap_reach=max(m.gap_reach for m in models),
-        title=title or first.title,
-        generator={"kind": "merged", "parts": tuple(str(m.generator.get("kind", "blocks")) for m in models)},
-    )
-
-
-def _different(names: list[str], what: str) -> None:
-    if len(set(names)) < len(names):
-        twice = next(n for n in names if names.count(n) > 1)
-        msg = f"two {what} of the parts are called '{twice}'"
-        raise InputError(msg, where="merge", hint="give each part a name of its own: concio.place(part, name='left')")
-
-
-def _united(tables: Sequence[Mapping[str, T]]) -> tuple[dict[str, T], list[dict[str, str]]]:
-    """Return one table of all, and for each part the names that had to change."""
-    every: dict[str, T] = {}
-    changed: list[dict[str, str]] = []
-    for number, table in enumerate(tables, 1):
-        own: dict[str, str] = {}
-        for name, thing in table.items():
-            new = name
-            while new in every and every[new] != thing:
-                new = f"{name} {number}" if new == name else new + "'"
-            every[new] = thing
-            if new != name:
-                own[name] = new
-        changed.append(own)
-    return every, changed
-
-
-def pattern_of(models: Sequence[Model], number: int) -> str | None:
-    """Return the pattern of names that all bodies of a part have and no others, None where there is none."""
-    names = [b.name for b in models[number].bodies]
-    prefix = names[0].partition("-")[0] + "-"
-    others = [b.name for k, m in enumerate(models) for b in m.bodies if k != number]
-    alone = all(name.startswith(prefix) for name in names) and not any(name.startswith(prefix) for name in others)
-    return prefix + "*" if alone else None
-
-
-def _everything(models: Sequence[Model], number: int) -> str:
-    """Return a word that names all bodies of a part and no others."""
-    pattern = pattern_of(models, number)
-    if pattern is None:
-        msg = f"part {number + 1} has joint laws of its own, but its blocks have no name in common"
-        raise InputError(msg, where="merge", hint="give each part a name: concio.place(part, name='left')")
-    return pattern
-
-
-def _rules(models: Sequence[Model], laws: Sequence[Mapping[str, str]]) -> list[JointRule]:
-    """Return the rules of all parts, those on everything kept to their part where parts differ in them."""
-    own = [
-        [replace(r, law=names.get(r.law, r.law)) for r in m.rules] for m, names in zip(models, laws, strict=True)
-    ]
-    general = [[r for r in rules if r.between == ("*", "*")][-1:] for rules in own]
-    if all(g == general[0] for g in general):
-        return list(dict.fromkeys(r for rules in own for r in rules))
-    found = general[0][:1]
-    for k, rules in enumerate(own):
-        word = _everything(models, k)
-        for rule in rules:
-            p, q = (word if w == "*" else w for w in rule.between)
-            found.append(replace(rule, between=(p, q)))
-    return list(dict.fromkeys(found))
-
-
-def _loads(models: Sequence[Model]) -> tuple[Load, ...]:
-    """Return the loads of all parts; those on everything name the bodies of their part unless all parts have them."""
-    found: list[Load] = []
-    for k, model in enumerate(models):
-        for load in model.loads:
-            if load.bodies:
-                found.append(load)
-            elif all(load in other.loads for other in models):
-                found += [load] if k == 0 else []
-            else:
-                pattern = pattern_of(models, k)
-                names = (pattern,) if pattern else tuple(b.name for b in model.free_bodies)
-                found.append(replace(load, bodies=names))
-    return tuple(found)

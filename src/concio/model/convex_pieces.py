@@ -8,6 +8,7 @@ which only planes of cutting meet, inside the block, are left out, so that a pie
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,6 +38,18 @@ class ConvexPiece:
     vertices: Array
     normals: Array
     offsets: Array
+
+    @cached_property
+    def directions(self) -> Array:
+        """Directions of its edges (e, 3): where two of its planes meet in two of its corners."""
+        size = float(np.ptp(self.vertices, axis=0).max())
+        on = np.abs(self.vertices @ self.normals.T - self.offsets) <= FLAT * size
+        shared = on.astype(int) @ on.T.astype(int)  # planes that two corners share
+        p, q = np.nonzero(np.triu(shared >= 2, 1))
+        along = self.vertices[q] - self.vertices[p]
+        along /= np.linalg.norm(along, axis=1)[:, None]
+        along *= np.where(along @ np.array([1.0, 1e-3, 1e-6]) < 0, -1.0, 1.0)[:, None]
+        return np.unique(np.round(along, 9), axis=0)
 
 
 def convex_pieces(body: Polyhedron) -> tuple[ConvexPiece, ...] | None:

@@ -12,7 +12,7 @@ from concio.display import Units, number
 from concio.model.materials import Elastic, JointLaw, Rigid
 
 if TYPE_CHECKING:
-    from concio.model.model import Model
+    from concio.model.model import Model, Tie
 
 T = TypeVar("T")
 
@@ -46,6 +46,17 @@ def law_words(law: JointLaw, units: Units) -> str:
         if value:
             words.append(f"{name.replace('_', ' ')} {units.text(kind, value)}")
     return ", ".join(words)
+
+
+def tie_words(tie: Tie, units: Units) -> str:
+    """Return stiffness, prestress, yield force and break elongation of a tie, what it has not included."""
+    words = [f"stiffness {units.text('stiffness', tie.stiffness)}"]
+    words.append(f"prestress {units.text('force', tie.prestress)}" if tie.prestress else "no prestress")
+    strong = "never yields" if tie.yield_force is None else f"yields at {units.text('force', tie.yield_force)}"
+    if tie.break_elongation is None:
+        return ", ".join((*words, strong, "never breaks"))
+    far = units.text("motion", tie.break_elongation)
+    return ", ".join((*words, strong, f"breaks when stretched by {far}, with {units.text('force', tie.strength)}"))
 
 
 def model_lines(model: Model) -> list[str]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 LARGEST_BLOCKS = 500_000
 """Blocks that a generator makes."""
+LARGEST_COORDINATE = 1e50
+"""Coordinates [m]: products of larger ones are no numbers."""
 LARGEST_UNKNOWNS = 20_000_000
 """Displacements of a mesh."""
 LARGEST_REFINEMENT = 1_000

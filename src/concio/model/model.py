@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -28,6 +29,8 @@ __all__ = [
 ]  # fmt: skip
 
 Array = np.ndarray
+CONTROL = re.compile("[\\x00-\\x1f\\x7f-\\x9f\\u2028-\\u202e\\u2066-\\u2069]")
+"""Characters that no name holds: they move the cursor, break lines or turn the direction of writing."""
 Periods = tuple[tuple[float, float], tuple[float, float]]
 ENGINES = ("superlu", "pardiso")
 """What factorises linear systems."""
@@ -58,8 +61,10 @@ class Model:
         Every element is split ``refinement`` times more (1: as described).
     gap_tolerance : float or None
         Edges or faces closer than this touch [m]; None takes 1e-6 of the size of the model.
-    gap_reach : float
-        Edges further apart than the tolerance but within this become pairs with an initial gap [m].
+    gap_reach : float or None
+        Faces further apart than the tolerance but within this become pairs with an initial gap, 0 joins only what
+        touches [m]. None joins faces that come nearer than a thousandth of the smaller block's size anywhere, over all
+        of their common part: a block on a tilted foot gets the gap that is there.
     title : str
     generator : mapping
         How the model was made, for the record.
@@ -71,7 +76,7 @@ class Model:
     contact_points : {"auto", "corners"} or int
         Where contact is stated between two blocks in space that are not meshed: at the corners of each patch, or at
         n x n points over it, which distribute pressure. "auto" takes corners for hard joints, 4 x 4 points for joints
-        with stiffness, 6 x 6 for joints that crush.
+        with stiffness, 12 x 12 for joints that crush.
     report : Units
         Units in which texts, figures and reports tell what was found; arrays and files are in kN and m.
     engine : {"superlu", "pardiso"}
@@ -90,7 +95,7 @@ class Model:
     mesh_size: float | None = None
     refinement: int = 1
     gap_tolerance: float | None = None
-    gap_reach: float = 0.0
+    gap_reach: float | None = None
     title: str = ""
     generator: Mapping[str, object] = field(default_factory=dict)
     stages: tuple[Stage, ...] = ()
@@ -120,6 +125,7 @@ class Model:
         if points not in ("auto", "corners") and not (isinstance(points, int) and 2 <= points <= 20):
             msg = f"contact_points = {points!r} is not 'auto', 'corners' or a whole number from 2 to 20"
             raise InputError(msg, hint="4 means 4 x 4 points on each patch")
+        _check_names(self)
         names = [b.name for b in self.bodies]
         if len(set(names)) != len(names):
             twice = next(n for n in names if names.count(n) > 1)
@@ -217,6 +223,22 @@ class Model:
                 return rule
         msg = f"no joint law for the interface between '{a.name}' and '{b.name}'"
         raise InputError(msg, hint="add a rule between '*' and '*'")
+
+
+def _check_names(model: Model) -> None:
+    """Refuse names with control characters, which no terminal, table or file would show as they are.
+
+    Raises
+    ------
+    InputError
+    """
+    words = {word for b in model.bodies for word in (b.name, b.role, b.layer)}
+    words |= {word for s in model.supports for word in (s.name, s.group)} | {t.name for t in model.ties}
+    words |= {load.group for load in model.loads} | {*model.materials, *model.laws}
+    bad = sorted(word for word in words if CONTROL.search(word))
+    if bad:
+        msg = f"the name {bad[0]!r} holds a control character"
+        raise InputError(msg, hint="leave it out: names stand in tables, files and on the terminal")
 
 
 def check_cell(model: Model) -> None:

@@ -1,7 +1,7 @@
 """Numbers that are possible but hardly meant: degrees for a coefficient, millimetres for metres, kg for kN.
 
-Nothing here is refused. Each finding is a sentence for a person, shown as "attention" by ``concio check``, ``concio
-run`` and the report.
+Nothing here is refused. Each finding is a sentence for a person, and part of the one list of attention of
+:mod:`concio.verdict.attention`.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from concio.model.actions import Point
+from concio.model.body import Body
 from concio.model.materials import Elastic, JointLaw
 from concio.model.model import Model
 
@@ -20,10 +21,24 @@ HEAVY = 80.0
 """No building material is heavier; steel has 78.5 [kN/m3]."""
 LONG = 50.0
 """No block is longer [m]."""
+SHORT = 1e-3
+"""No block is shorter [m]."""
+THIN, THICK = 0.01, 20.0
+"""Plane bodies are thicker than the first and thinner than the second [m]."""
+WEAK = 200.0
+"""Compressive strengths of masonry lie above [kN/m2]: 0.2 MPa."""
+LOOSE = 1.0
+"""Cohesions and tensile strengths that are not zero lie above [kN/m2]: 0.001 MPa."""
+SLACK = 1e3
+"""Stiffnesses of joints lie above [kN/m3]; those of mortar joints from 1e6 on."""
+INFINITE = 1e8
+"""No tie is stiffer [kN/m]: a bar of 100 mm and 1 m length has 1.6e6."""
 FAR = 0.5
 """Share of the size of a block by which the end of a tie, a support or a point load may lie outside it."""
 MOVED = 0.1
 """Imposed displacements above this share of a block's size are large, and rotations above this [rad]."""
+TURNED = 0.005
+"""Rotations of supports above this change multipliers by about as much, where displacements are large [rad]."""
 
 
 def implausible(model: Model) -> tuple[str, ...]:
@@ -46,10 +61,35 @@ def implausible(model: Model) -> tuple[str, ...]:
                 f"material '{name}': a unit weight of {material.unit_weight:g} kN/m3 is more than that of steel: "
                 f"masses are written with their unit, '{material.unit_weight:g} kg/m3'"
             )
-    return (*found, *_sizes(model), *_places(model), *_weights(model), *_stages(model))
+    return (
+        *found, *_sizes(model), *_thickness(model), *_ring(model), *_places(model), *_ties(model), *_weights(model),
+        *_stages(model),
+    )  # fmt: skip
 
 
 def _law(name: str, law: JointLaw) -> list[str]:
+    return [*_friction(name, law), *_strengths(name, law)]
+
+
+def _strengths(name: str, law: JointLaw) -> list[str]:
+    """Return a sentence for each strength or stiffness below that of any masonry: mostly a bare number in MPa."""
+    least = {
+        "compressive_strength": (WEAK, "kN/m2", "MPa"), "cohesion": (LOOSE, "kN/m2", "MPa"),
+        "tensile_strength": (LOOSE, "kN/m2", "MPa"), "normal_stiffness": (SLACK, "kN/m3", "N/mm3"),
+        "tangential_stiffness": (SLACK, "kN/m3", "N/mm3"),
+    }  # fmt: skip
+    found = []
+    for key, (limit, unit, other) in least.items():
+        value = getattr(law, key)
+        if value is not None and 0 < value < limit:
+            found.append(
+                f"joint law '{name}': {key} = {value:g} {unit} is below that of any masonry: a value in {other} is "
+                f"written with its unit, '{value:g} {other}'"
+            )
+    return found
+
+
+def _friction(name: str, law: JointLaw) -> list[str]:
     if law.friction <= STEEP:
         return []
     angle = np.rad2deg(np.arctan(law.friction))
@@ -97,6 +137,38 @@ def _weights(model: Model) -> list[str]:
     return ["own weight acts along -y and none along z: in space z points up, and gravity is [0, 0, -1]"]
 
 
+def _thickness(model: Model) -> list[str]:
+    """Return a sentence where plane bodies are thinner or thicker than any wall."""
+    depths = [b.thickness for b in model.bodies if isinstance(b, Body) and b.kind != "fixed"]
+    odd = [v for v in depths if not THIN <= v <= THICK]
+    if not odd:
+        return []
+    word = "that of a sheet" if odd[0] < THIN else "more than that of any wall"
+    return [f"a thickness of {odd[0]:g} m is {word}: is that its unit?"]
+
+
+def _ring(model: Model) -> list[str]:
+    """Return a sentence where the ring of an arch is thicker than half of its span."""
+    ring, span = (model.generator.get(key) for key in ("ring", "span"))
+    if isinstance(ring, int | float) and isinstance(span, int | float) and ring > 0.5 * span > 0:
+        return [f"a ring of {ring:g} m in a span of {span:g} m is more than half of it: is that its unit?"]
+    return []
+
+
+def _ties(model: Model) -> list[str]:
+    """Return a sentence on ties that are stiffer than any, and on those whose force has no limit."""
+    found = [
+        f"tie '{t.name}': a stiffness of {t.stiffness:.4g} kN/m is that of no bar: is that its unit?"
+        for t in model.ties
+        if t.stiffness > INFINITE
+    ]
+    unlimited = [t.name for t in model.ties if t.yield_force is None]
+    if unlimited:
+        more = f" and {len(unlimited) - 1} more" if len(unlimited) > 1 else ""
+        found.append(f"tie '{unlimited[0]}'{more} without a yield_force: bar and anchors carry any tension")
+    return found
+
+
 def _stages(model: Model) -> list[str]:
     """Return a sentence for each stage of a path that names a load group that no load and no support belongs to."""
     if model.periods is not None:  # a cell: its stages name strains and stresses
@@ -120,6 +192,12 @@ def _sizes(model: Model) -> list[str]:
         found.append(
             f"block '{most}' is {sizes[most]:,.4g} m long{several}, more than {LONG:g} m: is that the unit of length?"
         )
+    small = [name for name, size in sizes.items() if size < SHORT]
+    if small:
+        found.append(
+            f"block '{small[0]}' is {sizes[small[0]]:.4g} m long{f', and {len(small) - 1} more' if small[1:] else ''}: "
+            "is that the unit of length?"
+        )
     usual = float(np.median(list(sizes.values()))) if sizes else 0.0
     for support in model.supports:
         size = sizes.get(support.body, usual)
@@ -134,5 +212,11 @@ def _sizes(model: Model) -> list[str]:
             found.append(
                 f"support '{support.name}' turns '{support.body}' by {turn:.3g} rad: rotations are taken "
                 f"to be small; in degrees an angle is written with its unit, '{turn:g} deg'"
+            )
+        elif turn > TURNED:
+            found.append(
+                f"support '{support.name}' turns '{support.body}' by {np.rad2deg(turn):.3g} degrees: where "
+                "displacements are taken to be small, weights and joints keep their directions; 'concio push' turns "
+                "the structure"
             )
     return found

@@ -15,6 +15,7 @@ import shapely
 
 from concio.errors import GeometryError
 from concio.kinematics.frames import cross, tangents, turning
+from concio.model.limits import LARGEST_COORDINATE
 from concio.model.topology import Loop, Topology, topology
 
 Array = np.ndarray
@@ -179,6 +180,9 @@ def _unusable(points: Array, faces: Sequence[Loop], holes: Sequence[tuple[int, L
         return fault("not finite", f"vertices have shape {points.shape}, expected (n, 3)", "give x, y, z of each")
     if not np.isfinite(points).all():
         return fault("not finite", "a vertex holds a coordinate that is not finite", "give numbers in m")
+    if len(points) and np.abs(points).max() >= LARGEST_COORDINATE:
+        text = f"a vertex holds a coordinate of {np.abs(points).max():g} m"
+        return fault("not finite", text, "no structure is that large: look at the number, and at its unit")
     if len(points) > MOST_VERTICES:
         text = f"{len(points):,} vertices are more than the {MOST_VERTICES:,} a block may have"
         return fault("too many", text, "a scanned surface is no block: simplify it, or split it into blocks")

@@ -29,10 +29,13 @@ COPLANAR = 1e-6
 """Share of the longest side of a block by which two faces may leave one plane and still be put together."""
 
 
-def merged_faces(points: Array, faces: Sequence[Loop], holes: Sequence[tuple[int, Loop]] = ()) -> Surface:
+def merged_faces(
+    points: Array, faces: Sequence[Loop], holes: Sequence[tuple[int, Loop]] = (), *, within: float = 0.0
+) -> Surface:
     """Return a closed surface with neighbouring coplanar faces put together and needless vertices left out.
 
-    Faces that do not close are returned as they are.
+    Faces that do not close are returned as they are. Faces are coplanar within the larger of :data:`COPLANAR` of the
+    block's size and ``within`` [m].
     """
     top = topology(tuple(faces), tuple(holes))
     if top.fault is not None:
@@ -52,7 +55,7 @@ def merged_faces(points: Array, faces: Sequence[Loop], holes: Sequence[tuple[int
         side = order[np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count) + begin[second][edge]]
         off = np.abs(((points[top.start[side]] - middle[first][edge]) * normal[first][edge]).sum(1))
         np.maximum.at(worst, edge, off)
-    same = (worst <= COPLANAR * size) & ((normal[a] * normal[b]).sum(1) > 0.5)
+    same = (worst <= max(COPLANAR * size, within)) & ((normal[a] * normal[b]).sum(1) > 0.5)
     graph = sp.coo_array((np.ones(same.sum()), (a[same], b[same])), shape=(len(faces), len(faces)))
     number, group = connected_components(graph, directed=False)
     if number == len(faces):

@@ -82,7 +82,7 @@ def plot_cell_mechanism(domain: StrengthDomain, ray: StrengthRay | int = 0, ax: 
     """
     chosen = domain.rays[ray] if isinstance(ray, int) else ray
     if chosen.associated.mechanism is None:
-        msg = "no mechanism bounds the strength in this direction: it carries any multiple"
+        msg = "no mechanism bounds the strength in this direction, so that there is none to draw"
         raise InputError(msg, hint="choose another direction")
     words = ", ".join(f"{v:g}" for v in chosen.direction)
     title = f"Mechanism under stress along ({words})"

@@ -165,7 +165,7 @@ def plot_mechanisms(comparison: ContinuumComparison, axes: Sequence[Axes] | None
     found = strength_of(comparison)
     bound = found.blocks.associated
     if bound.mechanism is None or found.kinematic.multiplier == np.inf:
-        msg = "no mechanism bounds the load: it is carried in any multiple"
+        msg = "no mechanism bounds the load, so that there is none to draw"
         raise InputError(msg, hint="let another load group grow")
     assembly = found.blocks.assembly
     velocity = bound.mechanism.velocity

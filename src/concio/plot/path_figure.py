@@ -60,11 +60,18 @@ MARKS: dict[str, tuple[str, str, str]] = {
     "sticks": ("s", style.STICK.colour, "sticks"),
     "crushes": ("X", style.TENSION.colour, "crushes"),
     "breaks": ("*", style.TENSION.colour, "breaks"),
+    "yields": ("X", style.TENSION.colour, "yields"),
+    "slackens": ("^", style.OPEN.colour, "slackens"),
+    "tightens": ("v", style.OPEN.colour, "tightens"),
+    "unloads": ("P", style.COMPRESSION.colour, "unloads"),
     "recovers": ("P", style.COMPRESSION.colour, "recovers"),
     "jumps": (">", style.INK, "jumps"),
     "restarts": (".", style.INK, "restarts the path"),
 }
 """Marker, colour and word of each kind of event."""
+
+OF_TIES = ("yields", "slackens", "tightens", "unloads")
+"""Events of ties alone."""
 
 
 @strict
@@ -104,9 +111,10 @@ def plot_path(
     for kind in dict.fromkeys(event.kind for event in curve.events):
         marker, colour, word = MARKS.get(kind, ("o", style.INK, kind))
         places = np.array([(e.control, e.parameter) for e in curve.events if e.kind == kind])
+        what = "a tie" if kind in OF_TIES else "a joint"
         size = 5.5 if len(curve.events) <= 60 else 3.0
         drawn = ax.plot(*places.T, ls="none", marker=marker, ms=size, mfc=colour, mec="white", mew=0.5, zorder=3,
-                        label=f"a joint {word} ({len(places)})")  # fmt: skip
+                        label=f"{what} {word} ({len(places)})")  # fmt: skip
         handles += drawn
     if len(load):
         top = int(np.argmax(load))

@@ -38,7 +38,21 @@ class SpacePlots(Plots):
         """Raise: this figure is one of the plane."""
         return _plane_only("principal")
 
-    pressure = forces = slip = thrust = principal
+    def pressure(self, ax: Axes | None = None, **options: Any) -> Axes:
+        """Raise: this figure is one of the plane."""
+        return _plane_only("pressure")
+
+    def forces(self, ax: Axes | None = None, **options: Any) -> Axes:
+        """Raise: this figure is one of the plane."""
+        return _plane_only("forces")
+
+    def slip(self, ax: Axes | None = None, **options: Any) -> Axes:
+        """Raise: this figure is one of the plane."""
+        return _plane_only("slip")
+
+    def thrust(self, ax: Axes | None = None, **options: Any) -> Axes:
+        """Raise: this figure is one of the plane."""
+        return _plane_only("thrust")
 
     def suitable(self) -> dict[str, Callable[[], Axes]]:
         """Return the figures that make sense for the result: what draws each, by name."""

@@ -52,7 +52,7 @@ class StudyPlots:
         if (~known).any():
             below = np.full(int((~known).sum()), -0.02)
             ax.plot(x[~known], below, ls="none", marker="x", ms=4, color=style.TENSION.colour, clip_on=False,
-                    transform=ax.get_xaxis_transform(), label=f"{(~known).sum()} runs without a value")  # fmt: skip
+                    transform=ax.get_xaxis_transform(), label=f"{(~known).sum()} runs without a number")  # fmt: skip
             ax.legend(frameon=False, fontsize=8)
         chosen = next((v for v in self.study.sample.variables if v.name == variable), None)
         if chosen is not None and chosen.distribution == "choice":
@@ -68,7 +68,8 @@ class StudyPlots:
             ax.hist(known, bins="auto" if np.ptp(known) > 0 else 1, color=style.BLOCK, edgecolor=style.EDGE)
         if threshold is not None:
             ax.axvline(threshold, color=style.TENSION.colour, ls="--", lw=1.2)
-        return dress_diagram(ax, f"{output}, {len(known)} runs", self._label(output), "runs")
+        of = f"{len(known)} of {len(values)} runs" if len(known) < len(values) else f"{len(known)} runs"
+        return dress_diagram(ax, f"{output}, {of}", self._label(output), "runs")
 
     def tornado(self, output: str, ax: Axes | None = None) -> Axes:
         """Draw what matters for an output, the most important variable on top.
@@ -104,11 +105,11 @@ class StudyPlots:
             values = np.concatenate([values, np.full(len(self.study.sample) - len(values), np.nan)])
         middle, ends = values[0], values[1:].reshape(-1, 2)
         names = np.array([v.name for v in self.study.sample.variables])
-        width = np.nan_to_num(np.abs(np.ptp(ends, axis=1)))
+        width = np.nan_to_num(np.abs(_finite(ends[:, 1]) - _finite(ends[:, 0])))
         order = np.argsort(width)
         places = np.arange(len(order))
         for column, colour, word in ((0, style.TENSION.colour, "5 %"), (1, style.COMPRESSION.colour, "95 %")):
-            length = np.nan_to_num(ends[order, column] - middle)
+            length = np.nan_to_num(_finite(ends[order, column]) - middle)
             ax.barh(places, length, 0.6, left=middle, color=colour, label=f"variable at its {word} quantile")
         ax.axvline(float(middle), color=style.INK, lw=0.8)
         ax.set_yticks(places, names[order].tolist())
@@ -147,6 +148,11 @@ class StudyPlots:
         return f"{name} [{unit}]" if unit not in ("", "-") else name
 
 
+def _finite(values: Array) -> Array:
+    """Return values with ``nan`` for infinite ones, which no bar reaches."""
+    return np.where(np.isfinite(values), values, np.nan)
+
+
 def suitable(study: StudyResult) -> list[tuple[str, Axes, str]]:
     """Return (name, axes, caption) of the figures that suit a study, for its report."""
     plots = StudyPlots(study)
@@ -156,8 +162,7 @@ def suitable(study: StudyResult) -> list[tuple[str, Axes, str]]:
         known = values[np.isfinite(values)]
         if not len(known):
             continue
-        yes_no = bool(np.isin(known, (0.0, 1.0)).all())
-        if not yes_no:
+        if not o.event:
             found.append((f"histogram-{o.name}", plots.histogram(o.name), f"Values of {o.name}"))
         with suppress(InputError):  # too few runs for indices: the other figures stand
             found.append((f"tornado-{o.name}", plots.tornado(o.name), f"What matters for {o.name}"))

@@ -17,7 +17,7 @@ from concio.representation import short_repr
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
-    from concio.model.interfaces.patches import Patch
+    from concio.model.interfaces.patch import Patch
 
 Array = np.ndarray
 

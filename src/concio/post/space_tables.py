@@ -30,7 +30,10 @@ class SpaceTables(Tables):
         }
 
     def joints(self) -> Table:
-        """Return one row an interface: its bodies, resultants on side b, where they act, what is open."""
+        """Return one row an interface: its bodies, resultants on side b, what is open or slips.
+
+        ``shear_force`` is the size of the shear, with components ``shear_x`` and so on; in the plane it has a sign.
+        """
         j = self.result.joints_in_space
         return {
             **self.names(j.body_a, j.body_b),
@@ -43,4 +46,5 @@ class SpaceTables(Tables):
             **vectors("moment_", j.M),
             "torsion": j.torsion,
             "open_share": j.open_share,
+            "slipping": j.slipping,
         }

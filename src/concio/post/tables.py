@@ -17,9 +17,9 @@ Array = np.ndarray
 Table = dict[str, Array]
 
 UNITS: dict[str, str] = {
-    **dict.fromkeys(("x", "y", "u_x", "u_y", "length", "gap", "slip", "eccentricity", "thickness"), "m"),
+    **dict.fromkeys(("x", "y", "u_x", "u_y", "length", "gap", "slip", "eccentricity", "thickness", "elongation"), "m"),
     **dict.fromkeys(("n_x", "n_y", "open_share", "friction_used"), "-"),
-    **dict.fromkeys(("normal_force", "friction_force", "shear_force", "force_x", "force_y"), "kN"),
+    **dict.fromkeys(("normal_force", "friction_force", "shear_force", "force_x", "force_y", "tension"), "kN"),
     **dict.fromkeys(("s_x", "s_y", "t_xy", "s_1", "s_2", "pressure", "shear"), "kN/m2"),
     **dict.fromkeys(("stress_xx", "stress_yy", "stress_xy", "h"), "kN/m2"),
     **dict.fromkeys(("work", "stored", "dissipated"), "kN m"),
@@ -38,9 +38,9 @@ UNITS |= {f"{name}_{i}": UNITS[name] for name in ("friction_force", "shear", "sl
 
 KINDS: dict[str, str] = {
     **dict.fromkeys(("x", "y", "length", "eccentricity", "thickness"), "length"),
-    **dict.fromkeys(("u_x", "u_y", "gap", "slip"), "motion"),
+    **dict.fromkeys(("u_x", "u_y", "gap", "slip", "elongation"), "motion"),
     **dict.fromkeys(("n_x", "n_y", "open_share", "friction_used"), "number"),
-    **dict.fromkeys(("normal_force", "friction_force", "shear_force", "force_x", "force_y"), "force"),
+    **dict.fromkeys(("normal_force", "friction_force", "shear_force", "force_x", "force_y", "tension"), "force"),
     **dict.fromkeys(("s_x", "s_y", "t_xy", "s_1", "s_2", "pressure", "shear"), "stress"),
     **dict.fromkeys(("angle", "rotation"), "rotation"),
     "area": "area",
@@ -115,7 +115,7 @@ class Tables:
             **vectors("", p.point),
             **vectors("n_", p.normal),
             "area": p.area,
-            "state": np.array(STATE_NAMES)[c.state],
+            "state": np.where(p.interface >= 0, np.array(STATE_NAMES)[c.state], self._tie_states()),
             "normal_force": c.normal_force,
             **components("friction_force", c.friction_force),
             "pressure": c.pressure,
@@ -130,13 +130,34 @@ class Tables:
         force = np.array(list(found.values()), dtype=float).reshape(-1, self.result.model.dim)
         return {"support": np.array(list(found), dtype=str), **vectors("force_", force)}
 
+    def ties(self) -> Table:
+        """Return one row a tie: its blocks, tension, elongation, state, and its force on the first block."""
+        found = self.result.ties
+        return {
+            "tie": np.array(found.names, dtype=str),
+            "body_a": np.array([a for a, _ in found.bodies], dtype=str),
+            "body_b": np.array([b for _, b in found.bodies], dtype=str),
+            "tension": found.tension,
+            "elongation": found.elongation,
+            "state": np.array(found.state, dtype=str),
+            **vectors("force_", found.pull),
+        }
+
+    def _tie_states(self) -> Array:
+        """Return the state of the tie that each pair (m,) stands for; empty of joints."""
+        states = np.zeros(len(self.result.assembly.pairs), dtype="<U6")
+        states[self.result.assembly.ties] = self.result.ties.state
+        return states
+
     def all(self) -> dict[str, Table]:
-        """Return the four tables by name."""
+        """Return the tables by name; that of ties where there are any."""
+        ties = {"ties": self.ties()} if self.result.model.ties else {}
         return {
             "bodies": self.bodies(),
             "joints": self.joints(),
             "contacts": self.contacts(),
             "reactions": self.reactions(),
+            **ties,
         }
 
     def names(self, a: Array, b: Array) -> Table:

@@ -1,8 +1,9 @@
 r"""The certificate: residuals of an answer computed from the original data, never from what a solver kept.
 
-Displacements are divided by the largest displacement ``U``, forces by the total load ``F`` (sum of the absolute nodal
-loads, without those that stand for imposed displacements; where no load acts, the largest contact force). An answer is
-*certified* when the worst entry is at most 1e-9.
+Errors are measured in units of what they belong to (:mod:`concio.problem.units`): forces by the total load ``F`` of
+their connected part, gaps and slips by its largest displacement ``U``, or by what the compliance of the pair makes of
+F where that is less. No length stands for a displacement where nothing moves. An answer is *certified* when the worst
+entry, over all parts, is at most 1e-9.
 
 Equilibrium is checked in two parts. The resultants on every floating body are sums of loads and contact forces alone:
 displacements have no part in them and rounding hardly any. What is left is the balance at each node, where K u is the
@@ -11,8 +12,9 @@ eps |u|, so that K u is known to eps |K| |u| and no better, whoever solves. :dat
 never more than :data:`GRANTED` of the load: beyond, rounding could hide how a joint shares its force.
 
 Friction is measured by its natural map. In the plane, for forces inside the cone, that is
-min(|y_t| / U, |t_t + (c + mu t_n) sign y_t| / F). In space the second of these would ask for the direction of a slip,
-which rounding of u leaves uncertain by eps U / |y_t|: exact answers would seem wrong by 1e-9 where a pair hardly slips.
+min(|y_t| / U, |t_t + (c + mu t_n) sign y_t| / F), U being that of the pair. In space the second of these would ask for
+the direction of a slip, which rounding of u leaves uncertain by eps U / |y_t|: exact answers would seem wrong by 1e-9
+where a pair hardly slips.
 """
 
 from __future__ import annotations
@@ -20,9 +22,11 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 
 import numpy as np
+import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.tolerances import CERTIFIED, GRANTED, ROUNDING
+from concio.problem.units import in_units, measure, rounding
 from concio.representation import short_repr
 
 
@@ -36,7 +40,7 @@ class Certificate:
         max |K u - f - C' t| / F, equation (12), apart from rounding of u; and of the resultants of f + C' t on bodies
         that float, moments divided by the distance of the farthest node.
     penetration : float
-        max of -y_n / U over pairs without a cap, equation (5).
+        max of -y_n / U over pairs without a cap, equation (5), apart from rounding of y, here and below.
     cone : float
         max of the excess of |t_t| over c + mu t_n, of -(t_n + T), and of t_n over the cap, / F, equation (6).
     slip_direction : float
@@ -100,20 +104,11 @@ def kinematics(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> Kin
     return Kinematics(gap + crushing, slip, crushing)
 
 
-def scales(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> tuple[float, float]:
-    """Return (F, U): total load [kN] and largest displacement [m], never zero."""
-    force = problem.total_load
-    if force == 0.0:
-        force = float(max(np.abs(t_n).max(initial=0.0), np.abs(t_t).max(initial=0.0)))
-    length = float(np.abs(u).max(initial=0.0))
-    return force or 1.0, length or 1.0
-
-
-def imbalance(problem: ContactProblem, u: Array, t_n: Array, t_t: Array, force: float) -> tuple[Array, Array]:
+def imbalance(problem: ContactProblem, u: Array, t_n: Array, t_t: Array, force: Array) -> tuple[Array, Array]:
     """Return what equation (12) leaves [kN]: resultants of floating bodies (r,), and the rest at every unknown (N,).
 
     The first is R'(f + C' t), a force, or a moment over the distance of the farthest node; the second the size of what
-    K u does not balance, less what rounding of u explains, at most :data:`GRANTED` of ``force``.
+    K u does not balance, less what rounding of u explains, at most :data:`GRANTED` of ``force`` (N,) [kN].
     """
     applied = problem.f + problem.C_n.T @ t_n + problem.C_t.T @ t_t.ravel()
     moved = problem.R.T @ applied
@@ -131,7 +126,7 @@ def certify(
     t_t: Array,
     *,
     total_load: float | None = None,
-    moved: float = 0.0,
+    moved: Array | float = 0.0,
 ) -> Certificate:
     """Compute the certificate of an answer from the original problem.
 
@@ -145,30 +140,43 @@ def certify(
     t_t : (m, d-1) array
         Friction forces on side b along t [kN].
     total_load : float, optional
-        F to measure forces by, where the problem's own loads are not the measure [kN].
-    moved : float
-        How far obstacles, or the edges of a periodic cell, have moved: U is not less [m].
+        F to measure forces of every part by, where the problem's own loads are not the measure [kN].
+    moved : (m,) array or float
+        How far obstacles, or the edges of a periodic cell, have moved at each pair: U is not less [m].
     """
     cone = problem.cone
     t_t = t_t.reshape(problem.pairs, problem.dim - 1)
     if not (np.isfinite(u).all() and np.isfinite(t_n).all() and np.isfinite(t_t).all()):
         return Certificate(*([np.inf] * 5))
-    force, length = scales(problem, u, t_n, t_t)
-    force, length = total_load or force, max(length, moved)
-    kin = kinematics(problem, u, t_n, t_t)
-    equilibrium = max(float(np.abs(part).max(initial=0.0)) for part in imbalance(problem, u, t_n, t_t, force))
-    shifted = t_n + cone.tension
-    trial = t_t - (force / length) * kin.slip
+    units = measure(problem, u, t_n, t_t, total_load=total_load, moved=moved)
+    force, node_force = units.pair_force, units.node_force
+    kin, known = kinematics(problem, u, t_n, t_t), rounding(problem, u, t_n, t_t, units)
+    resultants, rest = imbalance(problem, u, t_n, t_t, node_force)
+    shares = (np.abs(resultants) / node_force[first_unknowns(problem)], rest / node_force)
+    length, along = (units.length_of(a) for a in (problem.laws.normal_compliance, problem.laws.tangential_compliance))
+    gap = np.sign(kin.gap) * np.maximum(np.abs(kin.gap) - known[0], 0.0)
+    crushing = np.maximum(kin.crushing - known[0], 0.0)
+    size = np.linalg.norm(kin.slip, axis=1)
+    left = np.maximum(size - known[1], 0.0)
+    slip = kin.slip * (in_units(left, along) / np.where(size > 0, size, 1.0))[:, None]
+    shifted = (t_n + cone.tension) / force
+    trial = t_t - force[:, None] * slip
     size = np.linalg.norm(trial, axis=1)
     inside = np.minimum(1.0, cone.strength(t_n) / np.where(size > 0, size, 1.0))
     wrong_way = np.linalg.norm(t_t - inside[:, None] * trial, axis=1)
-    crush = np.minimum(kin.crushing / length, np.where(cone.capped, cone.cap - t_n, 0.0) / force)
+    crush = np.minimum(in_units(crushing, length), np.where(cone.capped, cone.cap - t_n, 0.0) / force)
+    opened = np.minimum(in_units(gap, length), shifted)
     return Certificate(
-        equilibrium=equilibrium / force,
-        penetration=float(np.maximum(-kin.gap, 0.0).max(initial=0.0) / length),
-        cone=float(cone.excess(t_n, t_t).max(initial=0.0) / force),
-        slip_direction=float(wrong_way.max(initial=0.0) / force),
-        complementarity=float(
-            max(np.minimum(kin.gap / length, shifted / force).max(initial=0.0), crush.max(initial=0.0))
-        ),
+        equilibrium=max(float(share.max(initial=0.0)) for share in shares),
+        penetration=float(in_units(np.maximum(-gap, 0.0), length).max(initial=0.0)),
+        cone=float((cone.excess(t_n, t_t) / force).max(initial=0.0)),
+        slip_direction=float((wrong_way / force).max(initial=0.0)),
+        complementarity=float(max(opened.max(initial=0.0), crush.max(initial=0.0))),
     )
+
+
+def first_unknowns(problem: ContactProblem) -> Array:
+    """Return an unknown that each rigid motion moves (r,)."""
+    R = sp.csc_array(problem.R)
+    found: Array = R.indices[R.indptr[:-1]]
+    return found

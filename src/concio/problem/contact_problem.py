@@ -121,12 +121,13 @@ class ContactProblem:
     area : (m,) array, optional
         Tributary areas, or anything in proportion to them [m2]; default all equal. They matter only where forces are
         not unique (corners): there the forces of least weighted norm, sum t^2 / area, are reported.
-    inertia : (N,) array, optional
-        Mass that goes with each unknown [t], all positive; default all one. It does not enter any equilibrium: it
-        tells how a structure that has none moves away.
-    load : float, optional
-        Total load by which certificates measure forces [kN], where f holds more than loads: forces -K u0 of imposed
-        displacements. Default 0: the sum of |f|.
+    inertia : (N, N) CSR array, optional
+        Mass matrix, symmetric positive definite [t]; a vector (N,) stands for its diagonal, default all one. It does
+        not enter any equilibrium: it tells how a structure that has none moves away.
+    load : float or (N,) array, optional
+        The loads by which certificates measure forces [kN], where f holds more than loads: forces -K u0 of imposed
+        displacements. An array tells of each connected part what it carries, a number is the total of every part.
+        Default 0: the sum of |f|.
     """
 
     K: sp.csr_array
@@ -139,8 +140,8 @@ class ContactProblem:
     bodies: Array
     slip_origin: Array = field(default_factory=lambda: np.zeros((0, 0)))
     area: Array = field(default_factory=lambda: np.zeros(0))
-    inertia: Array = field(default_factory=lambda: np.zeros(0))
-    load: float = 0.0
+    inertia: sp.csr_array = field(default_factory=lambda: sp.csr_array((0, 0)))
+    load: float | Array = 0.0
 
     def __post_init__(self) -> None:
         m, n = self.C_n.shape
@@ -151,9 +152,10 @@ class ContactProblem:
             object.__setattr__(self, "slip_origin", np.zeros((m, max(1, self.C_t.shape[0] // max(m, 1)))))
         if not self.area.size:
             object.__setattr__(self, "area", np.ones(m))
-        if not self.inertia.size:
-            object.__setattr__(self, "inertia", np.ones(n))
-        wanted_shapes = {"K": (n, n), "f": (n,), "gap": (m,), "area": (m,), "inertia": (n,)}
+        object.__setattr__(self, "inertia", _mass_matrix(self.inertia, n))
+        wanted_shapes = {"K": (n, n), "f": (n,), "gap": (m,), "area": (m,), "inertia": (n, n)}
+        if isinstance(self.load, np.ndarray):
+            wanted_shapes["load"] = (n,)
         for name, wanted in wanted_shapes.items():
             found = getattr(self, name).shape
             if found != wanted:
@@ -203,8 +205,13 @@ class ContactProblem:
 
     @property
     def total_load(self) -> float:
-        """Total load by which forces are measured [kN]: ``load`` if given, else the sum of |f|."""
-        return self.load or float(np.abs(self.f).sum())
+        """Total load by which forces are measured [kN]: that of ``load`` if given, else the sum of |f|."""
+        return float(np.abs(self.load).sum()) or float(np.abs(self.f).sum())
+
+    @property
+    def applied(self) -> float | Array:
+        """The loads by which forces are measured: ``load`` if given, else f (N,) [kN]."""
+        return self.load if np.any(self.load) else self.f
 
     @property
     def cone(self) -> Cone:
@@ -236,3 +243,10 @@ class ContactProblem:
         tension = np.where(mu * law.tension > law.cohesion, law.cohesion / np.where(mu > 0, mu, 1.0), law.tension)
         laws = replace(law, friction=mu, tension=tension, dilatancy=np.minimum(law.dilatancy, mu))
         return replace(self, laws=laws)
+
+
+def _mass_matrix(given: sp.csr_array | Array, n: int) -> sp.csr_array:
+    """Return a mass matrix of n unknowns, of one, of its diagonal, or of nothing: ones."""
+    if isinstance(given, np.ndarray):
+        return sp.csr_array(sp.diags_array(given if given.size else np.ones(n)))
+    return sp.csr_array(given if given.shape[0] else sp.eye_array(n))

@@ -8,11 +8,13 @@ from enum import Enum
 from typing import Any, Protocol
 
 import numpy as np
+import scipy.sparse as sp
 
-from concio.problem.certificate import Certificate, Kinematics, certify, kinematics, scales
+from concio.problem.certificate import Certificate, Kinematics, certify, kinematics
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.pair_state import Normal, PairStates
 from concio.problem.tolerances import AT_BOUND, CERTIFIED
+from concio.problem.units import measure
 from concio.representation import short_repr
 
 
@@ -20,9 +22,10 @@ class Status(Enum):
     """Outcome of a solve; the value is the sentence a user reads."""
 
     SOLVED = "In equilibrium: the certificate proves it."
-    NO_EQUILIBRIUM = "No equilibrium is possible: a mechanism proves it."
+    NO_EQUILIBRIUM = "No equilibrium is possible with the joints that were made: a mechanism proves it."
     COLLAPSES = (
-        "Collapses: released at rest it moves away; an accelerating motion that obeys contact and friction proves it."
+        "Collapses with the joints that were made: released at rest it moves away; an accelerating motion that obeys "
+        "contact and friction proves it."
     )
     NO_COULOMB_STATE = "No Coulomb equilibrium exists: every combination of joint states was excluded."
     UNDECIDED = (
@@ -89,8 +92,8 @@ class Departure:
     ----------
     acceleration : (N,) array
         a: rigid motion of each body [m/s2 where the masses are in t].
-    inertia : (N,) array
-        Masses that resist it, the diagonal of M [t].
+    inertia : (N, N) CSR array
+        The mass matrix M that resists it [t].
     displacement : (N,) array
         u + s_0 a, a state on the way [m].
     normal_force, friction_force : (m,), (m, d-1) arrays
@@ -102,7 +105,7 @@ class Departure:
     """
 
     acceleration: Array
-    inertia: Array
+    inertia: sp.csr_array
     displacement: Array
     normal_force: Array
     friction_force: Array
@@ -113,6 +116,28 @@ class Departure:
     def certified(self) -> bool:
         """True where every residual is rounding and the motion really takes power from the loads."""
         return self.violation <= CERTIFIED and self.power > 10.0 * CERTIFIED
+
+
+@short_repr
+@dataclass(frozen=True, eq=False)
+class PartOutcome:
+    """What became of one connected part of a structure (:mod:`concio.problem.parts`).
+
+    Parameters
+    ----------
+    bodies, pairs : integer arrays
+        Its bodies, those that have unknowns, and its pairs.
+    status : Status
+    certificate : Certificate
+        In the units of the part.
+    method : str
+    """
+
+    bodies: Array
+    pairs: Array
+    status: Status
+    certificate: Certificate
+    method: str
 
 
 @short_repr
@@ -145,6 +170,8 @@ class Solution:
         What was tried, in order, in words.
     info : mapping
         Numbers particular to the method (pivots, condition, residual history...).
+    parts : tuple of PartOutcome
+        What became of each connected part, where there are several that were solved one by one; else empty.
     """
 
     status: Status
@@ -160,6 +187,7 @@ class Solution:
     departure: Departure | None = None
     trace: tuple[str, ...] = ()
     info: Mapping[str, Any] = field(default_factory=dict)
+    parts: tuple[PartOutcome, ...] = ()
 
     @property
     def solved(self) -> bool:
@@ -236,8 +264,9 @@ def read_pair_states(
 ) -> PairStates:
     """Read the states of the pairs off displacements and forces.
 
-    A pair is open when its force is below ``tolerance`` times the total load, crushed when it is that near to its cap;
-    it slips when its slip exceeds ``tolerance`` times the largest displacement and friction is exhausted.
+    A pair is open when its force is below ``tolerance`` times the total load of its part, crushed when it is that near
+    to its cap; it slips when its slip exceeds ``tolerance`` times the largest displacement of its part and friction is
+    exhausted.
 
     Parameters
     ----------
@@ -246,7 +275,8 @@ def read_pair_states(
         [m], [kN].
     tolerance : float
     """
-    force, length = scales(problem, u, t_n, t_t)
+    units = measure(problem, u, t_n, t_t)
+    force, length = units.pair_force, units.pair_length
     slip = kinematics(problem, u, t_n, t_t).slip
     size = np.linalg.norm(slip, axis=1)
     used = np.linalg.norm(t_t, axis=1) >= problem.cone.strength(t_n) - tolerance * force

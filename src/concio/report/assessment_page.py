@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import cached_property
 from html import escape
 from importlib.resources import files
 from pathlib import Path
@@ -15,10 +16,11 @@ import concio
 from concio.analysis.seismic.applied import applied_forces
 from concio.analysis.seismic.asked import Head
 from concio.analysis.seismic.floor import Storeys
-from concio.analysis.seismic.site import STRONG
 from concio.plot.assessment_figures import model_figure
 from concio.report.assessment_mechanism import mechanism_html
 from concio.report.assessment_texts import Texts
+from concio.verdict.assessment_verdict import assessment_verdict
+from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from concio.analysis.seismic.anchors import Anchor
@@ -94,26 +96,36 @@ class AssessmentReport(Texts):
             f"<table class=facts><tbody>{facts}</tbody></table></header>"
         )
 
+    @cached_property
+    def told(self) -> Verdict:
+        """The verdict in the language of the report."""
+        return assessment_verdict(
+            self.found, self.language, write=self.n, name=self.named,
+            reason=lambda key: self.words["reason_" + key.replace(" ", "_")],
+        )  # fmt: skip
+
     def top(self) -> str:
-        """Return what was found, in short."""
-        found, worst = self.found, self.found.worst
-        if worst is None:
-            text, tone = self.say("verdict_none"), "unsure"
-        else:
-            key, tone = ("verdict_holds", "good") if found.holds else ("verdict_fails", "bad")
-            if found.zeta >= 1 and not found.complete:
-                key, tone = "verdict_open", "unsure"
-            text = self.say(key, zeta=self.n(found.zeta))
-        more = ""
-        if worst is not None:
-            way = self.way(worst.direction)
-            more = (
-                f"<p>{self.say('weakest', name=self.name(worst), direction=way, alpha=self.n(worst.multiplier, 6))}</p>"
-            )
-        strong = [level for level in found.levels if found.site.at(level).a_g > STRONG]
-        said = "".join(f"<li>{self.say('strong', level=v, a_g=self.n(found.site.at(v).a_g))}</li>" for v in strong)
-        attention = f"<h3>{self.say('attention')}</h3><ul>{said}</ul>" if said else ""
-        return f'<section id=verdict><div class="verdict {tone}"><h2>{text}</h2>{more}</div>{attention}</section>'
+        """Return the verdict: what pushes, what was found, what proves it, what limits it and what is open."""
+        told, w = self.told, self.words
+        facts = [("asked", (told.question.asked,)), ("acts", self.acting()), ("limits", told.limits),
+                 ("not_checked", told.unchecked), ("attention", told.attention)]  # fmt: skip
+        rows = "".join(f"<tr><th>{escape(w[key])}</th><td>{'<br>'.join(escape(v) for v in lines)}</td></tr>"
+                       for key, lines in facts if lines)  # fmt: skip
+        return (
+            f'<section id=verdict><div class="verdict {told.tone}"><h2>{escape(told.headline)}</h2>'
+            f"<p>{escape(told.answer)}</p><p class=cert>{escape(told.proof)}</p></div>"
+            f"<table class=facts><tbody>{rows}</tbody></table></section>"
+        )
+
+    def acting(self) -> tuple[str, ...]:
+        """Return what is multiplied with its kN, and what acts as it is."""
+        lines = []
+        for a in self.found.acting:
+            key = "acts_multiplied" if a.role == "multiplied" else "acts_constant"
+            what = self.way(a.group.removeprefix("push ")) if a.role == "multiplied" else a.group
+            size = self.n(math.hypot(*a.force) if a.force else 0.0)
+            lines.append(self.words[key].format(group=what, size=size, force=self.pair(a.force), parts=a.what))
+        return tuple(lines)
 
     def site(self) -> str:
         """Return site, limit states, knowledge."""
@@ -201,11 +213,10 @@ class AssessmentReport(Texts):
     def search(self) -> str:
         """Return the table of mechanisms."""
         w, found = self.words, self.found
-        gap = max((m.found.associated.worst for m in found.mechanisms), default=0.0)
         rows = []
         for k, m in enumerate(found.mechanisms, 1):
-            settled = m.complete or m.zeta < 1
-            verdict = self.verdict(m.zeta, m.zeta >= 1) if settled else self.say("unchecked")
+            settled = m.complete or m.least < 1
+            verdict = self.verdict(m.least, m.least >= 1) if settled else self.say("unchecked")
             rows.append([f'<a href="#m{k}">{escape(self.name(m))}</a>', escape(self.way(m.direction)),
                          self.n(m.multiplier, 6), self.n(m.e_star), self.n(m.onset), self.n(m.d0), self.n(m.zeta),
                          verdict])  # fmt: skip
@@ -214,7 +225,7 @@ class AssessmentReport(Texts):
             text = self.say(said, alpha=self.n(none.multiplier))
             rows.append([escape(self.name(none)), escape(self.way(none.direction)), *["&ndash;"] * 5, text])
         head = [w[k] for k in ("name", "direction", "alpha0", "e_star", "a0_star", "d0", "zeta", "outcome")]
-        text = self.say("search_text", gap=f"{gap:.0e}")
+        text = self.say("search_text")
         return f"<section id=search><h2>{self.say('search')}</h2><p>{text}</p>{self.table(head, rows, 2)}</section>"
 
     # -- what if ------------------------------------------------------------------------------------------------------
@@ -243,7 +254,7 @@ class AssessmentReport(Texts):
             text = self.say(key, force=self.n(tie.force), tie=tie.tie, reached=self.n(tie.reached),
                             largest=self.n(tie.largest))  # fmt: skip
             parts.append(f"<p>{text}</p>")
-        forces = {t.name: t.yield_force for t in self.found.model.ties}
+        forces = {t.name: t.strength if math.isfinite(t.strength) else None for t in self.found.model.ties}
         for anchor in self.anchors:
             force, key = forces.get(anchor.tie), "anchor_text"
             if tie is not None and tie.tie == anchor.tie and 0 < tie.force < math.inf:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
@@ -10,14 +11,24 @@ from html import escape
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
-from concio.analysis.seismic.assess import EVERY
+from concio.analysis.seismic.searching import ALL_FREE, EVERY
 from concio.arguments import closest
 from concio.display import number
 from concio.errors import InputError
 from concio.report.html_parts import figure_html
+from concio.verdict.assessment_verdict import check_words, ratio_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from concio.analysis.seismic.checks import Check
+
+PART = {
+    "above": r"above z = (\S+) m(?: of (.*))?",
+    "beyond": r"beyond (\S+) m along the push(?: of (.*))?",
+    "alone": r"('.*') and what it touches",
+}
+"""Names of parts of a structure, as :class:`concio.analysis.seismic.parts.Part` gives them."""
 
 
 @cache
@@ -65,7 +76,20 @@ class Texts:
 
     def name(self, mechanism: Any) -> str:
         """Return the name of a mechanism as it was asked for."""
-        return self.words["every"] if mechanism.name == EVERY else str(mechanism.name)
+        return self.named(str(mechanism.name))
+
+    def named(self, name: str) -> str:
+        """Return a name in the language: of the weakest of all and of parts; others are as they were given."""
+        known = {EVERY: "every", ALL_FREE: "all_free"}
+        if name in known:
+            return self.words[known[name]]
+        for kind, pattern in PART.items():
+            found = re.fullmatch(pattern, name)
+            if found and kind == "alone":
+                return self.words["part_alone"].format(of=found[1])
+            if found:
+                return self.words[f"part_{kind}"].format(at=self.n(float(found[1])), of=found[2] or "").strip()
+        return name
 
     def way(self, direction: str) -> str:
         """Return which way the earthquake pushes."""
@@ -91,8 +115,15 @@ class Texts:
         """Return "verified" with its ratio."""
         if not math.isfinite(ratio):
             return escape(self.n(ratio))
-        tone = "good" if holds else "bad"
-        return f'<b class="{tone}">{self.say("verified" if holds else "not_verified", ratio=self.n(ratio))}</b>'
+        return self.toned(ratio_words(ratio, holds, self.language, self.n), holds)
+
+    def checked(self, check: Check, *, decides: bool) -> str:
+        """Return the outcome of a check."""
+        return self.toned(check_words(check, self.language, decides=decides, write=self.n), check.holds)
+
+    def toned(self, text: str, good: bool) -> str:
+        """Return words in the colour of what holds, or of what does not."""
+        return f'<b class="{"good" if good else "bad"}">{escape(text)}</b>'
 
     def pair(self, vector: Any) -> str:
         """Return the numbers of a vector."""

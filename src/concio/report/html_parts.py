@@ -12,7 +12,8 @@ import numpy as np
 
 from concio.display import DEFAULT, Units
 from concio.post.tables import KINDS
-from concio.report.wording import Verdict
+from concio.report.wording import Verdict as Shown
+from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,13 +31,30 @@ LARGEST_SVG = 350_000
 """Drawings above this many bytes are embedded as images of dots."""
 
 
-def verdict_html(verdict: Verdict, certificate: str, details: str = "") -> str:
-    """Return an outcome: headline, meaning and certificate, details in HTML, and what to do next."""
+def verdict_html(verdict: Verdict | Shown, certificate: str, details: str = "", *, units: Units = DEFAULT) -> str:
+    """Return an outcome: headline, meaning and certificate, its question, details in HTML, and what to do next."""
     steps = "".join(f"<li>{escape(s)}</li>" for s in verdict.next_steps)
-    return (
-        f'<div class="verdict {verdict.tone}"><h2>{escape(verdict.headline)}</h2><p>{escape(verdict.meaning)}</p>'
-        f"<p class=cert>{escape(certificate)}</p></div>{details}<h3>What to do next</h3><ul>{steps}</ul>"
+    asked = answer = ""
+    if isinstance(verdict, Verdict):
+        asked, answer = question_html(verdict, units), f"<p><b>{escape(verdict.sentence)}</b></p>"
+    head = f'<div class="verdict {verdict.tone}"><h2>{escape(verdict.headline)}</h2>{answer}'
+    meaning = f"<p>{escape(verdict.meaning)}</p><p class=cert>{escape(certificate)}</p></div>"
+    return f"{head}{meaning}{asked}{details}<h3>What to do next</h3><ul>{steps}</ul>"
+
+
+def question_html(verdict: Verdict, units: Units = DEFAULT) -> str:
+    """Return what was asked, what acts with how many kN, what limits the answer and what was not checked."""
+    question = verdict.question
+    rows = [
+        ("asked", (question.asked,)), ("acts", question.loads(units)), ("assumed", question.assumptions),
+        ("limits", verdict.limits), ("not checked", verdict.unchecked), ("attention", verdict.attention),
+    ]  # fmt: skip
+    cells = "".join(
+        f"<tr><th>{head}</th><td>{'<br>'.join(escape(line) for line in lines)}</td></tr>"
+        for head, lines in rows
+        if lines
     )
+    return f'<h3>The question, and what limits the answer</h3><table class="facts"><tbody>{cells}</tbody></table>'
 
 
 def table_html(

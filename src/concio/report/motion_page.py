@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 import concio
-from concio.analysis.motion.dynamics_result import DynamicsResult, Ending
-from concio.analysis.motion.push_result import PushEnding, PushResult
+from concio.analysis.motion.dynamics_result import DynamicsResult
+from concio.analysis.motion.push_result import PushResult
 from concio.arguments import strict
 from concio.display import number
 from concio.plot.motion_figure import plot_capacity, plot_energy, plot_ground, plot_history
@@ -103,28 +103,13 @@ def _film(result: PushResult | DynamicsResult) -> dict[str, Any]:
 
 
 def _verdict(result: PushResult | DynamicsResult) -> str:
-    if isinstance(result, PushResult):
-        tone = "good" if result.ending in (PushEnding.LOST, PushEnding.REACHED) else "unsure"
-        at = 1e3 * float(result.displacement[result.peak_step])
-        told = [
-            f"Largest multiplier {number(result.peak, 5)} at {number(at, 4)} mm",
-            f"{len(result)} points, each in equilibrium where the bodies stand",
-        ]
-        if np.isfinite(result.capacity):
-            told.append(f"strength lost at {number(1e3 * result.capacity, 5)} mm")
-    else:
-        good = result.ending in (Ending.COMPLETE, Ending.AT_REST)
-        tone = "good" if good else "bad" if result.ending is Ending.OVERTURNED else "unsure"
-        name, turned = result.largest_rotation
-        told = [
-            f"{number(float(result.end.time), 5)} s in {len(result.steps):,} steps",
-            f"largest rotation {number(float(np.rad2deg(turned)), 4)} degrees ('{name}')",
-            f"energy balance closes to {result.energy.error:.0e} of what was turned over",
-        ]
-    told.append(f"worst residual of any equation {result.certificate:.0e}")
-    notes = "".join(f"<p>Note: {escape(n)}.</p>" for n in result.notes)
-    said = escape("; ".join(told))
-    return f'<div class="verdict {tone}"><h2>{escape(result.ending.value)}</h2><p>{said}.</p>{notes}</div>'
+    """Return the verdict of a motion as its own section, word for word what every other place says."""
+    verdict = result.verdict
+    lines = "".join(f"<li>{escape(line)}</li>" for line in verdict.lines(result.model.report, indent=""))
+    return (
+        f'<div class="verdict {verdict.tone}"><h2>{escape(verdict.headline)}</h2><p>{escape(verdict.sentence)}</p>'
+        f"<p>{escape(verdict.proof)}</p><p>{escape(verdict.meaning)}</p><ul>{lines}</ul></div>"
+    )
 
 
 def _events(result: PushResult) -> str:

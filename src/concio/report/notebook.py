@@ -7,16 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.display import Units
 from concio.model.described import model_lines
 from concio.report.html_parts import figure_html
-from concio.report.limit_wording import limit_lines
-from concio.report.path_page import path_certificate, path_verdict
-from concio.report.wording import certificate_sentence, verdict
+from concio.verdict.limit_words import limit_lines
+from concio.verdict.path_verdict import stage_loads
+from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from concio.analysis.limit_result import LimitResult
     from concio.analysis.path_result import PathResult
     from concio.analysis.result import Result
+    from concio.analysis.seismic.assessment import Assessment
     from concio.model.model import Model
 
 _TONE = {"good": "#0072B2", "bad": "#D55E00", "unsure": "#B07800"}
@@ -30,8 +32,9 @@ LARGEST = 2000
 
 def notebook_html(result: Result) -> str:
     """Return the result as a piece of HTML."""
-    v = verdict(result)
+    v = result.verdict
     rows = [("model", result.model.title or "untitled"), ("method", result.solved_by)]
+    rows += verdict_rows(v, result.model.report)
     rows.append(("size", f"{len(result.model.free_bodies)} bodies, {len(result.assembly.pairs)} contact pairs"))
     if result.solved:
         contacts, units = result.contacts, result.model.report
@@ -46,7 +49,14 @@ def notebook_html(result: Result) -> str:
             figure = figure_html(result.plot.deformed(), "deformed", "deformed shape")
         elif result.mechanism is not None:
             figure = figure_html(result.plot.mechanism(), "mechanism", "collapse mechanism")
-    return _piece(v.tone, v.headline, certificate_sentence(result), rows, figure)
+    return _piece(v.tone, v.headline, f"{v.sentence} {v.proof}", rows, figure)
+
+
+def verdict_rows(verdict: Verdict, units: Units) -> list[tuple[str, str]]:
+    """Return what acts, what limits an answer, what was not checked and what is odd, a row each."""
+    parts = (("acts", verdict.question.loads(units)), ("limits", verdict.limits), ("not checked", verdict.unchecked),
+             ("attention", verdict.attention))  # fmt: skip
+    return [(head, line) for head, lines in parts for line in lines]
 
 
 def model_html(model: Model) -> str:
@@ -68,19 +78,20 @@ def model_html(model: Model) -> str:
 
 def path_html(path: PathResult) -> str:
     """Return a load path as a piece of HTML: how it ended, its stages, and its load curve."""
-    v = path_verdict(path)
+    v = path.verdict
     rows = [("model", path.assembly.model.title or "untitled")]
-    for k, outcome in enumerate(path.outcomes):
-        name, values = path.load(k)
-        rows.append((f"stage {path.stages[k].name}", f"{outcome.name.lower()}, {name} = {values.max():.6g} at most"))
+    for k, ended in enumerate(path.outcomes):
+        rows.append((f"stage {path.stages[k].name}", f"{ended.name.lower()}, {stage_loads(path, k)}"))
     rows.append(("size", f"{len(path.steps):,} states, {len(path.events):,} events"))
+    rows += verdict_rows(v, path.assembly.model.report)
     figure = figure_html(path.plot.curve(), "path", "load path")
-    return _piece(v.tone, v.headline, f"{path.sentence} {path_certificate(path)}", rows, figure)
+    return _piece(v.tone, v.headline, f"{v.sentence} {v.proof}", rows, figure)
 
 
 def limit_html(found: LimitResult) -> str:
     """Return a limit load as a piece of HTML: every number with what it is, and the associated mechanism."""
-    title, *lines = limit_lines(found)
+    title, _, *lines = limit_lines(found)
+    v = found.verdict
     rows: list[tuple[str, str]] = []
     for line in lines:
         head, text = line[2:HEAD].strip(), line[HEAD:].strip()
@@ -89,8 +100,16 @@ def limit_html(found: LimitResult) -> str:
     model = found.assembly.model
     if found.associated.mechanism is not None and model.dim == 2 and len(model.bodies) <= LARGEST:
         figure = figure_html(found.plot.mechanism(), "mechanism", "associated mechanism")
-    tone = "good" if found.associated.checked else "unsure"
-    return _piece(tone, title, "", rows, figure)
+    return _piece(v.tone, v.headline, v.sentence, [("model", title), *rows], figure)
+
+
+def assessment_html(found: Assessment) -> str:
+    """Return an assessment as a piece of HTML: its verdict, and every mechanism with its multiplier and zeta_E."""
+    v = found.verdict
+    rows = [("model", found.model.title or "untitled"), *verdict_rows(v, found.model.report)]
+    rows += [(f"{m.name}, push {m.direction}", f"alpha_0 {m.multiplier:.6g}, zeta_E {m.zeta:.4g}")
+             for m in found.mechanisms]  # fmt: skip
+    return _piece(v.tone, v.headline, f"{v.sentence} {v.proof}", rows, "")
 
 
 def _halves(line: str) -> tuple[str, str]:

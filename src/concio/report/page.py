@@ -19,9 +19,9 @@ from concio.model.described import law_words, material_words
 from concio.plot.figures import TITLES, suitable_figures
 from concio.report.html_parts import figure_html, table_html, verdict_html
 from concio.report.space_data import space_view_data
-from concio.report.space_tables import space_tables_html
+from concio.report.space_tables import space_tables_html, ties_html
 from concio.report.view_data import view_data
-from concio.report.wording import certificate_sentence, checks, verdict
+from concio.verdict.step_verdict import checks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -138,7 +138,7 @@ def _label(result: Result, index: int) -> str:
 
 
 def _verdict(result: Result) -> str:
-    v = verdict(result)
+    v = result.verdict
     checked = ""
     if result.solved:
         rows = "".join(
@@ -150,7 +150,7 @@ def _verdict(result: Result) -> str:
             "<details><summary>The certificate, equation by equation</summary><div class=scroll><table><thead><tr>"
             f"<th>checked</th><th>error</th><th></th></tr></thead><tbody>{rows}</tbody></table></div></details>"
         )
-    return verdict_html(v, certificate_sentence(result), checked)
+    return verdict_html(v, v.proof, checked, units=result.model.report)
 
 
 def _elements(model: Model) -> str:
@@ -200,7 +200,7 @@ def _tables(result: Result) -> str:
     force = np.hypot(joints["normal_force"], joints["shear_force"])
     strongest = np.argsort(-force, kind="stable")
     text = f"<h2>Reactions</h2>{table_html(reactions, ('support', 'force_x', 'force_y'), units=units)}"
-    text += "<p class=note>Forces on the structure.</p>"
+    text += "<p class=note>Forces on the structure.</p>" + ties_html(result)
     columns: tuple[str, ...] = (
         "body_a", "body_b", "length", "normal_force", "shear_force", "eccentricity", "open_share", "slipping"
     )  # fmt: skip

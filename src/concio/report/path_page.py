@@ -11,14 +11,11 @@ import numpy as np
 
 from concio.arguments import strict
 from concio.display import number
-from concio.model.plausibility import implausible
 from concio.plot.path_accessor import PathPlots
 from concio.post.path_curve import most_moving
-from concio.problem.tolerances import CERTIFIED
 from concio.report.html_parts import figure_html, verdict_html
 from concio.report.page import page
-from concio.report.wording import Verdict
-from concio.solvers.path.record import Outcome
+from concio.verdict.path_verdict import stage_loads, stage_sentence
 
 if TYPE_CHECKING:
     from concio.analysis.path_result import NamedEvent, PathResult
@@ -60,60 +57,10 @@ def path_html(found: PathResult, *, point: ControlPoint | None = None) -> str:
     return page(
         [found.result(i) for i in chosen],
         [step_words(found, i) for i in chosen],
-        verdict=verdict_html(path_verdict(found), path_certificate(found)),
+        verdict=verdict_html(found.verdict, found.verdict.proof, units=found.assembly.model.report),
         figures=figure_html(curves[-1], "path", "Load against motion, stage by stage"),
         more=_stages(found) + _events(found),
     )
-
-
-def path_verdict(found: PathResult) -> Verdict:
-    """Return the outcome of a load path in words."""
-    outcome = found.outcomes[-1]
-    if found.complete and found.certified:
-        tone, headline = "good", "The loads are carried to the end of the path."
-    elif found.collapsed:
-        tone, headline = "bad", "The structure collapses on this path."
-    elif outcome is Outcome.LOST:
-        tone, headline = "unsure", "The path was lost before its end."
-    else:
-        tone, headline = "unsure", "The path was stopped before its end."
-    meaning = [
-        found.sentence,
-        "" if found.complete else outcome.value,
-        *(f"{_capital(note)}." for note in story(found)),
-    ]
-    steps = [f"{_capital(line)}." for line in implausible(found.assembly.model)]
-    if found.collapsed:
-        steps += [
-            "Look at the last step in the view: it is the state in which the structure begins to move.",
-            "'concio limit' puts the load beside the associated bound, which no history exceeds.",
-        ]
-    elif not found.complete:
-        steps += [
-            "Follow it again in steps ('--method steps'), or under the motion of a point ('--point', '--until').",
-            "'concio limit' gives a bound that needs no path.",
-        ]
-    else:
-        steps += [
-            "This says that the structure stands all along this history, not how far it is from collapse: go on with "
-            "another stage of growing load, or ask 'concio limit'.",
-        ]
-    return Verdict(tone, headline, " ".join(filter(None, meaning)), tuple(steps))
-
-
-def story(found: PathResult) -> tuple[str, ...]:
-    """Return the notes of a path without those that its sentence tells already."""
-    return tuple(note for note in found.notes if "ended at" not in note)
-
-
-def path_certificate(found: PathResult) -> str:
-    """Return what was checked, in one sentence."""
-    worst, count = found.certificate, len(found.steps)
-    kept = f"work, stored energy and dissipation agree to {found.energy_error:.1e}"
-    if found.certified:
-        passed = f"the largest error in any equation of {count:,} states is {worst:.1e} ({CERTIFIED:.0e} is allowed)"
-        return f"Certified: {passed}; {kept}."
-    return f"Not certified: the largest error in any equation of {count:,} states is {worst:.1e}; {kept}."
 
 
 def report_steps(found: PathResult) -> list[int]:
@@ -133,20 +80,15 @@ def step_words(found: PathResult, step: int) -> str:
     return f"{found.stages[chosen.stage].name}: {name} at {number(value, 4)}"
 
 
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
-
-
 def _stages(found: PathResult) -> str:
     rows = []
     for k, stage in enumerate(found.stages):
         if k >= len(found.outcomes):
             rows.append((stage.name, "not begun", "", ""))
             continue
-        name, values = found.load(k)
         count = sum(e.stage == k for e in found.events)
-        rows.append((stage.name, found.outcomes[k].value, f"{name}: {number(float(values.max()), 6)}", f"{count:,}"))
-    return _table("Stages", ("stage", "how it ended", "most carried", "events"), rows)
+        rows.append((stage.name, stage_sentence(found, k), stage_loads(found, k), f"{count:,}"))
+    return _table("Stages", ("stage", "how it ended", "load reached", "events"), rows)
 
 
 def _events(found: PathResult) -> str:

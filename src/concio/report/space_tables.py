@@ -17,7 +17,7 @@ def space_tables_html(result: Result, rows: int) -> str:
     tables, units = result.tables, result.model.report
     joints, bodies, reactions = tables.joints(), tables.bodies(), tables.reactions()
     text = f"<h2>Reactions</h2>{table_html(reactions, ('support', 'force_x', 'force_y', 'force_z'), units=units)}"
-    text += "<p class=note>Forces on the structure.</p>"
+    text += "<p class=note>Forces on the structure.</p>" + ties_html(result)
     strongest = np.argsort(-np.hypot(joints["normal_force"], joints["shear_force"]), kind="stable")
     columns: tuple[str, ...] = ("body_a", "body_b", "area", "normal_force", "shear_force", "torsion", "open_share")
     text += "<h2>Joints</h2>" + _note(len(strongest), rows, "the largest forces")
@@ -30,6 +30,19 @@ def space_tables_html(result: Result, rows: int) -> str:
     text += "<h2>Blocks</h2>" + _note(len(free), rows, "the largest motion")
     text += table_html(bodies, columns, rows=order[:rows], units=units)
     return text + "<p class=note>Mean motion and mean principal stresses; tension positive.</p>"
+
+
+def ties_html(result: Result) -> str:
+    """Return the table of ties, plane or in space; nothing where there are none."""
+    if not result.model.ties:
+        return ""
+    columns: tuple[str, ...] = ("tie", "body_a", "body_b", "tension", "elongation", "state")
+    columns += tuple(f"force_{axis}" for axis in "xyz"[: result.model.dim])
+    table = table_html(result.tables.ties(), columns, units=result.model.report)
+    note = (
+        "Tension of each tie, and its force on the first block; on the second, or on a fixed point, it is the opposite."
+    )
+    return f"<h2>Ties</h2>{table}<p class=note>{note}</p>"
 
 
 def _note(count: int, rows: int, what: str) -> str:

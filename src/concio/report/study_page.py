@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import base64
+import math
 from html import escape
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 import concio
 from concio.display import number
 from concio.plot.study_figures import suitable
 from concio.report.html_parts import figure_html
+from concio.verdict.study_verdict import output_words, verdict_counts
 
 if TYPE_CHECKING:
     from concio.studies.rows import Row
@@ -71,35 +71,26 @@ def study_notebook(study: StudyResult) -> str:
 
 
 def _head(study: StudyResult) -> str:
-    planned = len(study.sample)
-    said = f"{len(study)} of {planned} runs" if len(study) < planned else f"{planned} runs"
-    more = " It stopped there because enough was known." if study.stopped else ""
-    failed = len(study.failures)
-    tone = "good" if not failed else "unsure"
-    words = ", ".join(f"{count} {escape(word.replace('_', ' '))}" for word, count in study.verdicts.items())
-    without = f" {failed} came to no answer; they are listed below." if failed else ""
+    v = study.verdict
+    rows = "".join(f"<li>{escape(line)}</li>" for line in v.lines(indent=""))
+    early = " It stopped there because enough was known." if study.stopped else ""
+    counts = escape(verdict_counts(study))
     return (
-        f'<div class="verdict {tone}"><h2>{said}</h2><p>Sample: {escape(study.sample.design)}, seed '
-        f"{study.sample.seed}.{more}{without}</p><p>{words}</p></div>"
+        f'<div class="verdict {v.tone}"><h2>{escape(v.headline)}</h2><p>Sample: {escape(study.sample.design)}, seed '
+        f"{study.sample.seed}.{early} {escape(v.meaning)}</p><p>{counts}</p><ul>{rows}</ul></div>"
     )
 
 
 def _outputs(study: StudyResult) -> str:
     rows = []
     for o in study.outputs:
-        values = study.values(o.name)
-        known = values[np.isfinite(values)]
-        cells = [f"{len(known)}"]
-        if len(known):
-            quantiles = np.quantile(known, (0.05, 0.5, 0.95))
-            spread = known.std(ddof=1) if len(known) > 1 else float("nan")
-            cells += [number(float(x)) for x in (known.mean(), spread, known.min(), *quantiles, known.max())]
-        else:
-            cells += ["&ndash;"] * 7
+        spread = study.spread(o.name)
         unit = "" if o.unit == "-" else f" [{escape(o.unit)}]"
+        cells = [f"{len(spread.known)} of {len(spread.values)}"]
+        cells += [number(x) if math.isfinite(x) else "&ndash;" for x in (spread.mean, spread.sd)]
         numbers = "".join(f"<td class=n>{c}</td>" for c in cells)
-        rows.append(f"<tr><td>{escape(o.name)}{unit}</td>{numbers}</tr>")
-    head = "".join(f"<th>{w}</th>" for w in ("output", "runs", "mean", "sd", "least", "5 %", "median", "95 %", "most"))
+        rows.append(f"<tr><td>{escape(o.name)}{unit}</td><td>{escape(output_words(study, o))}</td>{numbers}</tr>")
+    head = "".join(f"<th>{w}</th>" for w in ("output", "all runs", "finite numbers", "their mean", "their sd"))
     return f"<div class=scroll><table><thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table></div>"
 
 

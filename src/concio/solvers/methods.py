@@ -12,11 +12,16 @@ import numpy as np
 
 from concio.arguments import closest, options_of, refuse_unknown
 from concio.errors import MethodError
+from concio.problem.apart import solve_apart
 from concio.problem.contact_problem import ContactProblem
+from concio.problem.parts import Part
 from concio.problem.solution import ProgressCallback, Solution, Solver
 
 LAWS = ("friction", "cohesion", "tension", "dilatancy", "cap", "stiffness")
 """Joint laws a method may or may not treat; stiffness stands for joints that give way elastically."""
+
+GIVEN = ("start", "start_states")
+"""Options that hold arrays of the whole problem, which is then solved as one."""
 
 SPACES = {2: "plane problems", 3: "problems in space"}
 """Words for dimensions."""
@@ -42,7 +47,7 @@ class Method:
     def __call__(
         self, problem: ContactProblem, *, progress: ProgressCallback | None = None, **options: Any
     ) -> Solution:
-        """Solve one load step.
+        """Solve one load step, each connected part of the structure by itself (:mod:`concio.problem.apart`).
 
         Raises
         ------
@@ -56,7 +61,16 @@ class Method:
             if option in self.options and option not in options_of(solver):
                 msg = f"method '{self.name}' has no option '{option}' for {SPACES[problem.dim]}"
                 raise MethodError(msg, hint="one of: " + ", ".join(o for o in options_of(solver) if o != "progress"))
-        return solver(problem, progress=progress, **options)
+
+        def solve(part: Part) -> Solution:
+            if problem.pairs and not part.problem.pairs:  # K u = f, or a body that nothing holds
+                linear = METHODS["sparse-lemke" if problem.dim == 2 else "auto"].solver(problem.dim)
+                return linear(part.problem, progress=progress)
+            return solver(part.problem, progress=progress, **options)
+
+        if any(options.get(name) is not None for name in GIVEN):
+            return solver(problem, progress=progress, **options)
+        return solve_apart(problem, solve)
 
     @property
     def dimensions(self) -> tuple[int, ...]:

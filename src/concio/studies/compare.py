@@ -10,7 +10,7 @@ table can be compared with one made on another machine.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from time import perf_counter
 from typing import Any
 
@@ -19,22 +19,13 @@ import numpy as np
 from concio.arguments import closest, strict
 from concio.errors import MethodError
 from concio.problem.contact_problem import ContactProblem
-from concio.problem.solution import Progress, ProgressCallback, Solution, Status
+from concio.problem.solution import Progress, ProgressCallback, Solution
 from concio.solvers.methods import METHODS, check_options, find
+from concio.verdict.comparison_verdict import comparison_verdict, word_of
+from concio.verdict.verdict import Verdict
 
 ENGINE = "interior-point"
 """The method the seconds of all others are divided by."""
-
-OUTCOMES = {
-    Status.SOLVED: "solved",
-    Status.NO_EQUILIBRIUM: "no equilibrium",
-    Status.COLLAPSES: "collapses",
-    Status.NO_COULOMB_STATE: "no Coulomb state",
-    Status.UNDECIDED: "undecided",
-    Status.GAVE_UP: "gave up",
-    Status.CANCELLED: "cancelled",
-}
-
 
 @dataclass(frozen=True)
 class ComparisonRow:
@@ -44,7 +35,8 @@ class ComparisonRow:
     ----------
     method : str
     outcome : str
-        "solved", "no equilibrium", "undecided", "gave up", "too slow", "not applicable".
+        "solved", "no equilibrium", "undecided", "gave up", "too slow", "not applicable"; "balanced only" where the
+        equations are met by forces that nothing puts there, of a structure that is proven to fail.
     worst : float
         Worst entry of the certificate; ``inf`` where there is no answer to judge, ``nan`` where none was tried.
     iterations, factorisations : int
@@ -86,6 +78,8 @@ class ComparisonTable:
     engine : str
     pairs, unknowns, rigid_motions : int
     title : str
+    decided : Verdict or None
+        What is known of the structure whose problem was compared; None of a bare problem.
     """
 
     rows: tuple[ComparisonRow, ...]
@@ -94,11 +88,18 @@ class ComparisonTable:
     unknowns: int
     rigid_motions: int
     title: str = ""
+    decided: Verdict | None = None
+
+    @property
+    def verdict(self) -> Verdict:
+        """The verdict of the structure, with what the methods say of its equations."""
+        return comparison_verdict(self)
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain numbers, for JSON (residual histories included; not finite becomes None)."""
-        told: dict[str, Any] = _plain(asdict(self))
-        return told
+        told: dict[str, Any] = _plain(asdict(replace(self, decided=None)))
+        del told["decided"]
+        return {"status": self.verdict.status, **told, "verdict": self.verdict.as_dict()}
 
 
 @strict
@@ -111,6 +112,7 @@ def compare(
     time_limit: float | None = None,
     progress: ProgressCallback | None = None,
     title: str = "",
+    decided: Verdict | None = None,
 ) -> ComparisonTable:
     """Solve one problem by several methods and return the table.
 
@@ -128,6 +130,9 @@ def compare(
     progress : callable, optional
         Receives the progress of every method.
     title : str
+    decided : Verdict, optional
+        Verdict of the structure that the problem is of, such as ``result.verdict`` for the problem
+        ``result.assembly.problem(result.factors)``: a row never calls solved what it says to fail.
 
     Raises
     ------
@@ -149,11 +154,12 @@ def compare(
     unit = runs[0][1]
     reference = next((s for s, _, _ in runs if isinstance(s, Solution) and s.solved), None)
     rows = [
-        _row(problem, name, outcome, seconds, unit, reference, slow=slow)
+        _row(problem, name, outcome, seconds, unit, reference, decided, slow=slow)
         for name, (outcome, seconds, slow) in zip(order, runs, strict=True)
     ]
+    words = title or "comparison of methods"
     return ComparisonTable(
-        tuple(rows), engine, problem.pairs, problem.unknowns, problem.rigid_motions, title or "comparison of methods"
+        tuple(rows), engine, problem.pairs, problem.unknowns, problem.rigid_motions, words, decided
     )
 
 
@@ -218,13 +224,14 @@ def _row(
     seconds: float,
     unit: float,
     reference: Solution | None,
+    decided: Verdict | None,
     *,
     slow: bool,
 ) -> ComparisonRow:
     if isinstance(outcome, MethodError):
         nan = float("nan")
         return ComparisonRow(name, "not applicable", nan, 0, 0, seconds, seconds / unit, 0, nan, str(outcome))
-    word = OUTCOMES[outcome.status]
+    word = word_of(outcome.status, decided)
     if slow and not outcome.solved:
         word = "too slow"
     difference = float("nan")

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from concio.arguments import closest
-from concio.errors import InputError
+from concio.contact.factors import load_factor
+from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
 from concio.problem.solution import PROVEN_FAILURES, Progress, Status
+from concio.solvers.algebra.sparse_factor import factorised_by
 
 if TYPE_CHECKING:
     from concio.analysis.limit import LimitResult
@@ -34,9 +36,9 @@ class Settings:
     method : str
         Method of :func:`concio.solve`.
     factors : mapping of str to float
-        Load factors of :func:`concio.solve`.
+        Load factors of every analysis; a group that is not named has 1.
     live : tuple of str
-        Load groups that limits and margins multiply.
+        Load groups that limits and margins multiply, from nothing on, whatever their factors.
     """
 
     method: str = "auto"
@@ -85,36 +87,82 @@ class Analyses:
         )
 
     @cached_property
+    def multiplied(self) -> Model | Assembly:
+        """What limits and margins are asked about: groups that are not multiplied act with their factors."""
+        s = self.settings
+        scaled = {g: f for g, f in s.factors.items() if g not in s.live and f != 1.0}
+        return at_factors(self.model, scaled) if scaled else self.assembly
+
+    @cached_property
     def limit(self) -> LimitResult:
         """The associated limit load, without the Coulomb path."""
         from concio.analysis.limit import limit
 
-        return limit(self.assembly, self.settings.live, path=False, search=False)
+        return limit(self.multiplied, self.settings.live, path=False, search=False)
 
     @cached_property
     def coulomb(self) -> LimitResult:
         """The associated limit load and the Coulomb path."""
         from concio.analysis.limit import limit
 
-        return limit(self.assembly, self.settings.live, path=True, search=False, progress=self.progress)
+        return limit(self.multiplied, self.settings.live, path=True, search=False, progress=self.progress)
 
     @cached_property
     def load_margin(self) -> Margin:
         """The largest factor of the live load that single steps were found to carry."""
         from concio.analysis.margins import load_margin
 
-        return load_margin(self.assembly, self.settings.live)
+        return load_margin(self.multiplied, self.settings.live)
 
     @cached_property
     def friction_factor(self) -> float:
-        """The smallest common factor of friction with which admissible forces exist."""
-        from concio.analysis.limit import friction_margin
+        """The smallest common factor of friction with which forces balance the loads of the load step."""
+        from concio.solvers.statics.friction import smallest_friction
 
-        return friction_margin(self.assembly, self.settings.live).factor
+        with factorised_by(self.model.engine):
+            return smallest_friction(self.assembly.problem(dict(self.settings.factors))).factor
+
+    @property
+    def acting(self) -> dict[str, dict[str, Any]]:
+        """Load groups with their forces at factor 1, where the model was assembled."""
+        from concio.verdict.question import acting_groups
+
+        if not self.made("assembly"):
+            return {}
+        return {a.group: {"what": a.what, "force": list(a.force), "size": a.size} for a in acting_groups(self.assembly)}
+
+    @property
+    def attention(self) -> tuple[str, ...]:
+        """What is odd about the model, where it was assembled."""
+        from concio.verdict.attention import attention
+
+        return attention(self.assembly) if self.made("assembly") else ()
 
     def made(self, name: str) -> bool:
         """Return whether an analysis was asked for."""
         return name in self.__dict__
+
+
+def at_factors(model: Model, factors: Mapping[str, float]) -> Model:
+    """Return a model whose loads and moved supports are multiplied by the factors of their groups."""
+    loads = tuple(
+        replace(load, value=tuple(load_factor(factors, load.group) * v for v in load.value)) for load in model.loads
+    )
+    supports = tuple(
+        replace(
+            one,
+            displacement=_times(factors[one.group], one.displacement),
+            rotation=_times(factors[one.group], one.rotation),
+        )
+        if one.group in factors and one.moves
+        else one
+        for one in model.supports
+    )
+    return replace(model, loads=loads, supports=supports)
+
+
+def _times(factor: float, value: Any) -> Any:
+    return tuple(factor * v for v in value) if isinstance(value, tuple | list) else factor * value
 
 
 def _stands(a: Analyses) -> float:
@@ -125,13 +173,23 @@ def _stands(a: Analyses) -> float:
 
 @dataclass(frozen=True)
 class OfSolved:
-    """Reads a number of a certified equilibrium; ``nan`` of other outcomes (a class, so that it travels to workers)."""
+    """Reads a number of a certified equilibrium; ``nan`` where none was found (a class, so that it travels to workers).
+
+    It raises :class:`concio.NoEquilibriumError` of a structure that is proven not to stand.
+    """
 
     read: Callable[[Result], float]
 
     def __call__(self, a: Analyses) -> float:
         """Return the number."""
-        return self.read(a.result) if a.result.solved else NAN
+        return self.read(a.result) if _solved(a.result) else NAN
+
+
+def _solved(result: Result) -> bool:
+    """Tell whether a load step is certified; raise where it is proven that the structure does not stand."""
+    if result.status in PROVEN_FAILURES:
+        raise NoEquilibriumError(result.sentence)
+    return result.solved
 
 
 def _settlement(result: Result) -> float:
@@ -155,12 +213,22 @@ class Output:
         What it is, in a few words.
     read : callable
         From the :class:`Analyses` of a model to the number; ``nan`` where the run has none.
+    end : {"low", "high", ""}
+        Where a structure belongs that is proven not to stand, in the order of all runs: a multiplier is then less than
+        any other ("low"), a settlement more ("high"); "" where it has no place.
+    event : bool
+        Whether it is 1 or 0 for yes or no, so that a share of the runs is a probability.
+    multiplies : bool
+        Whether it multiplies the live groups, from nothing on, rather than let them act with their factors.
     """
 
     name: str
     unit: str
     meaning: str
     read: Callable[[Analyses], float]
+    end: Literal["low", "high", ""] = ""
+    event: bool = False
+    multiplies: bool = False
 
 
 def _associated(a: Analyses) -> float:
@@ -176,7 +244,11 @@ def _carried(a: Analyses) -> float:
 
 
 def _load_margin(a: Analyses) -> float:
-    return a.load_margin.holds
+    margin = a.load_margin
+    if margin.fails == 0.0 and margin.outcome in PROVEN_FAILURES:
+        msg = "the structure fails under its other loads, without the live groups"
+        raise NoEquilibriumError(msg)
+    return margin.holds
 
 
 def _friction(a: Analyses) -> float:
@@ -186,16 +258,21 @@ def _friction(a: Analyses) -> float:
 KNOWN: dict[str, Output] = {
     o.name: o
     for o in (
-        Output("stands", "-", "1 in certified equilibrium, 0 proven not to stand, nan undecided", _stands),
-        Output("max_settlement", "m", "largest downward displacement", OfSolved(_settlement)),
-        Output("joint_motion", "m", "largest opening or slip of a joint", OfSolved(_motion)),
-        Output("associated_multiplier", "-", "associated limit multiplier of the live load", _associated),
-        Output("coulomb_multiplier", "-", "collapse multiplier of the Coulomb load path, where shown", _path),
-        Output("coulomb_carried", "-", "largest multiplier met on the Coulomb load path", _carried),
-        Output("load_margin", "-", "largest factor of the live load that a step was found to carry", _load_margin),
-        Output("friction_factor", "-", "smallest common factor of friction that admits forces in balance", _friction),
+        Output("stands", "-", "1 in certified equilibrium, 0 shown not to stand, nan undecided", _stands, event=True),
+        Output("max_settlement", "m", "largest downward displacement", OfSolved(_settlement), "high"),
+        Output("joint_motion", "m", "largest opening or slip of a joint", OfSolved(_motion), "high"),
+        Output("associated_multiplier", "-", "upper bound of the multiplier of the live load: friction that dilates, "
+               "at or above what Coulomb friction gives", _associated, "low", multiplies=True),
+        Output("coulomb_multiplier", "-", "collapse multiplier of the Coulomb load path, where shown", _path, "low",
+               multiplies=True),
+        Output("coulomb_carried", "-", "largest multiplier met on the Coulomb load path", _carried, "low",
+               multiplies=True),
+        Output("load_margin", "-", "largest factor of the live load that a step was found to carry", _load_margin,
+               "low", multiplies=True),
+        Output("friction_factor", "-", "lower bound of the common factor of friction with which the structure stands: "
+               "with less no forces balance the loads", _friction, "high"),
     )
-}
+}  # fmt: skip
 """Outputs by name; beside them ``reaction.NAME.x`` and ``reaction.NAME.y`` of a fixed body or a support [kN]."""
 
 
@@ -208,7 +285,7 @@ class Reaction:
 
     def __call__(self, a: Analyses) -> float:
         """Return the force on the structure [kN]."""
-        if not a.result.solved:
+        if not _solved(a.result):
             return NAN
         reactions = a.result.reactions
         if self.body not in reactions:

@@ -45,6 +45,14 @@ class Row:
     outputs : mapping of str to float
         ``nan`` where the run has no such number.
     seconds : float
+    fails : tuple of str
+        Outputs without a number because the structure is proven not to stand under the loads that they begin with.
+    errors : mapping of str to str
+        Why an output could not be computed: a word of :data:`FAILURES` and a sentence.
+    acting : mapping
+        Load groups with their forces at factor 1, as :class:`concio.verdict.question.Acting` has them.
+    attention : tuple of str
+        What is odd about the model of the run.
     """
 
     index: int
@@ -52,11 +60,22 @@ class Row:
     message: str = ""
     outputs: Mapping[str, float] = field(default_factory=dict)
     seconds: float = 0.0
+    fails: tuple[str, ...] = ()
+    errors: Mapping[str, str] = field(default_factory=dict)
+    acting: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    attention: tuple[str, ...] = ()
 
     @property
     def failed(self) -> bool:
-        """Whether the run came to no verdict on the structure."""
-        return self.verdict in FAILURES
+        """Whether the run came to no verdict on the structure, or to none on one of its outputs because of a fault."""
+        return self.verdict in FAILURES or bool(self.errors)
+
+    def placed(self, output: Output) -> float:
+        """Return the value of an output; of a structure that does not stand the worse end of the scale."""
+        value = self.outputs.get(output.name, math.nan)
+        if math.isnan(value) and output.name in self.fails:
+            return {"low": -math.inf, "high": math.inf}.get(output.end, math.nan)
+        return value
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain values; numbers that are not finite as texts, so that JSON keeps them."""
@@ -68,7 +87,11 @@ class Row:
     def from_dict(cls, told: Mapping[str, Any]) -> Row:
         """Return the row that :meth:`as_dict` told."""
         outputs = {str(k): float(v) for k, v in told["outputs"].items()}
-        return cls(int(told["index"]), str(told["verdict"]), str(told["message"]), outputs, float(told["seconds"]))
+        return cls(
+            int(told["index"]), str(told["verdict"]), str(told["message"]), outputs, float(told["seconds"]),
+            tuple(told.get("fails", ())), dict(told.get("errors", {})), dict(told.get("acting", {})),
+            tuple(told.get("attention", ())),
+        )  # fmt: skip
 
 
 FAILURES = ("bad_input", "raised", "time_limit", "worker_lost", "gave_up", "cancelled")
@@ -147,48 +170,62 @@ class OutOfTimeError(Exception):
 def run_row(task: Task, index: int, numbers: tuple[float, ...], seed: int) -> Row:
     """Make one run and return its row; only interrupts get out of it."""
     start = time.monotonic()
-    verdict, message, outputs = "raised", "", {o.name: math.nan for o in task.outputs}
-
-    def row() -> Row:
-        return Row(index, verdict, message, outputs, round(time.monotonic() - start, 6))
-
+    made = _Made({o.name: math.nan for o in task.outputs})
     try:
         with _limited(task.time_limit, task.own_process):
-            verdict, message = _evaluate(task, numbers, seed, start + task.time_limit, outputs)
+            _evaluate(task, numbers, seed, start + task.time_limit, made)
     except OutOfTimeError:
-        verdict = "time_limit"
-    except NoEquilibriumError as error:
-        verdict, message = "no_equilibrium", str(error)
-    except InputError as error:
-        verdict, message = "bad_input", str(error)
-    except SolverError as error:
-        verdict, message = "gave_up", str(error)
-    except ConcioError as error:
-        message = str(error)
-    except MemoryError:
-        message = "the run does not fit into memory"
+        made.verdict = "time_limit"
     except Exception as error:  # what a function of the user's raises is a row, never the end of a study
-        message = f"{type(error).__name__}: {error}"
+        made.verdict, made.message = _fault(error)
     late = time.monotonic() - start > task.time_limit
-    if verdict == "time_limit" or (late and verdict in ("cancelled", "raised", "gave_up", "undecided")):
-        verdict, message = "time_limit", f"the run did not end within {task.time_limit:g} s"
-    return row()
+    if made.verdict == "time_limit" or (late and made.verdict in ("cancelled", "raised", "gave_up", "undecided")):
+        made.verdict, made.message = "time_limit", f"the run did not end within {task.time_limit:g} s"
+    return Row(
+        index, made.verdict, made.message, made.outputs, round(time.monotonic() - start, 6), tuple(made.fails),
+        made.errors, made.acting, made.attention,
+    )  # fmt: skip
 
 
-def _evaluate(
-    task: Task, numbers: tuple[float, ...], seed: int, deadline: float, outputs: dict[str, float]
-) -> tuple[str, str]:
-    """Fill ``outputs`` and return verdict and sentence."""
+@dataclass
+class _Made:
+    """What a run has come to so far."""
+
+    outputs: dict[str, float]
+    verdict: str = "raised"
+    message: str = ""
+    fails: list[str] = field(default_factory=list)
+    errors: dict[str, str] = field(default_factory=dict)
+    acting: dict[str, dict[str, Any]] = field(default_factory=dict)
+    attention: tuple[str, ...] = ()
+
+
+def _fault(error: Exception) -> tuple[str, str]:
+    """Return a word of :data:`FAILURES` or a verdict, and a sentence, for what was raised."""
+    if isinstance(error, NoEquilibriumError):
+        return "no_equilibrium", str(error)
+    if isinstance(error, InputError):
+        return "bad_input", str(error)
+    if isinstance(error, SolverError):
+        return "gave_up", str(error)
+    if isinstance(error, ConcioError):
+        return "raised", str(error)
+    if isinstance(error, MemoryError):
+        return "raised", "the run does not fit into memory"
+    return "raised", f"{type(error).__name__}: {error}"
+
+
+def _evaluate(task: Task, numbers: tuple[float, ...], seed: int, deadline: float, row: _Made) -> None:
+    """Fill a row from a model, or from what the study's function returns."""
     if isinstance(task.source, Tables):
         made: Any = task.source.model(task.variables, numbers)
     else:
         values = {v.name: v.value(x) for v, x in zip(task.variables, numbers, strict=True)}
         made = task.source({**values, "seed": seed})
     if isinstance(made, Model):
-        analyses = Analyses(made, task.settings, deadline)
-        for output in task.outputs:
-            outputs[output.name] = float(output.read(analyses))
-        return verdict_of(analyses)
+        _analyse(Analyses(made, task.settings, deadline), task.outputs, row)
+        return
+    outputs = row.outputs
     if not isinstance(made, Mapping):
         made = {task.outputs[0].name: made} if len(task.outputs) == 1 else made
     if not isinstance(made, Mapping) or not set(outputs) <= set(made):
@@ -196,7 +233,30 @@ def _evaluate(
         msg = f"the function returned {said or 'nothing'}, not the outputs {', '.join(outputs)}"
         raise InputError(msg, hint="return a concio.Model, or a mapping of the outputs' names to numbers")
     outputs.update({name: float(made[name]) for name in outputs})
-    return str(made.get("verdict", "done")), str(made.get("message", ""))
+    row.verdict, row.message = str(made.get("verdict", "done")), str(made.get("message", ""))
+
+
+def _analyse(analyses: Analyses, wanted: tuple[Output, ...], row: _Made) -> None:
+    """Read every output of a model, each for itself: one that cannot be had takes nothing from the others."""
+    proven = first = ""
+    for output in wanted:
+        try:
+            row.outputs[output.name] = float(output.read(analyses))
+        except OutOfTimeError:
+            raise
+        except NoEquilibriumError as error:
+            row.fails.append(output.name)
+            proven = proven or str(error)
+        except Exception as error:  # what a function of the user's raises is told in the row
+            word, message = _fault(error)
+            row.errors[output.name] = f"{word}: {message}"
+            first = first or word
+    row.verdict, row.message = verdict_of(analyses)
+    if row.verdict == "done" and (proven or first):
+        row.verdict, row.message = ("no_equilibrium", proven) if proven else (first, "")
+    if row.errors:
+        row.message = "; ".join(dict.fromkeys(text.split(": ", 1)[1] for text in row.errors.values()))
+    row.acting, row.attention = analyses.acting, analyses.attention
 
 
 @contextmanager

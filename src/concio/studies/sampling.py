@@ -22,7 +22,7 @@ from concio.representation import short_repr
 from concio.studies.variables import Variable
 
 Array = np.ndarray
-Correlation = Mapping[tuple[str, str], float]
+Correlation = Mapping[tuple[str, str], float] | Sequence[Sequence[float]] | Array
 
 DESIGNS = ("monte-carlo", "latin-hypercube", "sobol", "saltelli", "grid", "one-at-a-time")
 MOST = 1_000_000
@@ -95,8 +95,8 @@ def draw(
         Number of runs, 100 by default; of a ``saltelli`` design the base number n, which makes n (k + 2) runs. Grids
         and ``one-at-a-time`` follow from their variables.
     seed : int
-    correlation : mapping of pairs of names to float, optional
-        Rank correlation of variables, for random designs.
+    correlation : mapping of pairs of names to float, or (k, k) array, optional
+        Rank correlation of variables, for random designs; as a matrix in their order.
 
     Raises
     ------
@@ -111,11 +111,12 @@ def draw(
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         msg = f"seed = {seed!r} must be a whole number, zero or positive"
         raise InputError(msg)
+    pairs = correlations(variables, correlation)
     if design in ("grid", "one-at-a-time"):
         if size is not None:
             msg = f"the size of a {design} sample follows from its variables"
             raise InputError(msg, hint="leave size out; set levels or values of the variables")
-        if correlation:
+        if pairs:
             msg = f"a {design} sample has no correlation"
             raise InputError(msg, hint="take monte-carlo, latin-hypercube or sobol")
         table = _grid(variables) if design == "grid" else _one_at_a_time(variables)
@@ -125,11 +126,11 @@ def draw(
         msg = f"size = {size!r} must be a whole number from 1 to {MOST:,}"
         raise InputError(msg)
     u = _shares(len(variables), design, size, seed)
-    if correlation:
+    if pairs:
         if design == "saltelli":
             msg = "Sobol indices are those of independent variables"
             raise InputError(msg, hint="leave the correlation out, or take another sample")
-        u = _correlated(u, variables, correlation)
+        u = _correlated(u, variables, pairs)
     numbers = np.column_stack([v.quantile(u[:, j]) for j, v in enumerate(variables)])
     return given_sample(variables, numbers, design, seed)
 
@@ -205,7 +206,42 @@ def _shares(k: int, design: str, size: int, seed: int) -> Array:
     return cube
 
 
-def _correlated(u: Array, variables: Sequence[Variable], correlation: Correlation) -> Array:
+def correlations(variables: Sequence[Variable], given: Correlation | None) -> dict[tuple[str, str], float]:
+    """Return rank correlations by pairs of names, from such a mapping or from a matrix in the order of the variables.
+
+    Raises
+    ------
+    InputError
+        It is neither; or the matrix has another size, is not symmetric, or has no ones on its diagonal.
+    """
+    if given is None:
+        return {}
+    names, hint = [v.name for v in variables], 'for example {("mu", "E"): 0.5}, or a matrix in their order'
+    if isinstance(given, Mapping):
+        pairs: Mapping[Any, float] = given
+        for pair in pairs:
+            if not (isinstance(pair, tuple) and len(pair) == 2):
+                msg = f"correlation: {pair!r} is no pair of variables"
+                raise InputError(msg, hint=hint)
+        return {(str(a), str(b)): float(value) for (a, b), value in given.items()}
+    try:
+        matrix = np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        msg = f"correlation: {type(given).__name__} is no mapping of pairs, and no matrix of numbers"
+        raise InputError(msg, hint=hint) from None
+    if matrix.shape != (len(names), len(names)):
+        k = len(names)
+        msg = f"correlation: a matrix of {k} variables has the shape {(k, k)}, not {matrix.shape}"
+        raise InputError(msg, hint="its rows follow " + ", ".join(names))
+    if not np.isfinite(matrix).all() or not np.allclose(matrix, matrix.T) or not np.allclose(np.diag(matrix), 1.0):
+        msg = "correlation: the matrix must be finite and symmetric, with ones on its diagonal"
+        raise InputError(msg, hint="its rows follow " + ", ".join(names))
+    return {
+        (names[i], names[j]): float(matrix[i, j]) for i in range(len(names)) for j in range(i) if matrix[i, j] != 0.0
+    }
+
+
+def _correlated(u: Array, variables: Sequence[Variable], correlation: Mapping[tuple[str, str], float]) -> Array:
     from scipy.stats import norm
 
     names = [v.name for v in variables]

@@ -66,6 +66,104 @@ def probability(event: Array, confidence: float = 0.95) -> Probability:
 
 
 @dataclass(frozen=True)
+class Spread:
+    """How an output is spread over all runs of a study, those without a number in the places where they belong.
+
+    Parameters
+    ----------
+    values : (n,) array
+        One a run: a number; ``inf`` where there is no end to it; the worse end of the scale, ``-inf`` or ``inf``, where
+        the structure does not stand; ``nan`` where the run has no answer.
+    fails : int
+        Runs in which the structure does not stand, so that the output has no number of its own.
+    end : {"low", "high", ""}
+        Which end is the worse one, "" where there is none: runs that fail are ``nan`` then.
+    """
+
+    values: Array
+    fails: int = 0
+    end: str = ""
+
+    @property
+    def known(self) -> Array:
+        """The finite numbers."""
+        finite: Array = self.values[np.isfinite(self.values)]
+        return finite
+
+    @property
+    def endless(self) -> int:
+        """Runs in which the number itself is infinite."""
+        infinite = int(np.isinf(self.values).sum())
+        return infinite - self.fails if self.end else infinite
+
+    @property
+    def unanswered(self) -> int:
+        """Runs that came to no answer."""
+        nan = int(np.isnan(self.values).sum())
+        return nan if self.end else nan - self.fails
+
+    @property
+    def counted(self) -> int:
+        """Runs that quantiles are of: all, but those that fail where these have no place in the order."""
+        return len(self.values) - (0 if self.end else self.fails)
+
+    def quantile(self, share: float) -> tuple[float, float]:
+        """Return the least and the largest that a quantile of the runs can be; both alike where all have an answer.
+
+        Between two numbers it is interpolated; between a number and an infinite one it is the worse of the two.
+        """
+        n, known = self.counted, np.sort(self.values[~np.isnan(self.values)])
+        if not n:
+            return math.nan, math.nan
+        gap = n - len(known)
+        ends = [np.concatenate([known, np.full(gap, end)] if end > 0 else [np.full(gap, end), known])
+                for end in (-math.inf, math.inf)]  # fmt: skip
+        low, high = (_quantile(ordered, share, worse=self.end or "low") for ordered in ends)
+        return low, high
+
+    @property
+    def mean(self) -> float:
+        """Mean of the finite numbers; ``nan`` where there is none."""
+        return float(self.known.mean()) if len(self.known) else math.nan
+
+    @property
+    def sd(self) -> float:
+        """Standard deviation of the finite numbers; ``nan`` of fewer than two."""
+        return float(self.known.std(ddof=1)) if len(self.known) > 1 else math.nan
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the numbers of ``--json``: quantiles of all runs, moments of the finite numbers."""
+        told: dict[str, Any] = {
+            "runs": len(self.known), "of": len(self.values), "do_not_stand": self.fails, "without_limit": self.endless,
+            "unanswered": self.unanswered,
+        }  # fmt: skip
+        if len(self.known):
+            told |= {
+                "mean": self.mean, "sd": self.sd if len(self.known) > 1 else None,
+                "min": float(self.known.min()), "max": float(self.known.max()),
+            }  # fmt: skip
+        shares = {"5 %": 0.05, "50 %": 0.5, "95 %": 0.95}
+        told["quantiles"] = {word: [_text(x) for x in self.quantile(share)] for word, share in shares.items()}
+        told["quantiles_of"] = self.counted
+        return told
+
+
+def _quantile(ordered: Array, share: float, *, worse: str) -> float:
+    at = share * (len(ordered) - 1)
+    low, high = float(ordered[math.floor(at)]), float(ordered[math.ceil(at)])
+    if low == high or at == math.floor(at):
+        return low
+    if math.isfinite(low) and math.isfinite(high):
+        return low + (at - math.floor(at)) * (high - low)
+    return low if worse == "low" else high
+
+
+def _text(value: float) -> float | str | None:
+    """Return a number for JSON, which has none that is infinite."""
+    return value if math.isfinite(value) else None if math.isnan(value) else str(value)
+
+
+@dataclass(frozen=True)
 class Fragility:
     """A lognormal fragility curve: P(x) = Phi(ln(x / median) / beta), fitted by greatest likelihood.
 
@@ -78,12 +176,16 @@ class Fragility:
     covariance : (2, 2) array
         Of the intercept and the slope of the probit line a + b ln x, b = 1/beta.
     runs : int
+        Runs that it was fitted to.
+    left_out : int
+        Runs that came to no answer, and were not.
     """
 
     median: float
     beta: float
     covariance: Array
     runs: int
+    left_out: int = 0
 
     def probability(self, x: Any) -> Array:
         """Return the probability of failure at the intensities ``x`` (n,)."""
@@ -156,7 +258,7 @@ def fragility(intensity: Array, failed: Array) -> Fragility:
     own = np.linalg.inv(np.array([[weight.sum(), (weight * t).sum()], [(weight * t).sum(), (weight * t**2).sum()]]))
     back = np.array([[1.0, -centre / width], [0.0, 1.0 / width]])  # (a, b) of t to those of ln x
     beta = width / b
-    return Fragility(math.exp(centre - a * beta), float(beta), back @ own @ back.T, len(x))
+    return Fragility(math.exp(centre - a * beta), float(beta), back @ own @ back.T, len(x), int((~known).sum()))
 
 
 @dataclass(frozen=True)
@@ -172,6 +274,8 @@ class Sensitivity:
         Half widths of their 95 % intervals; ``nan`` where not known.
     kind : str
         "Sobol" or "Spearman".
+    left_out : int
+        Runs without an answer, which have no rank.
     """
 
     names: tuple[str, ...]
@@ -180,6 +284,7 @@ class Sensitivity:
     first_error: Array
     total_error: Array
     kind: str
+    left_out: int = 0
 
 
 def sobol_indices(names: Sequence[str], values: Array, seed: int = 0) -> Sensitivity:
@@ -190,10 +295,11 @@ def sobol_indices(names: Sequence[str], values: Array, seed: int = 0) -> Sensiti
     InputError
         A run has no value, all values are alike, or SALib is missing.
     """
-    if np.isnan(values).any():
-        first = int(np.flatnonzero(np.isnan(values))[0])
-        msg = f"{np.isnan(values).sum()} runs have no value, the first of them run {first + 1}"
-        raise InputError(msg, hint="Sobol indices need all of them: look at the failed rows")
+    without = ~np.isfinite(values)
+    if without.any():
+        first = int(np.flatnonzero(without)[0])
+        msg = f"{without.sum()} runs have no value, the first of them run {first + 1}"
+        raise InputError(msg, hint="Sobol indices need a finite number of every run: look at these rows")
     if np.ptp(values) == 0:
         msg = "all runs give the same value: there is no variance to share"
         raise InputError(msg)
@@ -209,7 +315,10 @@ def sobol_indices(names: Sequence[str], values: Array, seed: int = 0) -> Sensiti
 
 
 def rank_correlations(columns: Mapping[str, Array], values: Array) -> Sensitivity:
-    """Return Spearman's correlation of an output with each variable; runs without a value are left out."""
+    """Return Spearman's correlation of an output with each variable.
+
+    Infinite values have their rank at the end of the scale; runs without an answer (``nan``) are left out and counted.
+    """
     from scipy.stats import rankdata
 
     known = ~np.isnan(values)
@@ -220,4 +329,4 @@ def rank_correlations(columns: Mapping[str, Array], values: Array) -> Sensitivit
         spread = own.std() * ranks.std()
         found.append(float(((own - own.mean()) * (ranks - ranks.mean())).mean() / spread) if spread > 0 else 0.0)
     shares, nothing = np.array(found), np.full(len(found), math.nan)
-    return Sensitivity(tuple(columns), shares, shares, nothing, nothing, kind="Spearman")
+    return Sensitivity(tuple(columns), shares, shares, nothing, nothing, "Spearman", int((~known).sum()))

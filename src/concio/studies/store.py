@@ -45,7 +45,18 @@ def describe(task: Task, sample: Sample) -> dict[str, Any]:
         "concio": concio.__version__,
         "source": source,
         "variables": [asdict(v) for v in task.variables],
-        "outputs": [{"name": o.name, "unit": o.unit, "read": _function(o.read)} for o in task.outputs],
+        "outputs": [
+            {
+                "name": o.name,
+                "unit": o.unit,
+                "read": _function(o.read),
+                "meaning": o.meaning,
+                "end": o.end,
+                "event": o.event,
+                "multiplies": o.multiplies,
+            }
+            for o in task.outputs
+        ],
         "settings": asdict(task.settings),
         "design": sample.design,
         "seed": sample.seed,
@@ -104,12 +115,17 @@ class Store:
             directory.mkdir(parents=True, exist_ok=True)
             if (directory / DESCRIPTION).exists() or (directory / ROWS).exists():
                 self._take_over(description, len(sample), resume=resume)
+                if not (directory / SAMPLE).exists():  # killed before it was written
+                    _write_whole(directory / SAMPLE, _sample_text(sample))
             else:
                 if resume:
                     msg = "there is no study to resume"
                     raise InputError(msg, where=str(directory), hint="leave resume out to begin one")
-                _write_whole(directory / SAMPLE, _sample_text(sample))
+                if (directory / SAMPLE).exists():
+                    msg = f"there is a {SAMPLE} already, and no study that it belongs to"
+                    raise InputError(msg, where=str(directory), hint="move it, or give another directory")
                 _write_whole(directory / DESCRIPTION, json.dumps(description, indent=1, default=str) + "\n")
+                _write_whole(directory / SAMPLE, _sample_text(sample))
             self._file = (directory / ROWS).open("ab", buffering=0)  # what is not on the disk is nowhere
         self._lock()
 

@@ -7,7 +7,6 @@ nothing in it.
 
 from __future__ import annotations
 
-import math
 import os
 import time
 import tomllib
@@ -145,8 +144,8 @@ def study(
         Number of runs; see :func:`concio.studies.sampling.draw`.
     seed : int, optional
         What random numbers begin with; 0 by default.
-    correlation : mapping of pairs of names to float, optional
-        Rank correlation of variables.
+    correlation : mapping of pairs of names to float, or (k, k) array, optional
+        Rank correlation of variables; as a matrix in their order.
     executor : optional
         None or "serial", "processes", "dask", the address of a Dask scheduler, a Dask client, or any executor of
         ``concurrent.futures``.
@@ -237,13 +236,14 @@ def _run(
     begun, before = time.monotonic(), len(store.rows)
     first = 0
     values: list[float] = []
+    watched = next((o for o in task.outputs if stop is not None and o.name == stop.output), task.outputs[0])
 
     def enough() -> bool:
         nonlocal first
         if stop is None:
             return False
         while first in store.rows:
-            values.append(store.rows[first].outputs.get(stop.output, math.nan))
+            values.append(store.rows[first].placed(watched))
             first += 1
             if stop.enough(np.array(values)):
                 return True
@@ -265,7 +265,7 @@ def _run(
     count = first if stop is not None and stop.enough(np.array(values)) else len(sample)
     rows = tuple(store.rows[i] for i in sorted(store.rows) if i < count)
     tables = task.source if isinstance(task.source, Tables) else None
-    return StudyResult(sample, task.outputs, rows, tables, directory, count < len(sample))
+    return StudyResult(sample, task.outputs, rows, tables, directory, count < len(sample), task.settings)
 
 
 def _source(model: Any) -> tuple[Any, StudyTable | None]:

@@ -7,7 +7,7 @@ import math
 import os
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,13 +18,14 @@ from concio.arguments import closest, strict
 from concio.errors import InputError
 from concio.model.file.keys import KeyPath, find_key
 from concio.model.file.writing import toml_of
-from concio.studies.outputs import NAN, Analyses, Output
+from concio.studies.outputs import KNOWN, NAN, Analyses, Output, Settings
 from concio.studies.rows import Row, Tables
 from concio.studies.sampling import Sample
 from concio.studies.statistics import (
     Fragility,
     Probability,
     Sensitivity,
+    Spread,
     fragility,
     probability,
     rank_correlations,
@@ -32,6 +33,8 @@ from concio.studies.statistics import (
 )
 from concio.studies.store import DESCRIPTION, ROWS, SAMPLE
 from concio.studies.variables import Variable
+from concio.verdict.study_verdict import output_words, study_verdict
+from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from concio.plot.study_figures import StudyPlots
@@ -57,6 +60,8 @@ class StudyResult:
         Where rows are kept.
     stopped : bool
         Whether it stopped before the end of the sample because enough was known.
+    settings : Settings or None
+        Load factors and multiplied groups of the analyses.
     """
 
     sample: Sample
@@ -65,6 +70,7 @@ class StudyResult:
     source: Tables | None = None
     directory: Path | None = None
     stopped: bool = False
+    settings: Settings | None = None
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -74,13 +80,13 @@ class StudyResult:
         lines = [head + (", stopped early: enough was known" if self.stopped else "")]
         lines += [f"  {v.name}: {v.describe()}" for v in self.sample.variables[:4]]
         lines += [f"  {word}: {count}" for word, count in self.verdicts.items()]
-        for o in self.outputs[:4]:
-            values = self.values(o.name)
-            known = values[np.isfinite(values)]
-            said = f"mean {known.mean():.6g}, from {known.min():.6g} to {known.max():.6g}" if len(known) else "no value"
-            without = f", {len(self) - len(known)} runs without" if len(known) < len(self) else ""
-            lines.append(f"  {o.name} [{o.unit}]: {said}{without}")
+        lines += [f"  {o.name} [{o.unit}]: {output_words(self, o)}" for o in self.outputs[:4]]
         return "\n".join(lines)
+
+    @cached_property
+    def verdict(self) -> Verdict:
+        """What was asked of the runs, what came out, and what has no answer."""
+        return study_verdict(self)
 
     @cached_property
     def verdicts(self) -> dict[str, int]:
@@ -89,7 +95,7 @@ class StudyResult:
 
     @property
     def failures(self) -> tuple[Row, ...]:
-        """Rows that came to no verdict on the structure, each with its sentence."""
+        """Rows that came to no verdict on the structure or on an output, each with its sentence."""
         return tuple(row for row in self.rows if row.failed)
 
     @cached_property
@@ -98,6 +104,8 @@ class StudyResult:
 
     def values(self, name: str) -> Array:
         """Return the values (n,) of an output or a variable, row by row; of a choice the indices of its values.
+
+        An output is ``nan`` where a run has no number; :meth:`placed` tells failures from runs without an answer.
 
         Raises
         ------
@@ -113,22 +121,45 @@ class StudyResult:
         column: Array = self.sample.column(name)[self._index]
         return column
 
+    def placed(self, name: str) -> Array:
+        """Return the values (n,) of an output with runs that do not stand at the worse end of the scale.
+
+        That is ``-inf`` of a multiplier and ``inf`` of a settlement; ``nan`` is left to runs without an answer.
+        """
+        output = self._output(name)
+        return np.array([row.placed(output) for row in self.rows])
+
+    def spread(self, name: str) -> Spread:
+        """Return how an output is spread over all runs: quantiles, and how many runs fail or have no answer."""
+        output = self._output(name)
+        return Spread(self.placed(name), sum(name in row.fails for row in self.rows), output.end)
+
+    def _output(self, name: str) -> Output:
+        found = next((o for o in self.outputs if o.name == name), None)
+        if found is None:
+            msg = f"there is no output '{name}'"
+            raise InputError(msg, hint=closest(name, [o.name for o in self.outputs]))
+        return found
+
     def event(self, event: Event, *, below: float | None = None, above: float | None = None) -> Array:
         """Return whether an event happened in each row (n,): 1, 0, or ``nan`` where the row does not say.
 
         Parameters
         ----------
         event : str or callable
-            An output, or a function of a row (a dict of variables and outputs).
+            An output, or a function of a row (a mapping of variables and outputs, these as :meth:`placed`). A row in
+            which the function looks at an output without an answer does not say.
         below, above : float, optional
             The output is less than ``below``, or more than ``above``; without both, it is not zero.
         """
         if isinstance(event, str):
-            return event_of(self.values(event), below, above)
+            known = event in (o.name for o in self.outputs)
+            return event_of(self.placed(event) if known else self.values(event), below, above)
         told = []
         for row in self.rows:
-            known = all(math.isfinite(x) for x in row.outputs.values())
-            told.append(float(bool(event({**self.sample.row(row.index), **row.outputs}))) if known else NAN)
+            read = _Read({**self.sample.row(row.index), **{o.name: row.placed(o) for o in self.outputs}})
+            happened = bool(event(read))
+            told.append(NAN if read.unknown else float(happened))
         return np.array(told)
 
     def probability(
@@ -159,9 +190,9 @@ class StudyResult:
             if len(self) < len(self.sample):
                 msg = f"only {len(self)} of {len(self.sample)} runs have ended"
                 raise InputError(msg, hint="resume the study: Sobol indices need all of them")
-            return sobol_indices(names, self.values(output), self.sample.seed)
+            return sobol_indices(names, self.placed(output), self.sample.seed)
         columns = {v.name: self.values(v.name) for v in self.sample.variables if v.distribution != "seed"}
-        return rank_correlations(columns, self.values(output))
+        return rank_correlations(columns, self.placed(output))
 
     def table(self) -> dict[str, Any]:
         """Return columns by name, units in brackets: run, variables, outputs, verdict, message, seconds."""
@@ -209,20 +240,9 @@ class StudyResult:
 
     def summary(self) -> dict[str, Any]:
         """Return the numbers of ``--json``."""
-        outputs = {}
-        for o in self.outputs:
-            known = self.values(o.name)
-            known = known[np.isfinite(known)]
-            outputs[o.name] = {"unit": o.unit, "runs": len(known)} | (
-                {
-                    "mean": float(known.mean()),
-                    "sd": float(known.std(ddof=1)) if len(known) > 1 else None,
-                    "min": float(known.min()),
-                    "max": float(known.max()),
-                }
-                if len(known)
-                else {}
-            )
+        outputs = {
+            o.name: {"unit": o.unit, "meaning": o.meaning, **self.spread(o.name).as_dict()} for o in self.outputs
+        }
         return {
             "runs": len(self),
             "planned": len(self.sample),
@@ -232,6 +252,7 @@ class StudyResult:
             "verdicts": self.verdicts,
             "outputs": outputs,
             "variables": {v.name: v.describe() for v in self.sample.variables},
+            "verdict": self.verdict.as_dict(),
         }
 
     @property
@@ -245,6 +266,24 @@ class StudyResult:
         from concio.report.study_page import study_notebook
 
         return study_notebook(self)
+
+
+class _Read(dict[str, Any]):
+    """A row that notes whether an output without an answer was looked at."""
+
+    unknown = False
+
+    def __getitem__(self, name: str) -> Any:
+        value = super().__getitem__(name)
+        self.unknown = self.unknown or (isinstance(value, float) and math.isnan(value))
+        return value
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """Return a value, as a dict does."""
+        try:
+            return self[name]
+        except KeyError:
+            return default
 
 
 def event_of(values: Array, below: float | None, above: float | None) -> Array:
@@ -275,7 +314,9 @@ def load_study(directory: str | os.PathLike[str]) -> StudyResult:
     try:
         told = json.loads((path / DESCRIPTION).read_text(encoding="utf-8"))
         variables = tuple(Variable(**v) for v in told["variables"])
-        outputs = tuple(Output(o["name"], o["unit"], "", _unread) for o in told["outputs"])
+        outputs = tuple(_stored_output(o) for o in told["outputs"])
+        held = told["settings"]
+        settings = Settings(str(held["method"]), dict(held["factors"]), tuple(held["live"]))
         sample = _stored_sample(path, variables, told)
         source = _stored_source(told["source"])
         lines = (path / ROWS).read_bytes().split(b"\n")[:-1]
@@ -286,7 +327,13 @@ def load_study(directory: str | os.PathLike[str]) -> StudyResult:
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         msg = f"the study cannot be read: {error}"
         raise InputError(msg, where=str(path)) from None
-    return StudyResult(sample, outputs, tuple(rows[i] for i in sorted(rows)), source, path)
+    return StudyResult(sample, outputs, tuple(rows[i] for i in sorted(rows)), source, path, settings=settings)
+
+
+def _stored_output(told: Mapping[str, Any]) -> Output:
+    known = KNOWN.get(told["name"], Output(told["name"], told["unit"], "", _unread))
+    given = {key: told[key] for key in ("meaning", "end", "event", "multiplies") if key in told}
+    return replace(known, read=_unread, **given)
 
 
 def _unread(_: Analyses) -> float:

@@ -38,6 +38,8 @@ from concio.problem.tolerances import CHECKED
 from concio.representation import short_repr
 from concio.solvers.path.state import CLOSED, OPEN, STICK, LinearPath
 from concio.solvers.path.state_rates import state_rates
+from concio.verdict.cell_verdict import cell_verdict
+from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from concio.plot.cell_accessor import ModuliPlots
@@ -117,6 +119,11 @@ class Moduli:
     friction_force: Array
     displacement: Array
     certificate: ModuliCertificate
+
+    @property
+    def verdict(self) -> Verdict:
+        """What the moduli hold for, and what proves them."""
+        return cell_verdict(self.cell, self, None, None)
 
     @property
     def closed(self) -> bool:
@@ -303,7 +310,7 @@ def _certify(
     unbalanced = 0.0
     for k in range(3):
         loaded = problem.with_loads(np.zeros(problem.unknowns))
-        rigid, rest = imbalance(loaded, u[:, k], t_n[:, k], t_t[:, k], force)
+        rigid, rest = imbalance(loaded, u[:, k], t_n[:, k], t_t[:, k], np.full(problem.unknowns, force))
         unbalanced = max(unbalanced, float(np.abs(rigid).max(initial=0.0)), float(rest.max(initial=0.0)))
     tilted = opening - (law.dilatancy * sliding)[:, None] * slip
     kept = np.maximum(np.abs(tilted).max(1) * (contact == CLOSED), np.abs(slip).max(1) * (sliding == STICK))

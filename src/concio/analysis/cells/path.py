@@ -26,13 +26,14 @@ from concio.contact.periodic import COMPONENTS
 from concio.errors import InputError
 from concio.model.model import Model
 from concio.model.stages import Stage
-from concio.problem.certificate import Certificate, certify, scales
-from concio.problem.contact_problem import ContactProblem
+from concio.problem.certificate import Certificate
+from concio.problem.contact_problem import ContactProblem, Laws
 from concio.problem.solution import ProgressCallback
 from concio.solvers.methods import find
 from concio.solvers.path.event_path import follow
+from concio.solvers.path.proof import certify_between
 from concio.solvers.path.record import Outcome
-from concio.solvers.path.state import LinearPath, PathState, at_rest, elastic_energy, step_problem
+from concio.solvers.path.state import LinearPath, PathState, at_rest, elastic_energy
 from concio.solvers.path.step_path import StepPath, follow_in_steps
 
 Array = np.ndarray
@@ -99,8 +100,8 @@ def strain_path(
         joints, whose forces it does not determine.
     """
     own = PeriodicCell.of(cell)
-    given = (stages,) if isinstance(stages, Mapping | Stage) else stages or own.model.stages
-    asked = [_stage(s, k) for k, s in enumerate(given, 1)]
+    listed = (stages,) if isinstance(stages, Mapping | Stage) else stages or own.model.stages
+    asked = [_stage(s, k) for k, s in enumerate(listed, 1)]
     if not asked:
         msg = "a path needs at least one stage"
         raise InputError(msg, hint="for example strain_path(cell, [{'strain xx': 1e-4}])")
@@ -108,28 +109,29 @@ def strain_path(
         msg = f"method = {method!r} is not one of events, steps"
         raise InputError(msg)
     drive = Drive(np.zeros(3, dtype=bool), np.zeros(3))
-    strain, lent = np.zeros(3), 0.0
+    strain, lent, laws = np.zeros(3), 0.0, own.assembly.laws
     state: PathState | None = None
     steps: list[CellStep] = []
-    proofs: list[tuple[LinearPath, PathState, PathState]] = []
+    given: list[Array] = []
     events: list[NamedEvent] = []
     outcomes: list[Outcome] = []
     notes: list[str] = []
     for number, stage in enumerate(asked):
         stress = _given(drive, steps[-1].stress) if steps else np.zeros(3)
         drive = _driven(drive, stage)
-        path, compliance = _linear(own, drive, strain, stress, lent)
+        path, compliance = _linear(own, drive, strain, stress, laws if lent else None)
+        compliance = compliance or lent
         if compliance and not lent:
             notes.append(
                 f"hard joints between rigid blocks were lent a compliance of {compliance:.3g} m/kN, "
                 f"{SHEAR_TO_NORMAL:g} times as much along the joint: without it their forces are not determined"
             )
-        lent = compliance
+        lent, laws = compliance, path.problem.laws
         loose = ~drive.strain
         state = at_rest(path.problem) if state is None else _with_strains(state, strain[loose] * own.size)
         found = _walk(path, state, stage, method, solver, max_events, progress, notes)
         first = len(steps) - 1 if steps else 0
-        for before, after in zip((found.states[0], *found.states), found.states, strict=False):
+        for after in found.states:
             if after is found.states[0] and steps:
                 continue
             here = strain.copy()
@@ -140,7 +142,8 @@ def strain_path(
             base = _with_strains(after, np.zeros(0), int(loose.sum()))
             stored = elastic_energy(path.problem, after)
             steps.append(CellStep(number, after.parameter, here, forces, base, UNKNOWN, stored))
-            proofs.append((path, before, after))
+            asked_for = stress + after.parameter * (drive.values - stress)
+            given.append(np.where(loose, asked_for, forces))
         events.extend(named_event(own.assembly, number, first, event) for event in found.events)
         outcomes.append(found.outcome)
         strain, state = steps[-1].strain, steps[-1].state
@@ -148,38 +151,51 @@ def strain_path(
             at = found.states[-1].parameter
             notes.append(f"stage '{stage.name}' ended at {at:.6g} of its way. {found.outcome.value}")
             break
-    certified = _certified(own, steps, proofs)
+    certified = _certified(own, laws, steps, given)
     return CellPath(own, tuple(asked), certified, tuple(events), tuple(outcomes), tuple(notes))
 
 
 def _certified(
-    cell: PeriodicCell, steps: Sequence[CellStep], proofs: Sequence[tuple[LinearPath, PathState, PathState]]
+    cell: PeriodicCell, laws: Laws, steps: Sequence[CellStep], given: Sequence[Array]
 ) -> tuple[CellStep, ...]:
     """Return the steps with their certificates.
 
-    Displacements are measured by the largest of the bodies or of the cell's edges. Where joints have opened and hardly
-    any force is left, or the cell has come back to rest, the path is the measure (:data:`LEAST`).
+    Each state is put into the cell's own problem with all strains imposed as they came out, slip measured from the
+    state before; stresses that were given, ``given`` (3,) of each step, have to come out of its contact forces, by the
+    same force as the balance of bodies. Displacements are measured by the largest of the bodies or of the cell's edges.
+    Where joints have opened and hardly any force is left, or the cell has come back to rest, the path is the measure
+    (:data:`LEAST`).
     """
-    sizes = [
-        scales(path.at(after.parameter), after.displacement, after.normal_force, after.friction_force)[0]
-        if after.normal_force.any() or after.friction_force.any()
-        else 0.0
-        for path, _, after in proofs
-    ]
+    held = replace(cell.problem(free=(False, False, False)), laws=laws)
+    sizes = [_force(step) for step in steps]
     lengths = [
-        max(float(np.abs(after.displacement).max(initial=0.0)), float(np.abs(step.strain).max()) * cell.size)
-        for step, (_, _, after) in zip(steps, proofs, strict=True)
+        max(float(np.abs(step.state.displacement).max(initial=0.0)), float(np.abs(step.strain).max()) * cell.size)
+        for step in steps
     ]
     force, length = (max(values, default=0.0) or 1.0 for values in (sizes, lengths))
-    done = []
-    for step, size, moved, (path, before, after) in zip(steps, sizes, lengths, proofs, strict=True):
-        problem = step_problem(path, before, after.parameter)
-        found = certify(
-            problem, after.displacement, after.normal_force, after.friction_force,
-            total_load=max(size, LEAST * force), moved=max(moved, LEAST * length),
+    done, before = [], steps[0]
+    for step, wanted, size, moved in zip(steps, given, sizes, lengths, strict=True):
+        then, now = (_held(cell, held, one.strain) for one in (before, step))
+        load = max(size, LEAST * force)
+        found = certify_between(
+            then, now, before.state, step.state, total_load=load, moved=max(moved, LEAST * length)
         )  # fmt: skip
-        done.append(replace(step, certificate=found))
+        off = float(np.abs(step.stress - wanted).max()) * cell.volume / cell.size / load
+        done.append(replace(step, certificate=replace(found, equilibrium=max(found.equilibrium, off))))
+        before = step
     return tuple(done)
+
+
+def _force(step: CellStep) -> float:
+    """Return the largest contact force of a step [kN]."""
+    state = step.state
+    return float(max(np.abs(state.normal_force).max(initial=0.0), np.abs(state.friction_force).max(initial=0.0)))
+
+
+def _held(cell: PeriodicCell, held: ContactProblem, strain: Array) -> ContactProblem:
+    """Return the problem of the cell with all strains (3,) imposed; ``held`` is that without any."""
+    normal, tangential = cell.columns
+    return replace(held, gap=held.gap + normal @ strain, slip_origin=held.slip_origin - (tangential @ strain)[:, None])
 
 
 def _stage(given: object, number: int) -> Stage:
@@ -229,8 +245,12 @@ def _given(drive: Drive, stress: Array) -> Array:
     return found
 
 
-def _linear(cell: PeriodicCell, drive: Drive, strain: Array, stress: Array, lent: float) -> tuple[LinearPath, float]:
+def _linear(
+    cell: PeriodicCell, drive: Drive, strain: Array, stress: Array, laws: Laws | None
+) -> tuple[LinearPath, float]:
     """Return the path from the present strain and stress to what acts at the end of a stage, and the compliance lent.
+
+    ``laws`` are those to which compliance was lent before, the same in all stages; then none is lent again.
 
     Raises
     ------
@@ -241,25 +261,17 @@ def _linear(cell: PeriodicCell, drive: Drive, strain: Array, stress: Array, lent
     problem = cell.problem(stress=stress, strain=strain, free=loose.tolist())
     end = cell.problem(stress=drive.values, strain=drive.values, free=loose.tolist())
     live = end.f - problem.f
-    path_problem, compliance = _not_rigid(problem, live, lent)
-    if compliance and drive.strain.any():
+    if laws is None:
+        path_problem, compliance = with_compliance(problem, live if live.any() else np.ones_like(live))
+    else:
+        path_problem, compliance = replace(problem, laws=laws), 0.0
+    if (compliance or laws is not None) and drive.strain.any():
         msg = "the blocks are rigid and joints hard: a strain does not determine the forces"
         raise InputError(msg, hint="give the joints stiffness, make the blocks elastic, or give stresses alone")
     return (
         LinearPath(path_problem, live, end.gap - problem.gap, problem.slip_origin - end.slip_origin),
         compliance,
     )
-
-
-def _not_rigid(problem: ContactProblem, live: Array, lent: float) -> tuple[ContactProblem, float]:
-    """Lend hard joints of rigid blocks a compliance, the same in all stages."""
-    if not lent:
-        return with_compliance(problem, live if live.any() else np.ones_like(live))
-    law = problem.laws
-    normal = np.where(law.normal_compliance == 0, lent, law.normal_compliance)
-    tangential = np.where(law.tangential_compliance == 0, SHEAR_TO_NORMAL * lent, law.tangential_compliance)
-    laws = replace(law, normal_compliance=normal, tangential_compliance=tangential)
-    return replace(problem, laws=laws), lent
 
 
 def _with_strains(state: PathState, strains: Sequence[float] | Array, drop: int = 0) -> PathState:

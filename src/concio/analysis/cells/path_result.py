@@ -20,6 +20,8 @@ from concio.problem.solution import Status, judge
 from concio.representation import short_repr
 from concio.solvers.path.record import Outcome
 from concio.solvers.path.state import LinearPath, PathState, path_kinematics
+from concio.verdict.cell_verdict import cell_verdict
+from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from concio.plot.cell_accessor import CellPathPlots
@@ -103,6 +105,11 @@ class CellPath:
     def complete(self) -> bool:
         """True when every stage reached its end."""
         return len(self.outcomes) == len(self.stages) and all(o is Outcome.REACHED for o in self.outcomes)
+
+    @property
+    def verdict(self) -> Verdict:
+        """What was asked of the cell, how far its path came, and what was not begun."""
+        return cell_verdict(self.cell, None, None, self)
 
     @property
     def certificate(self) -> float:

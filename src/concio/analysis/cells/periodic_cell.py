@@ -120,6 +120,7 @@ class PeriodicCell:
         given = np.where(loose, 0.0, np.asarray(strain, dtype=float))
         load = np.asarray(stress, dtype=float)[loose] * self.volume / self.size
         count, size = int(loose.sum()), self.size
+        mass = float(base.inertia.diagonal().mean())
         nothing = sp.csr_array((count, count))
         return replace(
             base,
@@ -131,7 +132,8 @@ class PeriodicCell:
             slip_origin=base.slip_origin - (tangential @ given)[:, None],
             R=sp.csc_array(sp.block_diag([base.R, sp.eye_array(count)], format="csc")) if count else base.R,
             bodies=np.concatenate([base.bodies, [base.bodies[-1] + count]]) if count else base.bodies,
-            inertia=np.concatenate([base.inertia, np.full(count, float(base.inertia.mean()))]),
+            inertia=sp.csr_array(sp.block_diag([base.inertia, mass * sp.eye_array(count)], format="csr")),
+            load=0.0,
         )
 
     def load(self, stress: Three) -> Array:

@@ -34,6 +34,9 @@ from concio.representation import short_repr
 from concio.solvers.statics.collapse_state import CollapseState
 from concio.solvers.statics.existence import find_mechanism
 from concio.solvers.statics.limit import LimitLoad, associated_limit
+from concio.verdict.cell_verdict import cell_verdict
+from concio.verdict.not_standing import BY_A_MECHANISM
+from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from concio.plot.cell_accessor import StrengthPlots
@@ -145,6 +148,11 @@ class StrengthDomain:
         return np.asarray(rate / (float(np.abs(rate).max()) or 1.0))
 
     @property
+    def verdict(self) -> Verdict:
+        """What was asked of the cell, what came out, and what was not checked."""
+        return cell_verdict(self.cell, None, self, None)
+
+    @property
     def plot(self) -> StrengthPlots:
         """Figures by name; matplotlib is loaded here."""
         from concio.plot.cell_accessor import StrengthPlots
@@ -249,7 +257,7 @@ def strength(
     wanted = _directions(directions)
     dead = own.problem(stress=base)
     if base.any() and find_mechanism(dead) is not None:
-        msg = f"the stress ({base[0]:g}, {base[1]:g}, {base[2]:g}) kN/m2 alone cannot be carried: a mechanism proves it"
+        msg = f"the stress ({base[0]:g}, {base[1]:g}, {base[2]:g}) kN/m2 alone is beyond the strength: {BY_A_MECHANISM}"
         raise NoEquilibriumError(msg, hint="begin from another stress")
     rays = []
     for k, direction in enumerate(wanted):
@@ -273,7 +281,7 @@ def _ray(
     live = cell.load(direction)
     bound = associated_limit(dead, live)
     if not coulomb or not 0 < bound.multiplier < np.inf:
-        none = "not asked for" if not coulomb else "not tried: no stress is the last, or none is carried"
+        none = "not asked for" if not coulomb else "not tried: no stress is the last, or none is within the strength"
         return StrengthRay(direction, base, bound, search=none)
     problem, _ = with_compliance(dead, live)
     path, shown = coulomb_path(problem, live, progress=progress)

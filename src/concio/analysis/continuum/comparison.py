@@ -34,6 +34,8 @@ from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import InputError
 from concio.model.model import Model
 from concio.problem.solution import Progress, ProgressCallback
+from concio.verdict.continuum_verdict import continuum_verdict
+from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from concio.plot.continuum_accessor import ContinuumPlots
@@ -79,6 +81,11 @@ class ContinuumComparison:
         from concio.plot.continuum_accessor import ContinuumPlots
 
         return ContinuumPlots(self)
+
+    @property
+    def verdict(self) -> Verdict:
+        """What was compared, what came out, and what has no proof."""
+        return continuum_verdict(self)
 
     @property
     def checked(self) -> bool:

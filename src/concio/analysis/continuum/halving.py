@@ -16,6 +16,8 @@ from concio.contact.assembly import assemble
 from concio.errors import InputError
 from concio.model.model import Model
 from concio.problem.solution import Progress, ProgressCallback
+from concio.verdict.continuum_verdict import continuum_verdict
+from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from concio.plot.continuum_accessor import HalvingPlots
@@ -69,6 +71,11 @@ class BlockHalving:
     def summary(self) -> dict[str, Any]:
         """Return the table as plain lists."""
         return {name: [v if np.isfinite(v) else None for v in column.tolist()] for name, column in self.table().items()}
+
+    @property
+    def verdict(self) -> Verdict:
+        """What was compared, for blocks of every size, and what has no proof."""
+        return continuum_verdict(self.comparisons[0], self)
 
     @property
     def plot(self) -> HalvingPlots:

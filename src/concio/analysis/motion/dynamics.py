@@ -11,10 +11,13 @@ import numpy as np
 
 from concio.analysis.engine import by_its_engine
 from concio.analysis.motion.dynamics_result import DynamicsResult, Ending
+from concio.analysis.motion.fate import Watch
 from concio.analysis.motion.ground import Ground, Motion
 from concio.analysis.motion.history import Recorder
 from concio.analysis.motion.interruption import Interruption
 from concio.analysis.motion.joints import SAG
+from concio.analysis.motion.meetings import Meetings
+from concio.analysis.motion.moved_supports import begun
 from concio.analysis.motion.observer import Observer
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import MotionState
@@ -45,11 +48,8 @@ HALVINGS = 6
 SUNK = 1e-3
 """Penetration at an impact over the width of a body from which on the step is halved."""
 
-OVERTURNED = np.deg2rad(60.0)
-"""Rotation at which a block has overturned [rad]."""
-
-AT_REST = 1e-12
-"""Kinetic energy over the weight times the width of the bodies below which everything is at rest."""
+AFTER = 20.0
+"""How long after the ground a motion is followed where no duration is given and it neither rests nor falls [s]."""
 
 
 @strict
@@ -75,7 +75,7 @@ def dynamics(
     every: float | None = None,
     points: Sequence[ControlPoint] = (),
     stop_overturned: bool = True,
-    stop_at_rest: bool = False,
+    stop_at_rest: bool | None = None,
     engine: Engine | None = None,
     progress: ProgressCallback | None = None,
 ) -> DynamicsResult:
@@ -88,7 +88,8 @@ def dynamics(
     motion : Signal, path, mapping, optional
         Motion of the ground along x (a record, a pulse, the name of a file), or by component: ``{"x": ..., "y": ...}``.
     duration : float, optional
-        Time to compute [s]; default that of the ground motion.
+        Time to compute [s]; by default until everything rests after the ground motion, or a block has fallen, at most
+        20 s after it.
     step : float, optional
         Largest step of time [s]; default 2 ms, or what a finer record wants.
     scale : float
@@ -115,11 +116,13 @@ def dynamics(
     adaptive : bool
         Whether steps are halved where an impact would be felt late or an answer fails its check.
     every : float, optional
-        Time between the placements that are kept [s]; default a thousandth of the duration.
+        Time between the placements that are kept [s]; default a thousandth of the duration, or of the time of the
+        ground motion.
     points : sequence of ControlPoint
         Points whose positions are kept at every step.
     stop_overturned, stop_at_rest : bool
-        Whether to stop when a block has turned by 60 degrees, or when nothing moves any more after the ground motion.
+        Whether to stop when a block has turned by 60 degrees from where it was described or lost the support on which
+        it stood, or when nothing moves any more after the ground motion: by default where no duration is given.
     engine : {"superlu", "pardiso"}, optional
         What factorises linear systems; by default that of the model.
     progress : callable, optional
@@ -137,8 +140,10 @@ def dynamics(
     reference = Reference.of(model, gravity)
     _check_masses(reference)
     ground = Ground.of(motion, scale)
-    duration = _positive(ground.duration if duration is None else duration, "duration")
-    step = _step(step, ground, duration)
+    stated = None if duration is None else _positive(duration, "duration")
+    shown = stated or _positive(ground.duration, "duration")
+    step = _step(step, ground, shown)
+    stop_at_rest = stated is None if stop_at_rest is None else stop_at_rest
     if base not in ("inertia", "moving"):
         msg = f"base = '{base}' is not 'inertia' or 'moving'"
         raise InputError(msg)
@@ -149,11 +154,18 @@ def dynamics(
             msg = f"there is no load group '{group}'"
             raise InputError(msg, hint="groups: " + ", ".join(reference.model.load_groups))
     stepper = Stepper(reference, scheme, engine)
-    state, notes = _begin(reference, scheme, chosen, start, velocities, engine)
-    run = _Run(reference, stepper, ground, base, chosen, scheme, tuple(points), duration, step, adaptive, progress)
+    state, notes, stands = _begin(reference, scheme, chosen, start, velocities, engine)
+    begun_at = state.time
+    run = _Run(
+        reference, stepper, ground, base, chosen, scheme, tuple(points), shown + (0.0 if stated else AFTER), step,
+        adaptive, progress, stated, stands, engine,
+    )  # fmt: skip
     run.notes += [*ground.attention, *notes]
-    ending = run.follow(state, _positive(every or duration / SHOTS, "every"), stop_overturned, stop_at_rest)
-    return run.result(ending)
+    run.origin = reference.disc.centroids if isinstance(start, MotionState) else state.centre.copy()
+    run.falls = start != "as described"
+    every = _positive(every or shown / SHOTS, "every")
+    ending = run.follow(state, every, stop_overturned, stop_at_rest)
+    return run.result(ending, begun_at)
 
 
 def _positive(value: float, name: str) -> float:
@@ -188,9 +200,10 @@ def _begin(
     start: str | MotionState,
     velocities: Mapping[str, Sequence[float]] | None,
     engine: Engine | None,
-) -> tuple[MotionState, list[str]]:
-    """Return the state at the beginning, and what there is to say about it."""
+) -> tuple[MotionState, list[str], bool | None]:
+    """Return the state at the beginning, what there is to say about it, and whether it is in equilibrium if asked."""
     notes: list[str] = []
+    stands: bool | None = None
     if isinstance(start, MotionState):
         if start.centre.shape != reference.disc.centroids.shape or len(start.strain) != len(reference.body_of_node):
             msg = "the state to start from belongs to another model"
@@ -199,17 +212,23 @@ def _begin(
     elif start in ("equilibrium", "as described"):
         state = at_rest(reference)
         if start == "equilibrium":
-            balanced = Statics(reference, scheme, factors, engine=engine, sag=SAG).balance(state, 0.0)
-            if balanced.found:
-                state = balanced.state
-            else:
+            balanced, share, last = begun(Statics(reference, scheme, factors, engine=engine, sag=SAG), state)
+            stands, state = balanced.found, balanced.state if balanced.found else last
+            if not stands and 0.0 < share < 1.0:
+                notes.append(
+                    f"no equilibrium was found from where its supports have moved by {share:.3g} of what was asked: "
+                    "the motion begins there"
+                )
+            elif not stands:
                 notes.append("no equilibrium under the loads was found to begin with: the motion begins as described")
+        elif any(s.moves for s in reference.model.supports):
+            notes.append("fixed bodies stand as described: supports move them where a motion begins in equilibrium")
     else:
         msg = f"start = '{start}' is not 'equilibrium', 'as described' or a state"
         raise InputError(msg)
     if velocities:
         state = _thrown(reference, state, velocities)
-    return state, notes
+    return state, notes, stands
 
 
 def _thrown(reference: Reference, state: MotionState, velocities: Mapping[str, Sequence[float]]) -> MotionState:
@@ -248,12 +267,20 @@ class _Run:
     step: float
     adaptive: bool
     progress: ProgressCallback | None
+    stated: float | None
+    stands: bool | None
+    engine: Engine | None
+    falls: bool = True
+    origin: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    fallen: list[str] = field(default_factory=list)
+    rests: bool = False
     notes: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         maker = self.stepper.maker
         self.observer = Observer(self.reference, maker, self.stepper.frames, self.factors, self.points)
         self.recorder = Recorder()
+        self.meetings = Meetings(self.step / 2**HALVINGS)
         self.sums = dict.fromkeys(("friction", "impact", "damping", "crushing", "input", "overlap", "drift"), 0.0)
         self.seconds = 0.0
         self.begun = clock.perf_counter()
@@ -269,10 +296,10 @@ class _Run:
     def follow(self, state: MotionState, every: float, stop_overturned: bool, stop_at_rest: bool) -> Ending:
         """Compute the motion and record it; return how it ended."""
         self.state = state = self.stepper.located(state)
-        start, rotation0 = state.time, state.rotation.copy()
+        start = state.time
         end, shot = start + self.duration, start
         h, calm = self.step, 0
-        weight = float(self.reference.body_mass.sum()) * self.reference.gravity * self.stepper.maker.width
+        self.watch = Watch(self.observer, self.factors, self.scheme, self.origin, self.engine)
         self._shoot(state)
         with Interruption() as interruption:
             while state.time < end - 1e-6 * self.step:
@@ -281,30 +308,60 @@ class _Run:
                 if made is None:
                     return Ending.UNSOLVED
                 state, report, used = made
-                calm = calm + 1 if used >= h else 0
-                h = min(self.step, 2 * used if calm >= 2 else used)
+                if used:
+                    calm = calm + 1 if used >= h else 0
+                    h = min(self.step, 2 * used if calm >= 2 else used)
                 self._keep(state, report)
                 if state.time >= shot + every - 1e-9 * self.step:
                     shot = state.time
                     self._shoot(state)
-                if stop_overturned and np.abs(state.rotation - rotation0).max() > OVERTURNED:
-                    return Ending.OVERTURNED
-                if stop_at_rest and state.time - start > self.ground.duration and self._rests(state, weight):
+                fell = self._fell(state)
+                if stop_overturned and fell is not None:
+                    return fell
+                over = state.time - start > self.ground.duration
+                if self.watch.calm(state) and over and stop_at_rest and self.watch.rests(state):
+                    self.rests = True
                     return Ending.AT_REST
                 told = self.progress is not None and self.progress(self._told(state, start))
                 if told or interruption.wanted:
                     return Ending.STOPPED
+        self.rests = self.watch.calm(state) and self.watch.rests(state)
+        if not self.rests and not self.fallen and state.time - start >= self.ground.duration:
+            self.fallen = self.watch.passed(state)
         return Ending.COMPLETE
 
+    def _fell(self, state: MotionState) -> Ending | None:
+        """Return how a motion ends in which a block has fallen, None where none has; note the first ones."""
+        turned = self.watch.overturned(state)
+        sunk = self.watch.sunk(state) if self.falls else []
+        self.fallen = self.fallen or turned or sunk
+        if turned:
+            return Ending.OVERTURNED
+        return Ending.FALLEN if sunk and (self.stands is not False or self.stated is None) else None
+
     def _attempt(self, state: MotionState, h: float) -> tuple[MotionState, StepReport, float] | None:
-        """Make a step, smaller where that is needed; None where none can be solved."""
+        """Make a step, smaller where that is needed; None where none can be solved.
+
+        The third is its length, none where it ended or began with an impact that was located.
+        """
         least = self.step / 2**HALVINGS
+        meetings = self.meetings
+        asked, h = h, meetings.length(state.time, h)
+        planned = h != asked
         while True:
             new, report = self.stepper.step(state, h, self.drive(state.time, h))
             solved = report.solution.residual <= CERTIFIED
             late = self.adaptive and report.struck > SUNK * self.stepper.maker.width
+            if solved and self.adaptive:
+                cut = meetings.located(report.meets, h)
+                if cut is not None:
+                    to_it = self.stepper.step(state, cut, self.drive(state.time, cut))
+                    if to_it[1].solution.residual <= CERTIFIED:
+                        meetings.after(state.time, True, to_it[1].left, h)
+                        return *to_it, 0.0
             if (solved and not late) or (solved and h <= least * 1.01):
-                return new, report, h
+                meetings.after(state.time, False, np.inf, h)
+                return new, report, 0.0 if planned else h
             if not solved and (h <= least * 1.01 or not self.adaptive):
                 return None
             h *= 0.5
@@ -323,18 +380,12 @@ class _Run:
         opening, slip = self.observer.joint_motion(state)
         self.recorder.shot(state, opening, slip, self.observer.energies(state, self.sums))
 
-    def _rests(self, state: MotionState, weight: float) -> bool:
-        f = self.stepper.frames
-        x = f.unknowns(state.velocity[:, 0] + 1j * state.velocity[:, 1], state.spin, state.nodal @ [1, 1j],
-                       np.exp(1j * state.rotation))  # fmt: skip
-        return f.kinetic_energy(x) <= AT_REST * weight
-
     def _told(self, state: MotionState, start: float) -> Progress:
         done = (state.time - start) / self.duration
         left = (clock.perf_counter() - self.begun) * (1 - done) / max(done, 1e-9)
         return Progress("dynamics", len(self.recorder.rows), 1.0 - done, f"{state.time:.3f} s, {_time_left(left)} left")
 
-    def result(self, ending: Ending) -> DynamicsResult:
+    def result(self, ending: Ending, begun_at: float) -> DynamicsResult:
         """Return what was computed."""
         assert self.state is not None
         if self.recorder.shots[-1][0] is not self.state:
@@ -348,6 +399,8 @@ class _Run:
             joints=self.observer.joints, end=self.state, ground_time=steps.time,
             ground=self.ground.acceleration(steps.time), notes=tuple(self.notes), seconds=self.seconds,
             lent_compliance=self.stepper.maker.joints.lent if len(self.reference.rigid) else 0.0,
+            asked=self.ground.words, begun=begun_at, stated=self.stated, stands=self.stands,
+            fallen=tuple(self.fallen), rests=self.rests, ground_ends=begun_at + self.ground.duration,
         )  # fmt: skip
 
 

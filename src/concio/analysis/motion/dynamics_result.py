@@ -20,18 +20,21 @@ from concio.kinematics.placement import Placement
 from concio.model.model import Model
 from concio.model.stages import ControlPoint
 from concio.problem.tolerances import CERTIFIED
+from concio.verdict.dynamics_verdict import dynamics_verdict
+from concio.verdict.verdict import Verdict
 
 Array = np.ndarray
 
 
 class Ending(Enum):
-    """How a motion ended; the value is the sentence a user reads."""
+    """How a computation ended; what that says of the structure is told by the verdict."""
 
-    COMPLETE = "Computed to its end."
-    OVERTURNED = "A block overturned: it has turned by more than 60 degrees."
-    AT_REST = "Everything came to rest."
-    STOPPED = "Stopped on request; what was computed is kept."
-    UNSOLVED = "A step could not be solved, however small: the motion ends before it."
+    COMPLETE = "the time to compute is over"
+    OVERTURNED = "a block has turned by more than 60 degrees"
+    FALLEN = "a block has lost the support on which it stood"
+    AT_REST = "nothing moves any more"
+    STOPPED = "stopped on request"
+    UNSOLVED = "no step, however small, satisfies its equations"
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +70,18 @@ class DynamicsResult:
         Time it took [s].
     lent_compliance : float
         Compliance lent to hard joints of rigid bodies [m/kN].
+    asked : str
+        What moves the ground, in words.
+    begun, ground_ends : float
+        When the motion begins, and when that of the ground ends [s].
+    stated : float or None
+        Duration that was asked for; None where the motion was followed until rest or a fall [s].
+    stands : bool or None
+        Whether an equilibrium was found to begin with; None where none was asked for.
+    fallen : tuple of str
+        Blocks that have fallen or passed their own equilibrium, a phrase each.
+    rests : bool
+        Whether nothing moves in the end, and an equilibrium was found there.
     """
 
     model: Model
@@ -86,11 +101,18 @@ class DynamicsResult:
     notes: tuple[str, ...]
     seconds: float
     lent_compliance: float
+    asked: str = ""
+    begun: float = 0.0
+    ground_ends: float = 0.0
+    stated: float | None = None
+    stands: bool | None = None
+    fallen: tuple[str, ...] = ()
+    rests: bool = False
 
     @property
     def complete(self) -> bool:
         """Whether the motion was computed to where it was meant to end."""
-        return self.ending in (Ending.COMPLETE, Ending.AT_REST, Ending.OVERTURNED)
+        return self.ending not in (Ending.STOPPED, Ending.UNSOLVED)
 
     @property
     def certificate(self) -> float:
@@ -134,10 +156,21 @@ class DynamicsResult:
 
     @property
     def largest_rotation(self) -> tuple[str, float]:
-        """The body that turned most, and by how much [rad]."""
-        turned = np.abs(self.shots.rotation - self.shots.rotation[0]).max(0)
+        """The body that turned most from where it was described, and by how much [rad]."""
+        turned = np.abs(self.shots.rotation).max(0)
+        turned[[body.kind == "fixed" for body in self.model.bodies]] = -1.0
         b = int(np.argmax(turned))
         return self.model.bodies[b].name, float(turned[b])
+
+    @property
+    def ground_peak(self) -> float:
+        """Largest acceleration of the ground at any step [m/s2]."""
+        return float(np.linalg.norm(self.ground, axis=1).max(initial=0.0))
+
+    @cached_property
+    def verdict(self) -> Verdict:
+        """Whether the structure stands the motion, with the question and what proves the answer."""
+        return dynamics_verdict(self)
 
     def summary(self) -> dict[str, Any]:
         """Return the numbers of ``--json``."""
@@ -145,9 +178,11 @@ class DynamicsResult:
         joint = np.abs(self.shots.slip).max(0) if self.joints else np.zeros(0)
         opening = self.shots.opening.max(0) if self.joints else np.zeros(0)
         return {
-            "status": self.ending.name.lower(),
-            "sentence": self.ending.value,
+            "status": self.verdict.status,
+            "sentence": self.verdict.sentence,
+            "verdict": self.verdict.as_dict(),
             "title": self.model.title,
+            "ground_peak": self.ground_peak,
             "time": float(self.end.time),
             "steps": len(self.steps),
             "solved_by": self.steps.shares(),

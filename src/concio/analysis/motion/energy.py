@@ -9,10 +9,11 @@ import numpy as np
 Array = np.ndarray
 
 NAMES = ("kinetic", "strain", "potential", "friction", "impact", "damping", "crushing", "input", "overlap", "drift")
-"""Columns: energies now (kinetic, strain of bodies, joints and ties, potential of the loads), and sums since the start:
-dissipated by friction, in impacts and openings, by damping, by crushing; put in by the ground and moved supports; what
-springs of joints gained as the areas changed that faces have in common; and work done in pushing back what had sunk
-into each other, or what springs had come to differ from the gaps of turning bodies."""
+"""Energies now (kinetic, strain of bodies, joints and ties, potential of the loads), and sums since the start:
+dissipated by friction, in impacts, by damping, by crushing; put in by the ground, moved supports and loads that turn
+with their bodies; what springs of joints gained as the areas changed that faces have in common; and work done in
+pushing back what had sunk into each other, or what springs had come to differ from the gaps of turning bodies, and by
+hard joints that give way where nothing is hit."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from typing import TypeAlias
 import numpy as np
 
 from concio.errors import InputError
-from concio.model.motion.records import attention, read_record
+from concio.model.motion.records import STANDARD_GRAVITY, attention, read_record
 from concio.model.motion.signals import Pulse, Record, Signal
 
 Array = np.ndarray
@@ -64,9 +64,15 @@ class Ground:
 
     @property
     def attention(self) -> tuple[str, ...]:
-        """What is strange about the records."""
-        found = [attention(s.scaled(self.scale)) for s in self.components if isinstance(s, Record)]
+        """What is strange about records and pulses."""
+        found = [attention(s.scaled(self.scale)) for s in self.components if isinstance(s, Record | Pulse)]
         return tuple(text for text in found if text is not None)
+
+    @property
+    def words(self) -> str:
+        """What moves the ground, such as "sine pulse of 0.4 g over 0.5 s along x, times 0.1"; empty for nothing."""
+        told = [f"{_words(s)} along {axis}" for s, axis in zip(self.components, "xy", strict=True) if s is not None]
+        return " and ".join(told) + (f", times {self.scale:g}" if told and self.scale != 1.0 else "")
 
     def mean_acceleration(self, start: float, end: float) -> Array:
         """Return the mean acceleration between two times (2,) [m/s2]."""
@@ -93,6 +99,16 @@ class Ground:
                 first, last = getattr(signal, quantity)(np.array([start, end]))
                 mean[k] = self.scale * (last - first) / (end - start)
         return mean
+
+
+def _words(signal: Signal) -> str:
+    if isinstance(signal, Pulse):
+        return f"{signal.shape} pulse of {signal.amplitude / STANDARD_GRAVITY:.4g} g over {signal.length:g} s"
+    if isinstance(signal, Record):
+        peak = f" with a peak of {float(np.abs(signal.values).max()) / STANDARD_GRAVITY:.4g} g"
+        told = peak if signal.quantity == "acceleration" else f" of {signal.quantity}"
+        return f"record '{signal.name}'{told}, {signal.duration:.4g} s"
+    return f"{type(signal).__name__} of {signal.duration:.4g} s"
 
 
 def _signal(thing: Signal | Path | str | None) -> Signal | None:

@@ -1,4 +1,4 @@
-"""Events between two equilibria: joints that open, close, slip, stick or crush, and contacts that are new."""
+"""Events between two equilibria: joints that open, close, slip, stick or crush, new contacts, ties that give way."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.analysis.motion.pairs import PairMaker
-from concio.analysis.motion.state import Memory
+from concio.analysis.motion.state import Memory, TieMemory
 from concio.contact.moving.rows import Rows
 from concio.model.model import Model
 from concio.problem.pair_state import Normal
@@ -24,8 +24,10 @@ class JointEvent:
     step : int
         Index of the point of the curve from which on the new state holds.
     kind : str
-        "opens", "closes", "slips", "sticks", "crushes", "recovers"; "touches" where nothing touched before.
+        "opens", "closes", "slips", "sticks", "crushes", "recovers"; "touches" where nothing touched before; of ties
+        "yields" and "breaks".
     bodies : (str, str)
+        Of a tie its name and the body at its end.
     at : (x, y)
         Where it happens, in the displaced structure [m].
     """
@@ -65,4 +67,28 @@ def joint_events(
             names = (model.bodies[int(slots.body_a[i])].name, model.bodies[int(slots.body_b[i])].name)
             x, y = (float(v) for v in rows.point[i])
             found.append(JointEvent(step, kind, names, (x, y)))
+    return found
+
+
+def tie_events(model: Model, places: Array, before: TieMemory, after: TieMemory, step: int) -> list[JointEvent]:
+    """Return which ties began to yield or broke between two equilibria.
+
+    Parameters
+    ----------
+    model : Model
+    places : (k, 2) array
+        Of their first ends [m].
+    before, after : TieMemory
+    step : int
+    """
+    kinds = (
+        ("yields", (after.plastic > 0) & ~(before.plastic > 0)),
+        ("breaks", after.broken & ~before.broken),
+    )
+    found = []
+    for kind, hit in kinds:
+        for i in np.flatnonzero(hit).tolist():
+            tie = model.ties[i]
+            names = (f"tie {tie.name}", tie.body_a or tie.body_b)
+            found.append(JointEvent(step, kind, names, (float(places[i, 0]), float(places[i, 1]))))
     return found

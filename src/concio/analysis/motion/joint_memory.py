@@ -3,6 +3,10 @@
 The slip of a step is partly elastic (of compliant joints, their own or lent) and partly plastic; plastic slip opens
 joints that dilate and breaks brittle bonds. What presses a pair beyond its cap crushes it. The work of the forces goes,
 but for what the springs store, into friction, impacts, damping and crushing.
+
+Along the normal a hard pair works where it is hit: at half of 1 - e times the velocity of the impact, which is never a
+gain. What the others work, for they sink into the compliance lent to them and turn within a step, is drift. Where
+friction at what is hit turns a slip back it gives, and takes what the impact gives it.
 """
 
 from __future__ import annotations
@@ -66,13 +70,16 @@ def after_step(
         memory, contact=contact, slip=slip, force=t, stretch=stretch, crushing=crushing, raised=raised,
         broken=broken, slid=memory.slid + slid, area=step.area, sunk=sunk, stored=stored,
     )  # fmt: skip
+    smooth = ~(step.springy | step.struck)
+    gained = -float((lost_n - t[:, 0] * squeezed)[smooth].sum())
+    back = -min(float(lost_t[step.struck].sum()), 0.0)
     works = {
-        "friction": float(lost_t.sum()),
-        "impact": float(lost_n.sum()) - crushed,
+        "friction": float(lost_t.sum()) + back,
+        "impact": float(lost_n.sum()) - crushed + gained - back,
         "damping": damped,
         "crushing": crushed,
         "overlap": step.overlap - float(memory.stored.sum()) if joints.any_stiffness else 0.0,
-        "drift": step.drift,
+        "drift": step.drift + gained,
     }
     return new, works
 

@@ -50,6 +50,8 @@ class JointStep:
         On which they stand [m2].
     sunk, stored : (m,) arrays
         Their deformation and energy at the beginning [m], [kN m].
+    struck : (m,) boolean array
+        Hard pairs that are hit in the step.
     overlap, drift : float
         What their energy grew by since the end of the last step: because common areas have changed, and because the
         gaps of turned bodies are not what straight motion makes them [kN m].
@@ -65,8 +67,14 @@ class JointStep:
     area: Array
     sunk: Array
     stored: Array
+    struck: Array
     overlap: float = 0.0
     drift: float = 0.0
+
+    @property
+    def impact(self) -> bool:
+        """Whether anything is hit."""
+        return bool(self.struck.any())
 
 
 @dataclass(frozen=True, eq=False)

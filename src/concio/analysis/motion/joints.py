@@ -2,9 +2,11 @@ r"""Joints in a step: from contact rows and what pairs remember to the pairs of 
 
 Hard pairs that are closed in the middle of the step obey their law in the relative velocity at its end,
 
-.. math:: y = C v^+ + \tfrac{h}{2} \dot C v + e\,\min(C_n v, 0),
+.. math:: y = C v^+ + \tfrac{h}{2} \dot C v + e\,C_n v,
 
-whose second term is what turning adds: without it the scheme would be of first order even where nothing hits anything.
+whose second term is what turning adds to pairs that carried force before: without it the scheme would be of first order
+even where nothing hits anything. The third term is that of pairs that are hit: they were apart, come nearer, and are
+closed in the middle of the step. What is as near as joints give way is hit at the same instant.
 Compliant pairs obey theirs at the position q + theta h v_theta. An impact is felt half a step late at most, when
 something has sunk in by h |v| / 2 on average; :mod:`concio.analysis.motion.sunk` moves that out of each other again.
 What pairs remember of a step is in :mod:`concio.analysis.motion.joint_memory`.
@@ -41,7 +43,7 @@ MOST_SAG = 20.0
 """Depth over that up to which a hard joint is sunk in by force; beyond, it was an impact felt late."""
 
 SOFT = 2e-3
-"""Compliance of a hard joint in one step over what its bodies give way under a force: impacts are so much softer."""
+"""Compliance of a hard joint in one step over what its bodies give way under a force; of an impact it is taken back."""
 
 RETURN = 0.1
 """Share of what is sunk in more or less than the force wants that comes back in a step, at most."""
@@ -158,18 +160,21 @@ class Joints:
         a_n, a_t, springs = self.compliances(slots, ground, cone.tension)
         lasting = memory.force[:, 0] > 0
         shift = rows.imposed + turning_velocity(rows, lasting, h, speed)
-        if self.scheme.restitution:
-            shift[:, 0] += self.scheme.restitution * np.minimum(y0[:, 0], 0.0)
-        settle = np.minimum(SOFT * give / np.where(a_n > 0, a_n, np.inf), RETURN / h)
-        shift[:, 0] += settle * np.clip(gap, -MOST_SAG * self.sag, self.sag)
-        shift[:, 1] += settle * memory.stretch
         near = gap <= np.where(lasting, FALL * speed * h, self.touching)
+        settle = np.minimum(SOFT * give / np.where(a_n > 0, a_n, np.inf), RETURN / h)
+        struck = self._struck(rows, gap, y0, lasting, springs, h, speed)
+        if struck.any():
+            near |= struck
+            shift[struck, 0] += self.scheme.restitution * y0[struck, 0]
+        else:
+            shift[:, 0] += settle * np.clip(gap, -MOST_SAG * self.sag, self.sag)
+            shift[:, 1] += settle * memory.stretch
         data = PairData(
             rows.columns, rows.values, shift, cone, settle * a_n, settle * a_t, self.laws.dilatancy[slots.law],
             rows.valid & near,
         )  # fmt: skip
         none = np.zeros(len(slots), dtype=bool)
-        step = JointStep(none, a_n, a_t, gap, y0, bonded, None, ground, zero, zero)
+        step = JointStep(none, a_n, a_t, gap, y0, bonded, None, ground, zero, zero, struck)
         return (data, step) if springs is None else self._sprung(rows, memory, springs, data, step, h)
 
     def resting(
@@ -197,7 +202,25 @@ class Joints:
         )  # fmt: skip
         springy = np.zeros(len(slots), dtype=bool) if springs is None else springs.normal
         at_rest = np.zeros((len(slots), 2))
-        return data, JointStep(springy, a_n, a_t, gap, at_rest, bonded, springs, area, zero, zero)
+        return data, JointStep(
+            springy, a_n, a_t, gap, at_rest, bonded, springs, area, zero, zero, np.zeros(len(slots), dtype=bool)
+        )
+
+    def _struck(
+        self, rows: Rows, gap: Array, y0: Array, lasting: Array, springs: Springs | None, h: float, speed: float
+    ) -> Array:
+        """Return which hard pairs (m,) are hit in a step.
+
+        Where one is, those are too that come as near by the end of the step as joints may be sunk in by force: what
+        meets at one instant is not told apart by how far joints have given way.
+        """
+        closing = rows.valid & ~lasting & (y0[:, 0] < 0)
+        if springs is not None:
+            closing &= ~springs.normal
+        if not (closing & (gap <= self.touching) & (y0[:, 0] < -NOTHING * speed)).any():
+            return np.zeros(len(gap), dtype=bool)
+        near = (gap <= self.touching) | (gap + 0.5 * h * y0[:, 0] <= MOST_SAG * self.sag)
+        return np.asarray(closing & near)
 
     def _here(self, rows: Rows, slots: Slots, memory: Memory) -> tuple[Array, Array, Array, Cone]:
         """Return gaps (m,) [m], areas (m,) [m2], which pairs are bonded (m,), and strengths where bodies stand."""

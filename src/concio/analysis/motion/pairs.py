@@ -44,7 +44,7 @@ class PairMaker:
         self.reference, self.scheme, self.n = reference, scheme, reference.disc.unknowns
         self.search = ContactSearch(reference)
         self.width = float(np.median(reference.edges.width[reference.free]))
-        weight = float(reference.body_mass[reference.free].mean()) * reference.gravity
+        weight = reference.typical_mass * reference.gravity
         lent = sag * self.width / weight if weight > 0 else 0.0
         self.joints = Joints(
             reference.laws, scheme, reference.disc.size, self.width, self.search.skin, lent, yielding(reference)

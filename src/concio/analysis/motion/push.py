@@ -10,8 +10,10 @@ from typing import Literal
 import numpy as np
 
 from concio.analysis.engine import by_its_engine
+from concio.analysis.motion.frames import Frames
 from concio.analysis.motion.interruption import Interruption
-from concio.analysis.motion.joint_events import JointEvent, joint_events
+from concio.analysis.motion.joint_events import JointEvent, joint_events, tie_events
+from concio.analysis.motion.moved_supports import begun
 from concio.analysis.motion.observer import Observer
 from concio.analysis.motion.push_result import PushEnding, PushResult
 from concio.analysis.motion.scheme import Scheme
@@ -19,6 +21,9 @@ from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import Balanced, Statics
 from concio.analysis.motion.stepper import at_rest
 from concio.arguments import closest, strict
+from concio.contact.assembly import assemble
+from concio.contact.factors import load_factor
+from concio.contact.moving.edges import as_complex, as_vectors
 from concio.contact.moving.points import Followed
 from concio.contact.moving.reference import Reference
 from concio.errors import InputError, NoEquilibriumError
@@ -27,6 +32,7 @@ from concio.model.stages import ControlPoint
 from concio.problem.solution import Progress, ProgressCallback
 from concio.solvers.algebra.sparse_factor import Engine
 from concio.units import GRAVITY
+from concio.verdict.not_standing import not_standing
 
 Array = np.ndarray
 
@@ -62,6 +68,12 @@ MOST_CREEPING = 25
 MOST_POINTS = 5000
 """Points of a curve at most."""
 
+ASIDE = 1e-6
+"""Share of a resultant along a direction below which it points aside."""
+
+LOCATED = 1e-9
+"""Steps over that asked for to which the yielding and breaking of ties is located."""
+
 ENDS = 1e-9
 """Error of the last multiplier over the peak."""
 
@@ -73,7 +85,7 @@ def push(
     *,
     control: ControlPoint | Literal["load"] | None = None,
     live: str | Sequence[str] | None = None,
-    direction: float | Sequence[float] = 1.0,
+    direction: float | Sequence[float] | None = None,
     step: float | None = None,
     until: float | None = None,
     smallest: float = 0.0,
@@ -99,8 +111,9 @@ def push(
     live : str or sequence of str, optional
         Load groups that the multiplier scales. By default the group "live", and where a model has none a share of all
         weights along ``direction``.
-    direction : float or (x, y)
-        Direction of that share; 1 or -1 is along x.
+    direction : float or (x, y), optional
+        Direction of that share, by default along x; 1 or -1 is along x. Of load groups that are multiplied, the side to
+        which they push: where their resultant points to the other side they grow with the opposite sign.
     step : float, optional
         Largest step of the controlled displacement [m], default a twentieth of the bodies' width; under load control
         of the multiplier, default 0.05.
@@ -135,25 +148,30 @@ def push(
     reference = Reference.of(model, gravity)
     chosen = _factors(reference, factors)
     groups = _live(reference, live)
-    along = _direction(direction)
+    along = _direction(1.0 if direction is None else direction)
+    sign = _side(reference, groups, chosen, None if direction is None else along)
     if not groups and not reference.body_mass.sum() > 0:
         msg = "no block has a weight, and no load group is named: there is nothing to push with"
         raise InputError(msg, hint="give materials a unit_weight, or name the groups to multiply (live)")
     point, by_load = _control(control)
     scheme = Scheme(brittle=brittle)
-    statics = Statics(reference, scheme, chosen, groups, None if groups else along, point, engine)
+    statics = Statics(reference, scheme, chosen, groups, None if groups else along, point, engine, sign=sign)
     if by_load:
         step = LOAD_STEP if step is None else _positive(step, "step")
     else:
         step = STEP * statics.width if step is None else _positive(step, "step")
     until = np.inf if until is None else _positive(until, "until")
     Followed.of(reference, *points)  # what cannot be followed is said before anything moves
-    begun = clock.perf_counter()
-    start = statics.balance(at_rest(reference), 0.0)
+    clock_begun = clock.perf_counter()
+    start, share, _ = begun(statics, at_rest(reference))
     if not start.found:
         msg = "the structure does not stand before it is pushed" + _what_moves(reference, start)
+        if 0.0 < share < 1.0:
+            msg += f", where its supports have moved by {share:.3g} of what was asked for"
         hint = "see 'concio run' for its collapse; the factors of dead loads may be meant otherwise"
-        raise NoEquilibriumError(msg, hint=hint)
+        asked = "a capacity curve at large displacements"
+        told = not_standing(assemble(model), asked, msg, factors=chosen, multiplied=groups)
+        raise NoEquilibriumError(msg, hint=hint, verdict=told)
     run = _Push(reference, statics, chosen, step, until, float(smallest), progress)
     run.keep(start, 0.0)
     with Interruption() as run.interruption:
@@ -167,8 +185,9 @@ def push(
         strain=np.array([s.strain for s in run.states]), reaction=np.array(run.reactions),
         reactions_of=run.observer.names, events=tuple(run.events), live=groups, direction=along,
         force=np.array([unit[at].sum(), unit[at + 1].sum()]), factors=chosen, control=point, points=tuple(points),
-        notes=tuple(run.notes), seconds=clock.perf_counter() - begun,
+        notes=tuple(run.notes), seconds=clock.perf_counter() - clock_begun,
         lent_compliance=statics.maker.joints.lent if len(reference.rigid) else 0.0, end=run.states[-1],
+        until=until if np.isfinite(until) else None, by_load=by_load, reversed=sign < 0,
     )  # fmt: skip
 
 
@@ -232,6 +251,25 @@ def _direction(direction: float | Sequence[float]) -> Array:
     return along
 
 
+def _side(
+    reference: Reference, groups: tuple[str, ...], factors: Mapping[str, float], along: Array | None
+) -> float:
+    """Return the sign with which load groups grow, so that they push along a direction that was asked for."""
+    if along is None or not groups:
+        return 1.0
+    here = np.ones(len(reference.model.bodies), dtype=complex)
+    only = {g: load_factor(factors, g) if g in groups else 0.0 for g in reference.loads.groups}
+    unit, frames = reference.loads.forces(only, here), Frames(reference, Scheme())
+    at = np.concatenate([frames.x, frames.node_x])
+    force = np.array([unit[at].sum(), unit[at + 1].sum()])
+    part = float(force @ along)
+    if abs(part) <= ASIDE * float(np.linalg.norm(force)) or not part:
+        msg = f"the loads of {', '.join(groups)} have no resultant along the direction ({along[0]:g}, {along[1]:g})"
+        hint = "leave the direction out, or multiply a share of the weights: live=(), on the command line --weights"
+        raise InputError(msg, where="direction", hint=hint)
+    return float(np.sign(part))
+
+
 @dataclass
 class _Push:
     """A curve as it is computed."""
@@ -261,6 +299,10 @@ class _Push:
         if self.states:
             self.events += joint_events(
                 self.reference.model, self.statics.maker, rows, self.states[-1].memory, found.state.memory,
+                len(self.states),
+            )  # fmt: skip
+            self.events += tie_events(
+                self.reference.model, self._tie_ends(found.state), self.states[-1].ties, found.state.ties,
                 len(self.states),
             )  # fmt: skip
         self.displacement.append(displacement)
@@ -293,7 +335,10 @@ class _Push:
             failed = 0 if wanted >= self.step else failed
             if found.multiplier > LOCKED:
                 return PushEnding.LOCKED
-            if found.multiplier <= self.smallest < load:
+            gave = self._gives_way(here, found)
+            if gave:
+                found, wanted = self._where_ties_give_way(here, load, found, wanted)
+            if found.multiplier <= self.smallest < load and not gave:
                 return self._last(here, d, load, found, wanted)
             self.keep(found, d + wanted)
             if self.told(min(d / self.until, 1 - max(found.multiplier, 0.0) / max(self.multiplier[1:]))):
@@ -301,9 +346,38 @@ class _Push:
             creeping = creeping + 1 if wanted < CREEPING * min(self.step, self.until - d) else 0
             if creeping > MOST_CREEPING:
                 return PushEnding.NO_EQUILIBRIUM
-            step = min(GROWTH * step, self.step)
+            step = FIRST * self.step if gave else min(GROWTH * step, self.step)
         self.notes.append(f"{MOST_POINTS:,} points were computed")
         return PushEnding.STOPPED
+
+    def _tie_ends(self, state: MotionState) -> Array:
+        """Return where the first ends of the ties are (k, 2) [m]."""
+        ties, strain = self.statics.maker.ties, np.append(as_complex(state.strain), 0.0)
+        return as_vectors(ties.a.positions(as_complex(state.centre), np.exp(1j * state.rotation), strain))
+
+    def _gives_way(self, before: MotionState, found: Balanced) -> bool:
+        """Return whether a tie begins to yield or breaks between two equilibria."""
+        old, new = before.ties, found.state.ties
+        return bool(((new.plastic > 0) & ~(old.plastic > 0)).any() or (new.broken & ~old.broken).any())
+
+    def _where_ties_give_way(
+        self, here: MotionState, load: float, found: Balanced, wanted: float
+    ) -> tuple[Balanced, float]:
+        """Return the first equilibrium at which a tie yields or breaks, and how far away it is [m].
+
+        A tie that breaks within a step would pull to its end, further than it can be stretched.
+        """
+        low = 0.0
+        while wanted - low > LOCATED * self.step:
+            middle = 0.5 * (low + wanted)
+            trial = self.statics.balance(here, load, target=middle)
+            if trial.found and self._gives_way(here, trial):
+                found, wanted = trial, middle
+            elif trial.found:
+                low = middle
+            else:
+                break
+        return found, wanted
 
     def _last(self, here: MotionState, d: float, load: float, found: Balanced, wanted: float) -> PushEnding:
         """Find the displacement at which the multiplier has fallen to the smallest one."""
@@ -327,6 +401,19 @@ class _Push:
         self.keep(best, d + at)
         return PushEnding.LOST
 
+    def _load_where_ties_give_way(self, here: MotionState, load: float, found: Balanced) -> Balanced:
+        """Return the first equilibrium under a growing load at which a tie yields or breaks."""
+        low = load
+        while found.multiplier - low > LOCATED * self.step:
+            trial = self.statics.balance(here, 0.5 * (low + found.multiplier))
+            if trial.found and self._gives_way(here, trial):
+                found = trial
+            elif trial.found:
+                low = trial.multiplier
+            else:
+                break
+        return found
+
     def by_load(self) -> PushEnding:
         """Let the load grow."""
         step, moved = self.step, 0.0
@@ -342,6 +429,8 @@ class _Push:
                     return PushEnding.NO_LARGER_LOAD
                 continue
             assert followed is None
+            if self._gives_way(here, found):
+                found = self._load_where_ties_give_way(here, load, found)
             moved += self.statics.work_displacement(here, found)
             self.keep(found, moved)
             if found.multiplier > LOCKED:

@@ -20,19 +20,21 @@ from concio.kinematics.placement import Placement
 from concio.model.model import Model
 from concio.model.stages import ControlPoint
 from concio.problem.tolerances import CERTIFIED
+from concio.verdict.push_verdict import push_verdict
+from concio.verdict.verdict import Verdict
 
 Array = np.ndarray
 
 
 class PushEnding(Enum):
-    """How pushing ended; the value is the sentence a user reads."""
+    """How pushing ended; what that says of the structure is told by the verdict."""
 
-    LOST = "The structure has lost its strength: the multiplier fell to the one asked for."
-    REACHED = "The displacement asked for was reached."
-    NO_EQUILIBRIUM = "There is no equilibrium at a larger displacement that could be followed."
-    NO_LARGER_LOAD = "There is no equilibrium nearby at a larger multiplier: load control ends at the peak."
-    LOCKED = "The structure locks: the multiplier grows without end."
-    STOPPED = "Stopped on request; what was computed is kept."
+    LOST = "the multiplier fell to the smallest one"
+    REACHED = "the displacement or multiplier asked for was reached"
+    NO_EQUILIBRIUM = "no equilibrium at a larger displacement could be followed"
+    NO_LARGER_LOAD = "no equilibrium nearby at a larger multiplier: load control ends at the peak"
+    LOCKED = "the structure locks: the multiplier grows without end"
+    STOPPED = "stopped on request"
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +78,12 @@ class PushResult:
         Compliance lent to hard joints of rigid bodies [m/kN].
     end : MotionState
         State at the end.
+    until : float or None
+        Controlled displacement [m], or multiplier, that was asked for.
+    by_load : bool
+        Whether the load grew instead of a displacement.
+    reversed : bool
+        Whether the live groups grew with the opposite sign, to push to the side asked for.
     """
 
     model: Model
@@ -100,6 +108,9 @@ class PushResult:
     seconds: float
     lent_compliance: float
     end: MotionState
+    until: float | None = None
+    by_load: bool = False
+    reversed: bool = False
 
     def __len__(self) -> int:
         return len(self.multiplier)
@@ -119,6 +130,11 @@ class PushResult:
     def peak(self) -> float:
         """Largest multiplier."""
         return float(self.multiplier.max())
+
+    @property
+    def peak_passed(self) -> bool:
+        """Whether the curve goes on below its largest multiplier: otherwise no peak was shown."""
+        return self.peak_step < len(self) - 1
 
     @property
     def capacity(self) -> float:
@@ -188,16 +204,23 @@ class PushResult:
         turned: Array = self.rotation[:, names.index(body)]
         return turned
 
+    @cached_property
+    def verdict(self) -> Verdict:
+        """What the structure carries sideways, with the question and what proves the answer."""
+        return push_verdict(self)
+
     def summary(self) -> dict[str, Any]:
         """Return the numbers of ``--json``."""
         capacity = self.capacity
         return {
-            "status": self.ending.name.lower(),
-            "sentence": self.ending.value,
+            "status": self.verdict.status,
+            "sentence": self.verdict.sentence,
+            "verdict": self.verdict.as_dict(),
             "title": self.model.title,
             "engine": self.model.engine,
             "points": len(self),
-            "peak": {"multiplier": self.peak, "displacement": float(self.displacement[self.peak_step])},
+            "peak": {"multiplier": self.peak, "displacement": float(self.displacement[self.peak_step]),
+                     "passed": self.peak_passed},
             "end": {"multiplier": float(self.multiplier[-1]), "displacement": float(self.displacement[-1])},
             "capacity": None if np.isnan(capacity) else capacity,
             "curve": {"displacement": self.displacement.tolist(), "multiplier": self.multiplier.tolist()},

@@ -96,12 +96,15 @@ class SmallDisplacements:
         Whose displacement controls the load; otherwise the mean displacement on which the load works.
     sag : float
         Depth over the width of the bodies to which hard joints are sunk in.
+    sign : {1, -1}
+        Of the live groups: -1 lets them grow the other way.
     """
 
     def __init__(
         self, reference: Reference, scheme: Scheme, factors: Mapping[str, float], live: tuple[str, ...],
-        push: Array | None, control: ControlPoint | None, sag: float,
+        push: Array | None, control: ControlPoint | None, sag: float, sign: float = 1.0,
     ) -> None:  # fmt: skip
+        self.sign = sign
         self.reference, self.factors, self.live, self.push = reference, dict(factors), live, push
         self.frames = Frames(reference, scheme)
         self.maker = PairMaker(reference, scheme, sag)
@@ -113,7 +116,7 @@ class SmallDisplacements:
         self._bare = self._stiffness(0.0)
 
     def _stiffness(self, resistance: float) -> StepMatrix:
-        matrices, n = self.reference.matrices, self.frames.n
+        matrices, n = self.reference.resisting, self.frames.n
         rows, columns, values = matrices.entries(resistance, 1.0)
         A = sp.csr_array((values, (rows, columns)), shape=(n, n))
         A.sum_duplicates()
@@ -196,14 +199,32 @@ class SmallDisplacements:
 
     def factors_at(self, multiplier: float) -> dict[str, float]:
         """Return the load factors at a multiplier."""
-        return {**self.factors, **{g: multiplier * load_factor(self.factors, g) for g in self.live}}
+        return {**self.factors, **{g: self.sign * multiplier * load_factor(self.factors, g) for g in self.live}}
+
+    def acting(self, look: Look, multiplier: float) -> Array:
+        """Return the forces (N,) that act at a multiplier, from the load factors and weights themselves [kN].
+
+        The certificate uses these, not the parts of which the iterations put them together.
+        """
+        loads = self.reference.loads
+        total = look.internal + (loads.forces(self.factors_at(multiplier), look.turn) if loads.groups else 0.0)
+        if self.live or self.push is None:
+            return total
+        f, weight = self.frames, multiplier * self.gravity * self.push
+        total[f.x] += weight[0] * f.mass[f.x]
+        total[f.y] += weight[1] * f.mass[f.y]
+        if f.elastic:
+            local = np.conj(look.turn[f.body]) * complex(*weight)
+            total[f.node_x] += f.node_mass * local.real
+            total[f.node_y] += f.node_mass * local.imag
+        return np.asarray(total)
 
     def unit(self, turn: Array) -> Array:
         """Return the load of a multiplier of one (N,) [kN]."""
         f = self.frames
         if self.live:
             groups = self.reference.loads.groups
-            only = {g: (load_factor(self.factors, g) if g in self.live else 0.0) for g in groups}
+            only = {g: (self.sign * load_factor(self.factors, g) if g in self.live else 0.0) for g in groups}
             return f.loads(Drive(np.zeros(2), np.zeros(2), only), turn)
         if self.push is None:
             return np.zeros(f.n)

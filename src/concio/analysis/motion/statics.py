@@ -96,7 +96,7 @@ class Statics(SmallDisplacements):
 
     Parameters
     ----------
-    reference, scheme, factors, live, push, control, sag
+    reference, scheme, factors, live, push, control, sag, sign
         See :class:`concio.analysis.motion.small_displacements.SmallDisplacements`.
     engine : {"superlu", "pardiso"}, optional
     """
@@ -111,8 +111,9 @@ class Statics(SmallDisplacements):
         control: ControlPoint | None = None,
         engine: Engine | None = None,
         sag: float = SAG,
+        sign: float = 1.0,
     ) -> None:
-        super().__init__(reference, scheme, factors, live, push, control, sag)
+        super().__init__(reference, scheme, factors, live, push, control, sag, sign)
         self.solver = StepSolver(engine)
         self._unsolved = 0
 
@@ -218,7 +219,7 @@ class Statics(SmallDisplacements):
         look = self._looked(state, begun, slid, multiplier)
         m = len(look.memory.key)
         if len(found.t) == sum(len(part.columns) for part in look.parts) and m == len(begun.key):
-            p = self.problem(look, multiplier, None)
+            p = replace(self.problem(look, multiplier, None), b=self.acting(look, multiplier))
             k = len(found.t) - 2 * len(self.maker.ties)
             t = found.t.copy()
             t[k + len(self.maker.ties) :] = 0.0  # ties at rest do not swing

@@ -20,8 +20,10 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.analysis.motion.frames import Frames
+from concio.analysis.motion.impacts import Impact
 from concio.analysis.motion.joint_memory import after_step
 from concio.analysis.motion.joint_step import JointAnswer, PairData
+from concio.analysis.motion.meetings import first_meeting, time_until
 from concio.analysis.motion.pairs import PairMaker, assembled, relative
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import Memory, MotionState, TieMemory
@@ -59,6 +61,8 @@ class StepReport:
         Deepest penetration at its end of what was apart at its beginning [m].
     normal : (pairs, d) array
         From body a to body b.
+    meets, left : float
+        Time from its beginning, and from its end, until what was apart meets; infinite where nothing does [s].
     """
 
     solution: StepSolution
@@ -67,6 +71,8 @@ class StepReport:
     depth: float
     struck: float
     normal: Array
+    meets: float
+    left: float
 
 
 class Stepper:
@@ -159,6 +165,8 @@ class Stepper:
         t0 = np.zeros((count, 2))
         t0[:m] = memory.force
         found = self.solver.solve(problem, states, x0, t0)
+        if joint.impact:
+            found = Impact(self.solver, problem, joint, self.scheme, x0, rows.imposed).answer(found)
         theta = self.scheme.theta
         x = theta * found.x + (1 - theta) * x0
         y = relative(rows.columns, rows.values, x) + rows.imposed
@@ -177,8 +185,12 @@ class Stepper:
             works["crushing"] += yielded
             works["drift"] += ties.drift
         end = joint.gap + h * y[:, 0] - 0.5 * h * joint.y0[:, 0] + memory.crushing - memory_before.crushing
-        apart = moved_apart(data, joint, end, maker.joints.sag, self._movable, slots.body_a, slots.body_b)
+        parting = relative(rows.columns, rows.values, found.x) + rows.imposed
+        resting = np.where(h * parting[:, 0] > -RETURN * end, np.maximum(end, 0.0), end)  # others leave by themselves
+        apart = moved_apart(data, joint, resting, maker.joints.sag, self._movable, slots.body_a, slots.body_b)
         works["drift"] -= float(loads @ apart)
+        if self.reference.loads.followers:
+            works["input"] += float(self.reference.loads.following(drive.factors, turn) @ (h * x + apart))
         if maker.joints.any_stiffness:
             works["overlap"] += float(memory_before.stored.sum()) - float(state.memory.stored.sum())
         new = self._moved(state, found.x, x, apart, turn, strain, h, velocity, memory, tied)
@@ -186,7 +198,11 @@ class Stepper:
         depth = float(np.maximum(-end[hard & data.active], 0.0).max(initial=0.0))
         hit = hard & ~(memory_before.force[:, 0] > 0) & (joint.gap > 0.5 * h * joint.y0[:, 0] - maker.joints.sag)
         struck = float(np.maximum(-end[hit], 0.0).max(initial=0.0))
-        return new, StepReport(found, m, works, depth, struck, rows.normal)
+        free = hard & ~(memory_before.force[:, 0] > 0)
+        meets = first_meeting(joint, end, free, speed, h)
+        nearing = free & ~joint.struck & (parting[:, 0] < -speed)
+        left = time_until(end, parting[:, 0], nearing)
+        return new, StepReport(found, m, works, depth, struck, rows.normal, meets, left)
 
     def _give(self, rows: Rows, h: float) -> Array:
         """Return the velocity that a unit normal force gives each pair of free bodies in a step (m,) [m/s/kN]."""

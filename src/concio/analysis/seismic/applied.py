@@ -82,14 +82,7 @@ def applied_forces(model: Model, numbers: Sequence[int]) -> list[Applied]:
     return found
 
 
-def pushes_sideways(model: Model, group: str) -> bool:
-    """Return whether a load group is there and acts sideways rather than up or down."""
-    numbers = [k for k, load in enumerate(model.loads) if load.group == group]
-    total = sum((np.abs(f.force) for f in applied_forces(model, numbers)), np.zeros(model.dim))
-    return bool(float(np.linalg.norm(total[:-1])) > float(total[-1]))
-
-
-def pushed(model: Model, direction: Sequence[float]) -> Model:
+def pushed(model: Model, direction: Sequence[float], group: str = EARTHQUAKE) -> Model:
     """Return a model with one more load group: every weight it carries once more, sideways.
 
     Parameters
@@ -97,27 +90,65 @@ def pushed(model: Model, direction: Sequence[float]) -> Model:
     model : Model
     direction : sequence of float
         Unit vector: (1,) or (-1,) in the plane, horizontal (x, y) in space.
+    group : str
+        Name of that load group.
 
     Raises
     ------
     InputError
         Nothing in it has weight.
     """
-    pushes = []
+    made, _ = sideways(model, direction, group)
+    return replace(model, loads=(*model.loads, *made))
+
+
+def sideways(model: Model, direction: Sequence[float], group: str = EARTHQUAKE) -> tuple[list[Load], list[int]]:
+    """Return every weight that a model carries as a horizontal load, with the numbers of the loads they are made of.
+
+    A load is a weight as far as it acts downwards: what pushes up, or to the side, is none.
+
+    Raises
+    ------
+    InputError
+        Nothing in the model has weight.
+    """
     way = np.array(direction, dtype=float)
-    for load in model.loads:
+    made, numbers = [], []
+    for k, load in enumerate(model.loads):
+        turned = None
         if load.kind == "pressure":
-            pushes += [] if load.edge is None and load.polygon is None else [_sideways(load, way)]
+            if load.edge is not None or load.polygon is not None:
+                falls = sum(float(f.force[-1]) for f in applied_forces(model, [k])) < 0
+                turned = _sideways(load, way, group) if falls else None
         elif load.value[-1] < 0:
-            pushes.append(replace(load, value=(*(-way * load.value[-1]).tolist(), 0.0), group=EARTHQUAKE))
-    pushes = [p for p in pushes if any(p.value)]
-    if not pushes:
-        msg = "the model carries no weight that an earthquake could push with"
+            turned = replace(load, value=(*(-way * load.value[-1]).tolist(), 0.0), group=group)
+        if turned is not None and any(turned.value):
+            made.append(turned)
+            numbers.append(k)
+    if not made:
+        msg = "the model has no weight that an earthquake could push with"
         raise InputError(msg, hint='give it Load("weight", (0, -1)) and a material with a unit_weight')
-    return replace(model, loads=(*model.loads, *pushes))
+    return made, numbers
 
 
-def _sideways(load: Load, way: Array) -> Load:
+def resultants(model: Model, numbers: Sequence[int]) -> dict[str, tuple[Array, float]]:
+    """Return by load group the resultant (d,) and the sum of sizes of the forces on free bodies [kN].
+
+    Parameters
+    ----------
+    model : Model
+    numbers : sequence of int
+        Which of its loads.
+    """
+    found: dict[str, tuple[Array, float]] = {}
+    for f in applied_forces(model, numbers):
+        group = model.loads[f.load].group
+        total, size = found.get(group, (np.zeros(model.dim), 0.0))
+        found[group] = total + f.force, size + float(np.linalg.norm(f.force))
+    return found
+
+
+def _sideways(load: Load, way: Array, group: str) -> Load:
     """Return a pressure from above as a horizontal traction of the size of its vertical part."""
     if load.polygon is not None:
         share = abs(float(plane_of(np.array(load.polygon, dtype=float))[1][2]))
@@ -126,4 +157,4 @@ def _sideways(load: Load, way: Array) -> Load:
         p, q = (np.array(end, dtype=float) for end in load.edge)
         share = abs(q[0] - p[0]) / float(np.linalg.norm(q - p))
     value = (*(way * max(load.value[0], 0.0) * share).tolist(), 0.0)
-    return replace(load, kind="traction", value=value, group=EARTHQUAKE)
+    return replace(load, kind="traction", value=value, group=group)

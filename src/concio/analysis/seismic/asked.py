@@ -110,6 +110,6 @@ def _arguments(table: AssessmentTable, site: Site) -> dict[str, Any]:
     return {
         "site": site, "levels": table.levels, "mechanisms": mechanisms, "direction": table.direction,
         "live": table.live, "knowledge": table.knowledge, "confidence": table.confidence, "control": control,
-        "limits": table.limits, "curve": table.curve,
+        "limits": table.limits, "curve": table.curve, "elsewhere": tuple(table.elsewhere),
         "free_standing": {k: v.model_dump(exclude_none=True) for k, v in table.free_standing.items()},
     }  # fmt: skip

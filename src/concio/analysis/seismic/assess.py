@@ -10,37 +10,25 @@ from typing import Any, Literal
 import numpy as np
 
 from concio.analysis.engine import by_its_engine
-from concio.analysis.seismic.applied import pushes_sideways
-from concio.analysis.seismic.assessment import Assessment, LocalMechanism, NoMechanism
-from concio.analysis.seismic.chain import Chain, Participant, gathered
-from concio.analysis.seismic.checks import Displacement, checks_of, limit_of
-from concio.analysis.seismic.curve import CapacityCurve, follow, not_followed, straight
+from concio.analysis.seismic.acting import acting_in
+from concio.analysis.seismic.assessment import Assessment
 from concio.analysis.seismic.directions import Direction, pushes
-from concio.analysis.seismic.free_standing import FreeStanding, branch_of, elements_of
-from concio.analysis.seismic.linkage import Force, Linkage
-from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, carried
-from concio.analysis.seismic.mechanism import LARGEST, Found, chosen_bodies, find
-from concio.analysis.seismic.placed import contacts_of
-from concio.analysis.seismic.sequence import Sequence, follow_in_steps
+from concio.analysis.seismic.examine import Control, Terms
+from concio.analysis.seismic.free_standing import FreeStanding, elements_of
+from concio.analysis.seismic.mechanism import chosen_bodies
+from concio.analysis.seismic.open_items import ELSEWHERE
+from concio.analysis.seismic.searching import EVERY, Search, search_all
 from concio.analysis.seismic.site import STRONG, Site
+from concio.analysis.seismic.tie_history import with_strength
 from concio.arguments import closest, strict
-from concio.contact.assembly import Assembly, assemble
-from concio.errors import InputError, NoEquilibriumError, SolverError
-from concio.model.model import Model, Tie, require_model
-from concio.problem.solution import Progress, ProgressCallback
+from concio.contact.assembly import assemble
+from concio.errors import InputError, NoEquilibriumError
+from concio.model.model import Model, require_model
+from concio.problem.solution import ProgressCallback
+
+__all__ = ["EVERY", "assess"]
 
 Array = np.ndarray
-Control = tuple[str, tuple[float, ...]]
-
-LIVE = "live"
-EVERY = "weakest of all"
-"""Name of the mechanism that is sought among all motions."""
-
-SAME = 1e-6
-"""Relative difference below which the multipliers of the limit programme and of its linkage are the same."""
-
-BARELY = 1e-3
-"""Curves that end before this share of the size of the mechanism are no curves: other joints take over at once."""
 
 
 @strict
@@ -59,6 +47,7 @@ def assess(
     limits: Mapping[str, float] | None = None,
     curve: Literal["followed", "straight"] = "followed",
     free_standing: Mapping[str, FreeStanding | Mapping[str, Any]] | None = None,
+    elsewhere: Several[str] = (),
     progress: ProgressCallback | None = None,
 ) -> Assessment:
     """Find the local mechanisms of a model and check them against the demand of a site.
@@ -70,7 +59,7 @@ def assess(
     site : Site
         Hazard, soil, code.
     levels : sequence of str, optional
-        Limit states; by default all whose hazard is known.
+        Limit states; by default all that the code asks for: those without hazard are told as not checked.
     mechanisms : mapping, optional
         Beside the weakest mechanism of all: for each name the bodies that move while all others stand: their names
         (``*`` stands for any letters), roles or layers, or ``{"above": 3.0}`` for those whose centroid lies there.
@@ -95,6 +84,9 @@ def assess(
         For the names of mechanisms ("weakest of all" is the one sought among all motions) that are parapets,
         chimneys, gables, free to vibrate: :class:`~concio.analysis.seismic.free_standing.FreeStanding` or its
         arguments, ``{"kind": "cantilever", "E": 900e3}``. Their curve begins with an elastic branch.
+    elsewhere : sequence of str
+        What is not checked here and need not be, for the author answers for it: "out of plane" of a facade in
+        elevation, "height" of mechanisms above the ground without a building, "ties" without yield force.
     progress : callable, optional
         Told of each mechanism that is sought and followed.
 
@@ -120,22 +112,15 @@ def assess(
         msg = "there is no limit state to check"
         raise InputError(msg, hint="one of " + ", ".join(site.levels))
     _one_of("curve", curve, ("followed", "straight"))
+    for item in elsewhere:
+        _one_of("check that is made elsewhere", item, ELSEWHERE)
     for level, value in (limits or {}).items():
         rules.pick("levels", level, "limit state")
         if not value > 0:
             msg = f"a largest displacement of {value:g} m must be positive"
             raise InputError(msg, where=f"limit of {level}")
-    notes = [
-        f"a_g = {site.at(level).a_g:g} g on rock at {level} is more than any site in Italy has; check that g was meant"
-        for level in wanted
-        if site.at(level).a_g > STRONG
-    ]
     factor, reason = _confidence(model, rules.tables["knowledge"], knowledge, confidence)
     groups = (live,) if isinstance(live, str) else tuple(live) if live is not None else ()
-    if not groups and pushes_sideways(model, LIVE):
-        groups = (LIVE,)
-    made: list[LocalMechanism] = []
-    locked: list[NoMechanism] = []
     sought = {EVERY: (), **(mechanisms or {})}
     elements = elements_of(free_standing or {}, tuple(sought), rules)
     known = tuple(dict.fromkeys(load.group for load in model.loads))
@@ -143,46 +128,46 @@ def assess(
         if group not in known:
             msg = f"there is no load group '{group}'"
             raise InputError(msg, hint=closest(group, known, names="groups"))
-    ways = pushes(model, direction, groups)
-    one = assemble(model) if groups else None
-    assemblies = {p.way: (p, one or assemble(p.model)) for p in ways}
+    held = with_strength(model)
+    ways = pushes(held, direction, groups)
+    one = assemble(held) if groups else None
+    searches = [Search(p, one or assemble(p.model)) for p in ways]
     if control is not None:
         _check_control(model, control)
-    chosen = {name: None if name == EVERY else chosen_bodies(model, name, words) for name, words in sought.items()}
-    steps = 2 * len(chosen) * len(assemblies)
-    for name, moving in chosen.items():
-        for way, (push, assembly) in assemblies.items():
-            done = 2 * (len(made) + len(locked))
-            _tell(progress, done, steps, f"{name}, push {way}: sought")
-            try:
-                found = find(assembly, push.groups, moving, push.sign)
-            except NoEquilibriumError as error:
-                raise NoEquilibriumError(error.what, where=None if name == EVERY else name, hint=error.hint) from None
-            if found.locked or found.multiplier > LARGEST:
-                locked.append(NoMechanism(name, way, found.multiplier))
-                continue
-            _tell(progress, done + 1, steps, f"{name}, push {way}: followed")
-            made.append(
-                _examined(
-                    assembly, found, push.groups, push.sign, name=name, way=way, site=site, levels=wanted,
-                    confidence=factor, control=control, limits=limits or {}, curve=curve, element=elements.get(name),
-                )
-            )  # fmt: skip
-    made.sort(key=lambda m: (m.zeta, m.multiplier))
+    chosen = {name: chosen_bodies(model, name, words) for name, words in sought.items() if name != EVERY}
+    terms = Terms(site, wanted, factor, control, limits or {}, curve)
+    acting = acting_in(model, ways)
+    try:
+        found = search_all(searches, chosen, terms, elements, progress)
+    except NoEquilibriumError as error:
+        side = [a.sentence() for a in acting if a.role == "constant" and np.abs(a.force[:-1]).max(initial=0.0) > 0]
+        hint = f"{error.hint}; sideways act, as they are: {'; '.join(side)}" if side else error.hint
+        raise NoEquilibriumError(error.what, where=error.where, hint=hint) from None
     arguments = {
-        "levels": wanted, "mechanisms": mechanisms, "direction": direction, "live": live, "knowledge": knowledge,
+        "levels": levels, "mechanisms": mechanisms, "direction": direction, "live": live, "knowledge": knowledge,
         "confidence": confidence, "control": control, "limits": limits, "curve": curve,
-        "free_standing": free_standing,
+        "free_standing": free_standing, "elsewhere": tuple(elsewhere),
     }  # fmt: skip
     return Assessment(
-        model, site, wanted, tuple(made), tuple(locked), knowledge, factor, reason, curve, tuple(notes), arguments
-    )
+        model, site, wanted, found.shown, found.locked, knowledge, factor, reason, curve,
+        _notes(site, wanted, knowledge, factor, reason), arguments, others=found.others, sought=found.sought,
+        parts=found.parts, bounds=found.bounds, acting=acting, assembly=searches[0].assembly,
+    )  # fmt: skip
 
 
-def _tell(progress: ProgressCallback | None, done: int, steps: int, what: str) -> None:
-    if progress is not None and progress(Progress("assessment", done, 1.0 - done / steps, what)):
-        msg = "the assessment was stopped on request"
-        raise SolverError(msg, hint="nothing was written")
+def _notes(site: Site, wanted: tuple[str, ...], knowledge: str, factor: float, reason: str) -> tuple[str, ...]:
+    """Return what is odd about the numbers of the site and of the knowledge."""
+    found = [
+        f"a_g = {site.at(level).a_g:g} g on rock at {level} is more than any site in Italy has; check that g was meant"
+        for level in wanted
+        if site.at(level).a_g > STRONG
+    ]
+    of_level = float(site.rules.tables["knowledge"][knowledge])
+    if reason == "given" and factor < of_level:
+        found.append(
+            f"the confidence factor of {factor:g} was given by the author; that of {knowledge} would be {of_level:g}"
+        )
+    return tuple(found)
 
 
 def _one_of(what: str, word: str, known: tuple[str, ...]) -> None:
@@ -228,135 +213,3 @@ def _check_control(model: Model, control: Control) -> None:
         msg = f"({place}) lies outside '{body.name}'"
         span = ", ".join(f"{k} from {a:g} to {b:g}" for k, a, b in zip("xyz", low, high, strict=False))
         raise InputError(msg, where=where, hint=f"the body reaches {span} m")
-
-
-def _examined(
-    assembly: Assembly,
-    found: Found,
-    groups: Several[str],
-    sign: float,
-    *,
-    name: str,
-    way: str,
-    site: Site,
-    levels: Several[str],
-    confidence: float,
-    control: Control | None,
-    limits: Mapping[str, float],
-    curve: str,
-    element: FreeStanding | None,
-) -> LocalMechanism:
-    """Return a mechanism with its curves and checks."""
-    model, mechanics = assembly.model, found.mechanics
-    assert mechanics is not None
-    live = [k for k, load in enumerate(model.loads) if load.group in groups]
-    rest = [k for k in range(len(model.loads)) if k not in live]
-    push = [(kind, Force(f.block, sign * f.force, f.point)) for kind, f in gathered(model, mechanics, live)]
-    dead = gathered(model, mechanics, rest)
-    total = np.sum([f.force for _, f in push], axis=0)
-    along = total / float(np.linalg.norm(total))
-    number = {b.name: i for i, b in enumerate(model.bodies)}
-    ties = []
-    for tie in model.ties:
-        a, b = (mechanics.of_body.get(number.get(word, -1), GROUND) for word in (tie.body_a, tie.body_b))
-        if a != b:
-            ties.append((tie, a, b))
-    chosen = _control_of(assembly, found, control, number, along)
-    block = mechanics.of_body[number[chosen[0]]]
-    at = np.array(chosen[1], dtype=float)
-    forces = tuple(f for _, f in dead), tuple(f for _, f in push)
-    alpha, motion = found.multiplier, np.array([b.motion for b in mechanics.blocks])
-    contacts = contacts_of(assembly, mechanics, found.normal_force)
-    sequence = Sequence(mechanics, contacts, *forces, tuple(ties), (block, at, along))
-    linkage: Linkage | Sequence = sequence
-    followed = not_followed("several motions")
-    if model.dim == 2:
-        linkage, alpha, motion, followed = _as_linkage(mechanics, forces, ties, (block, at, along), alpha, motion)
-    if all(site.rules.tables["levels"][level]["kind"] == "onset" for level in levels):
-        followed = followed if followed.points else not_followed("not asked")
-    elif not followed.points or followed.end < BARELY * model.size:
-        steps = follow_in_steps(sequence, alpha)
-        followed = steps if steps.end >= BARELY * model.size else not_followed(steps.reason)
-    motion = motion / float(carried(motion[block], at - mechanics.blocks[block].centre) @ along)
-    chain = Chain(
-        tuple(
-            Participant(f.block, kind, f.force, f.point,
-                        float(carried(motion[f.block], f.point - mechanics.blocks[f.block].centre) @ f.force)
-                        / float(np.linalg.norm(f.force)))
-            for kind, f in push
-        )
-    )  # fmt: skip
-    line = straight(alpha, followed.end) if followed.ends else None
-    used = followed if curve == "followed" else line
-    factor = site.rules.gravity / (chain.e_star * confidence)
-    z = linkage.mechanics.level - min((b.base for b in site.building if hasattr(b, "base")), default=0.0)
-    branch = None
-    if element is not None:
-        branch = branch_of(
-            element, site.rules, model, mechanics, along, used, onset=alpha * factor, spectral=chain.spectral,
-            factor=factor,
-        )  # fmt: skip
-    reached: dict[str, Displacement] = {}
-    checks = []
-    for level in levels:
-        rule = site.rules.tables["levels"][level]
-        limit = None
-        if used is not None and used.ends and rule["kind"] != "onset":
-            limit = limit_of(level, rule, used, chain.spectral, factor, limits.get(level, math.inf), branch)
-            reached[level] = limit
-        checks += checks_of(site, level, z, onset=alpha * factor, limit=limit, branch=branch)
-    return LocalMechanism(
-        name=name, direction=way, found=found, assembly=assembly, linkage=linkage, chain=chain, dead=tuple(dead),
-        control=(chosen[0], tuple(at.tolist())), level=z, multiplier=alpha, confidence=confidence,
-        factor=factor, followed=followed, straight=line, limits=reached, checks=tuple(checks),
-        periods={level: site.at(level) for level in levels}, site=site, velocity=motion.ravel(),
-        branch=branch,
-    )  # fmt: skip
-
-
-def _as_linkage(
-    mechanics: Mechanics,
-    forces: tuple[tuple[Force, ...], tuple[Force, ...]],
-    ties: Several[tuple[Tie, int, int]],
-    control: tuple[int, Array, Array],
-    alpha: float,
-    motion: Array,
-) -> tuple[Linkage, float, Array, CapacityCurve]:
-    """Return a plane mechanism as a linkage, with its multiplier, motion (G, 3) and curve."""
-    bars = [j.point for j in mechanics.joints if j.kind == "bar"]
-    free = tuple(t for t in ties if not any(np.array_equal(p, np.array(t[0].at_a)) for p in bars))
-    linkage = Linkage(mechanics, *forces, free, control).set_back()
-    still = np.zeros((len(mechanics.blocks), 3))
-    onset = linkage.balance(still, plastic=True) if linkage.freedom == 1 else None
-    if onset is None:
-        return linkage, alpha, motion, not_followed("several motions" if linkage.freedom != 1 else "no forces")
-    if any(j.inward is not None for j in mechanics.joints):
-        alpha = onset.multiplier
-    if abs(onset.multiplier - alpha) > SAME * abs(alpha):  # of a dilatant motion: joints that slide do not stay closed
-        return linkage, alpha, motion, not_followed("no forces")
-    return linkage, alpha, linkage.velocity(still).reshape(-1, 3), follow(linkage)
-
-
-def _control_of(
-    assembly: Assembly, found: Found, control: Control | None, number: Mapping[str, int], along: Array
-) -> Control:
-    """Return the control point: the one given where it moves, else the corner that moves fastest, furthest out."""
-    assert found.mechanics is not None
-    mechanics = found.mechanics
-    top = float(np.abs(found.velocity).max())
-
-    def speed(b: int, point: Array) -> float:
-        return float(mechanics.blocks[mechanics.of_body[b]].velocity(point) @ along)
-
-    if control is not None and number[control[0]] in mechanics.of_body:
-        point = np.array(control[1], dtype=float)
-        if speed(number[control[0]], point) > 1e-6 * top:
-            return control
-    corners = [
-        (speed(b, v), float(v[-1]), float(v @ along), assembly.model.bodies[b].name, tuple(v.tolist()))
-        for b in mechanics.of_body
-        for v in np.asarray(assembly.model.bodies[b].vertices)
-    ]
-    fastest = max(c[0] for c in corners)
-    best = max((c for c in corners if c[0] >= (1 - 1e-6) * fastest), key=lambda c: (round(c[1], 9), round(c[2], 9)))
-    return best[3], best[4]

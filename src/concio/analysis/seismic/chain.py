@@ -13,12 +13,12 @@ times alpha. With delta the displacement of its point of application along the p
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from concio.analysis.seismic.applied import EARTHQUAKE, applied_forces
+from concio.analysis.seismic.applied import applied_forces
 from concio.analysis.seismic.linkage import Force
 from concio.analysis.seismic.macro_blocks import Mechanics
 from concio.model.model import Model
@@ -87,14 +87,27 @@ class Chain:
         return second / first
 
 
-def gathered(model: Model, mechanics: Mechanics, numbers: Sequence[int]) -> list[tuple[str, Force]]:
-    """Return the forces of some loads on the macro-blocks; own weights of a macro-block are one force."""
+def gathered(
+    model: Model, mechanics: Mechanics, numbers: Sequence[int], origin: Mapping[int, int] | None = None
+) -> list[tuple[str, Force]]:
+    """Return the forces of some loads on the macro-blocks; own weights of a macro-block are one force.
+
+    Parameters
+    ----------
+    model : Model
+    mechanics : Mechanics
+    numbers : sequence of int
+        Which loads.
+    origin : mapping of int to int, optional
+        For the number of a load that was made of another one, the number of that.
+    """
+    origin = origin or {}
     sums: dict[tuple[int, str, bool], list[tuple[Array, Array]]] = {}
     for found in applied_forces(model, numbers):
         block = mechanics.of_body.get(found.body)
         if block is not None and found.force.any():
             kind = model.loads[found.load].kind
-            name = "weight" if kind == "weight" else f"{kind} {_original(model, found.load) + 1}"
+            name = "weight" if kind == "weight" else f"{kind} {origin.get(found.load, found.load) + 1}"
             sideways = float(np.linalg.norm(found.force[:-1])) > abs(float(found.force[-1]))
             key = (block, name, sideways)
             sums.setdefault(key, []).append((found.force, found.point))
@@ -104,14 +117,3 @@ def gathered(model: Model, mechanics: Mechanics, numbers: Sequence[int]) -> list
         point = size @ np.array([point for _, point in parts]) / size.sum()
         result.append((name, Force(block, np.sum([force for force, _ in parts], axis=0), point)))
     return result
-
-
-def _original(model: Model, k: int) -> int:
-    """Return the number of the load that a load of the earthquake was made of; of any other load its own."""
-    load = model.loads[k]
-    if load.group != EARTHQUAKE:
-        return k
-    same = (load.bodies, load.edge, load.at, load.polygon)
-    return next(
-        j for j, other in enumerate(model.loads) if (other.bodies, other.edge, other.at, other.polygon) == same
-    )

@@ -59,6 +59,8 @@ class Check:
         Damping [%].
     least : float
         Of a check in displacements: a_g at which the mechanism begins to move, below which it cannot be [g].
+    site_a_g : float
+        a_g of the site [g].
     """
 
     level: str
@@ -72,6 +74,12 @@ class Check:
     T: float = 0.0
     xi: float = 5.0
     least: float = 0.0
+    site_a_g: float = math.inf
+
+    @property
+    def at_rest(self) -> bool:
+        """Of a check in displacements: whether the mechanism does not even begin to move at the a_g of the site."""
+        return self.kind == "displacement" and self.least >= self.site_a_g
 
     @property
     def ratio(self) -> float:
@@ -80,8 +88,8 @@ class Check:
 
     @property
     def holds(self) -> bool:
-        """Whether capacity is not less than demand."""
-        return self.demand <= self.capacity
+        """Whether capacity is not less than demand, or nothing moves that would be demanded of."""
+        return self.demand <= self.capacity or self.at_rest
 
     @property
     def unit(self) -> str:
@@ -166,8 +174,12 @@ def checks_of(
     onset: float,
     limit: Displacement | None,
     branch: ElasticBranch | None = None,
+    start: float | None = None,
 ) -> list[Check]:
     """Return the checks of a limit state.
+
+    A limit state that asks for displacements alone is met without a curve where the mechanism does not begin to move:
+    that check is made where there is no curve, and kept where it is met.
 
     Parameters
     ----------
@@ -181,20 +193,49 @@ def checks_of(
         None where there is no curve that ends, or for the limit state of onset.
     branch : ElasticBranch, optional
         Of an element that is free to vibrate: a_y is its capacity then, and the demand is read at its own period.
+    start : float, optional
+        Spectral acceleration at which the mechanism begins to move [m/s2], by default that of the onset; less where
+        ties pull only as they get longer.
     """
+    start = onset if start is None else min(start, onset)
     places: list[Place] = ["ground"]
     if site.at_height(site.spectrum(site.at(level)), z) is not None:
         places.append("height")
-    return [check for place in places for check in _checks_at(place, site, level, z, onset, limit, branch)]
+    made = [check for place in places for check in _checks_at(place, site, level, z, onset, limit, branch, start)]
+    return made if {check.place for check in made} == set(places) else []
+
+
+def onset_zeta(site: Site, level: str, z: float, onset: float) -> float:
+    """Return the zeta_E at which a mechanism begins to move: what its checks cannot fall below.
+
+    Parameters
+    ----------
+    site : Site
+    level : str
+    z : float
+        Height at which it starts [m].
+    onset : float
+        a_0* [m/s2].
+    """
+    hazard = site.at(level)
+
+    def at_ground(h: Hazard) -> float:
+        return float(site.spectrum(h).acceleration(0.0, 5.0))
+
+    def at_height(h: Hazard) -> float:
+        floor = site.at_height(site.spectrum(h), z)
+        return 0.0 if floor is None else float(floor.acceleration(0.0, 5.0))
+
+    return min(capacity_acceleration(site, hazard, onset, felt) for felt in (at_ground, at_height)) / hazard.a_g
 
 
 def _checks_at(
     place: Place, site: Site, level: str, z: float, onset: float, limit: Displacement | None,
-    branch: ElasticBranch | None,
+    branch: ElasticBranch | None, start: float,
 ) -> list[Check]:  # fmt: skip
     """Return the checks of a limit state with the spectrum of the ground, or with that at the height z."""
     own, xi = (0.0, 5.0) if branch is None else (branch.T0, branch.xi)
-    onset = onset if branch is None else branch.a
+    onset, start = (onset, start) if branch is None else (branch.a, branch.a)
     rules, hazard = site.rules, site.at(level)
     rule = rules.tables["levels"][level]
     floor = "; " + rules.clause("floor") if place == "height" else ""
@@ -214,6 +255,10 @@ def _checks_at(
         clause = rules.clause("onset_free") if branch and kind == "onset" else rules.clause(kind) + free
         made = _check(site, level, kind, place, onset, lambda h: begins(h) / q, hazard, clause + floor)
         found.append(replace(made, T=own, xi=xi))
+    elif limit is None:
+        clause = rules.clause("onset") + floor
+        still = _check(site, level, "onset", place, start, begins, hazard, clause)
+        found += [replace(still, T=own, xi=xi)] if still.holds else []
     if limit is not None and kind != "onset":
         at = limit
 
@@ -225,7 +270,7 @@ def _checks_at(
 
         clause = rules.clause("height" if place == "height" else "displacement") + floor
         made = _check(site, level, "displacement", place, at.d, moved, hazard, clause)
-        least = capacity_acceleration(site, hazard, onset, begins)
+        least = capacity_acceleration(site, hazard, start, begins)
         found.append(replace(made, T=at.T, xi=at.xi, least=least))
     return found
 
@@ -241,7 +286,7 @@ def _check(
     clause: str,
 ) -> Check:
     a_g = capacity_acceleration(site, hazard, capacity, demand)
-    return Check(level, kind, place, capacity, demand(hazard), a_g, a_g / hazard.a_g, clause)
+    return Check(level, kind, place, capacity, demand(hazard), a_g, a_g / hazard.a_g, clause, site_a_g=hazard.a_g)
 
 
 def capacity_acceleration(site: Site, hazard: Hazard, capacity: float, demand: Callable[[Hazard], float]) -> float:

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from concio.analysis.seismic.linkage import Linkage, Point
+from concio.analysis.seismic.tie_history import yields_at
 
 Array = np.ndarray
 
@@ -90,10 +91,16 @@ class CapacityCurve:
         """Return where ties have broken and alpha is below half its largest [m]; ``inf`` where that never happens."""
         if not self.broken:
             return float("inf")
-        late = (self.displacement >= self.broken[0]) & (self.multiplier < 0.5 * self.multiplier.max())
-        found = self.displacement[late]
+        d, alpha, half = self.displacement, self.multiplier, 0.5 * float(self.multiplier.max())
+        late = np.flatnonzero((d >= self.broken[0]) & (alpha < half))
+        if not late.size:
+            return float("inf")
+        k = int(late[0])
         # before the point after a break stands one at the same displacement with the tie still whole
-        return float(found[0]) if found.size else float("inf")
+        if k == 0 or d[k - 1] < self.broken[0] or alpha[k - 1] <= half:
+            return float(d[k])
+        share = (alpha[k - 1] - half) / (alpha[k - 1] - alpha[k])
+        return float(d[k - 1] + share * (d[k] - d[k - 1]))
 
 
 def straight(multiplier: float, end: float) -> CapacityCurve:
@@ -143,10 +150,16 @@ def follow(linkage: Linkage) -> CapacityCurve:
             d.append(end)
             reason = "joint opens"
             break
-        snapped = _breaks(linkage, points[-1], now)
-        if snapped:
-            breaks = partial(_breaks, linkage, points[-1])
-            at, before, after = _bracket(linkage, points[-1], d[-1], d[-1] + step, breaks)
+        if _shortens(linkage, points[-1], now):
+            end, reason = d[-1], "joint opens"
+            break
+        if _changes(linkage, points[-1], now):
+            changes = partial(_changes, linkage, points[-1])
+            at, before, after = _bracket(linkage, points[-1], d[-1], d[-1] + step, changes)
+            if not _breaks(linkage, before, after):
+                points.append(after)
+                d.append(at)
+                continue
             points += [before, after]
             d += [at, at]
             broken.append(at)
@@ -198,6 +211,23 @@ def _breaks(linkage: Linkage, before: Point, after: Point) -> list[int]:
         if limit is not None and before.elongation[k] < limit <= after.elongation[k]:
             found.append(k)
     return found
+
+
+def _changes(linkage: Linkage, before: Point, after: Point) -> list[int]:
+    """Return the ties that yield or break between two configurations."""
+    found = _breaks(linkage, before, after)
+    for k, (tie, _, _) in enumerate(linkage.ties):
+        if before.elongation[k] < yields_at(tie) <= after.elongation[k]:
+            found.append(k)
+    return found
+
+
+def _shortens(linkage: Linkage, before: Point, after: Point) -> bool:
+    """Return whether a tie that has yielded or broken gets shorter again: what it then carries is not followed."""
+    return any(
+        after.elongation[k] < before.elongation[k] >= min(yields_at(tie), tie.break_elongation or np.inf)
+        for k, (tie, _, _) in enumerate(linkage.ties)
+    )
 
 
 def _bracket(

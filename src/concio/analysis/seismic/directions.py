@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from concio.analysis.seismic.applied import EARTHQUAKE, applied_forces, pushed
+from concio.analysis.seismic.applied import EARTHQUAKE, applied_forces, resultants, sideways
 from concio.arguments import closest
 from concio.errors import InputError
 from concio.model.model import Model
@@ -44,12 +44,30 @@ class Push:
         Their load groups.
     sign : {1, -1}
         Which way these are multiplied.
+    origin : mapping of int to int
+        For each load made of a weight, the number of the load that is that weight.
     """
 
     way: str
     model: Model
     groups: tuple[str, ...]
     sign: float
+    origin: Mapping[int, int] = field(default_factory=dict)
+
+    @property
+    def numbers(self) -> tuple[int, ...]:
+        """Which loads of its model push."""
+        return tuple(k for k, load in enumerate(self.model.loads) if load.group in self.groups)
+
+    def by_group(self) -> dict[str, tuple[Array, float]]:
+        """Return what pushes for a multiplier of one, by the group it was stated in: resultant (d,) and size [kN]."""
+        found: dict[str, tuple[Array, float]] = {}
+        for k in self.numbers:
+            own = self.model.loads[self.origin.get(k, k)].group
+            for force, size in resultants(self.model, [k]).values():
+                total, before = found.get(own, (np.zeros(self.model.dim), 0.0))
+                found[own] = total + self.sign * force, before + size
+        return found
 
 
 def pushes(model: Model, direction: Direction | None, groups: tuple[str, ...]) -> list[Push]:
@@ -62,7 +80,7 @@ def pushes(model: Model, direction: Direction | None, groups: tuple[str, ...]) -
         In the plane "right", "left" or "both" (the default); in space "+x", "-x", "+y", "-y", "both" (along x), "all"
         (the default), or a horizontal vector.
     groups : tuple of str
-        Load groups that push; none for the weights. In the plane "right" is along them, "left" against them; in space
+        Load groups that push instead of the weights. In the plane "right" is along them, "left" against them; in space
         a direction is looked for along and against them.
 
     Raises
@@ -72,8 +90,7 @@ def pushes(model: Model, direction: Direction | None, groups: tuple[str, ...]) -
     """
     ways = _asked(model.dim, direction)
     if not groups:
-        return [Push(way, pushed(model, vector.tolist()), (EARTHQUAKE,), 1.0)
-                for way, vector in ways.items()]  # fmt: skip
+        return [_by_weights(model, way, vector) for way, vector in ways.items()]
     if model.dim == 2:
         return [Push(way, model, groups, vector[0]) for way, vector in ways.items()]
     numbers = [k for k, load in enumerate(model.loads) if load.group in groups]
@@ -90,6 +107,17 @@ def pushes(model: Model, direction: Direction | None, groups: tuple[str, ...]) -
         msg = f"the load of '{', '.join(groups)}' pushes along {_name(total)}, not along {', '.join(ways)}"
         raise InputError(msg, hint="leave direction out, or leave live out so that the weights push that way")
     return found
+
+
+def _by_weights(model: Model, way: str, vector: Array) -> Push:
+    """Return the push of all weights, in a load group of its own whatever the groups of the model are called."""
+    group, taken = EARTHQUAKE, {load.group for load in model.loads} | {s.group for s in model.supports}
+    while group in taken:
+        group += " of the weights"
+    made, numbers = sideways(model, vector.tolist(), group)
+    first = len(model.loads)
+    whole = replace(model, loads=(*model.loads, *made))
+    return Push(way, whole, (group,), 1.0, {first + i: k for i, k in enumerate(numbers)})
 
 
 def _asked(dim: int, direction: Direction | None) -> dict[str, Array]:

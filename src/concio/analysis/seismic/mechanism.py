@@ -22,14 +22,19 @@ from concio.contact.assembly import Assembly
 from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
-from concio.solvers.statics.collapse_search import WORK_OF_ALL
-from concio.solvers.statics.existence import find_mechanism
+from concio.solvers.statics.collapse_search import WORK_OF_ALL, find_collapse_state
+from concio.solvers.statics.collapse_state import CollapseState
+from concio.solvers.statics.existence import find_mechanism, statically_admissible
 from concio.solvers.statics.limit import LimitLoad, associated_limit
+from concio.verdict.not_standing import BY_A_MECHANISM
 
 Array = np.ndarray
 
 LARGEST = 2.0
 """Multipliers above this are no mechanism of an earthquake: the push would be more than twice the weight."""
+
+FEW = 6
+"""Programmes from one start where a mechanism is to be met, not settled."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +58,9 @@ class Found:
         None where nothing can move.
     moving : tuple of int or None
         Bodies that were let move; None for all.
+    needs_friction : bool
+        Of what is locked: whether only friction holds it, so that the associated programme, in which joints open as
+        they slide, does not tell what Coulomb friction holds.
     """
 
     associated: LimitLoad
@@ -62,6 +70,7 @@ class Found:
     normal_force: Array
     mechanics: Mechanics | None
     moving: tuple[int, ...] | None = None
+    needs_friction: bool = False
 
     @property
     def locked(self) -> bool:
@@ -129,38 +138,114 @@ def find(assembly: Assembly, live: Iterable[str], moving: Sequence[int] | None =
     NoEquilibriumError
         The bodies do not stand under their own weight.
     """
-    found = _found(assembly, tuple(live), moving, sign)
-    return replace(found, moving=None if moving is None else tuple(moving))
+    return Mechanisms(assembly, tuple(live), sign).find(moving)
 
 
-def _found(assembly: Assembly, groups: tuple[str, ...], moving: Sequence[int] | None, sign: float) -> Found:
-    whole = assembly.problem(dict.fromkeys(groups, 0.0))
-    whole = replace(whole, laws=replace(whole.laws, tension=np.zeros(whole.pairs)))
-    push = sign * (assembly.problem(dict.fromkeys(groups, 1.0)).f - whole.f)
-    columns, rows, problem = _held(whole, moving)
-    push = push[columns]
-    falling = find_mechanism(problem)
-    if falling is not None:
-        msg = "it does not stand under its own weight and whatever else is dead: a mechanism proves it"
-        raise NoEquilibriumError(msg, hint="look at 'concio run': supports, thrusts and ties without the earthquake")
-    bound = associated_limit(problem, push)
-    if bound.mechanism is None or not np.isfinite(bound.multiplier):
-        return Found(bound, np.inf, "no sliding", np.zeros(assembly.disc.unknowns), np.zeros(whole.pairs), None)
+class Mechanisms:
+    """Finds mechanisms of an assembly under one push: the weakest of all, and those of parts of it.
 
-    def spread(v: Array, t_n: Array) -> tuple[Array, Array]:
-        every, forces = np.zeros(whole.unknowns), np.zeros(whole.pairs)
+    Parameters
+    ----------
+    assembly : Assembly
+    groups : tuple of str
+        Load groups that push.
+    sign : {1, -1}
+        Which way they push.
+    """
+
+    def __init__(self, assembly: Assembly, groups: tuple[str, ...], sign: float) -> None:
+        self.assembly = assembly
+        whole = assembly.problem(dict.fromkeys(groups, 0.0))
+        self.whole = replace(whole, laws=replace(whole.laws, tension=np.zeros(whole.pairs)))
+        self.push = sign * (assembly.problem(dict.fromkeys(groups, 1.0)).f - whole.f)
+        self.stands: set[tuple[int, ...] | None] = set()
+
+    def find(self, moving: Sequence[int] | None = None, *, quick: bool = False) -> Found:
+        """Return the weakest mechanism in which only some bodies move.
+
+        Parameters
+        ----------
+        moving : sequence of int, optional
+            Bodies that may move; all others are held.
+        quick : bool
+            Whether collapse states are looked for with few programmes, from the forces that hold up the weight alone as
+            well as from those of the associated limit: enough to meet another mechanism, not to settle its multiplier.
+
+        Raises
+        ------
+        NoEquilibriumError
+            The bodies do not stand under their own weight.
+        """
+        chosen = None if moving is None else tuple(moving)
+        columns, rows, problem = _held(self.whole, chosen)
+        self._check_stands(problem, chosen)
+        found = self._found(columns, rows, problem, quick=quick)
+        return replace(found, moving=chosen)
+
+    def _check_stands(self, problem: ContactProblem, moving: tuple[int, ...] | None) -> None:
+        """Raise where the bodies fall without a push; what stands as a whole stands in parts."""
+        if None in self.stands or moving in self.stands:
+            return
+        if find_mechanism(problem) is not None:
+            msg = f"it does not stand under its own weight and the other constant loads: {BY_A_MECHANISM}"
+            raise NoEquilibriumError(
+                msg, hint="look at 'concio run': supports, thrusts and ties without the earthquake"
+            )
+        self.stands.add(moving)
+
+    def _found(self, columns: Array, rows: Array, problem: ContactProblem, *, quick: bool) -> Found:
+        whole, push = self.whole, self.push[columns]
+        bound = associated_limit(problem, push)
+        if bound.mechanism is None or not np.isfinite(bound.multiplier):
+            return self._locked(columns, rows, problem, bound)
+        velocity, forces = self._spread(columns, rows, bound.mechanism.velocity, bound.normal_force)
+        mechanics = mechanics_of(self.assembly, velocity, forces)
+        if not mechanics.slides:
+            return Found(bound, bound.multiplier, "no sliding", velocity, forces, mechanics)
+        if quick:
+            state = _quickly(problem, push, bound)
+        else:
+            state, _ = search_collapse(problem, push, work=WORK_OF_ALL if whole.dim == 2 else UNASKED_WORK)
+        if state is None:
+            return Found(bound, bound.multiplier, "associated", velocity, forces, mechanics)
+        return self._of_state(columns, rows, bound, state)
+
+    def _of_state(self, columns: Array, rows: Array, bound: LimitLoad, state: CollapseState) -> Found:
+        velocity, forces = self._spread(columns, rows, state.velocity, state.normal_force)
+        made = mechanics_of(self.assembly, velocity, forces)
+        return Found(bound, state.multiplier, "Coulomb", velocity, forces, made)
+
+    def _locked(self, columns: Array, rows: Array, problem: ContactProblem, bound: LimitLoad) -> Found:
+        """Return what becomes of a push of which the associated programme carries any multiple.
+
+        Without friction that is the last word: no motion that joints allow gains work, with whatever friction. With
+        friction it is none, for Coulomb's joints do not open as they slide; collapse states are looked for then.
+        """
+        zero = np.zeros(problem.pairs)
+        bare = replace(problem, laws=replace(problem.laws, friction=zero, dilatancy=zero, cohesion=zero))
+        nothing = Found(bound, np.inf, "no sliding", np.zeros(self.assembly.disc.unknowns), np.zeros(self.whole.pairs),
+                        None)  # fmt: skip
+        if np.isnan(bound.multiplier) or associated_limit(bare, self.push[columns]).locked:
+            return nothing
+        begin = replace(bound, multiplier=LARGEST)
+        state = find_collapse_state(problem, self.push[columns], bound=begin).state
+        if state is None:
+            return replace(nothing, needs_friction=True)
+        return self._of_state(columns, rows, bound, state)
+
+    def _spread(self, columns: Array, rows: Array, v: Array, t_n: Array) -> tuple[Array, Array]:
+        """Return the velocity (N_all,) and the normal forces (m,) of the whole that those of a part are."""
+        every, forces = np.zeros(self.whole.unknowns), np.zeros(self.whole.pairs)
         every[columns], forces[rows] = v, t_n
-        return assembly.supported.T @ every, forces
+        return self.assembly.supported.T @ every, forces
 
-    velocity, forces = spread(bound.mechanism.velocity, bound.normal_force)
-    mechanics = mechanics_of(assembly, velocity, forces)
-    if not mechanics.slides:
-        return Found(bound, bound.multiplier, "no sliding", velocity, forces, mechanics)
-    state, _ = search_collapse(problem, push, work=WORK_OF_ALL if problem.dim == 2 else UNASKED_WORK)
-    if state is None:
-        return Found(bound, bound.multiplier, "associated", velocity, forces, mechanics)
-    velocity, forces = spread(state.velocity, state.normal_force)
-    return Found(bound, state.multiplier, "Coulomb", velocity, forces, mechanics_of(assembly, velocity, forces))
+
+def _quickly(problem: ContactProblem, push: Array, bound: LimitLoad) -> CollapseState | None:
+    """Return the least collapse state met with few programmes from two starts; None where none is."""
+    dead = statically_admissible(problem)
+    starts = [bound, replace(bound, normal_force=dead.normal_force)] if dead.exists else [bound]
+    found = [find_collapse_state(problem, push, starts=1, iterations=FEW, bound=b).state for b in starts]
+    return min((s for s in found if s is not None), key=lambda s: s.multiplier, default=None)
 
 
 def _held(problem: ContactProblem, moving: Sequence[int] | None) -> tuple[Array, Array, ContactProblem]:
@@ -183,6 +268,7 @@ def _held(problem: ContactProblem, moving: Sequence[int] | None) -> tuple[Array,
             problem, K=sp.csr_array(sp.csc_array(problem.K)[:, columns].tocsr()[columns]), f=problem.f[columns],
             C_n=sp.csr_array(C_n.tocsr()[rows]), C_t=sp.csr_array(C_t.tocsr()[every]), gap=problem.gap[rows],
             laws=problem.laws[rows], R=R, bodies=np.concatenate([[0], np.cumsum(sizes)]),
-            slip_origin=problem.slip_origin[rows], area=problem.area[rows], inertia=problem.inertia[columns], load=0.0,
+            slip_origin=problem.slip_origin[rows], area=problem.area[rows],
+            inertia=problem.inertia[columns][:, columns], load=0.0,
         ),
     )  # fmt: skip

@@ -21,6 +21,7 @@ from concio.analysis.seismic.curve import FARTHEST, CapacityCurve, not_followed
 from concio.analysis.seismic.linkage import Force
 from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, carried
 from concio.analysis.seismic.placed import Contacts, Placed, Stated, on_blocks, problem_of, stated
+from concio.analysis.seismic.tie_history import TieHistory
 from concio.kinematics.rigid import motions
 from concio.model.model import Tie
 from concio.problem.tolerances import AT_BOUND, CHECKED
@@ -49,6 +50,9 @@ SLIGHT = 1e-3
 """Contacts that press are put back by moves that change them by more than this share of the move: of many conditions
 that say the same, the directions left over turn a little in a finite step, and must not be taken for conditions."""
 
+LOCATED, SHARP = 60, 1e-9
+"""Trials at most for a configuration in which a tie yields or breaks, and how nearly its elongation is met."""
+
 LOST = 1e-3
 """Share of the size of the mechanism by which a step may leave contacts wrong after it was corrected."""
 
@@ -69,6 +73,7 @@ class State:
         Contacts that press and do not slide.
     contacts : Stated
     tie_force, elongation : (n,) arrays
+    history : TieHistory
     """
 
     q: Placed
@@ -79,6 +84,7 @@ class State:
     contacts: Stated
     tie_force: Array
     elongation: Array
+    history: TieHistory
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,27 +119,35 @@ class Sequence:
         block, point, along = self.control
         return float((q.carry(np.array([block]), point[None])[0] - point) @ along)
 
-    def pulls(self, q: Placed) -> tuple[Array, Array, Array]:
-        """Return forces (n,) [kN] and elongations (n,) [m] of the ties, and their pull on the unknowns (N,)."""
-        load = np.zeros(len(self.mechanics.blocks) * motions(q.centre.shape[1]))
-        forces, longer = np.zeros(len(self.ties)), np.zeros(len(self.ties))
+    def elongations(self, q: Placed) -> Array:
+        """Return the elongations (n,) of the ties [m]."""
+        longer = np.zeros(len(self.ties))
         for k, (tie, a, b) in enumerate(self.ties):
             ends = np.array([tie.at_a, tie.at_b], dtype=float)
             now = q.carry(np.array([a, b]), ends)
-            length = float(np.linalg.norm(now[1] - now[0]))
-            longer[k] = length - float(np.linalg.norm(ends[1] - ends[0]))
-            forces[k] = tie.force(float(longer[k]))
-            along = (now[1] - now[0]) / length
+            longer[k] = float(np.linalg.norm(now[1] - now[0])) - float(np.linalg.norm(ends[1] - ends[0]))
+        return longer
+
+    def pulls(self, q: Placed, history: TieHistory) -> tuple[Array, Array, Array]:
+        """Return forces (n,) [kN] and elongations (n,) [m] of the ties, and their pull on the unknowns (N,)."""
+        load = np.zeros(len(self.mechanics.blocks) * motions(q.centre.shape[1]))
+        longer = self.elongations(q)
+        forces = np.array([history.force(k, tie, float(longer[k])) for k, (tie, _, _) in enumerate(self.ties)])
+        for k, (tie, a, b) in enumerate(self.ties):
+            ends = np.array([tie.at_a, tie.at_b], dtype=float)
+            now = q.carry(np.array([a, b]), ends)
+            along = (now[1] - now[0]) / float(np.linalg.norm(now[1] - now[0]))
             pull = [Force(g, s * forces[k] * along, ends[i]) for i, (g, s) in enumerate(((a, 1.0), (b, -1.0)))]
             load += on_blocks(q, tuple(f for f in pull if f.block != GROUND), self.size)
         return forces, longer, load
 
-    def state(self, q: Placed, normal_force: Array) -> State | None:
+    def state(self, q: Placed, normal_force: Array, history: TieHistory | None = None) -> State | None:
         """Return how the mechanism moves in a configuration, from normal forces (m,) near it; None if nothing tells."""
+        history = TieHistory.none(len(self.ties)) if history is None else history
         L, d = self.size, q.centre.shape[1]
         now = stated(self.contacts, q, L)
         closed = np.flatnonzero(now.gap <= CLOSED * L)
-        pull, longer, tied = self.pulls(q)
+        pull, longer, tied = self.pulls(q, history)
         problem = problem_of(self.contacts, now, closed, on_blocks(q, self.dead, L) + tied)
         live = on_blocks(q, self.push, L)
         strength = problem.cone.strength(normal_force[closed])
@@ -167,7 +181,8 @@ class Sequence:
         stays = np.zeros(len(now.gap), dtype=bool)
         presses = found.normal_force > AT_BOUND * float(found.normal_force.max(initial=0.0))
         stays[closed] = presses & (slip <= 1e-8)
-        return State(q, found.multiplier, velocity / speed, forces, stays, now, pull, longer)
+        return State(q, found.multiplier, velocity / speed, forces, stays, now, pull, longer,
+                     history.after(longer))  # fmt: skip
 
     def step(self, last: State, length: float) -> Placed | None:
         """Return the configuration after the control point has moved by about ``length``; None if it cannot be."""
@@ -210,6 +225,9 @@ class Sequence:
 def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
     """Follow a mechanism until its multiplier vanishes.
 
+    Where a tie yields or breaks on the way, that very configuration is looked for, so that the curve has its peaks and
+    its drops whatever the steps.
+
     Parameters
     ----------
     sequence : Sequence
@@ -231,14 +249,16 @@ def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
     d, alpha, ties = [0.0], [first], [state.tie_force]
     broken: list[float] = []
     usual, reason, end = (1e-4 if sequence.ties else 1e-3) * L, "far", float("nan")
-    step, least = usual, usual
+    step, least, fresh = usual, usual, True
     while d[-1] < FARTHEST * L:
         tried = max(min(step, sequence.room(state)), 1e-3 * step)
         q = sequence.step(state, tried)
-        after = None if q is None else sequence.state(q, state.normal_force)
-        snaps = after is not None and _breaks(sequence, state, after)
+        event = None if q is None else _tie_event(sequence, state, q, tried)
+        if event is not None:
+            q, tried = event.q, event.length
+        after = None if q is None else sequence.state(q, state.normal_force, state.history)
         overshot = after is not None and after.multiplier <= 0
-        if after is None or ((snaps or overshot) and tried > 1e-2 * least):
+        if after is None or (overshot and tried > 1e-2 * least):
             step = tried / 4
             if after is None and step < (0.05 if costly and q is not None else 1e-3) * least:
                 end, reason = d[-1], "joints end" if q is None else "no state"
@@ -250,14 +270,21 @@ def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
             end, reason = d[-1] + share * (at - d[-1]), "falls"
             d, alpha, ties = [*d, end], [*alpha, 0.0], [*ties, after.tie_force]
             break
-        if snaps:
+        if event is not None and event.breaks:
             broken.append(at)
-            d, alpha, ties = [*d, at], [*alpha, alpha[-1]], [*ties, ties[-1]]
-        if len(d) == 1:
-            fall = (first - after.multiplier) / max(at, 1e-12)
-            usual = min(max((first / fall if fall > 0 else L) / STEPS, usual), 0.05 * L)
+            d, alpha, ties = [*d, at], [*alpha, after.multiplier], [*ties, after.tie_force]
+            snapped = sequence.state(after.q, after.normal_force, after.history.after(after.elongation, [event.tie]))
+            if snapped is None or snapped.multiplier <= 0:
+                end, reason = at, "no state" if snapped is None else "falls"
+                d, alpha, ties = [*d, at], [*alpha, 0.0], [*ties, ties[-1]]
+                break
+            after = snapped
+        if fresh and event is None:
+            fall = (alpha[-1] - after.multiplier) / max(at - d[-1], 1e-12)
+            usual = min(max((alpha[-1] / fall if fall > 0 else L) / STEPS, usual), 0.05 * L)
             least = usual
-        state, step = after, min(2.0 * max(step, tried), usual)
+        fresh = event is not None
+        state, step = after, 1e-3 * L if fresh else min(2.0 * max(step, tried), usual)
         d, alpha, ties = [*d, at], [*alpha, after.multiplier], [*ties, after.tie_force]
         if len(d) >= MOST:
             end, reason = d[-1], "long"
@@ -272,9 +299,39 @@ def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
     )
 
 
-def _breaks(sequence: Sequence, before: State, after: State) -> bool:
-    """Return whether a tie breaks between two configurations."""
-    return any(
-        tie.break_elongation is not None and before.elongation[k] < tie.break_elongation <= after.elongation[k]
-        for k, (tie, _, _) in enumerate(sequence.ties)
-    )
+@dataclass(frozen=True, eq=False)
+class TieEvent:
+    """A configuration in which a tie yields or breaks, ``length`` [m] after the last."""
+
+    q: Placed
+    length: float
+    tie: int
+    breaks: bool
+
+
+def _tie_event(sequence: Sequence, last: State, q: Placed, length: float) -> TieEvent | None:
+    """Return the first yielding or breaking of a tie within a step that leads to ``q``; None where there is none."""
+    bars = [tie for tie, _, _ in sequence.ties]
+    event = last.history.next_event(bars, last.elongation, sequence.elongations(q)) if bars else None
+    if event is None:
+        return None
+    low, high, at = 0.0, length, q
+    for _ in range(LOCATED):
+        k, limit, _ = event
+        slope = (sequence.elongations(at)[k] - last.elongation[k]) / high
+        guess = (limit - last.elongation[k]) / slope
+        middle = guess if low < guess < high else (low + high) / 2
+        there = sequence.step(last, middle)
+        if there is None:
+            break
+        reached = sequence.elongations(there)
+        sooner = last.history.next_event(bars, last.elongation, reached)
+        if sooner is None:
+            low = middle
+            if abs(reached[k] - limit) <= SHARP * abs(limit):
+                return TieEvent(there, middle, k, event[2])
+        else:
+            high, at, event = middle, there, sooner
+            if abs(reached[sooner[0]] - sooner[1]) <= SHARP * abs(sooner[1]):
+                break
+    return TieEvent(at, high, event[0], event[2])

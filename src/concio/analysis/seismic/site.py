@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -35,12 +36,15 @@ class Hazard:
         Largest amplification.
     T_star : float
         Tc* [s].
+    filled : tuple of str
+        Which of F0 and Tc were not given, and have values that are those of no site.
     """
 
     T_R: float
     a_g: float
     F0: float = 2.5
     T_star: float = 0.3
+    filled: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if not 0 < self.a_g <= LARGEST:
@@ -109,6 +113,7 @@ class Site:
             if not points or any(math.isnan(p.T_R) for p in points):
                 msg = "a table of hazards needs a return period T_R in every row"
                 raise InputError(msg, hint='or give them by limit state: {"SLV": {"a_g": 0.2, "F0": 2.45, "Tc": 0.32}}')
+        _check_rising(points, rules)
         object.__setattr__(self, "hazard", points)
         given = self.building if isinstance(self.building, list | tuple) else (self.building,)
         object.__setattr__(self, "building", tuple(_mode(m) for m in given))
@@ -133,6 +138,21 @@ class Site:
             return tuple(level for level in known if level in self.hazard)
         return tuple(level for level in known if not self.rules.tables["levels"][level].get("on_request", False))
 
+    @property
+    def asked_by_code(self) -> tuple[str, ...]:
+        """Limit states that the code asks for, whether their hazard is known or not."""
+        rules = self.rules.tables["levels"]
+        return tuple(v for v in self.rules.choices("levels") if not rules[v].get("on_request", False))
+
+    def ultimate(self, levels: tuple[str, ...]) -> tuple[str, ...]:
+        """Return the ultimate limit states among some; all of them where there is none."""
+        rules = self.rules.tables["levels"]
+        return tuple(v for v in levels if rules[v]["kind"] != "onset") or levels
+
+    def invented(self, level: str) -> tuple[str, ...]:
+        """Return which numbers of a limit state were not given though its spectrum is made of them: "F0", "Tc"."""
+        return () if "types" in self.rules.tables else self.at(level).filled
+
     def at(self, level: str) -> Hazard:
         """Return the hazard of a limit state, with its return period.
 
@@ -147,7 +167,7 @@ class Site:
                 msg = f"the hazard of {level} is not given"
                 raise InputError(msg, hint="known: " + ", ".join(self.hazard))
             given: Hazard = self.hazard[level]
-            return given if not math.isnan(given.T_R) else Hazard(T_R, given.a_g, given.F0, given.T_star)
+            return given if not math.isnan(given.T_R) else replace(given, T_R=T_R)
         return self.interpolated(T_R)
 
     def interpolated(self, T_R: float) -> Hazard:
@@ -157,7 +177,8 @@ class Site:
         at = math.log(T_R)
         values = (np.exp(np.interp(at, logs, np.log([getattr(p, k) for p in rows]))) for k in ("a_g", "F0", "T_star"))
         a_g, F0, T_star = (float(v) for v in values)
-        return Hazard(T_R, a_g, F0, T_star)
+        filled = dict.fromkeys(word for row in rows for word in row.filled)
+        return Hazard(T_R, a_g, F0, T_star, tuple(filled))
 
     def spectrum(self, hazard: Hazard) -> Spectrum:
         """Return the elastic spectrum on the ground."""
@@ -173,6 +194,25 @@ class Site:
         rules = self.rules.tables["floor"]
         modes = tuple(m.mode(z, rules) if isinstance(m, Storeys) else m for m in self.building)
         return FloorSpectrum(ground, modes, rules)
+
+
+def _check_rising(points: Any, rules: Code) -> None:
+    """Refuse an acceleration that falls as the return period grows.
+
+    Raises
+    ------
+    InputError
+    """
+    if isinstance(points, Mapping):
+        rare = [level for level in rules.choices("levels") if level in points]
+        rare.sort(key=lambda level: -float(rules.tables["levels"][level]["probability"]))
+        rows = [(level, points[level].a_g) for level in rare]
+    else:
+        rows = [(f"T_R = {p.T_R:g} years", p.a_g) for p in points]
+    for (often, more), (rarely, less) in pairwise(rows):
+        if more > less:
+            msg = f"a_g = {more:g} g of {often} is larger than a_g = {less:g} g of {rarely}, which is rarer"
+            raise InputError(msg, where="hazard", hint="check which acceleration belongs to which")
 
 
 def _by_period(point: Hazard) -> float:
@@ -196,8 +236,10 @@ def _hazard(given: Any, where: str) -> Hazard:
     numbers = {}
     for key, value in given.items():
         numbers[names[key]] = _number(value, key, where)
+    missing = tuple(key for key in ("F0", "Tc") if key not in given)
     try:
-        return Hazard(**{"T_R": math.nan, **numbers})
+        made = {"T_R": math.nan, **numbers}
+        return Hazard(made["T_R"], made["a_g"], made.get("F0", 2.5), made.get("T_star", 0.3), missing)
     except InputError as error:
         raise InputError(error.what, where=where, hint=error.hint) from None
 

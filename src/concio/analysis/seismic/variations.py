@@ -21,6 +21,9 @@ from concio.problem.solution import ProgressCallback
 ENOUGH = 1e-4
 """Relative accuracy of a tie force."""
 
+SHARES_OF_LARGEST = (1 / 64, 1 / 32, 1 / 16, 1 / 8, 1 / 4, 1 / 2, 1.0)
+"""Shares of the largest force that are tried one after the other, until one does."""
+
 SHARES = {"friction": (0.8, 1.2), "strength": (0.5, 2.0)}
 """Factors of the friction and of the compressive strength of all joints."""
 
@@ -57,7 +60,9 @@ class TieForce:
 def tie_force(model: Model, tie: str, *, zeta: float = 1.0, largest: float | None = None, **arguments: Any) -> TieForce:
     """Return the yield force of a tie that brings the least zeta_E of all mechanisms to ``zeta``, by solving.
 
-    Every trial searches the mechanisms anew, since the weakest one changes with the force.
+    It is the least over all limit states asked for. Every trial searches the mechanisms anew, since the weakest one
+    changes with the force. A tie that breaks before it yields has no more than its force at break, however large the
+    yield force that is tried.
 
     Parameters
     ----------
@@ -96,19 +101,26 @@ def tie_force(model: Model, tie: str, *, zeta: float = 1.0, largest: float | Non
 
     def missing(force: float) -> float:
         try:
-            return min(with_force(force).zeta, 10.0 * zeta) - zeta
+            return min(with_force(force).least, 10.0 * zeta) - zeta
         except NoEquilibriumError:  # without the tie a thrust may push the wall over before any earthquake
             return -zeta
 
     if missing(0.0) >= 0:
-        return TieForce(tie, zeta, 0.0, with_force(0.0).zeta, 0.0, with_force(0.0))
-    if missing(largest) < 0:
-        best = with_force(largest)
-        return TieForce(tie, zeta, math.inf, best.zeta, largest, best)
-    found = float(brentq(missing, 0.0, largest, xtol=ENOUGH * largest * 0.01, rtol=ENOUGH))
+        return TieForce(tie, zeta, 0.0, with_force(0.0).least, 0.0, with_force(0.0))
+    low, high = 0.0, largest
+    for share in SHARES_OF_LARGEST:  # from below: with much larger forces other mechanisms may be worse off again
+        high = share * largest
+        if missing(high) >= 0:
+            break
+        low = high
+    else:
+        stood = [a for force, a in tried.items() if force > 0]
+        best = max(stood, key=lambda a: a.least) if stood else with_force(largest)
+        return TieForce(tie, zeta, math.inf, best.least, largest, best)
+    found = float(brentq(missing, low, high, xtol=ENOUGH * largest * 0.01, rtol=ENOUGH))
     while missing(found) < 0:  # on the safe side of the accuracy
         found *= 1 + ENOUGH
-    return TieForce(tie, zeta, found, with_force(found).zeta, largest, with_force(found))
+    return TieForce(tie, zeta, found, with_force(found).least, largest, with_force(found))
 
 
 @dataclass(frozen=True)
@@ -133,7 +145,7 @@ class Variation:
 def variations(found: Assessment, progress: ProgressCallback | None = None) -> tuple[Variation, ...]:
     """Return how the weakest mechanism changes with the friction and, where joints crush, with their strength.
 
-    It alone is sought again: with its name, under its push.
+    It is sought again under its push, in all parts of the structure; of the named mechanisms only itself.
     """
     result: list[Variation] = []
     worst = found.worst
@@ -154,9 +166,9 @@ def variations(found: Assessment, progress: ProgressCallback | None = None) -> t
             except NoEquilibriumError:
                 result.append(Variation(what, factor, math.nan, math.nan))
                 continue
-            same = [m for m in other.mechanisms if m.name == worst.name]
-            alpha = same[0].multiplier if same else math.inf
-            result.append(Variation(what, factor, alpha, same[0].zeta if same else math.inf))
+            weakest = other.worst
+            alpha = math.inf if weakest is None else weakest.multiplier
+            result.append(Variation(what, factor, alpha, other.zeta))
     return tuple(result)
 
 

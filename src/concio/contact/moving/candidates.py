@@ -61,7 +61,7 @@ def find_candidates(edges: MovingEdges, placed: PlacedEdges, skin: float, throug
         Depth over the narrower body's width beyond which edges stand behind each other.
     """
     near = np.full(len(edges.width), skin)
-    facing = facing_pairs(edges.as_edges(placed), near, -skin, FACING)
+    facing = facing_pairs(edges.as_edges(placed), near, -near, FACING)
     narrow = edges.width[facing.bodies].min(1)
     keep = (facing.g_min <= 2 * skin) & (facing.g_max >= -through * narrow)
     a, b = facing.edges[keep].T

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from concio.contact.joint_points import points_along
 from concio.model.model import Model
 
 Array = np.ndarray
@@ -54,14 +55,9 @@ class LawTable:
             normal=np.array([soft(law.normal_stiffness) for law in laws]),
             tangential=np.array([soft(law.tangential_stiffness) for law in laws]),
             cap=np.array([np.inf if law.compressive_strength is None else law.compressive_strength for law in laws]),
-            points=np.array([points_of(law.compressive_strength, law.normal_stiffness) for law in laws]),
+            points=np.array([points_along(law.compressive_strength, law.normal_stiffness) for law in laws]),
             names=tuple(model.laws),
         )
-
-
-def points_of(compressive_strength: float | None, normal_stiffness: float | None) -> int:
-    """Return how many contact points a joint of two rigid sides gets: enough to resolve its pressure."""
-    return 9 if compressive_strength is not None else 5 if normal_stiffness is not None else 2
 
 
 class RuleBook:

@@ -107,6 +107,18 @@ class MovingLoads:
                 f[x + 1] += follower[x + 1]
         return f
 
+    def following(self, factors: Mapping[str, float], turn: Array) -> Array:
+        """Return the part (N,) of the forces that turns with its bodies: it has no potential [kN]."""
+        f = np.zeros(len(next(iter(self.groups.values())).dead)) if self.groups else np.zeros(0)
+        if not self.followers:
+            return f
+        follower = _sum([load_factor(factors, g) for g in self.groups], [p.follower for p in self.groups.values()])
+        turned = turn[self.rigid] * (follower[self.first] + 1j * follower[self.first + 1])
+        f[self.first], f[self.first + 1] = turned.real, turned.imag
+        f[self.first + 2] = follower[self.first + 2]
+        f[self.x_of_node], f[self.x_of_node + 1] = follower[self.x_of_node], follower[self.x_of_node + 1]
+        return f
+
     def potential(self, factors: Mapping[str, float], moved: Array, rotation: Array, nodes: Array) -> float:
         """Return the potential of the dead loads, zero where the bodies were described [kN m].
 

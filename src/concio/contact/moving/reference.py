@@ -152,6 +152,28 @@ class Reference:
         return mass
 
     @cached_property
+    def typical_mass(self) -> float:
+        """Mean mass of the bodies that can move; where none has a weight, one that weighs as much as loads [t]."""
+        mean = float(self.body_mass[self.free].mean())
+        if mean > 0 or not self.loads.groups:
+            return mean
+        here = np.ones(len(self.model.bodies), dtype=complex)
+        acting = sum(float(np.abs(self.loads.forces({g: float(g == group) for g in self.loads.groups}, here)).sum())
+                     for group in self.loads.groups)  # fmt: skip
+        return acting / (self.gravity * len(self.free))
+
+    @cached_property
+    def resisting(self) -> BodyMatrices:
+        """Masses and stiffnesses, with the typical mass for bodies without weight: what resists in iterations."""
+        mass = self.mass.copy()
+        for b in self.free.tolist():
+            own = slice(*self.disc.offsets[b : b + 2])
+            if not self.body_mass[b] > 0:
+                nodes = 1 if self.disc.shape_of[b] == RIGID else (own.stop - own.start) // 2
+                mass[own] = (self.typical_mass or 1.0) / nodes
+        return BodyMatrices.of(self.disc, mass, np.zeros(self.disc.unknowns, dtype=bool))
+
+    @cached_property
     def matrices(self) -> BodyMatrices:
         """Masses and stiffnesses."""
         return BodyMatrices.of(self.disc, self.mass, np.zeros(self.disc.unknowns, dtype=bool))

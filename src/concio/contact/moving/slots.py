@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from concio.contact.coupling import Coupling, Line, Side, couple, simpson
+from concio.contact.coupling import Coupling, Line, Side, couple
+from concio.contact.joint_points import joint_rule
 from concio.contact.moving.candidates import Candidates
 from concio.contact.moving.edges import MovingEdges, PlacedEdges, dot
 from concio.contact.moving.laws import LawTable, RuleBook
@@ -137,8 +138,9 @@ class SlotMaker:
             own = np.flatnonzero(points == count)
             face.append(np.repeat(own, count))
             number.append(np.tile(np.arange(count), len(own)))
-            fraction.append(np.tile(np.linspace(0.0, 1.0, count), len(own)))
-            share.append(np.tile(simpson(count), len(own)))
+            places, shares = joint_rule(count)
+            fraction.append(np.tile(places, len(own)))
+            share.append(np.tile(shares, len(own)))
         sides = self._meshed_faces(np.flatnonzero(meshed), found, touch, placed)
         face += sides.face
         number += sides.number

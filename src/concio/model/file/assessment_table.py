@@ -23,8 +23,8 @@ class HazardTable(Table):
     """What one limit state or one return period brings."""
 
     a_g: Acceleration
-    F0: Number = 2.5
-    Tc: Seconds = 0.3
+    F0: Number | None = None
+    Tc: Seconds | None = None
     T_R: Annotated[StrictStr | float | None, Field(description="return period in years")] = None
 
 
@@ -111,6 +111,9 @@ class AssessmentTable(Table):
     free_standing: Annotated[
         dict[str, FreeStandingTable], Field(description="by mechanism: parapets, chimneys, gables; see the how-to")
     ] = Field(default_factory=dict)
+    elsewhere: Annotated[
+        list[StrictStr], Field(description="what the author answers for: out of plane, height, ties")
+    ] = Field(default_factory=list)
     size_tie: Annotated[StrictStr, Field(description="tie whose force is found that brings zeta_E to one")] = ""
     largest_tie: Force | None = None
     sensitivity: bool = True

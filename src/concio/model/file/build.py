@@ -170,7 +170,8 @@ def _start(
     if drawing:
         return _from_drawing(data, materials, laws, folder)
     if parts:
-        return assembled_parts(parts, lambda part, label: _generated(part, materials, laws), read, data.title)
+        return assembled_parts(parts, lambda part, label: _generated(part, materials, laws), read, data.title,
+                               ruled=data.rules is not None)  # fmt: skip
     return _generated(data, materials, laws)
 
 

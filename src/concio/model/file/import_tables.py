@@ -57,3 +57,5 @@ class SolidsTable(Table):
     mend: Length = 0.0
     on_fault: Literal["raise", "skip"] = "raise"
     ground: StrictBool = False
+    gap_tolerance: Length | None = None
+    split_warped: StrictBool = False

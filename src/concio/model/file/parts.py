@@ -9,15 +9,18 @@ from typing import Any
 import numpy as np
 
 from concio.errors import InputError
-from concio.model.compose import merge, place
+from concio.model.compose import place
 from concio.model.file.errors import placed
 from concio.model.generate.generators import GENERATORS
+from concio.model.generate.merging import merge, merged
 from concio.model.model import Model
 
 Made = Callable[[Any, str], Model | None]
 
 
-def assembled_parts(tables: list[Any], made: Made, read: Callable[[str], Model], title: str) -> Model | None:
+def assembled_parts(
+    tables: list[Any], made: Made, read: Callable[[str], Model], title: str, *, ruled: bool
+) -> Model | None:
     """Return the model of all parts of a file, None where there are none.
 
     Parameters
@@ -29,6 +32,8 @@ def assembled_parts(tables: list[Any], made: Made, read: Callable[[str], Model],
         Reads the model of a part.
     title : str
         Of the whole.
+    ruled : bool
+        Whether the file has rules of its own, which then say what holds between parts.
 
     Raises
     ------
@@ -52,7 +57,8 @@ def assembled_parts(tables: list[Any], made: Made, read: Callable[[str], Model],
     if len(found) == 1:
         return found[0]
     with placed("[[parts]]", own="merge"):
-        return replace(merge(*found), title=title or f"{len(found)} parts")
+        whole = merged(found) if ruled else merge(*found)
+        return replace(whole, title=title or f"{len(found)} parts")
 
 
 def _placed(table: Any, model: Model, parts: int) -> list[Model]:
@@ -76,7 +82,7 @@ def _placed(table: Any, model: Model, parts: int) -> list[Model]:
         copies.append(
             place(
                 model, (at + k * step).tolist(), turn=table.turn, axis=table.axis or (), mirror=table.mirror,
-                name=name.replace("-", "_"), without=table.without or (),
+                name=name.replace("-", "_"), without=table.without or (), loads=table.loads,
             )
         )  # fmt: skip
     return copies

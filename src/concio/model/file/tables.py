@@ -72,7 +72,7 @@ class ReportTable(Table):
     force: Literal["kN", "N", "MN", "kgf", "tf"] = "kN"
     length: Literal["m", "cm", "mm", "ft", "in"] = "m"
     motion: Literal["mm", "m", "cm", "in"] = "mm"
-    stress: Literal["auto", "kN/m2", "MPa", "N/mm2", "kPa", "Pa", "bar"] = "auto"
+    stress: Literal["auto", "kN/m2", "MPa", "N/mm2", "kPa", "Pa", "bar", "kgf/cm2", "tf/m2"] = "auto"
 
 
 class MaterialTable(Table):
@@ -307,7 +307,7 @@ class AnalysisTable(Table):
     mesh_size: Length | None = None
     refinement: StrictInt = 1
     gap_tolerance: Length | None = None
-    gap_reach: Length = 0.0
+    gap_reach: Length | None = None
     thickness: Length = 1.0
     contact_points: StrictInt | Literal["auto", "corners"] = "auto"
 
@@ -334,6 +334,7 @@ class PartTable(Table):
     turn: Degrees = 0.0
     axis: tuple[Number, Number, Number] | None = None
     mirror: StrictStr = ""
+    loads: Literal["body", "world"] = "body"
     without: StrictStr | list[StrictStr] = ""
     repeat: Annotated[StrictInt, Field(ge=1, le=10_000)] = 1
     step: Point | None = None

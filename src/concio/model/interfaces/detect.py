@@ -7,12 +7,15 @@ mean normal ``n`` from a to b, the gap
 
     g(s) = n . (x_b(s) - x_a(s))
 
-is linear along the common length, and the interface is the part of it where ``-tolerance <= g <= max(tolerance,
-reach)``. So T-joints, partial contact, wedge-shaped gaps and edges split by vertices need no cases of their own.
+is linear along the common length, and the interface is the part of it that does not overlap (``g >= -tolerance``) of
+edges that come near each other anywhere: within :data:`REACH_SHARE` of the smaller body's size. A gap that is there at
+first is a gap of the interface, so a block on a tilted foot stands where it comes to rest, whatever the tilt. A reach
+given in metres cuts interfaces off where the gap exceeds it. T-joints, partial contact, wedge-shaped gaps and edges
+split by vertices need no cases of their own.
 
 Nothing is dropped in silence. What nearly was an interface and what overlaps is in the report of
 :class:`Detection`: slivers, edges a little too far apart or at too large an angle, joints of which only a part touches,
-corners that touch an edge in a point, and areas covered twice.
+corners that touch another body without a joint, and areas covered twice.
 
 All candidate pairs come from a bulk query of an R-tree of edges (shapely) and are judged together in numpy; there is no
 Python loop over pairs of edges.
@@ -30,14 +33,15 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from concio.errors import InputError
+from concio.model.interfaces.corners import find_corner_touches
 from concio.model.interfaces.facing import Edges, FacingPairs, facing_pairs
-from concio.model.interfaces.near import MissKind, NearMiss, Overlap, find_overlaps, find_point_touches, size_of_bodies
+from concio.model.interfaces.near import MissKind, NearMiss, Overlap, find_overlaps, size_of_bodies
 from concio.model.interfaces.sight import visible_parts
 from concio.model.model import Array, Body
 from concio.representation import short_repr
 
 if TYPE_CHECKING:
-    from concio.model.interfaces.patches import Patch
+    from concio.model.interfaces.patch import Patch
 
 FACING_ANGLE = np.deg2rad(5.0)
 """Edges turned against each other by more than this are not joined, only reported [rad]."""
@@ -45,6 +49,8 @@ NEAR_ANGLE = np.deg2rad(20.0)
 """Edges that touch and are turned by less than this are reported as a near miss [rad]."""
 SLIVER_SHARE = 1e-3
 """A common length below this share of the smaller body's size (root of its area) is a sliver."""
+REACH_SHARE = 1e-3
+"""Faces that come as near as this share of the smaller body's size touch, where no reach is given."""
 NEAR_SHARE = 0.05
 """Facing edges within this share of the smaller body's size are reported when they are not joined."""
 
@@ -94,6 +100,11 @@ class Interface:
         """Length [m]."""
         return self.length
 
+    @property
+    def width(self) -> float:
+        """Length [m]; what a motion is large beside."""
+        return self.length
+
 
 @short_repr
 @dataclass(frozen=True)
@@ -105,6 +116,8 @@ class Detection:
     interfaces : tuple of Interface, in space of Patch
         In order of the bodies a, b and of their edges or faces.
     near_misses : tuple of NearMiss
+        Every place where bodies come near each other or touch without a joint, or have one of a part only: with the
+        bodies, the place and a sentence.
     overlaps : tuple of Overlap
     """
 
@@ -122,6 +135,11 @@ class Detection:
         """The interfaces of a model in space; none in the plane."""
         return tuple(i for i in self.interfaces if not isinstance(i, Interface))
 
+    @property
+    def not_made(self) -> tuple[NearMiss, ...]:
+        """The places where two bodies touch and no joint was made: a verdict holds for the joints that were made."""
+        return tuple(m for m in self.near_misses if m.touches and not m.made)
+
     def report(self) -> tuple[str, ...]:
         """Return one sentence for each overlap and each near miss, overlaps first."""
         return tuple(o.sentence for o in self.overlaps) + tuple(m.sentence for m in self.near_misses)
@@ -133,12 +151,12 @@ def default_tolerance(bodies: Sequence[Body]) -> float:
     return 1e-6 * float((corners[:, 1].max(0) - corners[:, 0].min(0)).max())
 
 
-def check_distances(tolerance: float, reach: float) -> None:
-    """Raise InputError where the tolerance is not positive, or the reach negative or not finite [m]."""
+def check_distances(tolerance: float, reach: float | None) -> None:
+    """Raise InputError where the tolerance is not positive, or a reach is negative or not finite [m]."""
     if not (0 < tolerance < np.inf):
         msg = f"gap tolerance = {tolerance:g} must be positive"
         raise InputError(msg, hint="give about a hundredth of the thinnest joint, in m")
-    if not (0 <= reach < np.inf):
+    if reach is not None and not (0 <= reach < np.inf):
         msg = f"gap reach = {reach:g} must be zero or positive"
         raise InputError(msg, hint="give the largest initial gap that should become a joint, in m")
 
@@ -147,7 +165,7 @@ def detect_interfaces(
     bodies: Sequence[Body],
     *,
     tolerance: float,
-    reach: float = 0.0,
+    reach: float | None = None,
     facing_angle: float = FACING_ANGLE,
     sliver: float | None = None,
 ) -> Detection:
@@ -159,14 +177,15 @@ def detect_interfaces(
         Pairs of two fixed bodies are skipped.
     tolerance : float
         Edges closer than this touch, and overlap by up to this without being an overlap [m].
-    reach : float
+    reach : float, optional
         Edges further apart than the tolerance but within the reach become interfaces with an initial gap, if no other
-        body stands between them [m].
+        body stands between them; 0 joins only what touches [m]. By default edges that come nearer than
+        :data:`REACH_SHARE` of the smaller body's size anywhere are joined over all of their common length.
     facing_angle : float
         Largest angle between edges that are joined [rad].
     sliver : float, optional
-        Shortest interface [m]; by default :data:`SLIVER_SHARE` of the smaller body's size, at least the tolerance. A
-        shorter piece is kept where it continues another piece between the same two bodies.
+        Shortest interface [m]; by default :data:`SLIVER_SHARE` of the smaller body's size. A shorter piece is kept
+        where it continues another piece between the same two bodies.
 
     Raises
     ------
@@ -176,18 +195,21 @@ def detect_interfaces(
     check_distances(tolerance, reach)
     edges = Edges.of(bodies)
     size = size_of_bodies(bodies)
-    within = max(tolerance, reach)
-    near = np.maximum(NEAR_SHARE * size, 2 * within)
+    touch = touching(size, tolerance, reach)
+    near = np.maximum(NEAR_SHARE * size, 2 * touch)
 
-    pairs = facing_pairs(edges, near, tolerance, max(facing_angle, NEAR_ANGLE))
+    shortest = np.minimum(tolerance, SLIVER_SHARE * size)
+    pairs = facing_pairs(edges, near, shortest, max(facing_angle, NEAR_ANGLE))
     pairs = pairs.chosen(~((pairs.g_max < -tolerance) | (pairs.g_min > near[pairs.bodies].min(1))))
     thin = SLIVER_SHARE * size[pairs.bodies].min(1) if sliver is None else sliver
     thin = np.broadcast_to(np.asarray(thin, dtype=float), len(pairs.lo))
+    within = touch[pairs.bodies].min(1)
 
-    joined = pairs.clipped(-tolerance, within)
+    faces = pairs.angle <= facing_angle
+    whole = (faces & (pairs.g_min <= within)) if reach is None else np.zeros(len(faces), dtype=bool)
+    joined = pairs.clipped(-tolerance, np.where(whole, np.inf, within))
     length = joined.hi - joined.lo
-    faces = joined.angle <= facing_angle
-    candidate = faces & (length > tolerance)
+    candidate = faces & (length > np.minimum(tolerance, thin))
     long = candidate & (length >= thin)
     short = candidate & ~long
     kept = long | (short & _continues(joined, long, short, tolerance, thin))
@@ -195,12 +217,14 @@ def detect_interfaces(
     interfaces = _interfaces(table, edges, tolerance)
 
     misses = _near_misses(bodies, pairs, joined, kept, thin, tolerance, within, facing_angle)
-    joined_bodies = {(i.a, i.b) for i in interfaces}
-    touches = find_point_touches(bodies, joined_bodies | {m.bodies for m in misses}, tolerance)
     overlaps = find_overlaps(bodies, tolerance)
-    covered = {o.bodies for o in overlaps}
-    touches = [t for t in touches if t.bodies not in covered]
+    touches = find_corner_touches(bodies, edges, table, misses, {o.bodies for o in overlaps}, touch)
     return Detection(tuple(interfaces), tuple(misses + touches), tuple(overlaps))
+
+
+def touching(size: Array, tolerance: float, reach: float | None) -> Array:
+    """Return how far from each body of a size (n,) another still touches it; of two bodies the smaller counts [m]."""
+    return np.maximum(tolerance, REACH_SHARE * size if reach is None else np.full(len(size), reach))
 
 
 def _continues(pairs: FacingPairs, long: Array, short: Array, tolerance: float, thin: Array) -> Array:
@@ -244,16 +268,16 @@ def _near_misses(
     kept: Array,
     thin: Array,
     tolerance: float,
-    within: float,
+    within: Array,
     facing_angle: float,
 ) -> list[NearMiss]:
     """Return what nearly was an interface, edge by edge."""
     raw, length = pairs.hi - pairs.lo, joined.hi - joined.lo
     wide = raw >= thin
     faces = pairs.angle <= facing_angle
-    touching = length > tolerance
+    touches = length > np.minimum(tolerance, thin)
     partial = kept & (raw - length > np.maximum(thin, 0.01 * raw))
-    sliver = faces & touching & ~kept & ~(wide & (pairs.g_max > within))
+    sliver = faces & touches & ~kept & ~(wide & (pairs.g_max > within))
     turned = ~kept & ~sliver & wide & (pairs.g_min <= within) & (pairs.g_max >= -tolerance)
     apart = ~kept & faces & wide & (pairs.g_min > within)
     chosen = np.flatnonzero(partial | sliver | turned | apart)
@@ -274,7 +298,7 @@ def _near_misses(
             NearMiss.of(
                 kind, a, b, (int(pairs.bodies[k, 0]), int(pairs.bodies[k, 1])), at,
                 gap=float(pairs.g_max[k] if kind == "partial" else pairs.g_min[k]), length=float(raw[k]),
-                joined=float(max(length[k], 0.0)), angle=float(pairs.angle[k]), within=within,
+                joined=float(max(length[k], 0.0)), angle=float(pairs.angle[k]), within=float(within[k]),
             )
         )  # fmt: skip
     return result

@@ -91,11 +91,11 @@ class FacingPairs:
             self.a_lo + p[:, None] * slope_a, self.a_lo + q[:, None] * slope_a,
         )  # fmt: skip
 
-    def clipped(self, least: float, largest: float) -> FacingPairs:
-        """Return the pairs restricted to where the gap lies between ``least`` and ``largest``; may be empty."""
+    def clipped(self, least: float, largest: Array) -> FacingPairs:
+        """Return the pairs restricted to where the gap lies between ``least`` and ``largest`` (p,); may be empty."""
         slope = self.g_hi - self.g_lo
         flat = np.abs(slope) <= 1e-14 * (np.abs(self.g_hi) + np.abs(self.g_lo))
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             p, q = (least - self.g_lo) / slope, (largest - self.g_lo) / slope
         inside = (self.g_lo >= least) & (self.g_lo <= largest)
         p, q = np.where(flat, np.where(inside, 0.0, 1.0), p), np.where(flat, np.where(inside, 1.0, 0.0), q)
@@ -105,8 +105,17 @@ class FacingPairs:
         return self.cut(self.lo + p * span, np.where(q >= 1, self.hi, self.lo + q * span))
 
 
-def facing_pairs(edges: Edges, near: Array, tolerance: float, angle: float) -> FacingPairs:
-    """Return the pairs of edges whose boxes come near, turned by less than ``angle``, with a common length."""
+def facing_pairs(edges: Edges, near: Array, shortest: Array, angle: float) -> FacingPairs:
+    """Return the pairs of edges whose boxes come near, turned by less than ``angle``, with a common length.
+
+    Parameters
+    ----------
+    edges : Edges
+    near, shortest : (n,) arrays
+        How far the boxes of each body reach, and the common length that counts with it, of two the smaller [m].
+    angle : float
+        [rad].
+    """
     low, high = np.minimum(edges.start, edges.end), np.maximum(edges.start, edges.end)
     tree = shapely.STRtree(shapely.box(*low.T, *high.T))
     grown = near[edges.body][:, None]
@@ -123,7 +132,7 @@ def facing_pairs(edges: Edges, near: Array, tolerance: float, angle: float) -> F
     a1 = ((edges.end[i] - origin) * t).sum(1)
     b1, b0 = ((edges.start[j] - origin) * t).sum(1), ((edges.end[j] - origin) * t).sum(1)
     lo, hi = np.maximum(0.0, b0), np.minimum(a1, b1)
-    keep = hi - lo > tolerance
+    keep = hi - lo > np.minimum(shortest[edges.body[i]], shortest[edges.body[j]])
     i, j, t, turned, origin, a1, b0, b1, lo, hi = (v[keep] for v in (i, j, t, turned, origin, a1, b0, b1, lo, hi))
     n = turned_right(t)
     end_i, b_first, b_last = edges.end[i] - origin, edges.end[j] - origin, edges.start[j] - origin

@@ -13,32 +13,32 @@ from concio.model.model import Array, Body
 from concio.model.overlay import common
 from concio.representation import short_repr
 
-MissKind = Literal["gap", "angle", "sliver", "partial", "corner"]
+MissKind = Literal["gap", "angle", "sliver", "partial", "corner", "edge"]
 
 
 @short_repr
 @dataclass(frozen=True, eq=False)
 class NearMiss:
-    """Two edges that nearly form an interface, or form one only in part.
+    """A place where two bodies nearly have a joint, have one only in part, or touch without one.
 
     Parameters
     ----------
-    kind : {"gap", "angle", "sliver", "partial", "corner"}
+    kind : {"gap", "angle", "sliver", "partial", "corner", "edge"}
         gap: they face each other but stand too far apart. angle: they touch but are turned too far. sliver: their
         common length is too short. partial: a joint was made of only a part of the common length. corner: a corner of
-        one body touches the other in a point.
+        one body touches the other in a point. edge: in space, an edge of one lies on a face or an edge of the other.
     a, b : str
         Names of the bodies.
     bodies : (int, int)
         Their indices.
-    at : (2,) array
+    at : (d,) array
         Middle of the place [m].
     gap : float
         Distance there [m].
     length : float
-        Common length [m].
+        Common length, in space of two faces their common area [m, m2].
     angle : float
-        Angle between the edges [rad].
+        Angle between the edges or faces [rad].
     sentence : str
         What was found, where, and what to do.
     """
@@ -52,6 +52,21 @@ class NearMiss:
     length: float
     angle: float
     sentence: str
+
+    @property
+    def made(self) -> bool:
+        """Whether a joint was made of a part of it; elsewhere the bodies can pass through each other unseen."""
+        return self.kind == "partial"
+
+    @property
+    def touches(self) -> bool:
+        """Whether the bodies meet there, within the tolerance or the reach, so that force can pass as drawn."""
+        return self.kind != "gap"
+
+    @property
+    def place(self) -> str:
+        """Where, in words: the two bodies and the point [m]."""
+        return f"'{self.a}' on '{self.b}' at ({', '.join(f'{v:.6g}' for v in self.at)}) m"
 
     @classmethod
     def of(
@@ -165,39 +180,4 @@ def find_overlaps(bodies: Sequence[Body], tolerance: float) -> list[Overlap]:
             )
         at = np.array([inside.x, inside.y])
         result.append(Overlap(a.name, b.name, (int(i[k]), int(j[k])), at, float(area[k]), float(depth[k]), text))
-    return result
-
-
-def find_point_touches(bodies: Sequence[Body], known: set[tuple[int, int]], tolerance: float) -> list[NearMiss]:
-    """Return the pairs, not in ``known``, where a corner of one body touches an edge of the other in a point.
-
-    Corner on corner, as where four blocks of a stack bond meet, bears nothing and is not reported.
-    """
-    shapes = polygons(bodies)
-    fixed = np.array([b.kind == "fixed" for b in bodies])
-    i, j = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=tolerance)
-    keep = (i < j) & ~(fixed[i] & fixed[j])
-    i, j = i[keep], j[keep]
-    if known:
-        code = np.array([p * len(bodies) + q for p, q in known])
-        keep = ~np.isin(i * len(bodies) + j, code)
-        i, j = i[keep], j[keep]
-    if not len(i):
-        return []
-    line = shapely.shortest_line(shapes[i], shapes[j])
-    point = shapely.get_point(line, 0)
-    corners = shapely.multipoints(
-        np.concatenate([b.vertices for b in bodies]),
-        indices=np.repeat(np.arange(len(bodies)), [len(b.vertices) for b in bodies]),
-    )
-    far_a = shapely.distance(point, corners[i]) > 2 * tolerance
-    far_b = shapely.distance(point, corners[j]) > 2 * tolerance
-    result = []
-    for k in np.flatnonzero(far_a | far_b):
-        at = np.array([point[k].x, point[k].y])
-        pair = (int(i[k]), int(j[k]))
-        miss = NearMiss.of(
-            "corner", bodies[i[k]], bodies[j[k]], pair, at, gap=0.0, length=0.0, joined=0.0, angle=0.0, within=tolerance
-        )
-        result.append(miss)
     return result

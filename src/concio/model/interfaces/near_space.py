@@ -11,13 +11,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import shapely
 from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
-from concio.kinematics.frames import cross, tangents
+from concio.kinematics.frames import cross
 from concio.model.convex_pieces import ConvexPiece
-from concio.model.interfaces.faces import Faces
 from concio.model.interfaces.near import MissKind, NearMiss, Overlap
 from concio.model.polyhedron import Polyhedron
 from concio.model.polyhedron_check import place
@@ -54,6 +52,18 @@ def miss_in_space(
             "to keep the rest as an initial gap)"
         )
     return NearMiss(kind, a.name, b.name, pair, at, gap, area, angle, text)
+
+
+def touch_in_space(
+    bodies: Sequence[Polyhedron], pair: tuple[int, int], at: Array, *, gap: float, length: float
+) -> NearMiss:
+    """Return a near miss of two bodies that touch in a corner, or along an edge of a length [m]."""
+    a, b = bodies[pair[0]].name, bodies[pair[1]].name
+    how = f"along an edge of {length:.4g} m" if length else "in a corner"
+    text = (
+        f"'{a}' and '{b}' touch {place(at)} {how} only; no joint was made (give them a common face if it bears load)"
+    )
+    return NearMiss("edge" if length else "corner", a, b, pair, at, gap, length, 0.0, text)
 
 
 def find_overlaps_in_space(
@@ -177,7 +187,7 @@ def _convex_depth(a: ConvexPiece, b: ConvexPiece) -> float:
     common = _overlap_along(a, b, axes)
     if common <= 0:
         return common
-    edges = [_directions(piece) for piece in (a, b)]
+    edges = (a.directions, b.directions)
     mixed = cross(edges[0][:, None], edges[1][None]).reshape(-1, 3)
     length = np.linalg.norm(mixed, axis=1)
     mixed = mixed[length > 1e-6] / length[length > 1e-6, None]
@@ -187,17 +197,6 @@ def _convex_depth(a: ConvexPiece, b: ConvexPiece) -> float:
 def _overlap_along(a: ConvexPiece, b: ConvexPiece, axes: Array) -> float:
     ha, hb = a.vertices @ axes.T, b.vertices @ axes.T
     return float(np.minimum(ha.max(0) - hb.min(0), hb.max(0) - ha.min(0)).min())
-
-
-def _directions(piece: ConvexPiece) -> Array:
-    """Return the directions of the edges of a convex piece: where two of its planes meet in two of its corners."""
-    on = np.abs(piece.vertices @ piece.normals.T - piece.offsets) <= 1e-6 * float(np.ptp(piece.vertices, axis=0).max())
-    shared = on.astype(int) @ on.T.astype(int)  # planes that two corners share
-    p, q = np.nonzero(np.triu(shared >= 2, 1))
-    along = piece.vertices[q] - piece.vertices[p]
-    along /= np.linalg.norm(along, axis=1)[:, None]
-    along *= np.where(along @ np.array([1.0, 1e-3, 1e-6]) < 0, -1.0, 1.0)[:, None]
-    return np.unique(np.round(along, 9), axis=0)
 
 
 def _common_volume(a: ConvexPiece, b: ConvexPiece) -> tuple[float, Array]:
@@ -287,57 +286,3 @@ def inner_point(body: Polyhedron) -> Array:
     inside = candidates[winding(body, candidates) > 0.5]
     found: Array = inside[int(np.argmax(distance_to_surface(body, inside)))]
     return found
-
-
-def find_touches(
-    bodies: Sequence[Polyhedron], table: Faces, pairs: tuple[Array, Array], tolerance: float
-) -> list[NearMiss]:
-    """Return which of the given pairs, none of which shares a face, touch in a point or along an edge.
-
-    A corner of one or the middle of one of its edges on a face of the other bears no load here and is told; edges that
-    lie on each other, as where four blocks meet, are nothing to tell.
-    """
-    if not len(pairs[0]):
-        return []
-    place_of: dict[int, Array] = {}
-    for a, b in (pairs, pairs[::-1]):
-        for number, at in zip(*_points_on_faces(bodies, table, a, b, tolerance), strict=True):
-            place_of.setdefault(int(number), at)
-    found = []
-    for k in sorted(place_of):
-        p, q = int(pairs[0][k]), int(pairs[1][k])
-        a_body, b_body, at = bodies[p], bodies[q], place_of[k]
-        text = (
-            f"'{a_body.name}' and '{b_body.name}' touch {place(at)} in a corner or an edge only; no joint was made "
-            "(give them a common face if it bears load)"
-        )
-        found.append(NearMiss("corner", a_body.name, b_body.name, (p, q), at, 0.0, 0.0, 0.0, text))
-    return found
-
-
-def _points_on_faces(
-    bodies: Sequence[Polyhedron], table: Faces, a: Array, b: Array, tolerance: float
-) -> tuple[Array, Array]:
-    """Return for which pairs a vertex or the middle of an edge of ``a`` lies inside a face of ``b``, and where."""
-    sort, stacks = _stacked(bodies, np.unique(np.concatenate([a, b])))
-    numbers, places = [np.zeros(0, dtype=int)], [np.zeros((0, 3))]
-    for p, q in np.unique(np.column_stack([sort[a], sort[b]]), axis=0).tolist():
-        own = np.flatnonzero((sort[a] == p) & (sort[b] == q))
-        first, second = stacks[p], stacks[q]
-        for part in np.array_split(own, max(1, len(own) * first.points.shape[1] // 200_000)):
-            mine, theirs = first.rows(a[part]), second.rows(b[part])
-            height = np.einsum("kvd,kfd->kvf", first.points[mine], second.normals[theirs])
-            height -= second.offsets[theirs][:, None]
-            apart = (height.min(1) > tolerance).any(1)
-            k, v, f = np.nonzero((np.abs(height) <= tolerance) & ~apart[:, None, None])
-            at, face = first.points[mine[k], v], table.of_body[b[part[k]]] + f
-            near = ((at >= table.low[face] - tolerance) & (at <= table.high[face] + tolerance)).all(1)
-            k, at, face = k[near], at[near], face[near]
-            frame, origin = tangents(table.normal[face]), table.points[table.rings[table.first[face]]]
-            shapes = table.polygons(face, origin, frame)
-            flat = shapely.points(np.einsum("kd,kid->ki", at - origin, frame))
-            inside = shapely.contains_properly(shapes, flat)
-            inside[inside] = shapely.distance(shapely.boundary(shapes[inside]), flat[inside]) > 2 * tolerance
-            numbers.append(part[k[inside]])
-            places.append(at[inside])
-    return np.concatenate(numbers), np.concatenate(places)

@@ -5,9 +5,10 @@ the mean normal n from a to b,
 
     g = n . (x_b - x_a),
 
-lies between minus the tolerance and the larger of tolerance and reach. g is linear over the patch. The faces are cut in
-their mean plane as polygons, so that faces which are not convex, have holes, or meet in several pieces need no cases of
-their own; each piece is a patch.
+is not below minus the tolerance and the faces come near each other anywhere: within a thousandth of the smaller body's
+size, or within the reach given, beyond which the patch is then cut off. g is linear over the patch, an initial gap
+where it exceeds the tolerance. The faces are cut in their mean plane as polygons, so that faces which are not convex,
+have holes, or meet in several pieces need no cases of their own; each piece is a patch.
 
 Nothing is dropped in silence: see :class:`concio.model.interfaces.detect.Detection`.
 """
@@ -16,14 +17,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import ClassVar
 
 import numpy as np
 import shapely
 
-from concio.kinematics.frames import cross, tangents, turned_left
-from concio.kinematics.mass import polygon_moments
+from concio.kinematics.frames import cross, turned_left
 from concio.model.interfaces.detect import (
     FACING_ANGLE,
     NEAR_ANGLE,
@@ -31,87 +29,21 @@ from concio.model.interfaces.detect import (
     SLIVER_SHARE,
     Detection,
     check_distances,
+    touching,
 )
+from concio.model.interfaces.edges_in_space import find_touches
 from concio.model.interfaces.faces import FacePairs, Faces, facing_faces, neighbours
 from concio.model.interfaces.near import MissKind, NearMiss
-from concio.model.interfaces.near_space import find_overlaps_in_space, find_touches, miss_in_space
+from concio.model.interfaces.near_space import find_overlaps_in_space, miss_in_space
+from concio.model.interfaces.patch import Patch
 from concio.model.overlay import common
 from concio.model.polyhedron import Polyhedron
 
 Array = np.ndarray
 
 
-@dataclass(frozen=True, eq=False)
-class Patch:
-    """The common polygon of two faces that face each other.
-
-    Parameters
-    ----------
-    a, b : int
-        Indices of the bodies, ``a < b``.
-    face_a, face_b : int
-        Numbers of the faces.
-    polygon : (k, 3) array
-        Boundary on the face of ``a``, counter-clockwise about the normal [m].
-    normal : (3,) array
-        Unit normal from a to b.
-    gap : (k,) array
-        Initial gap at the vertices of the boundary, zero or positive [m]; zero wherever the faces are within the
-        tolerance.
-    signed_gap : (k,) array
-        Distance as drawn, negative where the faces overlap (by at most the tolerance) [m].
-    area : float
-        [m2].
-    holes : tuple of (h, 3) arrays
-        Boundaries of holes, clockwise about the normal [m].
-    """
-
-    a: int
-    b: int
-    face_a: int
-    face_b: int
-    polygon: Array
-    normal: Array
-    gap: Array
-    signed_gap: Array
-    area: float
-    holes: tuple[Array, ...] = ()
-
-    dim: ClassVar[int] = 3
-
-    def __repr__(self) -> str:
-        return f"Patch({self.a}-{self.b}, {len(self.polygon)} vertices, area {self.area:.4g} m2)"
-
-    @cached_property
-    def frame(self) -> Array:
-        """The two tangents (2, 3), right-handed with the normal."""
-        return tangents(self.normal)
-
-    @cached_property
-    def middle(self) -> Array:
-        """Centroid (3,) [m]."""
-        flat = (self.polygon - self.polygon[0]) @ self.frame.T
-        holes = [(hole - self.polygon[0]) @ self.frame.T for hole in self.holes]
-        return np.asarray(self.polygon[0] + polygon_moments(flat, holes).centroid @ self.frame)
-
-    @property
-    def size(self) -> float:
-        """Longest side of the box around it in its plane [m]."""
-        return float(np.ptp(self.polygon @ self.frame.T, axis=0).max())
-
-    def gap_at(self, points: Array) -> Array:
-        """Return the initial gap (n,) at points (n, 3) of the patch, zero or positive [m]."""
-        if not self.gap.any():
-            return np.zeros(len(points))
-        flat = (self.polygon - self.polygon[0]) @ self.frame.T
-        system = np.column_stack([np.ones(len(flat)), flat])
-        plane, *_ = np.linalg.lstsq(system, self.signed_gap, rcond=None)
-        arm = (points - self.polygon[0]) @ self.frame.T
-        return np.asarray(np.maximum(plane[0] + arm @ plane[1:], 0.0))
-
-
 def detect_patches(
-    bodies: Sequence[Polyhedron], *, tolerance: float, reach: float = 0.0, facing_angle: float = FACING_ANGLE
+    bodies: Sequence[Polyhedron], *, tolerance: float, reach: float | None = None, facing_angle: float = FACING_ANGLE
 ) -> Detection:
     """Return the patches between polyhedra, with near misses and overlaps.
 
@@ -121,8 +53,10 @@ def detect_patches(
         Pairs of two fixed bodies are skipped.
     tolerance : float
         Faces closer than this touch, and overlap by up to this without being an overlap [m].
-    reach : float
-        Faces further apart than the tolerance but within the reach become patches with an initial gap [m].
+    reach : float, optional
+        Faces further apart than the tolerance but within the reach become patches with an initial gap; 0 joins only
+        what touches [m]. By default faces that come nearer than a thousandth of the smaller body's size anywhere are
+        joined over all of their common area.
     facing_angle : float
         Largest angle between faces that are joined [rad].
 
@@ -135,28 +69,32 @@ def detect_patches(
     table = Faces.of(bodies)
     size = sizes(bodies)
     fixed = np.array([b.kind == "fixed" for b in bodies])
-    within = max(tolerance, reach)
+    touch = touching(size, tolerance, reach)
     low, high = (f.reduceat(v, table.of_body[:-1]) for f, v in ((np.minimum, table.low), (np.maximum, table.high)))
-    around = 0.5 * np.maximum(NEAR_SHARE * size, 2 * within)[:, None]
+    around = 0.5 * np.maximum(NEAR_SHARE * size, 2 * touch)[:, None]
     i, j = neighbours(low - around, high + around)
     some = ~(fixed[i] & fixed[j])
     i, j = i[some], j[some]
     smaller = np.minimum(size[i], size[j])
-    near = np.maximum(NEAR_SHARE * smaller, 2 * within)
+    reached = np.minimum(touch[i], touch[j])
+    near = np.maximum(NEAR_SHARE * smaller, 2 * reached)
     pairs = facing_faces(table, (i, j), near, max(facing_angle, NEAR_ANGLE))
 
-    common = _Common.of(table, pairs, tolerance)
+    least = np.minimum(tolerance, SLIVER_SHARE * np.minimum(*size[table.body[pairs.faces]].T))
+    common = _Common.of(table, pairs, least)
     small = np.minimum(*size[table.body[pairs.faces]].T)[common.pair]
-    thin = np.maximum(SLIVER_SHARE * small, tolerance)
+    thin = SLIVER_SHARE * small
+    within = np.minimum(*touch[table.body[pairs.faces]].T)[common.pair]
     limit = np.maximum(NEAR_SHARE * small, 2 * within)
     turned = pairs.angle[common.pair] > facing_angle
-    clipped = common.clipped(pairs, table, -tolerance, within, tolerance)
+    whole = (common.g_min <= within) & (reach is None)
+    clipped = common.clipped(pairs, table, -tolerance, np.where(whole, np.inf, within), least)
     width = common.width()
     faces_each_other = (width >= thin) & (common.g_max >= -tolerance) & (common.g_min <= limit)
     own_width = np.zeros(len(common.pair))
     np.maximum.at(own_width, clipped.source, clipped.width())
     kept = (clipped.width() >= thin[clipped.source]) & ~turned[clipped.source]
-    patches = clipped.patches(pairs, table, np.flatnonzero(kept), tolerance)
+    patches = clipped.patches(pairs, table, np.flatnonzero(kept), tolerance, least)
     joined = {(p.a, p.b) for p in patches}
 
     area = np.zeros(len(common.pair))
@@ -164,8 +102,8 @@ def detect_patches(
     has = np.zeros(len(common.pair), dtype=bool)
     has[clipped.source[kept]] = True
     partial = has & (common.area - area > np.maximum(thin * np.sqrt(common.area), 0.01 * common.area))
-    touching = own_width > tolerance
-    sliver = ~has & ~turned & touching & ~(faces_each_other & (common.g_max > within))
+    touches = own_width > least[common.pair]
+    sliver = ~has & ~turned & touches & ~(faces_each_other & (common.g_max > within))
     angle = ~has & ~sliver & faces_each_other & (common.g_min <= within)
     apart = ~has & ~turned & faces_each_other & (common.g_min > within)
     misses: list[NearMiss] = []
@@ -178,16 +116,16 @@ def detect_patches(
                 kind, bodies, (int(table.body[a]), int(table.body[b])), (int(table.number[a]), int(table.number[b])),
                 common.middle(pairs, table, k), gap=float(common.g_max[k] if kind == "partial" else common.g_min[k]),
                 area=float(common.area[k]), joined=float(area[k]), width=float(own_width[k]),
-                angle=float(pairs.angle[p]), within=within,
+                angle=float(pairs.angle[p]), within=float(within[k]),
             )
         )  # fmt: skip
     rest = np.array([(p, q) not in joined for p, q in zip(i.tolist(), j.tolist(), strict=True)], dtype=bool)
     convex = np.array([b.convex for b in bodies])
     doubtful = rest | ~(convex[i] & convex[j])
     overlaps = find_overlaps_in_space(bodies, (i[doubtful], j[doubtful]), tolerance)
-    known = joined | {o.bodies for o in overlaps} | {m.bodies for m in misses}
-    free = np.array([(p, q) not in known for p, q in zip(i.tolist(), j.tolist(), strict=True)], dtype=bool)
-    misses += find_touches(bodies, table, (i[free], j[free]), tolerance)
+    lapped = {o.bodies for o in overlaps}
+    free = doubtful & np.array([(p, q) not in lapped for p, q in zip(i.tolist(), j.tolist(), strict=True)], dtype=bool)
+    misses += find_touches(bodies, table, (i[free], j[free]), reached[free], patches, misses)
     misses = _without_hidden(misses, joined, bodies)
     return Detection(tuple(patches), tuple(misses), tuple(overlaps))
 
@@ -240,27 +178,27 @@ class _Common:
     g_max: Array
 
     @classmethod
-    def of(cls, table: Faces, pairs: FacePairs, tolerance: float) -> _Common:
-        """Return the pieces of the common area of each pair that are wider than the tolerance."""
+    def of(cls, table: Faces, pairs: FacePairs, least: Array) -> _Common:
+        """Return the pieces of the common area of each pair that are wider than ``least`` (p,) [m]."""
         first = table.polygons(pairs.faces[:, 0], pairs.origin, pairs.frame)
         second = table.polygons(pairs.faces[:, 1], pairs.origin, pairs.frame)
         box_a, box_b = shapely.bounds(first), shapely.bounds(second)
         low, high = np.maximum(box_a[:, :2], box_b[:, :2]), np.minimum(box_a[:, 2:], box_b[:, 2:])
-        meet = np.flatnonzero((high - low > tolerance).all(1))
+        meet = np.flatnonzero((high - low > least[:, None]).all(1))
         boxes = _are_boxes(first[meet], box_a[meet]) & _are_boxes(second[meet], box_b[meet])
         plain, other = meet[boxes], meet[~boxes]  # rectangles along the axes of their plane need no cutting
         parts, index = shapely.get_parts(common(first[other], second[other]), return_index=True)
         both = shapely.box(*low[plain].T, *high[plain].T)
         pair = np.concatenate([plain, other[index]])
-        return cls.described(table, pairs, np.concatenate([both, parts]), pair, pair, tolerance)
+        return cls.described(table, pairs, np.concatenate([both, parts]), pair, pair, least)
 
     @classmethod
     def described(
-        cls, table: Faces, pairs: FacePairs, parts: Array, pair: Array, source: Array, tolerance: float
+        cls, table: Faces, pairs: FacePairs, parts: Array, pair: Array, source: Array, least: Array
     ) -> _Common:
-        """Return pieces with their areas and gaps; lines, points and what is thinner than the tolerance go."""
+        """Return pieces with their areas and gaps; lines, points and what is thinner than ``least`` (p,) go."""
         area, around = shapely.area(parts), shapely.length(parts)
-        some = 2 * area > tolerance * around
+        some = 2 * area > least[pair] * around
         parts, pair, source, area = parts[some], pair[some], source[some], area[some]
         flat, owner = shapely.get_coordinates(parts, return_index=True)
         at = pairs.on_first(table, pair[owner], flat)
@@ -275,23 +213,24 @@ class _Common:
         around = shapely.length(self.shape)
         return np.asarray(np.divide(2 * self.area, around, out=np.zeros_like(self.area), where=around > 0))
 
-    def clipped(self, pairs: FacePairs, table: Faces, least: float, most: float, tolerance: float) -> _Common:
-        """Return the pieces where the gap lies between two values; ``source`` is the piece each comes from."""
-        whole = (self.g_min >= least) & (self.g_max <= most)
-        cut = np.flatnonzero(~whole & (self.g_min <= most) & (self.g_max >= least))
+    def clipped(self, pairs: FacePairs, table: Faces, low: float, high: Array, least: Array) -> _Common:
+        """Return the pieces where the gap lies between ``low`` and ``high`` (c,), and where each comes from."""
+        most = np.minimum(high, self.g_max + (self.g_max - self.g_min))
+        whole = (self.g_min >= low) & (self.g_max <= most)
+        cut = np.flatnonzero(~whole & (self.g_min <= most) & (self.g_max >= low))
         shapes, pair, source = [self.shape[whole]], [self.pair[whole]], [np.flatnonzero(whole)]
         for k in cut.tolist():
             p = int(self.pair[k])
             probe = pairs.on_first(table, np.full(3, p), np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
             g0, g1, g2 = pairs.height(table, 1, np.full(3, p), probe)
             slope = np.array([g1 - g0, g2 - g0])
-            band = _band(self.shape[k], slope, g0, least, most)
+            band = _band(self.shape[k], slope, g0, low, float(most[k]))
             parts = shapely.get_parts(common(self.shape[[k]], band))
             shapes.append(parts)
             pair.append(np.full(len(parts), p))
             source.append(np.full(len(parts), k))
         return _Common.described(
-            table, pairs, np.concatenate(shapes), np.concatenate(pair), np.concatenate(source), tolerance
+            table, pairs, np.concatenate(shapes), np.concatenate(pair), np.concatenate(source), least
         )
 
     def middle(self, pairs: FacePairs, table: Faces, k: int) -> Array:
@@ -301,7 +240,9 @@ class _Common:
         found: Array = at[0]
         return found
 
-    def patches(self, pairs: FacePairs, table: Faces, chosen: Array, tolerance: float) -> list[Patch]:
+    def patches(
+        self, pairs: FacePairs, table: Faces, chosen: Array, tolerance: float, least: Array
+    ) -> list[Patch]:
         """Return chosen pieces as patches, in order of bodies and faces."""
         pair = self.pair[chosen]
         a, b = pairs.faces[pair].T
@@ -311,7 +252,7 @@ class _Common:
         flat, ring_ends, part_ends = _ragged(shapes)
         ring_of = np.repeat(np.arange(len(ring_ends) - 1), np.diff(ring_ends))
         part_of = np.repeat(np.arange(len(chosen)), np.diff(part_ends))
-        keep = _kept_vertices(flat, ring_ends, tolerance)
+        keep = _kept_vertices(flat, ring_ends, least[pair[part_of]])
         flat, ring_of = flat[keep], ring_of[keep]
         owner = part_of[ring_of]
         at = pairs.on_first(table, pair[owner], flat)
@@ -351,8 +292,8 @@ def _ragged(shapes: Array) -> tuple[Array, Array, Array]:
     return np.asarray(flat)[inner], rings - np.arange(len(rings)), np.asarray(parts)
 
 
-def _kept_vertices(flat: Array, rings: Array, tolerance: float) -> Array:
-    """Return which vertices stay when doubles and those on straight sides are dropped from all rings."""
+def _kept_vertices(flat: Array, rings: Array, least: Array) -> Array:
+    """Return which vertices stay without those nearer than ``least`` (rings,) to the next or on straight sides."""
     keep = np.ones(len(flat), dtype=bool)
     count = np.diff(rings)
     ring = np.repeat(np.arange(len(count)), count)
@@ -363,9 +304,10 @@ def _kept_vertices(flat: Array, rings: Array, tolerance: float) -> Array:
     along, back = flat[ahead] - flat, flat - flat[behind]
     turn = cross(back, along)
     base = np.linalg.norm(flat[ahead] - flat[behind], axis=1)
-    suspect = (np.linalg.norm(along, axis=1) <= tolerance) | (np.abs(turn) <= 0.1 * tolerance * base)
+    near = least[ring]
+    suspect = (np.linalg.norm(along, axis=1) <= near) | (np.abs(turn) <= 0.1 * near * base)
     for r in np.unique(ring[suspect]).tolist():
-        members = list(range(rings[r], rings[r + 1]))
+        members, tolerance = list(range(rings[r], rings[r + 1])), float(least[r])
         k, idle = 0, 0
         while len(members) > 3 and idle < len(members):
             p, v, q = members[k - 1], members[k], members[(k + 1) % len(members)]

@@ -11,6 +11,7 @@ import shapely
 from concio.errors import GeometryError
 from concio.kinematics.frames import turning
 from concio.kinematics.mass import signed_area
+from concio.model.limits import LARGEST_COORDINATE
 from concio.model.model import Array
 
 FaultKind = Literal["not finite", "too few", "double vertex", "spike", "crossing", "touching", "no area"]
@@ -68,7 +69,7 @@ def check_polygon(outline: Array, name: str = "", *, tolerance: float = 0.0, sha
 def polygon_faults(outline: Array, *, tolerance: float = 0.0, sharpest: float = SHARPEST) -> tuple[Fault, ...]:
     """Return all faults of an outline (n, 2); a closing repetition of the first vertex is no fault."""
     points = np.array(outline, dtype=float)
-    if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
+    if points.ndim != 2 or points.shape[1] != 2 or not (np.abs(points) < LARGEST_COORDINATE).all():
         return (Fault("not finite", np.full(2, np.nan), "a coordinate is missing or not finite", "give numbers in m"),)
     if len(points) > 1 and np.array_equal(points[0], points[-1]):
         points = points[:-1]

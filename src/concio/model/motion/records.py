@@ -14,7 +14,7 @@ import numpy as np
 
 from concio.arguments import strict
 from concio.errors import InputError
-from concio.model.motion.signals import Quantity, Record
+from concio.model.motion.signals import Pulse, Quantity, Record
 
 Array = np.ndarray
 
@@ -56,7 +56,7 @@ def read_record(path: Path | str, *, unit: str | None = None, step: float | None
     path : Path or str
         ``.at2``, ``.vt2`` and ``.dt2`` are PEER's formats, anything else is text.
     unit : str, optional
-        One of :data:`UNITS`; PEER's files bring their own, text is in m/s2 if nothing is said.
+        One of :data:`UNITS`; PEER's files bring their own, of a text it must be said.
     step : float, optional
         Time between the samples of a text of one column [s].
 
@@ -88,7 +88,10 @@ def read_record(path: Path | str, *, unit: str | None = None, step: float | None
         unit = unit or _unit_of_peer(text, suffix, where)
     else:
         values, step = _columns(text, step, where)
-        unit = unit or "m/s2"
+        if unit is None:
+            msg = f"the text does not say its unit; its largest value is {float(np.abs(values).max()):.4g}"
+            hint = "give the unit: --record-unit g, m/s2, cm/s2, m/s, m ...; in a file: unit = \"g\"; here: unit=\"g\""
+            raise InputError(msg, where=where, hint=hint)
     quantity, size = UNITS[unit]
     return Record(size * values, step, quantity, path.name)
 
@@ -111,8 +114,14 @@ def _unit_of_peer(text: str, suffix: str, where: str) -> str:
     return unit
 
 
-def attention(record: Record) -> str | None:
-    """Return what is strange about a record: a peak that suggests another unit; None where nothing is."""
+def attention(signal: Record | Pulse) -> str | None:
+    """Return what is strange about a record or a pulse: a peak that suggests another unit; None where nothing is."""
+    if isinstance(signal, Pulse):
+        peak = abs(signal.amplitude) / STANDARD_GRAVITY
+        if peak <= LARGEST:
+            return None
+        return f"the {signal.shape} pulse has a peak of {peak:.3g} g, more than any earthquake: is that its unit?"
+    record = signal
     if record.quantity != "acceleration":
         return None
     peak = float(np.abs(record.values).max()) / STANDARD_GRAVITY

@@ -13,6 +13,9 @@ from concio.files import check_regular
 from concio.model.drawing.dxf_entities import DAMAGED, UNITS
 from concio.model.solids.shapes import Scene, Shape, check_size
 
+NAMES = "CONCIO"
+"""Application under which the extended data of a mesh hold the name of its block."""
+
 
 def read_dxf_solids(path: Path) -> Scene:
     """Return the surfaces of a DXF file; block references are taken apart.
@@ -61,6 +64,8 @@ def _shapes(entities: list[Any]) -> list[Shape]:
             points = np.array([tuple(v) for v in mesh.vertices], dtype=float).reshape(-1, 3)
             faces = [list(f) for f in mesh.faces if len(f) > 2]
             name = f"h{entity.dxf.get('handle', '')}"
+            if entity.has_xdata(NAMES):
+                name = next((str(tag.value) for tag in entity.get_xdata(NAMES) if tag.code == 1000), name)
             found.append(Shape(name, layer, points, faces, source=f"layer '{layer}'"))
     for layer, loops in loose.items():
         if not loops:

@@ -17,11 +17,14 @@ from concio.arguments import closest, strict_with
 from concio.errors import GeometryError, InputError
 from concio.model.generate.arguments import not_negative
 from concio.model.generate.solid_masonry import CommonSpace, SolidPiece, assemble_space, box_piece, checked_space
+from concio.model.limits import LARGEST_COORDINATE
 from concio.model.materials import Elastic, Rigid
-from concio.model.model import Model
-from concio.model.polyhedron_check import MOST_VERTICES, polyhedron_faults
+from concio.model.model import CONTROL, Model
+from concio.model.polyhedron_check import MOST_VERTICES, SolidFault, polyhedron_faults
 from concio.model.solids.compas import read_compas
 from concio.model.solids.dxf3d import read_dxf_solids
+from concio.model.solids.flatten import snapped
+from concio.model.solids.flatten import split_warped as triangulated
 from concio.model.solids.ifc import read_ifc
 from concio.model.solids.obj import read_obj
 from concio.model.solids.off import read_off
@@ -61,6 +64,8 @@ def model_from_solids(
     mend: float | str = 0.0,
     on_fault: Literal["raise", "skip"] = "raise",
     ground: bool = False,
+    gap_tolerance: float | str | None = None,
+    split_warped: bool = False,
     **common: Unpack[CommonSpace],
 ) -> Model:
     """Return the model of the blocks in a file of solids.
@@ -86,6 +91,13 @@ def model_from_solids(
         Skip leaves out the blocks that cannot be used.
     ground : bool
         Put a fixed slab below the lowest point.
+    gap_tolerance : float or str, optional
+        Accuracy of the coordinates: faces nearer than this touch, and vertices are moved by up to this to make faces
+        plane, of which near-coplanar ones are put together [m]. ``model.generator["moved"]`` tells of each block how
+        far. By default faces touch as the model has it, and nothing is moved.
+    split_warped : bool
+        Split faces that are not plane, and cannot be made so, into triangles; a face that two blocks share is split
+        alike in both.
     **common
         See :class:`concio.model.generate.solid_masonry.CommonSpace`.
 
@@ -105,6 +117,10 @@ def model_from_solids(
     where = str(path)
     options = checked_space(where, common)
     within = not_negative(where, "mend", mend)
+    accuracy = None if gap_tolerance is None else quantity(gap_tolerance, "length", where="gap_tolerance")
+    if accuracy is not None and not 0 < accuracy < np.inf:
+        msg = f"gap_tolerance = {accuracy:g} must be positive"
+        raise InputError(msg, where=where, hint="give the accuracy of the coordinates, in m")
     if on_fault not in ("raise", "skip"):
         msg = f"on_fault = {on_fault!r} is not 'raise' or 'skip'"
         raise InputError(msg, where=where)
@@ -132,7 +148,7 @@ def model_from_solids(
     parts = [part for shape in scene.shapes for part in _parted(shape, metres, within)]
     _check_unit([p for _, p, _ in parts], scene, unit, metres, where)
     for shape, points, faces in parts:
-        name = _unique(shape.name or shape.layer or "b", names)
+        name = _unique(CONTROL.sub("_", shape.name or shape.layer or "b"), names)
         meaning = _meaning(shape, meanings, table)
         if meaning == "ignore":
             ignored.append(f"'{name}' was left out")
@@ -143,10 +159,18 @@ def model_from_solids(
             continue
         points, faces, turned = _outward(points, faces) if within else (points, faces, False)
         notes += [f"'{name}': its faces were turned outwards"] * turned
-        sound = len(points) <= MOST_VERTICES and np.isfinite(points).all() and len(faces) > 3
+        sound = len(points) <= MOST_VERTICES and _usable(points) and len(faces) > 3
         surface = merged_faces(points, faces) if sound else (points, faces, ())
+        if sound and accuracy:
+            surface, far = snapped((points, faces, ()), accuracy)
+            if far > 0:
+                notes.append(f"'{name}': its corners were moved by up to {1e3 * far:.3g} mm to make its faces plane")
         found = polyhedron_faults(*surface)
-        faults += [(f"{label}: {fault.sentence}", fault.hint) for fault in found]
+        if split_warped and found and all(fault.kind == "out of plane" for fault in found):
+            surface, count = triangulated(surface)
+            notes.append(f"'{name}': {count} faces that are not plane were split into triangles")
+            found = polyhedron_faults(*surface)
+        faults += [(f"{label}: {fault.sentence}", _hint(fault)) for fault in found]
         if found:
             continue
         piece = SolidPiece(name, surface, layer=shape.layer, material=meaning)
@@ -168,7 +192,18 @@ def model_from_solids(
         "moved": tuple(notes),
     }  # fmt: skip
     others = {name: material for name, material in table.items() if name != "block"}
-    return assemble_space(options, pieces, obstacles, materials=others, title=path.stem, generator=record)
+    model = assemble_space(options, pieces, obstacles, materials=others, title=path.stem, generator=record)
+    return model if accuracy is None else replace(model, gap_tolerance=accuracy)
+
+
+def _hint(fault: SolidFault) -> str:
+    """Return what to do about a fault of an imported block."""
+    if fault.kind != "out of plane":
+        return fault.hint
+    return (
+        f"gap_tolerance = {2e3 * fault.deviation:.2g} mm moves its corners into planes, split_warped = true splits "
+        "such faces into triangles"
+    )
 
 
 def read_scene(path: Path) -> Scene:
@@ -201,7 +236,7 @@ def read_scene(path: Path) -> Scene:
 def _parted(shape: Shape, metres: float, within: float) -> list[tuple[Shape, Array, tuple[Loop, ...]]]:
     """Return the connected parts of a surface, welded, in metres."""
     points = metres * shape.points
-    if not len(points) or not np.isfinite(points).all():
+    if not len(points) or not _usable(points):
         return [(shape, points, tuple(map(tuple, shape.faces)))]
     own = tuple(map(tuple, shape.faces))
     if own and len(points) > MOST_VERTICES and np.bincount(_labels(own)).max() > MOST_VERTICES:
@@ -211,6 +246,11 @@ def _parted(shape: Shape, metres: float, within: float) -> list[tuple[Shape, Arr
         return [(shape, *part) for part in parts]
     size = float(np.ptp(points, axis=0).max())
     return [(shape, *part) for part in _connected(*welded(points, own, max(within, 1e-9 * size)))]
+
+
+def _usable(points: Array) -> bool:
+    """Return whether coordinates are numbers whose products are numbers."""
+    return bool((np.abs(points) < LARGEST_COORDINATE).all())
 
 
 def _connected(points: Array, faces: tuple[Loop, ...]) -> list[tuple[Array, tuple[Loop, ...]]]:
@@ -271,7 +311,7 @@ def _outward(points: Array, faces: tuple[Loop, ...]) -> tuple[Array, tuple[Loop,
 
 def _check_unit(blocks: Sequence[Array], scene: Scene, unit: str | None, metres: float, where: str) -> None:
     """Refuse blocks that are no blocks in the unit assumed, where nobody stated it."""
-    sizes = [float(np.ptp(p, axis=0).max()) for p in blocks if len(p) and np.isfinite(p).all()]
+    sizes = [float(np.ptp(p, axis=0).max()) for p in blocks if len(p) and _usable(p)]
     if not sizes or unit is not None:
         return
     usual = float(np.median(sizes))

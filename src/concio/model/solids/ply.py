@@ -49,6 +49,10 @@ def read_ply(path: Path) -> Scene:
         raise InputError(msg, where=where, hint="a scanned surface is no structure of blocks: model the blocks")
     raw = path.read_bytes()
     order, elements, start = _header(raw, where)
+    for element in elements:
+        if sum(other.name == element.name for other in elements) > 1:
+            msg = f"the header declares element '{element.name}' twice"
+            raise InputError(msg, where=where, hint="was it edited by hand? Save it once more")
     of = {element.name: element for element in elements}
     vertex, face = of.get("vertex"), of.get("face")
     if vertex is None or any(len(vertex.properties.get(axis, ())) != 1 for axis in "xyz"):
@@ -96,6 +100,8 @@ def _header(raw: bytes, where: str) -> tuple[str, list[_Element], int]:
                 order = ORDERS[kind]
             case ["element", name, count] if count.isdigit() and len(count) < 16:
                 elements.append(_Element(name, int(count)))
+            case ["property", *_, name] if elements and name in elements[-1].properties:
+                good = False
             case ["property", "list", length, kind, name] if {length, kind} <= TYPES.keys() and elements:
                 elements[-1].properties[name] = (TYPES[length], TYPES[kind])
                 good = TYPES[length][0] != "f"

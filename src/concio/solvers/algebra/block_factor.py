@@ -26,6 +26,24 @@ SMALL_BODY = 6
 """Bodies of up to this many unknowns are coupled as wholes: rigid blocks."""
 
 
+Springs = Array | float | sp.csr_array
+"""What ties unknowns to a place: the diagonal of a matrix, or all of it."""
+
+
+def same_springs(a: Springs | None, b: Springs | None) -> bool:
+    """Tell whether two are the same."""
+    if isinstance(a, sp.csr_array) or isinstance(b, sp.csr_array):
+        both = isinstance(a, sp.csr_array) and isinstance(b, sp.csr_array)
+        return both and all(np.array_equal(getattr(a, p), getattr(b, p)) for p in ("data", "indices", "indptr"))
+    return a is not None and b is not None and np.array_equal(np.asarray(a), np.asarray(b))
+
+
+def times_springs(springs: Springs, v: Array) -> Array:
+    """Return the forces (N,) of springs stretched by v (N,)."""
+    forces: Array = springs @ v if isinstance(springs, sp.csr_array) else springs * v
+    return forces
+
+
 @dataclass(frozen=True, eq=False)
 class Clique:
     """Pairs in groups that meet the same unknowns.
@@ -58,37 +76,41 @@ class BlockFactor:
     bodies : (B+1,) integer array
         Unknowns of body k are ``bodies[k]:bodies[k+1]``.
     engine : {"superlu", "pardiso"}, optional
+    added : (N, N) CSR array, optional
+        Has the entries that may be added to K.
 
     Attributes
     ----------
     D : (m, d, d) array or None
         Blocks of the factors at hand; None before there are any.
-    diagonal : (N,) array, float or None
-        The diagonal added with them.
+    diagonal : (N,) array, float, (N, N) CSR array or None
+        What was added with them.
     """
 
     def __init__(
-        self, K: sp.csr_array, C: sp.csr_array, pairs: int, bodies: Array, engine: Engine | None = None
-    ) -> None:
+        self, K: sp.csr_array, C: sp.csr_array, pairs: int, bodies: Array, engine: Engine | None = None,
+        added: sp.csr_array | None = None,
+    ) -> None:  # fmt: skip
         n = K.shape[0]
         groups = _groups(C, pairs, bodies)
         rows = [np.repeat(u, u.shape[1], axis=1).ravel() for _, _, u in groups]
         columns = [np.tile(u, (1, u.shape[1])).ravel() for _, _, u in groups]
-        coo = K.tocoo()
+        coo, more = K.tocoo(), sp.coo_array((n, n)) if added is None else added.tocoo()
         identity = np.arange(n)
-        entries = np.concatenate([coo.row, identity, *rows]), np.concatenate([coo.col, identity, *columns])
-        pattern = Pattern.of(*entries, n, engine, _together(C.shape[0] // max(pairs, 1), bodies))
-        slots = np.split(pattern.slot, np.cumsum([coo.nnz, n, *(r.size for r in rows)]))
+        row = np.concatenate([coo.row, identity, more.row, *rows])
+        column = np.concatenate([coo.col, identity, more.col, *columns])
+        pattern = Pattern.of(row, column, n, engine, _together(C.shape[0] // max(pairs, 1), bodies))
+        slots = np.split(pattern.slot, np.cumsum([coo.nnz, n, more.nnz, *(r.size for r in rows)]))
         self._base = np.bincount(slots[0], weights=coo.data, minlength=pattern.nnz).astype(float)
-        self._diagonal = slots[1]
+        self._diagonal, self._added, self._places = *slots[1:3], (more.row, more.col)
         self.cliques = [
-            Clique(pair, L, slot.astype(np.int32)) for (pair, L, _), slot in zip(groups, slots[2:-1], strict=True)
+            Clique(pair, L, slot.astype(np.int32)) for (pair, L, _), slot in zip(groups, slots[3:-1], strict=True)
         ]
         self.pattern = pattern
         self.numeric = OrderedFactor(pattern, PIVOT)
         self._made = [0]  # shared with all that share the pattern
         self.D: Array | None = None
-        self.diagonal: Array | float | None = None
+        self.diagonal: Springs | None = None
 
     @property
     def engine(self) -> Engine:
@@ -112,17 +134,30 @@ class BlockFactor:
 
     def has(self, D: Array, diagonal: float) -> bool:
         """Tell whether the factors at hand are those of D (m, d, d) and this diagonal, but for rounding."""
-        if self.D is None or not np.array_equal(np.asarray(self.diagonal), diagonal):
+        if self.D is None or not same_springs(self.diagonal, diagonal):
             return False
         return bool((np.abs(D - self.D) <= SAME * np.abs(self.D)).all())
 
-    def with_diagonal(self, diagonal: Array) -> BlockFactor:
-        """Return a factor of K + diag(diagonal) that shares ordering and pattern; each keeps factors of its own."""
+    def with_added(self, matrix: sp.csr_array) -> BlockFactor:
+        """Return a factor of K + matrix, which has the entries of ``added``; ordering and pattern are shared."""
         other = self.afresh()
         other._made = self._made
         other._base = self._base.copy()
-        other._base[self._diagonal] += diagonal
+        other._add(other._base, matrix)
         return other
+
+    def may_add(self, matrix: sp.csr_array) -> bool:
+        """Tell whether a matrix has the entries of ``added``, in their order."""
+        coo = matrix.tocoo()
+        return np.array_equal(coo.row, self._places[0]) and np.array_equal(coo.col, self._places[1])
+
+    def _add(self, data: Array, springs: Springs) -> None:
+        """Add a diagonal, or a matrix with the entries of ``added``, to the values of the pattern."""
+        if not isinstance(springs, sp.csr_array):
+            data[self._diagonal] += springs
+            return
+        assert springs.nnz == self._added.size, "the entries that may be added"
+        data[self._added] += springs.data
 
     def afresh(self) -> BlockFactor:
         """Return a factor of the same matrices that has made nothing yet; pattern and ordering are shared."""
@@ -132,8 +167,8 @@ class BlockFactor:
         other.D = other.diagonal = None
         return other
 
-    def factorise(self, D: Array, diagonal: Array | float = 0.0) -> None:
-        """Factorise K + C' D C + diag(diagonal), D of shape (m, d, d).
+    def factorise(self, D: Array, diagonal: Springs = 0.0) -> None:
+        """Factorise K + C' D C + diag(diagonal), D of shape (m, d, d); or a matrix with the entries of ``added``.
 
         Raises
         ------
@@ -147,7 +182,7 @@ class BlockFactor:
             scaled = np.matmul(D[clique.pairs.ravel()], clique.L.reshape(-1, d, w)).reshape(g, rows, w)
             block = np.matmul(clique.L.transpose(0, 2, 1), scaled)
             data += np.bincount(clique.slot, weights=block.ravel(), minlength=data.size)
-        data[self._diagonal] += diagonal
+        self._add(data, diagonal)
         self.D = self.diagonal = None
         self._made[0] += 1
         self.numeric.factorise(data)

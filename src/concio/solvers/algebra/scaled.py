@@ -61,8 +61,8 @@ class Scaled:
         tan(psi); zero where a pair cannot carry friction.
     compliance : (m, d) array
         a_n and a_t.
-    inertia : (N,) array
-        Mass of each unknown over the mean.
+    inertia : (N, N) CSR array
+        Mass matrix over the mean of its diagonal.
     rigid : (N, r) CSC array
         Rigid motions K does nothing to, orthonormal; none where K holds them (:meth:`step_from`).
     factor : BlockFactor
@@ -81,7 +81,7 @@ class Scaled:
     cone: Cone
     dilatancy: Array
     compliance: Array
-    inertia: Array
+    inertia: sp.csr_array
     rigid: sp.csc_array
     factor: BlockFactor
     glued: Array
@@ -197,17 +197,17 @@ class Scaled:
             self,
             problem=replace(
                 problem,
-                K=sp.csr_array((self.K + sp.diags_array(added)) * (self.force / self.length)),
+                K=sp.csr_array((self.K + added) * (self.force / self.length)),
                 f=problem.f - self.elastic(u) * self.force,
                 R=sp.csc_array((len(u), 0)),
                 gap=problem.gap + moved[:, 0] * self.length,
                 slip_origin=problem.slip_origin - moved[:, 1:].reshape(m, -1) * self.length,
             ),
-            K=sp.csr_array(self.K + sp.diags_array(added)),
+            K=sp.csr_array(self.K + added),
             f=self.f - self.elastic(u),
             rigid=sp.csc_array((len(u), 0)),
             x=self.x + moved,
-            factor=self.factor.with_diagonal(added),
+            factor=self.factor.with_added(added),
         )
 
     def renewed(self, other: ContactProblem) -> Scaled:
@@ -219,7 +219,7 @@ class Scaled:
 
     def acceleration(self, a: Array) -> Array:
         """Return the accelerations [m/s2] that belong to scaled ones, M a = F m' a'."""
-        physical: Array = a * (self.force / self.problem.inertia.mean())
+        physical: Array = a * (self.force / _mean_mass(self.problem))
         return physical
 
     def restore(self, u: Array, t: Array) -> tuple[Array, Array, Array]:
@@ -308,7 +308,7 @@ def scale(problem: ContactProblem, engine: Engine | None = None, *, loads: Array
         K=K,
         C=C,
         **_in_units(problem, C, force, length),
-        inertia=problem.inertia / (float(problem.inertia.sum()) or 1.0) * len(problem.inertia),
+        inertia=sp.csr_array(problem.inertia * (1.0 / _mean_mass(problem))),
         rigid=problem.R,
         factor=factor,
         glued=u / length,
@@ -325,9 +325,17 @@ def _matrices(problem: ContactProblem, engine: Engine) -> tuple[float, sp.csr_ar
     K, C = sp.csr_array(problem.K * (1.0 / stiffness)), interleaved(problem)
     ordered = _ORDERED.setdefault(problem, {})
     kept = ordered.get(engine)
-    if kept is None or not (_same(kept[0], K) and _same(kept[1], C)):
-        kept = ordered[engine] = K, C, BlockFactor(K, C, problem.pairs, problem.bodies, engine)
+    mass = problem.inertia
+    if kept is None or not (_same(kept[0], K) and _same(kept[1], C) and kept[2].may_add(mass)):
+        factor = BlockFactor(K, C, problem.pairs, problem.bodies, engine, added=mass)
+        kept = ordered[engine] = K, C, factor
     return stiffness, K, C, kept[2].afresh()
+
+
+def _mean_mass(problem: ContactProblem) -> float:
+    """Return the mean of the diagonal of the mass matrix [t]; 1 where there is none."""
+    diagonal = problem.inertia.diagonal()
+    return float(diagonal.mean()) if diagonal.any() else 1.0
 
 
 def _same(a: sp.csr_array, b: sp.csr_array) -> bool:

@@ -28,6 +28,7 @@ import scipy.sparse.linalg as sla
 from scipy.sparse import csgraph
 
 from concio.errors import ConcioError, InputError
+from concio.solvers.algebra.threads import one_thread
 
 Array = np.ndarray
 Engine = Literal["superlu", "pardiso"]
@@ -51,10 +52,11 @@ class SingularMatrixError(ConcioError):
 
 @contextmanager
 def factorised_by(engine: Engine | None) -> Iterator[None]:
-    """Let an engine factorise all systems inside that leave the choice; None leaves it as it is."""
+    """Let an engine factorise all systems inside that leave the choice; None leaves it. Dense kernels are serial."""
     before = _CHOSEN.set(engine or chosen_engine())
     try:
-        yield
+        with one_thread():
+            yield
     finally:
         _CHOSEN.reset(before)
 

@@ -18,12 +18,16 @@ to be small beside that of their bodies, and is gone in the limit.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from concio.problem.certificate import scales
+from concio.problem.apart import merged, restricted
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.parts import parts_of
 from concio.problem.solution import Solution, judge, pair_states
 from concio.problem.tolerances import AT_BOUND
+from concio.problem.units import measure
 from concio.solvers.algebra.block_factor import BlockFactor
 from concio.solvers.algebra.scaled import compliances, interleaved
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
@@ -38,8 +42,8 @@ LOOSE = 1e-12
 """Stiffness, relative to the lent one, of the springs that keep what nothing holds where it is."""
 
 
-def without_compliance(hard: ContactProblem, lent: ContactProblem, answer: Solution) -> Solution | None:
-    """Return the limit that a solution belongs to, judged by the hard problem; None where it is not certified.
+def without_compliance(hard: ContactProblem, lent: ContactProblem, answer: Solution) -> tuple[Solution, Array]:
+    """Return the limit that a solution belongs to, part by part, each judged by its hard problem.
 
     Parameters
     ----------
@@ -48,7 +52,30 @@ def without_compliance(hard: ContactProblem, lent: ContactProblem, answer: Solut
         The same with compliance lent to some pairs.
     answer : Solution
         A certified solution of ``lent``: its states are imposed.
+
+    Returns
+    -------
+    Solution
+        Of parts whose limit is not certified, or that were lent nothing, the answer as it is.
+    (m,) boolean array
+        Pairs of parts whose answer is that of ``lent``.
     """
+    left = np.zeros(hard.pairs, dtype=bool)
+    stiff, soft = parts_of(hard), parts_of(lent)
+    found = []
+    for part, softer in zip(stiff, soft, strict=True):
+        own = answer if len(stiff) == 1 else restricted(softer, answer)
+        limit = _limit(part.problem, softer.problem, own)
+        left[part.pairs] = limit is None
+        found.append(own if limit is None else limit)
+    if len(stiff) == 1:
+        return found[0], left
+    whole = merged(hard, stiff, found)
+    return replace(whole, trace=answer.trace, info=answer.info, method=answer.method), left
+
+
+def _limit(hard: ContactProblem, lent: ContactProblem, answer: Solution) -> Solution | None:
+    """Return the limit of one part; None where it is not certified."""
     still = np.zeros_like(answer.displacement)
     u, t_n, t_t = still, answer.normal_force, answer.friction_force
     try:
@@ -74,7 +101,8 @@ class _States:
     def __init__(self, hard: ContactProblem, lent: ContactProblem, answer: Solution) -> None:
         self.hard, cone = hard, hard.cone
         states = pair_states(lent, answer)
-        force, _ = scales(lent, answer.displacement, answer.normal_force, answer.friction_force)
+        units = measure(lent, answer.displacement, answer.normal_force, answer.friction_force)
+        force = units.pair_force
         self.open, self.closed, self.crushed, self.direction = (
             states.open, states.closed, states.crushed, states.direction,
         )  # fmt: skip
@@ -82,7 +110,8 @@ class _States:
         self.C = interleaved(hard)
         self.a = compliances(hard)
         self.added = compliances(lent) - self.a
-        self.added[self.a + self.added == 0] = self.added.min(initial=np.inf, where=self.added > 0)
+        if (self.added > 0).any():  # not so in a part that was lent nothing, beside one that was
+            self.added[self.a + self.added == 0] = self.added[self.added > 0].min()
         self._blocks()
 
     def _blocks(self) -> None:

@@ -16,6 +16,7 @@ import numpy as np
 import scipy.linalg as sl
 
 from concio.problem.contact_problem import Array
+from concio.solvers.algebra.block_factor import Springs, same_springs
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 
@@ -57,7 +58,7 @@ class UpdatedBlocks:
         self._delta = np.zeros((0, 0))
         self.D = self.factor.D
 
-    def factorise(self, D: Array, diagonal: Array | float) -> None:
+    def factorise(self, D: Array, diagonal: Springs) -> None:
         """Factorise anew; no pair differs then.
 
         Raises
@@ -68,10 +69,9 @@ class UpdatedBlocks:
         self.factor.factorise(D, diagonal)
         self._forget()
 
-    def has(self, diagonal: Array | float) -> bool:
-        """Tell whether there is a factor at hand with this diagonal added to K."""
-        held = self.factor.diagonal
-        return held is not None and np.array_equal(np.asarray(held), np.asarray(diagonal))
+    def has(self, diagonal: Springs) -> bool:
+        """Tell whether there is a factor at hand with this added to K."""
+        return same_springs(self.factor.diagonal, diagonal)
 
     def room_for(self, pairs: Array) -> bool:
         """Tell whether the columns of some pairs (k,) can join those kept."""

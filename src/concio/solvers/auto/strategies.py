@@ -85,6 +85,8 @@ def statics(run: Run) -> Solution | None:
     state = statically_admissible(problem)
     if state.exists:
         run.trace.append("statically admissible forces exist")
+        if run.scaled.deforms:  # which of them act is told by what gives way, not by a programme
+            return None
         rest = judge(
             problem, np.zeros(problem.unknowns), state.normal_force, state.friction_force, method="linear-programme"
         )

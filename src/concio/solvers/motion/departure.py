@@ -4,7 +4,7 @@ Forces within the cones may exist (no mechanism of :mod:`concio.solvers.statics.
 state that
 obeys Coulomb friction: friction is not associated, and a panel between two smooth-faced walls slides down although
 forces exist that could hold it, had anything pressed it against them. What does it do? It moves. Give the bodies their
-lumped masses M and release them from rest; over one long time step 1/sqrt(e) (implicit Euler) the joint laws hold with
+masses M and release them from rest; over one long time step 1/sqrt(e) (implicit Euler) the joint laws hold with
 
 .. math:: (K + e M) u_e = f + C^T t_e, \qquad e > 0.
 
@@ -37,6 +37,7 @@ from concio.problem.certificate import certify
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.pair_state import PairStates
 from concio.problem.solution import Departure
+from concio.problem.units import measure
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.states.equations import StateEquations
@@ -85,7 +86,7 @@ def _departure(s: Scaled, states: PairStates, u: Array, t: Array, e: float) -> D
             return None  # it comes to rest
     R = s.problem.R
     a = e * (R @ (R.T @ step))
-    moving = replace(s, f=s.f - s.inertia * a)
+    moving = replace(s, f=s.f - s.inertia @ a)
     u = u - step * (float(step @ u) / float(step @ step))
     held = StateEquations(moving, states)
     for _ in range(2):
@@ -114,11 +115,13 @@ def verify_departure(problem: ContactProblem, a: Array, u: Array, t_n: Array, t_
         Forces [kN].
     """
     law = problem.laws
-    force, top = problem.total_load or 1.0, float(np.abs(a).max(initial=0.0)) or 1.0
+    top = float(np.abs(a).max(initial=0.0)) or 1.0
     w_t = (problem.C_t @ a).reshape(t_t.shape)
     speed = np.linalg.norm(w_t, axis=1)
     moving = without_slip_across(problem, u, t_t, np.where((speed > STILL * top)[:, None], w_t, 0.0))
-    certificate = certify(moving.with_loads(problem.f - problem.inertia * a), u, t_n, t_t, total_load=force)
+    moving = replace(moving, f=problem.f - problem.inertia @ a, load=problem.applied)
+    certificate, units = certify(moving, u, t_n, t_t), measure(moving, u, t_n, t_t)
+    force = units.pair_force
     stiffness = float(abs(problem.K).max()) if problem.K.nnz else 1.0
     rigid = float(np.abs(problem.K @ a).max(initial=0.0)) / (stiffness * top)
     cone = problem.cone
@@ -133,7 +136,8 @@ def verify_departure(problem: ContactProblem, a: Array, u: Array, t_n: Array, t_
         float(np.minimum(closing, reserve).max(initial=0.0)),
         float(np.minimum(speed / top, wrong_way).max(initial=0.0)),
     )
-    return Departure(a, problem.inertia, u, t_n, t_t, float(problem.f @ a) / (force * top), violation)
+    power = units.parts.total(units.parts.of_unknown, problem.f * a) / units.force
+    return Departure(a, problem.inertia, u, t_n, t_t, float(power.max(initial=0.0)) / top, violation)
 
 
 def without_slip_across(problem: ContactProblem, u: Array, t_t: Array, w_t: Array) -> ContactProblem:

@@ -16,6 +16,9 @@ from concio.solvers.path.state import CLOSED, CRUSHED, OPEN, STICK, LinearPath, 
 ON_EQUATIONS = 1e-14
 """Residual of the equations of the present states, relative to their largest term, that needs no correction."""
 
+FAR = 1e5
+"""Scaled displacements above this are so large that their rounding is no rounding of forces any more."""
+
 DUST = 1e-16
 """ScaledPath displacements below this are rounding of zero and are recorded as zero."""
 
@@ -77,11 +80,31 @@ class PathPoint:
         b = self.right_hand_side()
         size = float(np.abs(self.x).max(initial=0.0)) + float(np.abs(b).max(initial=0.0))
         left = b - self.equations.multiply(self.x)
-        if float(np.abs(left).max()) <= ON_EQUATIONS * size:
-            return
-        change, _ = self.equations.solve(left)  # of least size where forces are not unique
-        if np.abs(change).max() <= 1e-6 * size:
-            self.x = self.x + change
+        if float(np.abs(left).max()) > ON_EQUATIONS * size:
+            change, _ = self.equations.solve(left)  # of least size where forces are not unique
+            if np.abs(change).max() <= 1e-6 * size:
+                self.x = self.x + change
+        if float(np.abs(self.x[: self.equations.n]).max(initial=0.0)) > FAR:
+            self.balance_forces(b)
+
+    def balance_forces(self, b: Array) -> None:
+        """Correct the forces alone, where displacements have grown so large that their rounding moves forces.
+
+        Of a stiff pair a force is a displacement over its compliance; rounding of u, which nothing is left of in a gap
+        measured by u, would be found again in the balance of forces.
+        """
+        e, n, m = self.equations, self.equations.n, self.equations.m
+        t_n, t_t = self.x[n : n + m], self.x[n + m : -1]
+        used = e.sliding * e.data.cone.friction * t_n + t_t
+        left = b - e.multiply(self.x)
+        left[n : n + m] = np.where(e.contact != CLOSED, b[n : n + m] - t_n, 0.0)
+        left[n + m : -1] = np.where(e.sliding != STICK, b[n + m : -1] - used, 0.0)
+        left[-1] = 0.0
+        size = float(np.abs(self.x[n:]).max(initial=0.0)) + float(np.abs(b[:n]).max(initial=0.0))
+        if float(np.abs(left).max()) > ON_EQUATIONS * size:
+            change, _ = e.solve(left)
+            if np.abs(change[n:]).max() <= 1e-6 * size:
+                self.x = self.x + change
 
     def right_hand_side(self) -> Array:
         """Return the right-hand side (size,) of the equations of the present states at the present control."""

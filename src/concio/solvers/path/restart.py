@@ -20,10 +20,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from concio.problem.certificate import scales
 from concio.problem.contact_problem import Array
 from concio.problem.solution import ProgressCallback, Solution, Status, failed
 from concio.problem.tolerances import AT_BOUND
+from concio.problem.units import measure
 from concio.solvers.auto import chain as auto
 from concio.solvers.interior import engine
 from concio.solvers.path.near_forces import needed, solve_near
@@ -173,7 +173,8 @@ def moves_freely(path: LinearPath, point: PathState, velocity: Array) -> bool:
     stiff = float(np.abs(problem.K.diagonal()).max(initial=0.0))
     if stiff and float(np.abs(problem.K @ v).max()) > FREE * stiff:
         return False
-    force, length = scales(path.at(point.parameter), point.displacement, point.normal_force, point.friction_force)
+    units = measure(path.at(point.parameter), point.displacement, point.normal_force, point.friction_force)
+    force, length = units.pair_force, units.pair_length
     opening, _ = plastic_position(path, point)
     w_n, w_t = problem.C_n @ v, problem.C_t @ v
     touching = opening + point.offset <= AT_BOUND * length

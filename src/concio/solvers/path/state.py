@@ -18,10 +18,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from concio.errors import InputError
-from concio.problem.certificate import Certificate, Kinematics, certify, scales
+from concio.problem.certificate import Certificate, Kinematics, certify
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.pair_state import Normal, PairStates
 from concio.problem.tolerances import AT_BOUND
+from concio.problem.units import measure
 from concio.representation import short_repr
 
 OPEN, CLOSED, CRUSHED = int(Normal.OPEN), int(Normal.CLOSED), int(Normal.CRUSHED)
@@ -45,16 +46,16 @@ class LinearPath:
     gap_rate : (m,) array, optional
     tangent_rate : (m, d-1) array, optional
         Normal and tangential movement of side b against side a that does not come from u [m].
-    total_rate : float, optional
-        Total load added for each unit of the parameter [kN], where ``load_rate`` holds more than loads; default: the
-        total load is the sum of |f| at each parameter.
+    total_rate : float or (N,) array, optional
+        Change of ``problem.load`` for each unit of the parameter [kN], where ``load_rate`` holds more than loads;
+        default: forces are measured by f at each parameter.
     """
 
     problem: ContactProblem
     load_rate: Array
     gap_rate: Array = field(default_factory=lambda: np.zeros(0))
     tangent_rate: Array = field(default_factory=lambda: np.zeros(0))
-    total_rate: float | None = None
+    total_rate: float | Array | None = None
 
     def __post_init__(self) -> None:
         m, n = self.problem.pairs, self.problem.unknowns
@@ -67,20 +68,28 @@ class LinearPath:
                 raise InputError(msg)
             object.__setattr__(self, name, value)
 
-    def moved(self, parameter: float) -> float:
-        """Return how far obstacles have moved at a value of the parameter [m]."""
-        rates = np.abs(self.gap_rate).max(initial=0.0), sizes(self.tangent_rate).max(initial=0.0)
-        return abs(parameter) * float(max(rates))
+    def moved(self, parameter: float) -> Array:
+        """Return how far obstacles have moved at each pair (m,) at a value of the parameter [m]."""
+        rates: Array = np.maximum(np.abs(self.gap_rate), sizes(self.tangent_rate))
+        return abs(parameter) * rates
 
     def at(self, parameter: float) -> ContactProblem:
         """Return the problem with the loads and obstacles at a value of the parameter, slip measured from s = 0."""
         return replace(
             self.problem,
             f=self.problem.f + parameter * self.load_rate,
-            load=0.0 if self.total_rate is None else max(self.problem.load + parameter * self.total_rate, 0.0),
+            load=self._load(parameter),
             gap=self.problem.gap + parameter * self.gap_rate,
             slip_origin=self.problem.slip_origin - parameter * self.tangent_rate,
         )
+
+
+    def _load(self, parameter: float) -> float | Array:
+        """Return the loads that measure forces at a value of the parameter, 0 where f does."""
+        if self.total_rate is None:
+            return 0.0
+        load = self.problem.load + parameter * self.total_rate
+        return load if isinstance(load, np.ndarray) else max(load, 0.0)
 
 
 @short_repr
@@ -204,7 +213,8 @@ def exceeded(path: LinearPath, state: PathState) -> Array:
     the next.
     """
     law = path.problem.laws
-    force, _ = scales(path.at(state.parameter), state.displacement, state.normal_force, state.friction_force)
+    units = measure(path.at(state.parameter), state.displacement, state.normal_force, state.friction_force)
+    force = units.pair_force
     torn = (law.tension > 0) & (state.normal_force + law.tension <= AT_BOUND * force)
     sheared = (law.cohesion > 0) & state.states.slips & ~state.states.open
     was = np.zeros(path.problem.pairs, dtype=bool) if state.broken is None else state.broken
@@ -257,7 +267,8 @@ def state_of(
     """
     problem = path.problem if before is None else weakened(path.problem, before.broken)
     law = problem.laws
-    force, length = scales(path.at(parameter), u, t_n, t_t)
+    units = measure(path.at(parameter), u, t_n, t_t)
+    force, length = units.pair_force, units.pair_length
     contact = np.where(t_n + law.tension > AT_BOUND * force, CLOSED, OPEN)
     contact = np.where(law.cap - t_n <= AT_BOUND * force, CRUSHED, contact).astype(np.int8)
     zero, still = np.zeros(problem.pairs), np.zeros_like(t_t)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from concio.problem.contact_problem import Array
+from concio.solvers.algebra.block_factor import Springs, times_springs
 from concio.solvers.algebra.scaled import LOOSE, Scaled
 from concio.solvers.algebra.updated_blocks import UpdatedBlocks
 from concio.solvers.states.equations import StateEquations
@@ -51,7 +52,7 @@ class GivenStates:
         t: Array,
         anchor: Array | None = None,
         *,
-        springs: Array | float = LOOSE,
+        springs: Springs = LOOSE,
         own: bool = False,
         columns: Array | None = None,
         accuracy: float = REFINED,
@@ -64,7 +65,7 @@ class GivenStates:
         u, t : (N,), (m, 2) arrays
         anchor : (N,) array, optional
             Where the springs are relaxed; default u.
-        springs : (N,) array or float
+        springs : (N,) array, float or (N, N) CSR array
             Stiffness that ties unknowns to ``anchor``: what nothing holds stays there, and what is held feels less than
             the rounding of equilibrium.
         own : bool
@@ -97,7 +98,7 @@ class GivenStates:
         return best
 
     def _prepare(
-        self, equations: StateEquations, springs: Array | float, columns: Array, least: float | None
+        self, equations: StateEquations, springs: Springs, columns: Array, least: float | None
     ) -> bool:
         """Bring the factor near to the states; return whether it is that of these very states, and not updated.
 
@@ -116,14 +117,14 @@ class GivenStates:
         return True
 
     def _refine(
-        self, equations: StateEquations, u: Array, t: Array, anchor: Array, springs: Array | float, accuracy: float
+        self, equations: StateEquations, u: Array, t: Array, anchor: Array, springs: Springs, accuracy: float
     ) -> tuple[Array, Array, float]:
         s, D = equations.s, self.blocks.D
         assert D is not None
         t = equations.impose(t)
         best, late = (u, t, np.inf), 0
         for _ in range(ROUNDS):
-            missing = -s.imbalance(u, t) - springs * (u - anchor)
+            missing = -s.imbalance(u, t) - times_springs(springs, u - anchor)
             misfit = equations.misfit(u, t)
             force, length = sizes(u, t)
             residual = max(

@@ -120,7 +120,7 @@ def find_collapse_state(
     """
     top = associated_limit(problem, live) if bound is None else bound
     search = _Search(problem, live, average, progress)
-    if not np.isfinite(top.multiplier):
+    if np.isnan(top.multiplier):
         return search.outcome(0)
     share = WORK if work >= WORK_OF_ALL else work
     most = max(1, min(MOST, share // max(problem.pairs, 1))) if iterations is None else iterations
@@ -194,7 +194,10 @@ class _Search:
 
 def _drawn(problem: ContactProblem, live: Array, top: LimitLoad, rng: np.random.Generator) -> Array | None:
     """Return normal forces (m,) drawn from those that are admissible under a random share of the associated load."""
-    load = problem.f + rng.uniform(0.0, 1.0) * top.multiplier * live
+    most = top.multiplier
+    if not np.isfinite(most):  # locked: shares of a live load as large as the dead one
+        most = (float(np.abs(problem.f).sum()) or 1.0) / float(np.abs(live).sum())
+    load = problem.f + rng.uniform(0.0, 1.0) * most * live
     if problem.dim == 3:
         return _drawn_in_space(problem, load, live, rng)
     programme = StaticProgramme(problem)

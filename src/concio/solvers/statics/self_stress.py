@@ -13,12 +13,14 @@ the least compression.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem, Laws
+from concio.problem.parts import parts_of
 from concio.problem.tolerances import ADMISSIBLE
 from concio.representation import short_repr
 from concio.solvers.statics.cone_statics import ConeStatics
@@ -80,6 +82,28 @@ def least_compression(problem: ContactProblem) -> SelfStress | None:
     return SelfStress(t_n, t_t, residual, force) if residual <= ADMISSIBLE else None
 
 
+def least_compression_of(problem: ContactProblem, pairs: Sequence[Array]) -> SelfStress | None:
+    """Return the same for some connected parts of a problem, zero elsewhere; None where a part has none.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    pairs : sequence of integer arrays
+        The pairs of each part.
+    """
+    t_n, t_t = np.zeros(problem.pairs), np.zeros((problem.pairs, problem.dim - 1))
+    residual, load = 0.0, 0.0
+    for part in parts_of(problem):
+        if not any(np.array_equal(part.pairs, one) for one in pairs):
+            continue
+        found = least_compression(part.problem)
+        if found is None:
+            return None
+        t_n[part.pairs], t_t[part.pairs] = found.normal_force, found.friction_force
+        residual, load = max(residual, found.residual), load + found.load
+    return SelfStress(t_n, t_t, residual, load)
+
+
 def _by_cones(problem: ContactProblem) -> SelfStress | None:
     """Return the admissible forces of least compression of a problem in space."""
     force = total_load(problem)
@@ -106,6 +130,6 @@ def _closing(problem: ContactProblem, budget: float) -> tuple[ContactProblem, Ar
         C_n=sp.csr_array(sp.hstack([sp.vstack([problem.C_n, sp.csr_array((1, n))]), closing])),
         C_t=sp.csr_array(sp.block_diag([problem.C_t, sp.csr_array((s, 1))])), gap=np.zeros(m + 1), laws=laws,
         R=sp.csc_array(R), bodies=np.r_[problem.bodies, n + 1], slip_origin=np.zeros((m + 1, s)),
-        area=np.zeros(0), inertia=np.zeros(0),
+        area=np.zeros(0), inertia=sp.csr_array((0, 0)), load=0.0,
     )  # fmt: skip
     return closed, f

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from concio.analysis.limit_result import NOT_ASKED, LimitResult
 from concio.display import number
 from concio.problem.solution import PROVEN_FAILURES, Status
+from concio.verdict.limit_verdict import limit_question, limit_verdict
+from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
+    from concio.analysis.limit_result import LimitResult
     from concio.analysis.margins import Margin
     from concio.contact.assembly import Assembly
     from concio.solvers.statics.friction import FrictionMargin
+
+NOT_ASKED = "not asked for"
 
 REST = " " * 23
 """Where a number is told on."""
@@ -23,13 +28,40 @@ def head_lines(assembly: Assembly) -> list[str]:
     return [assembly.model.title or "model without a title"]
 
 
+def question_lines(found: LimitResult) -> list[str]:
+    """Return which group is multiplied, by how many kN, and which groups act constantly."""
+    question, units = limit_question(found), found.assembly.model.report
+    lines = [f"  asked                {question.asked}"]
+    acting = [replace(a, factor=math.nan) if a.role == "multiplied" else a for a in question.acting]
+    return [*lines, *(f"  acts                 {a.sentence(units)}" for a in acting)]
+
+
 def limit_lines(found: LimitResult) -> list[str]:
-    """Return all that is known in words."""
-    lines = [*head_lines(found.assembly), *bound_lines(found), *stage_lines("friction", found)]
+    """Return all that is known in words: the answer first, the question, then every number with what it is."""
+    verdict = limit_verdict(found)
+    lines = [*head_lines(found.assembly), f"  {verdict.sentence}", *question_lines(found)]
+    lines += [*bound_lines(found), *stage_lines("friction", found)]
     lines += step_lines(found) if found.steps is not None else []
     lines += collapse_lines(found) if found.search != NOT_ASKED else []
-    lines += one_step_lines(found)
-    return [*lines, *path_lines(found), *short_lines(found)]
+    lines += [*one_step_lines(found), *spread_lines(found), *path_lines(found)]
+    return [*lines, *rest_lines(verdict)]
+
+
+def answer_lines(found: LimitResult) -> list[str]:
+    """Return the answer in the end, and all that limits it."""
+    verdict = limit_verdict(found)
+    return [f"  in short             {verdict.sentence}", *rest_lines(verdict)]
+
+
+def rest_lines(verdict: Verdict) -> list[str]:
+    """Return what proves, limits and surrounds an answer."""
+    parts = (
+        ("proof", (verdict.proof,) if verdict.proof else ()),
+        ("assumed", verdict.question.assumptions),
+        ("limits", verdict.limits),
+        ("attention", verdict.attention),
+    )
+    return [f"  {head:<21}{line}" for head, lines in parts for line in lines]
 
 
 def stage_lines(name: str, found: LimitResult) -> list[str]:
@@ -44,6 +76,8 @@ def stage_lines(name: str, found: LimitResult) -> list[str]:
         return collapse_lines(found)
     if name == "in one step":
         return one_step_lines(found)
+    if name == "spread":
+        return spread_lines(found)
     return path_lines(found)
 
 
@@ -56,7 +90,9 @@ def bound_lines(found: LimitResult) -> list[str]:
     """Return the associated bound, and what the load as given is beside it."""
     bound = found.associated
     if math.isinf(bound.multiplier):
-        return [f"  associated bound     locked: friction and geometry carry any multiple of '{named(found)}'"]
+        return ["  associated bound     locked, which bounds nothing: Coulomb friction does not wedge as it does"]
+    if math.isnan(bound.multiplier):
+        return ["  associated bound     none: no multiple of the load is in balance"]
     violation = bound.mechanism.violation if bound.mechanism else math.nan
     residuals = f"forces {bound.residual:.0e}, mechanism {violation:.0e}, gap {bound.gap:.0e}"
     if bound.checked or not bound.bounds_hold:
@@ -70,7 +106,12 @@ def bound_lines(found: LimitResult) -> list[str]:
             f"  associated bound     between {bound.multiplier:.9g}, carried, and {bound.upper:.9g}, not exceeded",
             f"{REST}each is checked, but they do not meet: {residuals}",
         ]
-    return [*lines, f"  load as given        {as_given(bound.multiplier)}"]
+    return [*lines, *([f"  load as given        {as_given(bound.multiplier)}"] if beyond(bound.multiplier) else [])]
+
+
+def beyond(multiplier: float) -> bool:
+    """Whether the load as given is a share of its bound that says something: a unit load beyond it is none."""
+    return multiplier >= 1
 
 
 def as_given(multiplier: float) -> str:
@@ -80,7 +121,10 @@ def as_given(multiplier: float) -> str:
     if multiplier == 1:
         return "just that bound"
     if multiplier > 0:
-        return f"{number(1 / multiplier)} times that bound: it is not carried"
+        return (
+            f"{number(1 / multiplier)} times that bound: only {number(100 * multiplier)} % of it can be carried "
+            f"at most"
+        )
     return "not carried, nor is any part of it"
 
 
@@ -115,10 +159,23 @@ def step_lines(found: LimitResult) -> list[str]:
     assert steps is not None
     head = "  Coulomb load steps   "
     if not steps.multipliers:
-        return [f"{head}none: the dead load alone came to no certified state ({steps.dead.name.lower()})"]
+        alone = found.dead or steps.dead
+        said = "is not carried" if alone in PROVEN_FAILURES else "came to no certified state"
+        return [f"{head}none: the dead load alone {said} ({alone.name.lower()})"]
+    if found.associated.locked and steps.state is None:
+        said = (
+            "is carried, and so is every other" if found.endless else "is not carried "
+            "({one_word(steps.outcome)}), nor is any other"
+        )
+        return [f"{head}1 times it {said}: nothing else acts, and all multiples are alike"]
     tried = "" if math.isnan(steps.failed) else f"; none found at {steps.failed:.6g}"
     count = f"{len(steps.multipliers)} certified states from the dead load on"
     return [f"{head}carried up to {steps.carried:.6g} at least: {count}{tried}"]
+
+
+def one_word(outcome: Status | None) -> str:
+    """Return an outcome as the word of ``--json``."""
+    return "unknown" if outcome is None else outcome.name.lower()
 
 
 def one_step_lines(found: LimitResult) -> list[str]:
@@ -130,10 +187,25 @@ def one_step_lines(found: LimitResult) -> list[str]:
     if steps.outcome is None:
         return [f"{head}was not tried unasked (--steps tries it)"]
     if steps.outcome is Status.SOLVED:
-        return [f"{head}is carried as well, without the history of the steps"]
+        return [f"{head}has an equilibrium, too, which the growing load did not come to"]
     said = steps.outcome.value[0].lower() + steps.outcome.value[1:]
     proven = steps.outcome in PROVEN_FAILURES
     return [f"{head}is not carried: {said}" if proven else f"{head}is left open: {said}"]
+
+
+def spread_lines(found: LimitResult) -> list[str]:
+    """Return what load steps carry with the pressure of joints that twist spread over them."""
+    if found.spread is None:
+        return []
+    n, steps = found.spread.points, found.spread.steps
+    said = (
+        f"carried up to {steps.carried:.6g}" if steps.multipliers else "none: the dead load came to no "
+        "certified state"
+    )
+    return [
+        f"  pressure spread      {said}, with {n} x {n} points in each joint: some twist, for which corners are "
+        f"too strong"
+    ]
 
 
 def collapse_lines(found: LimitResult) -> list[str]:
@@ -142,6 +214,11 @@ def collapse_lines(found: LimitResult) -> list[str]:
     if found.collapse_state is None:
         return [f"{head}{found.search}"]
     value = found.collapse_state.multiplier
+    if not found.state_counts:
+        return [
+            f"{head}{value:.6g} is not counted: it rests on where in a joint that twists the pressure stands "
+            f"({found.search})"
+        ]
     return [f"{head}{value:.6g}: there Coulomb friction lets it begin to move ({found.search})"]
 
 
@@ -152,7 +229,8 @@ def path_lines(found: LimitResult) -> list[str]:
         ask = " (--path follows it)" if "unasked" in found.path_note else ""
         return [] if found.path_note == NOT_ASKED else [f"{head}{found.path_note}{ask}"]
     end = {
-        "REACHED": "followed on, its load no longer growing, until it had moved far",
+        "REACHED": "followed on, its load no longer growing, until it had moved far" if found.collapse_shown
+        else "followed no further",
         "MECHANISM": "a mechanism has formed that moves on without change of load",
         "LIMIT": "no certified state carries more, and the structure can move at that load or provably not carry it",
         "CANCELLED": "stopped on request",
@@ -170,26 +248,11 @@ def path_lines(found: LimitResult) -> list[str]:
     return lines
 
 
-def short_lines(found: LimitResult) -> list[str]:
-    """Return what is known in the end in one sentence."""
-    lines = []
-    low, bound = found.bracket
-    if math.isfinite(low) and math.isfinite(bound):
-        lines.append(f"  in short             {_in_short(found, low, bound)}")
-    if found.lent_compliance:
-        lines.append("  rigid joints         were followed with a vanishing compliance, as the limit of stiff joints")
-    return lines
-
-
-def _in_short(found: LimitResult, low: float, bound: float) -> str:
-    """Return what the two numbers of the bracket say together, each as what it is."""
-    load = f"times the load of '{named(found)}'"
-    if found.collapse_state is not None and low == found.collapse_state.multiplier:
-        word = "it can begin to move"
-    elif found.collapse_shown:
-        word = "it collapses as the load grows"
-    else:
-        return f"between {low:.6g} (carried; more was not shown) and {bound:.6g} {load}"
-    if math.isclose(low, bound, rel_tol=1e-6):
-        return f"{word} at {bound:.6g} {load}, and nothing holds beyond"
-    return f"{word} at {low:.6g}, and nothing holds beyond {bound:.6g} {load}"
+def margin_words(margin: Margin) -> str:
+    """Return what bisection with solved load steps found, in words."""
+    if margin.locked:
+        return "any multiple of the load is carried: certified up to a million times the other loads"
+    if margin.holds != margin.holds:
+        return "no certified equilibrium was found"
+    found = f"a certified equilibrium at {margin.holds:.6g}"
+    return found if margin.fails != margin.fails else f"{found}, none found at {margin.fails:.6g}"

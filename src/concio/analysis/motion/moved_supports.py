@@ -1,0 +1,117 @@
+"""Fixed bodies that supports move: the equilibrium that follows them from where they were described.
+
+Gaps and slips of a moved floor are those of the floor where it then stands: a pillar on a floor that has turned leans.
+The motion is applied in parts, each followed to equilibrium, at factor times displacement and rotation of each support.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from concio.analysis.motion.state import MotionState
+from concio.analysis.motion.statics import Balanced, Statics
+from concio.contact.factors import load_factor
+from concio.errors import InputError
+from concio.fem.discretisation import FIXED
+
+Array = np.ndarray
+
+PART = 0.02
+"""Largest motion of a part over the median width of the bodies."""
+
+GROWTH = 2.0
+"""Factor by which parts grow after one was followed."""
+
+SMALLEST = 1e-3
+"""Part of the first one below which nothing can be followed."""
+
+
+@dataclass(frozen=True, eq=False)
+class MovedSupports:
+    """How fixed bodies are moved before anything else acts.
+
+    Parameters
+    ----------
+    shift : (B, 2) array
+        Of their centroids [m].
+    turn : (B,) array
+        Anticlockwise [rad].
+    """
+
+    shift: Array
+    turn: Array
+
+    @classmethod
+    def of(cls, statics: Statics) -> MovedSupports:
+        """Return the motions of the supports of a model at the factors of its loads.
+
+        Raises
+        ------
+        InputError
+            The load that grows moves a support.
+        """
+        reference = statics.reference
+        model, number = reference.model, {b.name: i for i, b in enumerate(reference.model.bodies)}
+        shift, turn = np.zeros((len(number), 2)), np.zeros(len(number))
+        for support in model.supports:
+            b = number[support.body]
+            if reference.disc.shape_of[b] != FIXED or not support.moves:
+                continue
+            if support.group in statics.live:
+                msg = f"the load group '{support.group}' that grows moves support '{support.name}'"
+                raise InputError(msg, hint="give the support a group of its own, which then acts as it is")
+            factor = load_factor(statics.factors, support.group)
+            shift[b] += factor * np.asarray(support.displacement, dtype=float)
+            turn[b] += factor * float(np.asarray(support.rotation))
+        return cls(shift, turn)
+
+    @property
+    def any(self) -> bool:
+        """Whether anything is moved."""
+        return bool(self.shift.any() or self.turn.any())
+
+    def applied(self, state: MotionState, share: float) -> MotionState:
+        """Return a state with fixed bodies moved on by a share."""
+        return replace(state, centre=state.centre + share * self.shift, rotation=state.rotation + share * self.turn)
+
+    def largest(self, statics: Statics) -> float:
+        """Return how far anything on the moved bodies is moved at most, roughly [m]."""
+        centre = statics.reference.disc.centroids
+        corners = np.concatenate([b.vertices for i, b in enumerate(statics.reference.model.bodies)
+                                  if i in set(statics.reference.free.tolist())])  # fmt: skip
+        arm = np.linalg.norm(corners[None] - centre[:, None], axis=2).max(axis=1)
+        return float((np.linalg.norm(self.shift, axis=1) + np.abs(self.turn) * arm).max())
+
+
+def begun(statics: Statics, state: MotionState) -> tuple[Balanced, float, MotionState]:
+    """Return the equilibrium under the loads that do not grow, or the attempt that failed.
+
+    With it come the share of the motion of supports that the structure stands, and the last state in which it does.
+
+    Parameters
+    ----------
+    statics : Statics
+    state : MotionState
+        Of the bodies as described.
+    """
+    moved = MovedSupports.of(statics)
+    found = statics.balance(state, 0.0)
+    if not moved.any or not found.found:
+        return found, 0.0 if moved.any else 1.0, state
+    part = first = min(1.0, PART * statics.width / moved.largest(statics))
+    done = 0.0
+    while done < 1.0:
+        part = min(part, 1.0 - done)
+        trial = statics.balance(moved.applied(found.state, part), 0.0)
+        if not trial.found:
+            part *= 0.5
+            if part < SMALLEST * first:
+                return trial, done, found.state
+            continue
+        found, done = trial, done + part
+        if 1.0 - done < 1e-12:
+            done = 1.0
+        part = min(GROWTH * part, first)
+    return found, 1.0, found.state

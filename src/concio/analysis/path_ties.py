@@ -1,0 +1,107 @@
+"""Ties that break on a load path: it is followed to the state in which the first of them does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from concio.analysis.tie_forces import BROKEN, break_elongations
+from concio.contact.assembly import Assembly
+from concio.solvers.methods import find
+from concio.solvers.path.record import Event, Outcome
+from concio.solvers.path.state import LinearPath, PathState, energy_of_step
+from concio.solvers.path.step_path import StepPath, follow_in_steps
+
+Array = np.ndarray
+
+
+def breaking(
+    assembly: Assembly, start: Mapping[str, float], end: Mapping[str, float]
+) -> Callable[[PathState], bool] | None:
+    """Return a function that tells of a state of a stage whether a tie has broken; None where no tie can.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    start, end : mapping
+        Load factors at parameter 0 and 1.
+    """
+    if not np.isfinite(break_elongations(assembly)).any():
+        return None
+    return lambda state: bool((shares(assembly, state, start, end) >= 1 - BROKEN).any())
+
+
+def shares(assembly: Assembly, state: PathState, start: Mapping[str, float], end: Mapping[str, float]) -> Array:
+    """Return how far each tie (k,) is stretched, as a share of the elongation at which it breaks."""
+    factors = {g: start[g] + state.parameter * (end[g] - start[g]) for g in start}
+    found: Array = assembly.elongations(state.displacement, factors) / break_elongations(assembly)
+    return found
+
+
+def until_a_tie_breaks(
+    assembly: Assembly,
+    path: LinearPath,
+    found: StepPath,
+    start: Mapping[str, float],
+    end: Mapping[str, float],
+    *,
+    solver: str,
+    exact: bool,
+) -> StepPath:
+    """Return a stage of a path as far as every tie is whole, the state in which the first one breaks as its last.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    path : LinearPath
+    found : StepPath
+        The stage as if ties never broke.
+    start, end : mapping
+        Load factors at parameter 0 and 1.
+    solver : str
+        Method of load steps.
+    exact : bool
+        Whether the path is linear between its states; else the state is found by a load step.
+    """
+    if not np.isfinite(break_elongations(assembly)).any():
+        return found
+
+    def share(state: PathState) -> Array:
+        return shares(assembly, state, start, end)
+
+    over = [i for i, state in enumerate(found.states) if (share(state) >= 1 - BROKEN).any()]
+    if not over:
+        return found
+    last = over[0]
+    kept, events = found.states[:last], tuple(e for e in found.events if e.step < last)
+    if not last:  # it begins with a tie that has broken
+        return StepPath(found.states[:1], (), Outcome.BROKEN, found.direction)
+    before, after = found.states[last - 1 : last + 1]
+    a, b = share(before), share(after)
+    part = float(np.min(np.where(b >= 1 - BROKEN, (1 - a) / np.where(b > a, b - a, 1.0), np.inf)))
+    finite = any(e.step == last and e.kind in ("jumps", "restarts") for e in found.events)
+    breaking = _between(path, before, after, part) if exact and not finite else None
+    if breaking is None and not finite:
+        parameter = before.parameter + part * (after.parameter - before.parameter)
+        step = follow_in_steps(path, before, until=parameter, steps=1, solver=find(solver))
+        if step.outcome is Outcome.REACHED and (share(step.states[-1]) <= 1 + 1e-6).all():
+            breaking = step.states[-1]
+    states = (*kept, breaking) if breaking is not None else kept
+    tie = int(assembly.ties[int(np.argmax(share(states[-1])))])
+    at = states[-1].parameter
+    return StepPath(
+        states, (*events, Event(at, at, tie, "breaks", 0, len(states) - 1)), Outcome.BROKEN, found.direction
+    )
+
+
+def _between(path: LinearPath, before: PathState, after: PathState, part: float) -> PathState:
+    """Return the state on the straight line between two corners of an exact path."""
+    mixed = {
+        name: (1 - part) * getattr(before, name) + part * getattr(after, name)
+        for name in ("parameter", "displacement", "normal_force", "friction_force", "slip", "offset")
+    }
+    state = replace(after, **mixed)
+    work, dissipation = energy_of_step(path, before, state)
+    return replace(state, work=before.work + work, dissipation=before.dissipation + dissipation)

@@ -1,0 +1,83 @@
+"""What an assessment leaves open: what was asked for, or is to be expected, and was not checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from concio.model.model import Model
+
+if TYPE_CHECKING:
+    from concio.analysis.seismic.assessment import Assessment
+
+ELSEWHERE = ("out of plane", "height", "ties")
+"""What an author may answer for, so that it is not asked for here."""
+
+ABOVE = 1e-6
+"""Mechanisms that start higher than this are above the ground [m]."""
+
+
+@dataclass(frozen=True)
+class OpenItem:
+    """Something that was not checked.
+
+    Parameters
+    ----------
+    kind : str
+        "levels", "hazard", "height", "out of plane", "curve", "bound", "tie" or "locked"; the words are in
+        :mod:`concio.verdict.assessment_words`.
+    values : mapping
+        What the words name.
+    """
+
+    kind: str
+    values: Mapping[str, Any] = field(default_factory=dict)
+
+
+def open_items(found: Assessment) -> tuple[OpenItem, ...]:
+    """Return what an assessment leaves open.
+
+    Parameters
+    ----------
+    found : Assessment
+    """
+    site, excused = found.site, found.arguments.get("elsewhere", ())
+    items = []
+    if found.arguments.get("levels") is None:
+        missing = [level for level in site.asked_by_code if level not in found.levels]
+        items += [OpenItem("levels", {"levels": ", ".join(missing)})] if missing else []
+    items += [
+        OpenItem("hazard", {"level": level, "numbers": ", ".join(site.invented(level))})
+        for level in found.levels
+        if site.invented(level)
+    ]
+    if not site.building and "height" not in excused:
+        high = [m for m in (*found.mechanisms, *found.others) if m.level > ABOVE]
+        names = tuple(dict.fromkeys((m.name, m.level) for m in high))
+        items += [OpenItem("height", {"names": names})] if high else []
+    if "out of plane" not in excused and in_elevation(found.model):
+        items.append(OpenItem("out of plane"))
+    for m in found.mechanisms:
+        where = {"name": m.name, "way": m.direction}
+        if m.unchecked:
+            levels = ", ".join(m.unchecked)
+            items.append(OpenItem("curve", {**where, "levels": levels, "reason": m.followed.reason}))
+        if m.found.flow == "associated":
+            items.append(OpenItem("bound", {**where, "alpha": m.multiplier}))
+    if "ties" not in excused:
+        items += [OpenItem("tie", {"tie": t.name, "force": t.strength}) for t in found.model.ties
+                  if t.yield_force is None]  # fmt: skip
+    items += [OpenItem("locked", {"name": n.name, "way": n.direction}) for n in found.locked if n.doubtful]
+    return tuple(items)
+
+
+def in_elevation(model: Model) -> bool:
+    """Return whether a plane model is wider than it is thick: a facade, which can also leave its plane."""
+    if model.dim == 3:
+        return False
+    outlines = [b for b in model.outlines if b.kind != "fixed"]
+    width = float(np.ptp(np.vstack([b.outline for b in outlines])[:, 0]))
+    return width > max(b.thickness for b in outlines)

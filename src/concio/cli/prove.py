@@ -1,0 +1,66 @@
+"""``concio prove FILE``: an exact certificate, which ``concio verify`` or its short program alone recomputes."""
+
+from __future__ import annotations
+
+import json as json_text
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from concio.cli.outcome import guarded, print_json, say
+from concio.cli.output import check_file, replaced_file
+from concio.cli.run import Factors, File, Json, factors_of, loaded
+
+
+@guarded
+def prove(
+    file: File,
+    claim: Annotated[
+        Literal["limit", "collapse"], typer.Option("--claim", "-c", help="What to prove of the loads.")
+    ] = "limit",
+    group: Annotated[
+        list[str] | None,
+        typer.Option("--group", "-g", help="Load group that is multiplied (repeatable); default live."),
+    ] = None,
+    factor: Factors = None,
+    numbers: Annotated[
+        Literal["binary", "decimal"],
+        typer.Option("--numbers", help="Numbers as the computer holds them, or to twelve decimal digits."),
+    ] = "binary",
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Certificate to write; by default FILE.proof.json.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+    json: Json = False,
+) -> int:
+    """Prove a multiplier from both sides, or that loads are not balanced, in fractions that anyone can recompute.
+
+    The certificate holds the numbers of the model, the forces and the motion. 'concio verify' recomputes all of it with
+    Python's own fractions.
+
+    Example: concio prove wall.toml --group live --out wall.proof.json
+    """
+    import concio
+    from concio.analysis.limit import limit
+    from concio.proof.certificate import prove_collapse
+    from concio.proof.verify import check
+
+    place = file.with_suffix(".proof.json") if out is None else out
+    check_file(place, force=force)
+    assembly = concio.assemble(loaded(file))
+    if claim == "collapse":
+        made = prove_collapse(assembly, factors_of(factor), numbers=numbers)
+    else:
+        found = limit(assembly, live=list(group or ["live"]), path=False, steps=False, search=False)
+        made = found.proof(numbers)
+    sentence = check(made)
+    with replaced_file(place) as fresh:
+        fresh.write_text(json_text.dumps(made, indent=1, ensure_ascii=True) + "\n", encoding="ascii")
+    if json:
+        bounds = {key: made.get(key) for key in ("lower", "upper")}
+        print_json({"claim": claim, "sentence": sentence, **bounds, "file": str(place), "digest": made["digest"]})
+    else:
+        say(sentence)
+        say(f"  certificate  {place}, {place.stat().st_size:,} bytes; 'concio verify {place}' recomputes it")
+    return 0

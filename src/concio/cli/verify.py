@@ -1,0 +1,40 @@
+"""``concio verify CERTIFICATE``: recompute an exact certificate without rounding."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from concio.cli.outcome import guarded, print_json, say
+from concio.cli.run import Json
+
+
+@guarded
+def verify(
+    certificate: Annotated[Path, typer.Argument(help="Certificate that 'concio prove' wrote.", show_default=False)],
+    json: Json = False,
+) -> int:
+    """Recompute an exact certificate with Python's own fractions; exit code 2 where it proves nothing.
+
+    The program that does it is one short file without imports from concio, src/concio/proof/verify.py, and runs alone.
+
+    Example: concio verify wall.proof.json
+    """
+    from concio.errors import InputError
+    from concio.proof.verify import read
+
+    try:
+        sentence = read(str(certificate))
+    except OSError as error:
+        msg = f"cannot be read: {error.strerror or error}"
+        raise InputError(msg, where=str(certificate)) from None
+    except (ValueError, KeyError, IndexError, TypeError, ArithmeticError) as error:
+        msg = f"refused: {error}"
+        raise InputError(msg, where=str(certificate), hint="make it again with 'concio prove'") from None
+    if json:
+        print_json({"certificate": str(certificate), "sentence": sentence})
+    else:
+        say(sentence)
+    return 0

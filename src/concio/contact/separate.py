@@ -1,0 +1,90 @@
+"""Structures that stand apart: groups of bodies whose boxes do not come near each other.
+
+What is near is measured by the sizes of the bodies. Interfaces are looked for in each group by itself, with a tolerance
+of its own, so that nothing far away changes an answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+import shapely
+from scipy.sparse.csgraph import connected_components
+
+from concio.model.interfaces.detect import Detection
+from concio.model.model import Model
+from concio.model.rules import JointRule
+
+Array = np.ndarray
+
+NEAR = 0.1
+"""Boxes are near within this share of the longest side of the smaller one: twice what near misses look at."""
+
+
+def separate_groups(model: Model) -> list[Array]:
+    """Return the numbers of the bodies of each structure that stands apart, in order of their first free body.
+
+    Parameters
+    ----------
+    model : Model
+
+    Returns
+    -------
+    list of integer arrays
+        A fixed body belongs to every group whose free bodies come near it; one near none belongs to no group.
+    """
+    free = np.array([body.kind != "fixed" for body in model.bodies])
+    count = len(model.bodies)
+    a, b = _near(model)
+    both = free[a] & free[b]
+    links = sp.coo_array((np.ones(int(both.sum())), (a[both], b[both])), shape=(count, count))
+    _, label = connected_components(links, directed=False)
+    labels = list(dict.fromkeys(label[free].tolist()))
+    held: dict[int, set[int]] = {k: set(np.flatnonzero(free & (label == k)).tolist()) for k in labels}
+    for p, q in zip(a.tolist(), b.tolist(), strict=True):
+        if free[p] != free[q]:
+            held[int(label[p if free[p] else q])].add(q if free[p] else p)
+    return [np.array(sorted(held[k])) for k in labels]
+
+
+def _near(model: Model) -> tuple[Array, Array]:
+    """Return the pairs of bodies whose boxes come as near each other as the smaller one's size makes near."""
+    low, high = (np.array([f(body.vertices, axis=0) for body in model.bodies]) for f in (np.min, np.max))
+    size, reach = (high - low).max(axis=1), model.gap_reach or 0.0
+    margin = np.maximum(NEAR * size, reach)[:, None]
+    tree = shapely.STRtree(shapely.box(*(low - margin)[:, :2].T, *(high + margin)[:, :2].T))
+    a, b = tree.query(tree.geometries)
+    apart = np.maximum(low[b] - high[a], low[a] - high[b]).max(axis=1)
+    near = (a < b) & (apart <= np.maximum(NEAR * np.minimum(size[a], size[b]), reach))
+    return a[near], b[near]
+
+
+def bare(model: Model, group: Array) -> Model:
+    """Return the model of some bodies, with their joints and nothing that loads or holds them."""
+    bodies = tuple(model.bodies[b] for b in group)
+    return replace(
+        model, bodies=bodies, rules=(JointRule(next(iter(model.laws))),), loads=(), supports=(), ties=(), stages=()
+    )
+
+
+def merged(found: Sequence[tuple[Array, Detection]]) -> Detection:
+    """Return one detection of groups of bodies, each with the numbers (k,) of its bodies in the model."""
+    interfaces: list[Any] = [
+        replace(face, a=int(own[face.a]), b=int(own[face.b])) for own, part in found for face in part.interfaces
+    ]
+    ordered = sorted(interfaces, key=lambda face: (face.a, face.b))
+    misses = [replace(m, bodies=_own(own, m.bodies)) for own, part in found for m in part.near_misses]
+    overlaps = [replace(o, bodies=_own(own, o.bodies)) for own, part in found for o in part.overlaps]
+    return Detection(
+        tuple(ordered),
+        tuple({(m.kind, m.bodies, tuple(m.at)): m for m in misses}.values()),
+        tuple({o.bodies: o for o in overlaps}.values()),
+    )
+
+
+def _own(own: Array, bodies: tuple[int, int]) -> tuple[int, int]:
+    return int(own[bodies[0]]), int(own[bodies[1]])

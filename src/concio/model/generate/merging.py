@@ -1,0 +1,211 @@
+"""Several models made one: bodies, materials, laws, loads and rules of parts that were placed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations
+from typing import TypeVar
+
+import numpy as np
+
+from concio.arguments import strict
+from concio.errors import InputError
+from concio.model.interfaces.detect import detect_interfaces
+from concio.model.interfaces.patches import detect_patches
+from concio.model.materials import JointLaw
+from concio.model.model import JointRule, Load, Model
+
+T = TypeVar("T")
+
+
+@strict
+def merge(*models: Model, title: str = "", joint: JointLaw | float | None = None) -> Model:
+    """Return several models as one.
+
+    Bodies that touch are joined like any others. Materials and joint laws of one name but different content are kept
+    apart: the later one gets the number of its part. A load on all bodies stays a load on all where every part has it,
+    else it names the bodies of its part.
+
+    Parameters
+    ----------
+    *models : Model
+        Their bodies, supports and ties must have different names: see ``name`` of :func:`place`.
+    title : str
+        That of the first by default.
+    joint : JointLaw, float, optional
+        Law between bodies of different parts; a number is a Coulomb coefficient. By default that of all parts, where
+        they agree on one.
+
+    Raises
+    ------
+    InputError
+        Names clash, or the parts differ in dimension, element, plane or refinement; or parts touch whose laws differ,
+        and ``joint`` does not say which holds between them.
+    """
+    whole = merged(models, title=title, joint=joint)
+    if joint is None and len({_general_law(m) for m in models}) > 1:
+        _agreed(models, whole)
+    return whole
+
+
+def merged(models: Sequence[Model], *, title: str = "", joint: JointLaw | float | None = None) -> Model:
+    """Return several models as one, as :func:`merge`; where laws of parts differ that of the first holds between."""
+    if not models:
+        msg = "there is nothing to merge"
+        raise InputError(msg, where="merge", hint="give two models or more")
+    first = models[0]
+    for k, model in enumerate(models[1:], 2):
+        if model.dim != first.dim:
+            msg = f"part 1 is {'in the plane' if first.dim == 2 else 'in space'}, part {k} is not"
+            raise InputError(msg, where="merge", hint="concio.extrude makes a model in space of a plane one")
+        for key in ("element", "plane", "refinement", "periods", "contact_points"):
+            if getattr(model, key) != getattr(first, key):
+                msg = f"part 1 has {key} = {getattr(first, key)!r}, part {k} {getattr(model, key)!r}"
+                raise InputError(msg, where="merge", hint="one model has one of it")
+    _different([b.name for m in models for b in m.bodies], "bodies")
+    _different([s.name for m in models for s in m.supports], "supports")
+    _different([t.name for m in models for t in m.ties], "ties")
+    materials, material_names = _united([m.materials for m in models])
+    laws, law_names = _united([m.laws for m in models])
+    bodies = [
+        replace(b, material=material_names[k].get(b.material, b.material), mesh_size=b.mesh_size or m.mesh_size)
+        for k, m in enumerate(models)
+        for b in m.bodies
+    ]
+    rules = _rules(models, law_names)
+    if joint is not None:
+        law = joint if isinstance(joint, JointLaw) else JointLaw(joint)
+        laws["between parts"] = law
+        rules += [
+            JointRule("between parts", (_everything(models, i), _everything(models, j)))
+            for i, j in combinations(range(len(models)), 2)
+        ]
+    tolerances = [m.gap_tolerance for m in models if m.gap_tolerance is not None]
+    reaches = [m.gap_reach for m in models if m.gap_reach is not None]
+    return replace(
+        first,
+        bodies=tuple(bodies),
+        materials=materials,
+        laws=laws,
+        rules=tuple(rules),
+        supports=tuple(s for m in models for s in m.supports),
+        loads=_loads(models),
+        ties=tuple(t for m in models for t in m.ties),
+        stages=tuple(s for m in models for s in m.stages),
+        mesh_size=None,
+        gap_tolerance=max(tolerances) if tolerances else None,
+        gap_reach=max(reaches) if reaches else None,
+        title=title or first.title,
+        generator={"kind": "merged", "parts": tuple(str(m.generator.get("kind", "blocks")) for m in models)},
+    )
+
+
+def _general_law(model: Model) -> JointLaw | None:
+    """Return the law of a part on everything, None where it has none."""
+    rules = [rule for rule in model.rules if rule.between == ("*", "*")]
+    return model.laws[rules[-1].law] if rules else None
+
+
+def _agreed(models: Sequence[Model], whole: Model) -> None:
+    """Refuse parts that touch where no rule but that of the first part on everything says which law holds.
+
+    Raises
+    ------
+    InputError
+    """
+    tolerance = whole.gap_tolerance if whole.gap_tolerance is not None else 1e-6 * whole.size
+    if whole.dim == 2:
+        found = detect_interfaces(whole.outlines, tolerance=tolerance, reach=whole.gap_reach)
+    else:
+        found = detect_patches(whole.polyhedra, tolerance=tolerance, reach=whole.gap_reach)
+    part = np.repeat(np.arange(len(models)), [len(m.bodies) for m in models])
+    for face in found.interfaces:
+        p, q = int(part[face.a]), int(part[face.b])
+        if p == q or _general_law(models[p]) == _general_law(models[q]):
+            continue
+        a, b = whole.bodies[face.a], whole.bodies[face.b]
+        rule = whole.rule_between(a, b)
+        if rule.between == ("*", "*"):
+            told = [law.friction if (law := _general_law(models[k])) else "none" for k in (p, q)]
+            msg = (
+                f"'{a.name}' of part {p + 1} and '{b.name}' of part {q + 1} touch, and nothing says which law holds "
+                f"between them: the friction of part {p + 1} is {told[0]}, of part {q + 1} {told[1]}"
+            )
+            hint = "say it with joint = 0.6 or a JointLaw, in a file with [[rules]]"
+            raise InputError(msg, where="merge", hint=hint)
+
+
+def _different(names: list[str], what: str) -> None:
+    if len(set(names)) < len(names):
+        twice = next(n for n in names if names.count(n) > 1)
+        msg = f"two {what} of the parts are called '{twice}'"
+        raise InputError(msg, where="merge", hint="give each part a name of its own: concio.place(part, name='left')")
+
+
+def _united(tables: Sequence[Mapping[str, T]]) -> tuple[dict[str, T], list[dict[str, str]]]:
+    """Return one table of all, and for each part the names that had to change."""
+    every: dict[str, T] = {}
+    changed: list[dict[str, str]] = []
+    for number, table in enumerate(tables, 1):
+        own: dict[str, str] = {}
+        for name, thing in table.items():
+            new = name
+            while new in every and every[new] != thing:
+                new = f"{name} {number}" if new == name else new + "'"
+            every[new] = thing
+            if new != name:
+                own[name] = new
+        changed.append(own)
+    return every, changed
+
+
+def pattern_of(models: Sequence[Model], number: int) -> str | None:
+    """Return the pattern of names that all bodies of a part have and no others, None where there is none."""
+    names = [b.name for b in models[number].bodies]
+    prefix = names[0].partition("-")[0] + "-"
+    others = [b.name for k, m in enumerate(models) for b in m.bodies if k != number]
+    alone = all(name.startswith(prefix) for name in names) and not any(name.startswith(prefix) for name in others)
+    return prefix + "*" if alone else None
+
+
+def _everything(models: Sequence[Model], number: int) -> str:
+    """Return a word that names all bodies of a part and no others."""
+    pattern = pattern_of(models, number)
+    if pattern is None:
+        msg = f"part {number + 1} has joint laws of its own, but its blocks have no name in common"
+        raise InputError(msg, where="merge", hint="give each part a name: concio.place(part, name='left')")
+    return pattern
+
+
+def _rules(models: Sequence[Model], laws: Sequence[Mapping[str, str]]) -> list[JointRule]:
+    """Return the rules of all parts, those on everything kept to their part where parts differ in them."""
+    own = [
+        [replace(r, law=names.get(r.law, r.law)) for r in m.rules] for m, names in zip(models, laws, strict=True)
+    ]
+    general = [[r for r in rules if r.between == ("*", "*")][-1:] for rules in own]
+    if all(g == general[0] for g in general):
+        return list(dict.fromkeys(r for rules in own for r in rules))
+    found = general[0][:1]
+    for k, rules in enumerate(own):
+        word = _everything(models, k)
+        for rule in rules:
+            p, q = (word if w == "*" else w for w in rule.between)
+            found.append(replace(rule, between=(p, q)))
+    return list(dict.fromkeys(found))
+
+
+def _loads(models: Sequence[Model]) -> tuple[Load, ...]:
+    """Return the loads of all parts; those on everything name the bodies of their part unless all parts have them."""
+    found: list[Load] = []
+    for k, model in enumerate(models):
+        for load in model.loads:
+            if load.bodies:
+                found.append(load)
+            elif all(load in other.loads for other in models):
+                found += [load] if k == 0 else []
+            else:
+                pattern = pattern_of(models, k)
+                names = (pattern,) if pattern else tuple(b.name for b in model.free_bodies)
+                found.append(replace(load, bodies=names))
+    return tuple(found)

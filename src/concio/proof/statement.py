@@ -1,0 +1,143 @@
+"""The numbers of a structure of blocks as an exact certificate states them: as texts that no reader rounds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, Literal
+
+import numpy as np
+
+from concio.contact.assembly import Assembly
+from concio.contact.load_faces import loaded_bodies
+from concio.contact.loads import load_vectors
+from concio.errors import InputError
+from concio.fem.discretisation import FIXED, RIGID
+from concio.kinematics.frames import cross
+from concio.model.body import Body
+from concio.model.model import Model
+from concio.model.polyhedron import Polyhedron
+
+Numbers = Literal["binary", "decimal"]
+
+REFUSED = "this is not proved exactly yet"
+
+
+def statement(assembly: Assembly, numbers: Numbers = "binary") -> dict[str, Any]:
+    """Return blocks, contact points and loads of an assembly, every number a text.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    numbers : {"binary", "decimal"}
+        Binary numbers as the computer holds them, such as "0x1.8p-1"; or each rounded to twelve decimal digits, which
+        turns 0.1 back into a tenth.
+
+    Raises
+    ------
+    InputError
+        The model has something that exact certificates do not state: ties, cohesion, held blocks, moved supports.
+    """
+    refuse(assembly)
+
+    def text(value: float) -> str:
+        return float(value).hex() if numbers == "binary" else f"{float(value):.12g}"
+
+    def texts(values: np.ndarray) -> list[str]:
+        return [text(v) for v in np.asarray(values, dtype=float).ravel()]
+
+    pairs, model = assembly.pairs, assembly.model
+    bodies = [
+        {
+            "name": body.name,
+            "fixed": body.kind == "fixed",
+            "unit_weight": "0" if body.kind == "fixed" else text(model.materials[body.material].unit_weight),
+            "thickness": text(body.thickness) if isinstance(body, Body) else "1",
+            "pieces": [[texts(corner) for corner in piece] for piece in _pieces(body)],
+        }
+        for body in model.bodies
+    ]
+    joints = [
+        {"a": int(a), "b": int(b), "at": texts(at), "normal": texts(normal), "friction": text(mu)}
+        for a, b, at, normal, mu in zip(
+            pairs.body_a, pairs.body_b, pairs.point, pairs.normal, assembly.laws.friction, strict=True
+        )
+    ]
+    loads = [
+        {"kind": "weight", "group": load.group, "body": b, "value": texts(np.array(load.value))}
+        for load in model.loads
+        if load.kind == "weight"
+        for b in loaded_bodies(model, load)
+    ]
+    loads += [
+        {
+            "kind": "resultant",
+            "group": group,
+            "body": b,
+            "at": texts(at),
+            "force": texts(force),
+            "moment": texts(moment),
+        }
+        for group, b, at, force, moment in _resultants(assembly)
+    ]
+    return {"title": model.title, "bodies": bodies, "joints": joints, "loads": loads}
+
+
+def refuse(assembly: Assembly) -> None:
+    """Refuse what exact certificates do not state.
+
+    Raises
+    ------
+    InputError
+        With the first thing that stands in the way.
+    """
+    model, law = assembly.model, assembly.laws
+    reasons: Mapping[str, bool] = {
+        "a periodic cell": model.periods is not None,
+        f"tie '{model.ties[0].name}'" if model.ties else "": bool(model.ties),
+        "a joint with cohesion or tensile strength": bool((law.cohesion > 0).any() or (law.tension > 0).any()),
+        "a joint that crushes": bool(np.isfinite(law.cap).any()),
+        "a joint that dilates": bool((law.dilatancy > 0).any()),
+        "a support that holds a block": bool({s.body for s in model.supports} & {b.name for b in model.free_bodies}),
+        "a support that is moved": any(s.moves for s in model.supports),
+        "a joint with an initial gap": bool((assembly.pairs.gap > 0).any()),
+        "no joint": not len(assembly.pairs),
+    }
+    found = next((words for words, holds in reasons.items() if holds), None)
+    if found is not None:
+        msg = f"the model has {found}: {REFUSED}"
+        raise InputError(msg, hint="the certificate of 'concio run' holds for it, in floating point")
+
+
+def _pieces(body: Body | Polyhedron) -> list[np.ndarray]:
+    """Return triangles (3 corners of which the origin is one, left out) or, in space, the triangles of the surface."""
+    if isinstance(body, Polyhedron):
+        return [body.vertices[corners] for corners in body.triangles[0]]
+    return [np.array([p, q]) for ring in body.rings for p, q in zip(ring, np.roll(ring, -1, axis=0), strict=True)]
+
+
+def _resultants(assembly: Assembly) -> list[tuple[str, int, np.ndarray, np.ndarray, np.ndarray]]:
+    """Return group, body, point, force and moment of all loads but own weight, body by body."""
+    disc = assembly.disc
+    others = tuple(load for load in assembly.model.loads if load.kind != "weight")
+    if not others:
+        return []
+    found = []
+    for group, f in load_vectors(replace(disc, model=_with_loads(assembly.model, others))).items():
+        for b in np.flatnonzero(disc.shape_of != FIXED).tolist():
+            own = f[disc.offsets[b] : disc.offsets[b + 1]]
+            if not own.any():
+                continue
+            at, d = disc.centroids[b], disc.dim
+            if disc.shape_of[b] == RIGID:
+                force, moment = own[:d], own[d:] * disc.reach[b]
+            else:
+                each, arm = own.reshape(-1, d), disc.nodes(b) - at
+                force = each.sum(0)
+                moment = np.atleast_1d(cross(arm, each).sum(0))
+            found.append((group, b, at, force, moment))
+    return found
+
+
+def _with_loads(model: Model, loads: tuple[Any, ...]) -> Model:
+    return replace(model, loads=loads)

@@ -1,0 +1,235 @@
+"""The verdict of a seismic assessment: what pushes, the least zeta_E by limit state, its proof, and what is open.
+
+It is the only place that says whether a mechanism or a structure is verified; console, ``--json``, report and notebook
+are written from it, the report in its own language.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from concio.display import number
+from concio.verdict.assessment_words import WORDS
+from concio.verdict.attention import attention_of, joints_not_made
+from concio.verdict.question import Question, thickness_words
+from concio.verdict.verdict import Outcome, Verdict
+
+if TYPE_CHECKING:
+    from concio.analysis.seismic.assessment import Assessment
+    from concio.analysis.seismic.checks import Check
+    from concio.analysis.seismic.local_mechanism import LocalMechanism, NoMechanism
+    from concio.analysis.seismic.open_items import OpenItem
+
+MOST_NAMES = 4
+"""More mechanisms than this are counted in a sentence."""
+
+APART = 0.01
+"""Relative difference of zeta_E and capacity over demand above which a sentence says why."""
+
+CUT = {
+    "joints end": "its joints come to the end of their way",
+    "joint opens": "a joint opens, or a tie goes slack or yields",
+    "several motions": "its joints leave more than one way to move, or none",
+    "no forces": "its joints carry no forces in equilibrium",
+    "not asked": "no limit state asks for it",
+    "no state": "no collapse state is found to go on with",
+    "long": "too many changes of its joints to follow",
+    "far": "it does not end",
+}
+"""Why a curve ends before its multiplier vanishes, in English."""
+
+STATUS = {Outcome.HOLDS: "verified", Outcome.FAILS: "not_verified", Outcome.INCOMPLETE: "incomplete"}
+
+Write = Callable[[float, int], str]
+
+
+def assessment_verdict(
+    found: Assessment, language: str = "en", *, write: Write = number, name: Callable[[str], str] | None = None,
+    reason: Callable[[str], str] | None = None,
+) -> Verdict:  # fmt: skip
+    """Return the verdict of an assessment.
+
+    Parameters
+    ----------
+    found : Assessment
+    language : {"en", "it"}
+    write : callable, optional
+        Writes a number with some digits, as the language does.
+    name, reason : callable, optional
+        Names of mechanisms, and why a curve ends, in the language.
+    """
+    return _Words(found, language, write, name or str, reason or _reason).verdict()
+
+
+def none_sentence(none: NoMechanism, language: str = "en", largest: float = 2.0, write: Write = number) -> str:
+    """Return why a search gave no mechanism to check."""
+    if math.isinf(none.multiplier):
+        return WORDS[language]["locked"]
+    return WORDS[language]["large"].format(largest=f"{largest:g}", alpha=write(none.multiplier, 4))
+
+
+def check_words(check: Check, language: str = "en", *, decides: bool = True, write: Write = number) -> str:
+    """Return the outcome of one line "capacity over demand", with its ratio.
+
+    Parameters
+    ----------
+    check : Check
+    language : {"en", "it"}
+    decides : bool
+        Whether its limit state is decided by it; a linear check beside one in displacements does not decide.
+    write : callable, optional
+        Writes a number with some digits.
+    """
+    words = WORDS[language]
+    if check.at_rest and check.demand > check.capacity:
+        return words["row_rest"].format(least=write(check.least, 4))
+    word = words["row_holds" if check.holds else "row_fails"].format(ratio=write(check.ratio, 4))
+    return word if decides else words["row_beside"].format(word=word)
+
+
+def ratio_words(ratio: float, holds: bool, language: str = "en", write: Write = number) -> str:
+    """Return whether a ratio that is no line of a mechanism is enough."""
+    return WORDS[language]["row_holds" if holds else "row_fails"].format(ratio=write(ratio, 4))
+
+
+class _Words:
+    """Puts the verdict of one assessment into words."""
+
+    def __init__(
+        self, found: Assessment, language: str, write: Write, name: Callable[[str], str], reason: Callable[[str], str]
+    ) -> None:
+        self.found, self.words, self.write, self.name, self.reason = found, WORDS[language], write, name, reason
+
+    def say(self, key: str, **values: Any) -> str:
+        """Return a sentence; numbers in it are written as the language does."""
+        told = {k: self.write(v, 4) if isinstance(v, float) else str(v) for k, v in values.items()}
+        return self.words[key].format(**told)
+
+    def verdict(self) -> Verdict:
+        """Return all of it."""
+        found = self.found
+        outcome = Outcome.FAILS if found.least < 1.0 else Outcome.INCOMPLETE if found.open else Outcome.HOLDS
+        asked = self.say("asked", levels=", ".join(found.levels), code=found.site.rules.name, FC=found.confidence)
+        return Verdict(
+            outcome=outcome,
+            status=STATUS[outcome],
+            question=Question(asked, found.acting, thickness_words(found.model)),
+            headline=self.headline(outcome),
+            answer=self.answer(outcome),
+            proof=self.proof(),
+            meaning=self.say("meaning"),
+            limits=self.limits(),
+            unchecked=tuple(self.item(item) for item in found.open),
+            attention=(*attention_of(found.model, found.assembly.detection), *found.notes),
+        )
+
+    def by_level(self) -> dict[str, float]:
+        """Return the least zeta_E of all mechanisms at each limit state."""
+        return {level: min((m.zeta_at(level) for m in self.found.mechanisms), default=math.inf)
+                for level in self.found.levels}  # fmt: skip
+
+    def headline(self, outcome: Outcome) -> str:
+        """Return the answer in a few words, by name of the limit state."""
+        worst = self.found.worst
+        if worst is None:
+            return self.say("headline_none" if outcome is Outcome.HOLDS else "headline_none_incomplete")
+        level, zeta = self.decisive(worst)
+        if outcome is Outcome.FAILS and zeta >= 1.0:
+            level, zeta = min(self.by_level().items(), key=lambda item: item[1])
+        return self.say(f"headline_{outcome.value}", zeta=zeta, level=level)
+
+    def decisive(self, worst: LocalMechanism) -> tuple[str, float]:
+        """Return the ultimate limit state that decides, and zeta_E there."""
+        if worst.decisive is None:
+            return ", ".join(worst.site.ultimate(self.found.levels)), math.inf
+        return worst.decisive.level, worst.decisive.zeta
+
+    def answer(self, outcome: Outcome) -> str:
+        """Return the answer in sentences."""
+        worst = self.found.worst
+        if worst is None:
+            why = "; ".join(self.say("none", name=self.name(n.name), way=n.direction, why=self.none(n))
+                            for n in self.found.locked)  # fmt: skip
+            text = self.say("answer_none", why=why)
+            return text if outcome is Outcome.HOLDS else f"{text} {self.say('incomplete')}"
+        level, zeta = self.decisive(worst)
+        parts = [self.say("answer", level=level, zeta=zeta, name=self.name(worst.name), way=worst.direction,
+                          alpha=self.write(worst.multiplier, 6))]  # fmt: skip
+        levels = self.by_level()
+        if len(levels) > 1:
+            told = "; ".join(self.say("rest", level=k, zeta=v) for k, v in levels.items())
+            parts.append(self.say("by_level", levels=told))
+        if outcome is Outcome.FAILS and zeta >= 1.0:
+            low, least = min(levels.items(), key=lambda item: item[1])
+            return " ".join([*parts, self.say("fails_other", level=low, zeta=least)])
+        return " ".join([*parts, self.say(outcome.value)])
+
+    def none(self, none: NoMechanism) -> str:
+        """Return why a search gave no mechanism."""
+        if math.isinf(none.multiplier):
+            return self.say("locked")
+        return self.say("large", largest=2, alpha=none.multiplier)
+
+    def proof(self) -> str:
+        """Return what proves the multiplier of the mechanism that decides; each gap belongs to its own number."""
+        worst = self.found.worst
+        if worst is None:
+            return self.say("proof_none")
+        flow = worst.found.flow.replace(" ", "_")
+        bound = worst.found.associated
+        if flow == "Coulomb":
+            bound = self.found.bounds.get(worst.direction, bound)
+        return self.say(f"proof_{flow}", name=self.name(worst.name), way=worst.direction, upper=bound.upper,
+                        gap=f"{bound.gap:.0e}")  # fmt: skip
+
+    def limits(self) -> tuple[str, ...]:
+        """Return what limits the answer."""
+        found = self.found
+        ways = len(found.bounds)
+        named = len(found.arguments.get("mechanisms") or {}) * ways
+        followed = len(found.mechanisms) + len(found.others)
+        limits = [*joints_not_made(found.assembly.detection)]
+        limits.append(self.say("sought", sought=found.sought, named=named, parts=found.sought - named - ways,
+                               followed=followed))  # fmt: skip
+        worst = found.worst
+        own = worst is not None and worst.name in (found.arguments.get("mechanisms") or {})
+        if worst is not None and worst.found.moving is not None and not own:
+            limits.append(self.say("part", bodies="; ".join(b.label for b in worst.mechanics.blocks[:MOST_NAMES])))
+        limits += [self.say("brittle", tie=t.name, force=t.strength) for t in found.model.ties if t.strength < t.most
+                   and t.yield_force is not None]  # fmt: skip
+        for m in found.mechanisms[:MOST_NAMES]:
+            limits += [
+                self.say("corner", name=self.name(m.name), level=o.level, zeta=o.zeta, ratio=o.check.ratio)
+                for o in m.outcomes
+                if o.check.kind == "displacement" and not o.check.at_rest and math.isfinite(o.zeta)
+                and o.check.a_g >= o.check.least and abs(o.zeta / o.check.ratio - 1.0) > APART
+            ]  # fmt: skip
+        limits += [
+            self.say("cut", name=self.name(m.name), way=m.direction, d=float(m.followed.end),
+                     reason=self.reason(m.followed.reason))
+            for m in found.mechanisms[:MOST_NAMES] if m.followed.ends and m.followed.reason != "falls"
+        ]  # fmt: skip
+        excused = found.arguments.get("elsewhere", ())
+        if excused:
+            limits.append(self.say("elsewhere", items=", ".join(excused)))
+        return tuple(limits)
+
+    def item(self, item: OpenItem) -> str:
+        """Return something that was not checked."""
+        values = dict(item.values)
+        if "name" in values:
+            values["name"] = self.name(values["name"])
+        if "reason" in values:
+            values["reason"] = self.reason(values["reason"])
+        if item.kind == "height":
+            shown = [self.say("high", name=self.name(n), z=float(z)) for n, z in values["names"][:MOST_NAMES]]
+            more = len(values["names"]) - len(shown)
+            values["names"] = ", ".join([*shown, self.say("and_more", n=more)] if more else shown)
+        return self.say(f"open_{item.kind}", **values)
+
+
+def _reason(key: str) -> str:
+    """Return why a curve is cut, in English."""
+    return CUT.get(key, key)

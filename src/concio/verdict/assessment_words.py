@@ -1,0 +1,130 @@
+"""Words of the verdict on a seismic assessment, by language; both languages have the same keys and places."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+EN = {
+    "asked": "every local mechanism at {levels}, {code}, FC {FC}: the earthquake multiplies what pushes, all else "
+    "acts as it is",
+    "headline_holds": "Verified: zeta_E = {zeta} at {level}",
+    "headline_fails": "Not verified: zeta_E = {zeta} at {level}",
+    "headline_incomplete": "Incomplete: zeta_E = {zeta} at {level} of what was checked",
+    "headline_none": "Verified: no mechanism that an earthquake could set in motion",
+    "headline_none_incomplete": "Incomplete: no mechanism was found, and something was not checked",
+    "answer": "The least zeta_E at {level} is {zeta}, of '{name}', push {way}, alpha_0 {alpha}.",
+    "by_level": "Least of all mechanisms by limit state: {levels}.",
+    "rest": "{level} {zeta}",
+    "answer_none": "No mechanism was found that an earthquake could set in motion: {why}.",
+    "fails": "That is less than 1.",
+    "fails_other": "At {level} it is {zeta}, less than 1.",
+    "holds": "All limit states asked for are met.",
+    "incomplete": "Nothing that was checked fails, but not everything was checked: this is no verification.",
+    "none": "'{name}', push {way}: {why}",
+    "locked": "locked: friction and geometry carry any push, so that no mechanism forms",
+    "large": "no mechanism below {largest} g: the least multiplier is {alpha}",
+    "proof_none": "The limit programmes were recomputed from the assembly.",
+    "proof_no_sliding": "alpha_0 of '{name}' is proved from both sides over all motions of the blocks that may "
+    "move: forces in equilibrium and a motion, recomputed from the assembly, with a duality gap of {gap}; no rough "
+    "joint slides.",
+    "proof_Coulomb": "alpha_0 of '{name}' is that of a collapse state of Coulomb friction, with equilibrium, "
+    "friction and flow recomputed from the assembly. What is proved beside it is an upper bound: no collapse under "
+    "push {way} lies above {upper} (associated limit over all motions, duality gap {gap}). That nothing begins to "
+    "move below alpha_0 is not proved: no load was carried up to it in steps.",
+    "proof_associated": "alpha_0 of '{name}' is an upper bound only: the associated limit, with a duality gap of "
+    "{gap}; no collapse state of Coulomb friction was found.",
+    "sought": "searches made: {sought}, of which {named} of named mechanisms and {parts} in other parts of the "
+    "structure (above every level at which blocks meet, beyond lines of openings and returns); followed: "
+    "{followed}; the others begin to move only at accelerations beyond those of these",
+    "part": "the weakest of all is one in which only some blocks move, {bodies}; the search among all motions ended "
+    "at a larger multiplier",
+    "brittle": "tie '{tie}' breaks before it yields: it counts with the {force} kN it has then, not with its yield "
+    "force",
+    "corner": "'{name}', {level}: zeta_E = {zeta} is a ratio of accelerations, capacity over demand in "
+    "displacements is {ratio}: as a_g is scaled the corner periods move with it, so that the displacement demanded "
+    "does not grow like a_g",
+    "cut": "the curve of '{name}', push {way}, is cut at {d} m of its control point: {reason}; its zeta_E counts "
+    "nothing beyond",
+    "elsewhere": "left to the author, who answers for it: {items}",
+    "open_levels": "{levels}: no hazard is given (or say which limit states are asked for)",
+    "open_hazard": "{numbers} of {level} were not given: the spectrum was made with numbers of no site",
+    "open_height": "the amplification at height of {names}: give [site.building]",
+    "open_out of plane": "the facade out of its plane: the model is wider than it is thick, and moves in its plane "
+    "alone",
+    "open_curve": "'{name}', push {way}, at {levels}: its curve does not tell ({reason})",
+    "open_bound": "whether '{name}', push {way}, begins to move below {alpha}, which is an upper bound only",
+    "open_tie": "tie '{tie}', which has no yield force: it was taken to pull with up to {force} kN",
+    "open_locked": "'{name}', push {way}: with joints that open as they slide it is locked, with Coulomb friction "
+    "that is no answer, and no collapse state was found",
+    "high": "'{name}' (z = {z} m)",
+    "and_more": "{n} more",
+    "row_holds": "verified, {ratio}",
+    "row_fails": "not verified, {ratio}",
+    "row_rest": "verified: it does not begin to move below a_g = {least} g",
+    "row_beside": "{word} (the check in displacements decides)",
+    "meaning": "Of the mechanisms that the model can show; what the model does not hold cannot fail in it.",
+}
+
+IT = {
+    "asked": "ogni meccanismo locale allo {levels}, {code}, FC {FC}: il sisma moltiplica ciò che spinge, tutto il "
+    "resto agisce com'è",
+    "headline_holds": "Verificato: zeta_E = {zeta} allo {level}",
+    "headline_fails": "Non verificato: zeta_E = {zeta} allo {level}",
+    "headline_incomplete": "Incompleto: zeta_E = {zeta} allo {level} per ciò che è stato esaminato",
+    "headline_none": "Verificato: nessun meccanismo che il sisma possa attivare",
+    "headline_none_incomplete": "Incompleto: nessun meccanismo trovato, e qualcosa non è stato esaminato",
+    "answer": "Il minimo zeta_E allo {level} è {zeta}, di «{name}», spinta {way}, alpha_0 {alpha}.",
+    "by_level": "Minimo fra tutti i meccanismi per stato limite: {levels}.",
+    "rest": "{level} {zeta}",
+    "answer_none": "Non è stato trovato alcun meccanismo che il sisma possa attivare: {why}.",
+    "fails": "È minore di 1.",
+    "fails_other": "Allo {level} è {zeta}, minore di 1.",
+    "holds": "Tutti gli stati limite richiesti sono soddisfatti.",
+    "incomplete": "Nulla di ciò che è stato esaminato è insufficiente, ma non tutto è stato esaminato: non è una "
+    "verifica.",
+    "none": "«{name}», spinta {way}: {why}",
+    "locked": "bloccato: attrito e geometria portano qualunque spinta, non si forma alcun meccanismo",
+    "large": "nessun meccanismo sotto {largest} g: il moltiplicatore minimo è {alpha}",
+    "proof_none": "I programmi di analisi limite sono ricalcolati dal modello assemblato.",
+    "proof_no_sliding": "alpha_0 di «{name}» è dimostrato dai due lati fra tutti i moti dei blocchi che possono "
+    "muoversi: forze in equilibrio e un moto, ricalcolati dal modello assemblato, con uno scarto di dualità di "
+    "{gap}; nessun giunto con attrito scorre.",
+    "proof_Coulomb": "alpha_0 di «{name}» è quello di uno stato di collasso con attrito di Coulomb, con equilibrio, "
+    "attrito e flusso ricalcolati dal modello assemblato. Dimostrato accanto è un limite superiore: nessun collasso "
+    "con spinta {way} sta sopra {upper} (limite associato fra tutti i moti, scarto di dualità {gap}). Che nulla si "
+    "muova sotto alpha_0 non è dimostrato: nessun carico è stato portato a passi fino a esso.",
+    "proof_associated": "alpha_0 di «{name}» è solo un limite superiore: quello associato, con uno scarto di "
+    "dualità di {gap}; non è stato trovato alcuno stato di collasso con attrito di Coulomb.",
+    "sought": "ricerche fatte: {sought}, di cui {named} di meccanismi con nome e {parts} in altre parti della "
+    "struttura (sopra ogni quota in cui i blocchi si incontrano, oltre le linee di aperture e muri di spina); "
+    "{followed} meccanismi sono stati seguiti, gli altri si muovono solo ad accelerazioni oltre le loro",
+    "part": "il più debole di tutti è uno in cui si muovono solo alcuni blocchi, {bodies}; la ricerca fra tutti i "
+    "moti finiva a un moltiplicatore maggiore",
+    "brittle": "la catena «{tie}» si rompe prima di snervarsi: conta per i {force} kN che ha allora, non per lo "
+    "snervamento",
+    "corner": "«{name}», {level}: zeta_E = {zeta} è un rapporto di accelerazioni, capacità su domanda in "
+    "spostamento vale {ratio}: scalando a_g si spostano i periodi dello spettro, e lo spostamento richiesto non "
+    "cresce come a_g",
+    "cut": "la curva di «{name}», spinta {way}, è troncata a {d} m del punto di controllo: {reason}; il suo zeta_E non "
+    "conta nulla oltre",
+    "elsewhere": "lasciato all'autore, che ne risponde: {items}",
+    "open_levels": "{levels}: pericolosità non data (oppure indicare quali stati limite sono richiesti)",
+    "open_hazard": "{numbers} dello {level} non dati: lo spettro è fatto con numeri di nessun sito",
+    "open_height": "l'amplificazione in quota di {names}: indicare [site.building]",
+    "open_out of plane": "la facciata fuori dal suo piano: il modello è più largo che spesso, e si muove solo nel "
+    "piano",
+    "open_curve": "«{name}», spinta {way}, allo {levels}: la curva non lo dice ({reason})",
+    "open_bound": "se «{name}», spinta {way}, si muova sotto {alpha}, che è solo un limite superiore",
+    "open_tie": "la catena «{tie}», senza forza di snervamento: si è ammesso che tiri fino a {force} kN",
+    "open_locked": "«{name}», spinta {way}: con giunti che si aprono scorrendo è bloccato, con l'attrito di Coulomb "
+    "non è una risposta, e non è stato trovato alcuno stato di collasso",
+    "high": "«{name}» (z = {z} m)",
+    "and_more": "altri {n}",
+    "row_holds": "verificato, {ratio}",
+    "row_fails": "non verificato, {ratio}",
+    "row_rest": "verificato: non si muove sotto a_g = {least} g",
+    "row_beside": "{word} (decide la verifica in spostamento)",
+    "meaning": "Dei meccanismi che il modello può mostrare; ciò che il modello non contiene non può cedere in esso.",
+}
+
+WORDS: Mapping[str, Mapping[str, str]] = {"en": EN, "it": IT}

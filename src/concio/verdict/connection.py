@@ -1,0 +1,71 @@
+"""Blocks that touch nothing, groups of blocks that do not touch, and blocks that hang: how a model holds together."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
+
+from concio.model.interfaces.detect import Detection
+from concio.model.model import Model
+
+BEARS = 1e-3
+"""A face that looks up by less carries nothing without friction."""
+
+
+def apart(model: Model, detection: Detection) -> list[str]:
+    """Return sentences on blocks that touch nothing that stands, on groups that do not touch, and on what hangs."""
+    number = {body.name: k for k, body in enumerate(model.bodies)}
+    ground = len(model.bodies)
+    links = [(i.a, i.b) for i in detection.interfaces]
+    links += [(number[tie.body_a], number.get(tie.body_b, ground)) for tie in model.ties]
+    links += [(number[support.body], ground) for support in model.supports]
+    links += [(k, ground) for k, body in enumerate(model.bodies) if body.kind == "fixed"]
+    if model.periods is not None or not detection.interfaces:
+        return []
+    part = _groups(links, ground + 1)
+    loose = [body.name for k, body in enumerate(model.bodies) if part[k] != part[ground]]
+    found = []
+    if loose:
+        words = ("touches nothing that stands: it falls", "touch nothing that stands: they fall")[len(loose) > 1]
+        found.append(f"{_first(loose)} {words}; are all of them where they should be?")
+    if model.dim == 2:
+        return found
+    free = [k for k, body in enumerate(model.bodies) if body.kind != "fixed" and part[k] == part[ground]]
+    among = _groups([(p, q) for p, q in links if {p, q} <= set(free)], ground + 1)
+    groups: dict[int, list[str]] = defaultdict(list)
+    for k in free:
+        groups[int(among[k])].append(model.bodies[k].name)
+    if len(groups) > 1:
+        shown = sorted(groups.values(), key=len, reverse=True)
+        words = ", ".join(_first(names, 1) for names in shown[:3]) + (", ..." if len(shown) > 3 else "")
+        found.append(f"the blocks are in {len(shown):,} groups that do not touch: {words}; is that meant?")
+    return found + _hanging(model, detection)
+
+
+def _groups(links: list[tuple[int, int]], count: int) -> np.ndarray:
+    """Return the number of the group (count,) of each body, of those that links hold together."""
+    a, b = np.array(links, dtype=int).reshape(-1, 2).T
+    graph = sp.coo_array((np.ones(len(a)), (a, b)), shape=(count, count))
+    return np.asarray(connected_components(graph, directed=False)[1])
+
+
+def _first(names: list[str], most: int = 3) -> str:
+    more = f" and {len(names) - most:,} more" if len(names) > most else ""
+    return ", ".join(f"'{name}'" for name in names[:most]) + more
+
+
+def _hanging(model: Model, detection: Detection) -> list[str]:
+    """Return a sentence on the blocks in space that touch others, none of which is under them to any degree."""
+    held = {tie.body_a for tie in model.ties} | {tie.body_b for tie in model.ties} | {s.body for s in model.supports}
+    touched = {k for patch in detection.patches for k in (patch.a, patch.b)}
+    borne = {p.b for p in detection.patches if p.normal[2] > BEARS}
+    borne |= {p.a for p in detection.patches if p.normal[2] < -BEARS}
+    bodies = [model.bodies[k] for k in sorted(touched - borne)]
+    names = [b.name for b in bodies if b.kind != "fixed" and b.name not in held]
+    if not names or not any(load.kind == "weight" for load in model.loads):
+        return []
+    words = ("has nothing under it", "have nothing under them")[len(names) > 1]
+    return [f"{_first(names)} {words}: only friction at the sides can hold that; is a lintel or a pier missing?"]

@@ -1,0 +1,140 @@
+"""The verdict of a motion: whether the structure stands it, moves on, or has fallen."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from concio.display import number
+from concio.problem.tolerances import CERTIFIED
+from concio.units import GRAVITY
+from concio.verdict.attention import attention_of, joints_not_made
+from concio.verdict.push_verdict import Described
+from concio.verdict.question import question_of
+from concio.verdict.verdict import Outcome, Verdict
+
+if TYPE_CHECKING:
+    from concio.analysis.motion.dynamics_result import DynamicsResult
+
+MOST_FALLEN = 3
+"""More blocks than this are counted."""
+
+CLOSES = 1e-3
+"""Error of the energy balance, over what was turned over, beyond which it is pointed out."""
+
+HEADLINES = {
+    Outcome.HOLDS: "The structure stands the motion and comes to rest.",
+    Outcome.FAILS: "The structure falls.",
+    Outcome.MOVING: "The structure still moves where the calculation ends.",
+    Outcome.UNDECIDED: "The motion was lost before its end.",
+    Outcome.INCOMPLETE: "The motion was not followed to its end.",
+}
+SENSITIVE = "rocking depends on small things: another step, restitution or record may decide otherwise near the limit"
+
+
+def dynamics_verdict(found: DynamicsResult) -> Verdict:
+    """Return the verdict of a motion.
+
+    Parameters
+    ----------
+    found : DynamicsResult
+    """
+    outcome = _outcome(found)
+    reference = found.reference
+    return Verdict(
+        outcome=outcome,
+        status=_status(found, outcome),
+        question=question_of(_asked(found), Described(reference), found.factors),
+        headline=HEADLINES[outcome] if found.stands is not False else "The structure does not stand at the start.",
+        answer=_answer(found, outcome),
+        proof=_proof(found),
+        meaning=(
+            "Every step satisfies the equations of motion with contact and friction. An earthquake that is a little "
+            "different may end otherwise; what was not computed is not known."
+        ),
+        limits=(*joints_not_made(reference.detection), SENSITIVE),
+        unchecked=_unchecked(found, outcome),
+        attention=(*attention_of(found.model, reference.detection), *_noticed(found)),
+        next_steps=("Repeat it with half the step, and with the record scaled by 0.9 and 1.1.",),
+    )
+
+
+def _outcome(found: DynamicsResult) -> Outcome:
+    """Return what the motion shows."""
+    ending = found.ending.name
+    if not found.certified or ending == "UNSOLVED":
+        return Outcome.UNDECIDED
+    if found.fallen or found.stands is False:
+        return Outcome.FAILS
+    if ending == "STOPPED":
+        return Outcome.INCOMPLETE
+    return Outcome.HOLDS if found.rests and found.end.time >= found.ground_ends * (1 - 1e-9) else Outcome.MOVING
+
+
+def _status(found: DynamicsResult, outcome: Outcome) -> str:
+    if not found.certified:
+        return "not_certified"
+    if outcome is Outcome.FAILS and found.stands is False:
+        return "does_not_stand"
+    names = {Outcome.HOLDS: "at_rest", Outcome.FAILS: "fallen", Outcome.MOVING: "moving"}
+    if found.ending.name == "OVERTURNED":
+        return "overturned"
+    return names.get(outcome, found.ending.name.lower())
+
+
+def _asked(found: DynamicsResult) -> str:
+    ground = found.asked or "no motion of the ground"
+    peak = f", largest acceleration {number(found.ground_peak / GRAVITY, 4)} g" if found.asked else ""
+    time = "until rest or a fall" if found.stated is None else f"for {number(found.stated, 6)} s"
+    start = "from where an earlier motion ended" if found.begun > 0 else "from equilibrium"
+    if found.stands is None and not found.begun > 0:
+        start = "from the bodies as described"
+    return f"the motion {start} {time} under {ground}{peak}"
+
+
+def _answer(found: DynamicsResult, outcome: Outcome) -> str:
+    """Return what became of the structure, in sentences with numbers."""
+    time = f"{number(float(found.end.time), 5)} s"
+    told = []
+    if found.stands is False:
+        told.append("The structure does not stand before the ground moves: no equilibrium under its loads was found.")
+    if found.fallen:
+        more = f", and {len(found.fallen) - MOST_FALLEN} more" if len(found.fallen) > MOST_FALLEN else ""
+        told.append(f"At {time} it has fallen: {'; '.join(found.fallen[:MOST_FALLEN])}{more}.")
+    elif outcome is Outcome.UNDECIDED:
+        told.append(f"After {time} no step, however small, satisfies its equations.")
+    elif outcome is Outcome.INCOMPLETE:
+        told.append(f"It was stopped on request at {time}.")
+    elif found.rests:
+        told.append(f"It has come to rest at {time}, in an equilibrium that was found where it stands.")
+    else:
+        told.append(f"It still moves at {time}: whether it comes to rest or falls is not known.")
+    name, turned = found.largest_rotation
+    told.append(f"'{name}' turned most, by {number(float(np.rad2deg(turned)), 4)} degrees from where it was described.")
+    return " ".join(told)
+
+
+def _proof(found: DynamicsResult) -> str:
+    return (
+        f"Certified in each of {len(found.steps):,} steps: momentum of every body, contact, cone and slip, to "
+        f"{found.certificate:.1e} (relative; {CERTIFIED:.0e} is allowed). The energies of the whole, from places "
+        f"and velocities, balance to {found.energy.error:.1e} of what was turned over."
+    )
+
+
+def _unchecked(found: DynamicsResult, outcome: Outcome) -> tuple[str, ...]:
+    """Return what would be expected and was not seen."""
+    if outcome not in (Outcome.MOVING, Outcome.INCOMPLETE):
+        return ()
+    end = float(found.end.time)
+    if end < found.ground_ends * (1 - 1e-9):
+        return (f"the motion of the ground from {number(end, 5)} s to {number(found.ground_ends, 5)} s",)
+    return (f"what happens after {number(end, 5)} s: leave the duration out to follow it until rest or a fall",)
+
+
+def _noticed(found: DynamicsResult) -> tuple[str, ...]:
+    """Return what asks for attention in the motion itself."""
+    error = found.energy.error
+    odd = (f"the energy balance is off by {error:.1e} of what was turned over: take a smaller step",)
+    return (*found.notes, *(odd if error > CLOSES else ()))

@@ -1,0 +1,45 @@
+"""The verdict of an analysis that ends before it begins: what is there from the start does not stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from concio.contact.assembly import Assembly
+from concio.verdict.attention import attention, joints_not_made
+from concio.verdict.question import question_of
+from concio.verdict.verdict import Outcome, Verdict
+
+BY_A_MECHANISM = "a mechanism proves it"
+"""What shows that no joint forces balance the constant loads, in exceptions of analyses that begin with them."""
+
+
+def not_standing(
+    assembly: Assembly, asked: str, answer: str, *, factors: Mapping[str, float] | None = None,
+    multiplied: Iterable[str] = (), proof: str = "",
+) -> Verdict:  # fmt: skip
+    """Return the verdict that an exception carries where the constant loads alone are not carried.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    asked : str
+        What was asked for.
+    answer : str
+        What was found instead, a sentence.
+    factors : mapping of str to float, optional
+        Of the constant groups.
+    multiplied : names
+        Groups that would have been multiplied.
+    proof : str
+    """
+    sentence = f"{answer[0].upper()}{answer[1:].rstrip('.')}."
+    return Verdict(
+        outcome=Outcome.FAILS,
+        status="no_equilibrium",
+        question=question_of(asked, assembly, factors, multiplied=multiplied),
+        headline="It does not stand before the load that was asked about acts.",
+        answer=sentence,
+        proof=proof or sentence,
+        limits=joints_not_made(assembly.detection),
+        attention=attention(assembly),
+    )

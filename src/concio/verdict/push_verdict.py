@@ -1,0 +1,181 @@
+"""The verdict of a push: what a structure carries at large displacements, as far as the curve was followed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from concio.contact.moving.reference import Reference
+from concio.display import number
+from concio.fem.discretisation import Discretisation
+from concio.model.model import Model
+from concio.problem.tolerances import CERTIFIED
+from concio.verdict.attention import attention_of, joints_not_made
+from concio.verdict.question import Acting, Question, question_of
+from concio.verdict.verdict import Outcome, Verdict
+
+if TYPE_CHECKING:
+    from concio.analysis.motion.push_result import PushResult
+
+WEIGHTS = "weights"
+"""What stands for a load group where a share of the weights is multiplied."""
+
+SEVERAL = "Coulomb friction can have several equilibria: the curve is the one that follows from rest as the load grows"
+LENT = "hard joints of rigid blocks give way by a millionth of a width: the peak falls short by some ten thousandths"
+HEADLINES = {
+    Outcome.HOLDS: "The curve was followed to where it was to end.",
+    Outcome.INCOMPLETE: "The curve ends before the strength is lost.",
+    Outcome.UNDECIDED: "The points of the curve do not pass their check.",
+}
+
+
+def push_verdict(found: PushResult) -> Verdict:
+    """Return the verdict of a push.
+
+    Parameters
+    ----------
+    found : PushResult
+    """
+    outcome = _outcome(found)
+    reference = found.reference
+    return Verdict(
+        outcome=outcome,
+        status=found.ending.name.lower() if found.certified else "not_certified",
+        question=_question(found),
+        headline=HEADLINES[outcome],
+        answer=_answer(found),
+        proof=_proof(found),
+        meaning=_meaning(found),
+        limits=(
+            *joints_not_made(reference.detection),
+            *_not_masses(found),
+            *((LENT,) if found.lent_compliance else ()),
+            SEVERAL,
+        ),
+        unchecked=_unchecked(found),
+        attention=attention_of(found.model, reference.detection),
+        next_steps=(
+            "Look at the events: where joints open, slip or close, and where ties yield or break.",
+            "'concio shake' tells what a motion of the ground does; a push is no motion in time.",
+        ),
+    )
+
+
+@dataclass(frozen=True)
+class Described:
+    """The loads of a model as described, for structures whose blocks may touch nothing.
+
+    Parameters
+    ----------
+    reference : Reference
+    """
+
+    reference: Reference
+
+    @property
+    def model(self) -> Model:
+        """The model."""
+        return self.reference.model
+
+    @property
+    def disc(self) -> Discretisation:
+        """Its bodies."""
+        return self.reference.disc
+
+    @property
+    def groups(self) -> tuple[str, ...]:
+        """The load groups."""
+        return tuple(self.reference.model.load_groups)
+
+    @property
+    def loads(self) -> dict[str, np.ndarray]:
+        """The forces of each load group (N,) [kN]."""
+        here = np.ones(len(self.model.bodies), dtype=complex)
+        every = self.reference.loads.groups
+        return {group: self.reference.loads.forces({g: float(g == group) for g in every}, here) for group in every}
+
+
+def _outcome(found: PushResult) -> Outcome:
+    """Return what the curve shows: to its end, or not as far as was asked."""
+    if not found.certified:
+        return Outcome.UNDECIDED
+    return Outcome.HOLDS if found.ending.name in ("LOST", "REACHED", "NO_LARGER_LOAD", "LOCKED") else Outcome.INCOMPLETE
+
+
+def _question(found: PushResult) -> Question:
+    until = "" if found.until is None else f", to {_control(found, found.until)}"
+    to_side = f"the side ({found.direction[0]:.4g}, {found.direction[1]:.4g})"
+    grows = ", ".join(found.live) if found.live else f"a share of the weights to {to_side}"
+    asked = f"the multiplier of {grows} over a growing displacement, from equilibrium{until}, where the bodies stand"
+    if found.by_load:
+        asked = f"equilibria under a growing multiplier of {grows}{until}, where the bodies stand"
+    sign = -1.0 if found.reversed else 1.0
+    question = question_of(
+        asked, Described(found.reference), found.factors, multiplied=dict.fromkeys(found.live, sign * found.peak)
+    )
+    if found.live:
+        return question
+    force = tuple(found.force.tolist())
+    what = "the weights of all bodies and of masses, and nothing else, turned to the side"
+    own = Acting(WEIGHTS, what, force, float(np.linalg.norm(force)), found.peak, "multiplied")
+    return Question(question.asked, (*question.acting, own), question.assumptions)
+
+
+def _control(found: PushResult, value: float) -> str:
+    return f"a multiplier of {number(value, 6)}" if found.by_load else found.model.report.text("motion", value, 6)
+
+
+def _answer(found: PushResult) -> str:
+    """Return what was reached, in sentences with numbers."""
+    units, last = found.model.report, len(found) - 1
+    at = units.text("motion", float(found.displacement[found.peak_step]), 4)
+    end = units.text("motion", float(found.displacement[last]), 4)
+    now = number(float(found.multiplier[last]), 4, size=found.peak)
+    if found.peak_passed or found.ending.name == "NO_LARGER_LOAD":
+        told = f"The largest multiplier is {number(found.peak, 6)}, at {at}."
+    else:
+        told = f"The multiplier still grows where the curve ends, {number(found.peak, 6)} at {at}: no peak was reached."
+    endings = {
+        "LOST": f"The strength is lost at {end}.",
+        "REACHED": f"What was asked for was reached, {end}; the multiplier is {now} there.",
+        "NO_EQUILIBRIUM": f"No equilibrium beyond {end} could be followed, where the multiplier is {now}: there may be "
+        "another one there, or none.",
+        "NO_LARGER_LOAD": "No equilibrium nearby carries more: a growing load ends at the peak.",
+        "LOCKED": "The structure locks: the multiplier grows without end.",
+        "STOPPED": f"It was stopped on request at {end}, where the multiplier is {now}.",
+    }
+    return f"{told} {endings[found.ending.name]}"
+
+
+def _not_masses(found: PushResult) -> tuple[str, ...]:
+    """Return a word on loads that rest on the structure and do not push, where the weights are multiplied."""
+    if found.live or not any(load.kind != "weight" for load in found.model.loads):
+        return ()
+    return ("loads other than own weights act as they are; an assessment lets vertical ones push sideways as well",)
+
+
+def _proof(found: PushResult) -> str:
+    return (
+        f"Certified where the bodies stand in each of {len(found)} states: balance of forces at the load factors and "
+        f"support positions of that state, gaps, cone and slip direction of the contact pairs found there, to "
+        f"{found.certificate:.1e} (relative; {CERTIFIED:.0e} is allowed)."
+    )
+
+
+def _meaning(found: PushResult) -> str:
+    return (
+        "Every state of the curve is in equilibrium where the bodies stand, under the loads that act as they are and "
+        "the multiplied one. Between two states nothing was looked at, but for ties: where they yield and break is "
+        "located. Beyond the last state nothing is said."
+    )
+
+
+def _unchecked(found: PushResult) -> tuple[str, ...]:
+    """Return what was asked for or would be expected, and was not reached."""
+    name = found.ending.name
+    if name in ("NO_EQUILIBRIUM", "STOPPED"):
+        where = found.model.report.text("motion", float(found.displacement[-1]), 4)
+        return (f"the curve beyond {where}",)
+    return ()

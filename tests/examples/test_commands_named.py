@@ -1,0 +1,87 @@
+"""Every example and every template does what its first lines say: the commands named there are read and run."""
+
+from __future__ import annotations
+
+import re
+import runpy
+import shlex
+import shutil
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+import concio
+from commands import run
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+TEMPLATES = Path(concio.__file__).parent / "model" / "templates"
+COMMAND = re.compile(r"^#\s+concio (?P<words>[a-z]+ \S+\.toml(?: \S+)*?)(?:\s{2,}.*)?$", re.MULTILINE)
+DRAWN = {"facade.toml", "gate_from_a_drawing.toml", "draw_facade.py"}
+"""Files that need ezdxf."""
+CODES = {"pushed_too_hard.toml": 3}
+"""Exit codes that the files themselves announce; of all others 0."""
+OPEN = {"assess": (0, 3, 4), "limit": (0, 4), "shake": (0, 4)}
+"""Commands whose answer is one of several: an assessment may be not verified, or name what it could not check; a motion
+that is asked for until a stated time may still go on there."""
+QUICK_EXAMPLES = {
+    "blocks_from_a_table.toml", "buttress.toml", "eccentric_column.toml", "gate_from_a_drawing.toml", "flat_arch.toml",
+    "leaning_stones_with_tie.toml", "pushed_too_hard.toml", "spreading_arch.toml", "semicircular_arch.toml",
+}  # fmt: skip
+QUICK_TEMPLATES = {"column", "blocks"}
+
+
+def commands(text: str) -> list[str]:
+    """Return the commands that the comments of a model file name."""
+    return [found["words"] for found in COMMAND.finditer(text)]
+
+
+def follow(command: str) -> None:
+    """Run a command that a file names, in the directory that holds the file."""
+    name, *rest = shlex.split(command)
+    file = Path(rest[0]).name
+    code, out, err = run(name, *(file if word == rest[0] else word for word in rest))
+    assert code in OPEN.get(name, (CODES.get(file, 0),)), f"{command}: exit code {code}\n{err}"
+    assert "Error" not in err
+    assert out.strip()
+
+
+def marked(names: list[str], quick: set[str]) -> list[object]:
+    return [pytest.param(n, marks=[] if n in quick else [pytest.mark.long]) for n in names]
+
+
+@pytest.mark.usefixtures("blank_figures")
+@pytest.mark.parametrize("name", marked(sorted(p.name for p in EXAMPLES.glob("*.toml")), QUICK_EXAMPLES))
+def test_an_example_does_what_its_first_lines_name(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    if name in DRAWN and not find_spec("ezdxf"):
+        pytest.skip("drawings need ezdxf")
+    place = tmp_path / "examples"
+    shutil.copytree(EXAMPLES, place)
+    monkeypatch.chdir(place)
+    named = commands((place / name).read_text(encoding="utf-8"))
+    assert named, "the file names no command"
+    for command in named:
+        assert Path(command.split()[1]).name == name
+        follow(command)
+
+
+@pytest.mark.usefixtures("blank_figures")
+@pytest.mark.parametrize("kind", marked(sorted(p.stem for p in TEMPLATES.glob("*.toml")), QUICK_TEMPLATES))
+def test_a_template_does_what_its_first_lines_name(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run("new", kind)[0] == 0
+    named = commands((tmp_path / f"{kind}.toml").read_text(encoding="utf-8"))
+    assert len(named) >= 2
+    for command in named:
+        follow(command)
+
+
+@pytest.mark.long  # test_gallery runs what they hold, smaller where that says the same
+@pytest.mark.parametrize("name", sorted(p.name for p in EXAMPLES.glob("*.py")))
+def test_a_script_runs_by_its_name(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    if name in DRAWN and not find_spec("ezdxf"):
+        pytest.skip("drawings need ezdxf")
+    shutil.copytree(EXAMPLES, tmp_path / "examples")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("sys.argv", [name])
+    runpy.run_path(str(tmp_path / "examples" / name), run_name="__main__")

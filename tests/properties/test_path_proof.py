@@ -1,0 +1,122 @@
+"""Every state of a path is checked against the original problem at its factors, never against what the path kept."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from concio.analysis import path as paths
+from concio.analysis.path import Stage, run_path
+from concio.contact.assembly import PRESTRESS
+from concio.model.generate.walls import wall
+from concio.model.materials import Rigid
+from concio.model.model import Support, Tie
+from concio.problem.certificate import certify
+from samples import sample
+
+SEEDS = range(sample(3, 12))
+
+
+def random_wall(rng):
+    """A small wall of rigid or elastic blocks between walls, whose ground moves sideways and down."""
+    columns, courses = int(rng.integers(2, 4)), int(rng.integers(1, 4))
+    rigid = bool(rng.integers(2))
+    model = wall(
+        length=0.4 * columns, height=0.2 * courses, block_size=(0.4, 0.2), friction=float(rng.uniform(0.4, 0.8)),
+        horizontal=float(rng.uniform(0.01, 0.1)), block="rigid" if rigid else "elastic", mesh_size=0.2, side_walls=True,
+        top_pressure=float(rng.uniform(0.0, 20.0)),
+    )  # fmt: skip
+    away = (float(rng.uniform(1e-5, 1e-4)), float(rng.uniform(-1e-5, 0.0)))
+    return replace(model, supports=(Support("moves", "ground", displacement=away, group="settlement"),))
+
+
+def random_stages(rng, groups):
+    """Weight, then some stages in which some groups take new factors, up and down."""
+    stages = [Stage("weight", {"dead": 1.0})]
+    for k in range(int(rng.integers(1, 4))):
+        named = rng.permutation(groups)[: int(rng.integers(1, len(groups) + 1))]
+        least = {g: 0.5 if g == "dead" else 0.0 for g in groups}
+        stages.append(Stage(f"s{k}", {str(g): float(rng.uniform(least[g], 1.0)) for g in named}))
+    return [*stages, Stage("all", dict.fromkeys(groups, 1.0))]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_every_state_obeys_the_original_equations(seed):
+    """Equilibrium and the cone of every state, in the problem of the assembly at its factors, made anew here."""
+    rng = np.random.default_rng(seed)
+    model = random_wall(rng)
+    found = run_path(model, random_stages(rng, ["dead", "live", "top", "settlement"]))
+    assert found.certified
+    assert len(found.steps) >= len(found.outcomes)
+    for step in found.steps:
+        problem = found.assembly.problem(step.factors)
+        own = certify(problem, step.state.displacement, step.state.normal_force, step.state.friction_force)
+        assert max(own.equilibrium, own.cone, own.penetration) <= 1e-9
+
+
+MUTANTS = {
+    "slip of moved obstacles": lambda a, b: {"tangent_rate": b.slip_origin - a.slip_origin},
+    "no slip of moved obstacles": lambda a, b: {"tangent_rate": 0.0 * a.slip_origin},
+    "gap of moved obstacles": lambda a, b: {"gap_rate": a.gap - b.gap},
+    "half the gap": lambda a, b: {"gap_rate": 0.5 * (b.gap - a.gap)},
+    "a thousandth of the load": lambda a, b: {"load_rate": 1.001 * (b.f - a.f)},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("mutant", MUTANTS)
+def test_a_path_that_interpolates_wrongly_is_not_certified(mutant, monkeypatch):
+    rng = np.random.default_rng(7)
+    model = replace(random_wall(rng), ties=())
+    right = paths._linear
+
+    def wrong(assembly, start, end):
+        a, b = assembly.problem(start), assembly.problem(end)
+        return replace(right(assembly, start, end), **MUTANTS[mutant](a, b))
+
+    stages = [Stage("weight", {"dead": 1.0}), Stage("support", {"settlement": 1.0}), Stage("more", {"dead": 1.2})]
+    assert run_path(model, stages).certified
+    monkeypatch.setattr(paths, "_linear", wrong)
+    found = run_path(model, stages)
+    assert found.certificate > 1e-6
+    assert not found.certified
+
+
+@pytest.mark.parametrize("what", ["displacement", "normal_force", "friction_force", "offset"])
+def test_states_that_are_changed_are_not_certified(what, monkeypatch):
+    model = random_wall(np.random.default_rng(7))
+    walk = paths._walk
+
+    def wrong(*arguments):
+        found = walk(*arguments)
+        last = found.states[-1]
+        size = float(np.abs(last.displacement if what == "offset" else getattr(last, what)).max())
+        changed = replace(last, **{what: getattr(last, what) + 1e-6 * size})
+        return replace(found, states=(*found.states[:-1], changed))
+
+    monkeypatch.setattr(paths, "_walk", wrong)
+    assert not run_path(model, [Stage("all", {"dead": 1.0, "live": 1.0})]).certified
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_prestressed_ties_are_put_on_with_the_first_stage(seed):
+    """A tie through one joint pulls with its prestress, which grows with the weight or with a stage of its own."""
+    rng = np.random.default_rng(seed)
+    pull = float(rng.uniform(0.1, 2.0))
+    model = wall(length=0.4, height=0.2, block_size=(0.4, 0.2), friction=0.7, block=Rigid(unit_weight=20.0))
+    top = (0.2, 0.2)
+    rod = Tie("rod", "c1-b1", top, "ground", (0.2, 0.0), stiffness=float(10 ** rng.uniform(2, 5)), prestress=pull)
+    name = next(b.name for b in model.bodies if b.name != "ground")
+    model = replace(model, ties=(replace(rod, body_a=name),))
+    found = run_path(model, [Stage("weight", {"dead": 1.0}), Stage("less", {"dead": 0.5})])
+    assert found.complete
+    assert found.certified
+    weight = 20.0 * 0.4 * 0.2
+    for step in found.steps:
+        *pressed, tension = step.state.normal_force
+        assert sum(pressed) == pytest.approx(weight * step.factors["dead"] + tension, rel=1e-9, abs=1e-12)
+        assert tension == pytest.approx(pull * step.factors[PRESTRESS], rel=1e-2)  # hard joints were lent compliance
+    assert found.steps[-1].factors[PRESTRESS] == 1.0
+    named = run_path(model, [Stage("weight", {"dead": 1.0}), Stage("tension", {PRESTRESS: 0.5})])
+    assert named.steps[-1].state.normal_force[-1] == pytest.approx(0.5 * pull, rel=1e-2)

@@ -1,0 +1,365 @@
+"""What an assessment answers: what pushes, the weakest of all that there is, what ties carry, what was not checked."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import concio
+from commands import run
+from concio import Assessment, JointLaw, Load, Model, Polyhedron, Rigid, Tie
+from concio.analysis.seismic.applied import sideways
+from concio.analysis.seismic.tie_history import TieHistory, together
+from concio.analysis.seismic.variations import tie_force
+from concio.errors import InputError, NoEquilibriumError
+from concio.report.assessment_page import AssessmentReport
+from concio.verdict.assessment_words import EN, IT
+from concio.verdict.verdict import Outcome
+from samples import sample
+from seismic_walls import courses, ground, overturning, site
+
+ONE = {"direction": "left", "levels": ["SLV"]}
+HIGH = {**ONE, "elsewhere": ("height",)}
+
+
+def assessed(model: Model, **more: Any) -> Assessment:
+    given = {"site": site(), **ONE, **more}
+    return concio.assess(model, **given)
+
+
+def strip(n: int = 1, height: float = 4.0, thickness: float = 0.5, *, x: float = 0.0, word: str = "c") -> list[Any]:
+    """Return n courses from x on."""
+    shift = np.array([x, 0.0])
+    made = courses(n, height, thickness)
+    return [replace(b, name=b.name.replace("c", word), outline=b.outline + shift) for b in made]
+
+
+def plain(*bodies: Any, loads: tuple[Load, ...] = (), ties: tuple[Tie, ...] = ()) -> Model:
+    return Model((ground(-2, 20), *bodies), {"block": Rigid(20.0)}, {"joint": JointLaw(0.8)},
+                 loads=(Load("weight", (0, -1)), *loads), ties=ties)  # fmt: skip
+
+
+def rod(stiffness: float = 5000.0, most: float | None = 12.0, longest: float | None = None) -> Tie:
+    return Tie("rod", "c1", (0.5, 3.5), "", (3.5, 3.5), stiffness=stiffness, yield_force=most, break_elongation=longest)
+
+
+# -- what pushes ------------------------------------------------------------------------------------------------------
+
+
+@settings(max_examples=sample(2, 12), deadline=None)
+@given(st.lists(st.sampled_from(["live", "wind", "earthquake", "q", "roof"]), min_size=3, max_size=3, unique=True),
+       st.floats(0.0, 0.3))  # fmt: skip
+def test_what_groups_are_called_changes_nothing(names: list[str], wind: float) -> None:
+    """A group called live was taken for the earthquake, whatever it was."""
+    def named(words: list[str]) -> Model:
+        base = overturning()
+        wall = Load("pressure", (wind + 0.01,), bodies=("c1",), edge=((0.6, 0.0), (0.6, 6.0)), group=words[2])
+        groups = ("dead", *words[:2])
+        return replace(base, loads=(*(replace(v, group=g) for v, g in zip(base.loads, groups, strict=True)), wall))
+
+    first, second = (assessed(named(words)) for words in (["a", "b", "c"], names))
+    assert second.worst.multiplier == pytest.approx(first.worst.multiplier, rel=1e-12)  # type: ignore[union-attr]
+    assert second.zeta == pytest.approx(first.zeta, rel=1e-12)
+
+
+@settings(max_examples=sample(2, 12), deadline=None)
+@given(st.floats(0.01, 0.35))
+def test_wind_along_the_push_reduces_what_is_left(pressure: float) -> None:
+    gust = Load("pressure", (pressure,), bodies=("c1",), edge=((0.6, 0.0), (0.6, 6.0)), group="live")
+    model = overturning()
+    calm, windy = assessed(model), assessed(replace(model, loads=(*model.loads, gust)))
+    assert windy.zeta < calm.zeta
+    assert windy.worst.multiplier == pytest.approx((27.42 - pressure * 18.0) / 271.2, abs=1e-9)  # type: ignore[union-attr]
+
+
+def test_wind_that_topples_the_wall_topples_it() -> None:
+    gust = Load("pressure", (1.6,), bodies=("c1",), edge=((0.6, 0.0), (0.6, 6.0)), group="live")
+    model = overturning()
+    with pytest.raises(NoEquilibriumError, match="does not stand"):
+        assessed(replace(model, loads=(*model.loads, gust)))
+
+
+def test_the_question_says_what_pushes_with_how_many_kn() -> None:
+    found = assessed(overturning(), levels=["SLD"])
+    said = found.verdict.question.loads()
+    assert any(line.startswith("push left: multiplied") and "84.4 kN" in line for line in said)
+    assert any(line.startswith("dead: constant") for line in said)
+    assert "moltiplica 84,4 kN" in AssessmentReport(found, language="it").top()
+    assert "multiplies 84.4 kN" in AssessmentReport(found).top()
+    assert "multiplied" in found._repr_html_()
+
+
+def test_what_pushes_up_is_no_weight() -> None:
+    model = plain(*strip(), loads=(Load("pressure", (5.0,), bodies=("c1",), edge=((0.0, 4.0), (0.5, 4.0))),))
+    assert len(sideways(model, [-1.0])[0]) == 2  # the weight, and what rests on the top
+    up = Load("traction", (0.0, 5.0), bodies=("c1",), edge=((0.0, 4.0), (0.5, 4.0)))
+    lifted = replace(model, loads=(model.loads[0], up))
+    assert len(sideways(lifted, [-1.0])[0]) == 1
+
+
+# -- the weakest ------------------------------------------------------------------------------------------------------
+
+
+@settings(max_examples=sample(2, 12), deadline=None)
+@given(st.integers(2, 4), st.data())
+def test_naming_a_part_never_worsens_the_outcome(n: int, data: st.DataObject) -> None:
+    """The least multiplier is not always the least zeta_E: parts that nobody names are sought as well."""
+    names = data.draw(st.lists(st.sampled_from([f"c{k + 1}" for k in range(n)]), min_size=1, unique=True))
+    roof = Load("point", (-0.2, -6.0), bodies=(f"c{n}",), at=(0.2, 4.0), group="roof")
+    model = plain(*strip(n), loads=(roof,))
+    alone, named = (assessed(model, **{**HIGH, "mechanisms": more}) for more in (None, {"some": names}))
+    assert named.zeta >= alone.zeta * (1 - 1e-6)
+    assert alone.verdict.outcome is named.verdict.outcome
+    every = next(m for m in named.mechanisms if m.name == "weakest of all")
+    assert all(every.multiplier <= m.multiplier * (1 + 1e-9) for m in named.mechanisms)
+
+
+def test_the_headline_is_the_least_zeta_at_the_ultimate_limit_state() -> None:
+    """A storey with 1.38 times the multiplier of the whole is worse off."""
+    found = assessed(overturning(3))
+    every = next(m for m in found.mechanisms if m.name == "weakest of all")
+    assert found.worst is not every
+    assert found.worst.multiplier > every.multiplier  # type: ignore[union-attr]
+    assert found.zeta < 1 < every.zeta
+    assert found.verdict.headline == f"Not verified: zeta_E = {found.zeta:.4g} at SLV"
+    assert found.sought == 3
+    assert "searches made: 3" in " ".join(found.verdict.limits)
+
+
+@settings(max_examples=sample(2, 12), deadline=None)
+@given(st.floats(2.0, 6.0), st.floats(0.25, 0.6), st.floats(2.0, 6.0), st.floats(0.25, 0.6))
+def test_structures_side_by_side_do_not_change_each_other(h1: float, t1: float, h2: float, t2: float) -> None:
+    one, other = strip(1, h1, t1), strip(1, h2, t2, x=8.0, word="d")
+    apart = [assessed(plain(*bodies)).zeta for bodies in (one, other)]
+    assert assessed(plain(*one, *other)).zeta == pytest.approx(min(apart), rel=1e-6)
+
+
+@pytest.mark.long  # above a storey of a strip
+def test_a_corner_that_fails_fails_without_a_name() -> None:
+    model = concio.walls(
+        lines=[((0, 0), (0, 2.0)), ((0, 0), (1.5, 0))], height=3.0, block_size=(0.8, 0.3, 0.3), block="rigid",
+        unit_weight=18.0, friction=0.6,
+    )  # fmt: skip
+    found = concio.assess(model, site=site(), direction="-x", levels=["SLV"])
+    every = next(m for m in found.mechanisms if m.name == "weakest of all")
+    assert every.multiplier == pytest.approx(0.18687, abs=1e-4)  # among all motions the search ended at 0.2501
+    assert every.multiplier <= found.bounds["-x"].upper
+    assert found.verdict.outcome is Outcome.FAILS
+    assert "no collapse under push -x lies above 0.261" in found.verdict.proof
+
+
+# -- ties -------------------------------------------------------------------------------------------------------------
+
+
+@settings(max_examples=sample(2, 12), deadline=None)
+@given(st.floats(2e3, 2e4), st.floats(2e-4, 2e-3), st.floats(1.1, 20.0))
+def test_a_tie_carries_at_most_what_it_has_when_it_breaks(stiffness: float, longest: float, more: float) -> None:
+    force = stiffness * longest
+    brittle = assessed(plain(*strip(), ties=(rod(stiffness, more * force, longest),)))
+    equal = assessed(plain(*strip(), ties=(rod(stiffness, force, longest),)))
+    worst = brittle.worst
+    assert worst is not None
+    assert worst.multiplier == pytest.approx((40 * 0.25 + 3.5 * force) / 80, rel=1e-9)
+    assert worst.multiplier == pytest.approx(equal.worst.multiplier, rel=1e-12)  # type: ignore[union-attr]
+    assert brittle.zeta == pytest.approx(equal.zeta, rel=1e-6)
+    assert worst.followed.broken[0] == pytest.approx(longest * 4 / 3.5, rel=0.02)
+    assert 0.97 * worst.multiplier < worst.followed.multiplier.max() <= worst.multiplier
+    assert "breaks before it yields" in " ".join(brittle.verdict.limits)
+
+
+@settings(max_examples=sample(2, 12), deadline=None)
+@given(st.floats(3.0, 20.0), st.floats(0.005, 0.04))
+def test_rows_and_summary_say_the_same(most: float, longest: float) -> None:
+    """A displacement that is not met stood above a zeta_E of 2: the wall moves before its tie pulls."""
+    found = assessed(plain(*strip(), ties=(rod(5000.0, most, longest),)))
+    for m in found.mechanisms:
+        for outcome in m.outcomes:
+            rows = [c for c in m.checks if c.level == outcome.level and m.decided_by(c)]
+            assert outcome.holds == all(c.holds for c in rows)
+
+
+def test_a_wall_in_space_with_a_tie_is_the_wall_in_the_plane() -> None:
+    """The peak was 0.163 of 0.2124, the break at 0.60 mm of 0.457, and d_SLV 2.5 times too large."""
+    flat = assessed(plain(*strip(), ties=(rod(longest=4e-4),))).worst
+    bodies = (
+        Polyhedron.box("ground", (-2, -2, -0.3), (2, 3, 0), kind="fixed"),
+        Polyhedron.box("c1", (0, 0, 0), (0.5, 1, 4), kind="rigid"),
+    )
+    tie = replace(rod(longest=4e-4), at_a=(0.5, 0.5, 3.5), at_b=(3.5, 0.5, 3.5))
+    weight = Load("weight", (0, 0, -1))
+    solid = Model(bodies, {"block": Rigid(20.0)}, {"joint": JointLaw(0.8)}, loads=(weight,), ties=(tie,))
+    deep = assessed(solid, direction="-x").worst
+    assert flat is not None
+    assert deep is not None
+    # about the toe: 40 kN at 0.25 m and 2 kN at 3.5 m against 40 kN at 2 m
+    assert deep.multiplier == pytest.approx(17 / 80, rel=1e-6)
+    assert deep.followed.multiplier.max() == pytest.approx(flat.followed.multiplier.max(), rel=1e-6)
+    assert deep.followed.broken[0] == pytest.approx(flat.followed.broken[0], rel=1e-6)
+    assert deep.followed.broken[0] == pytest.approx(4e-4 * 4 / 3.5, rel=1e-3)
+    assert deep.limits["SLV"].d == pytest.approx(flat.limits["SLV"].d, rel=1e-2)
+    assert deep.zeta == pytest.approx(flat.zeta, rel=1e-2)
+
+
+def test_ties_that_do_not_pull_together_do_not_count_together() -> None:
+    brittle = replace(rod(50_000.0, 10.0, 3e-4), name="brittle")
+    soft = replace(rod(500.0, 10.0), name="soft", at_a=(0.5, 3.0), at_b=(3.5, 3.0))
+    worst = assessed(plain(*strip(), ties=(brittle, soft))).worst
+    assert worst is not None
+    each = (10 + 10 * 3.5 + 10 * 3.0) / 80
+    assert worst.multiplier < 0.75 * each
+    assert worst.followed.multiplier.max() == pytest.approx(worst.multiplier, rel=0.05)
+    d, forces = together((brittle, soft), np.array([3.5 / 4, 3.0 / 4]))
+    assert forces[0] * 3.5 + forces[1] * 3.0 == pytest.approx(80 * worst.multiplier - 10, rel=1e-9)
+    assert d == pytest.approx(3e-4 / (3.5 / 4))  # the brittle one yields before, and is about to break
+
+
+def test_a_broken_tie_stays_broken_and_a_yielded_one_unloads() -> None:
+    tie = rod(1000.0, 5.0, 0.02)
+    new = TieHistory.none(1)
+    assert new.force(0, tie, 0.004) == pytest.approx(4.0)
+    yielded = new.after(np.array([0.012]))
+    assert yielded.force(0, tie, 0.012) == pytest.approx(5.0)
+    assert yielded.force(0, tie, 0.009) == pytest.approx(2.0)
+    assert yielded.after(np.array([0.02]), [0]).force(0, tie, 0.001) == 0.0
+    assert new.next_event([tie], np.array([0.0]), np.array([0.03])) == (0, 0.005, False)
+    assert yielded.next_event([tie], np.array([0.012]), np.array([0.03])) == (0, 0.02, True)
+
+
+def test_no_yield_force_helps_a_tie_that_breaks_first() -> None:
+    found = tie_force(plain(*strip(), ties=(rod(longest=4e-4),)), "rod", site=site(), **ONE)
+    assert math.isinf(found.force)
+    assert found.reached < 1
+
+
+# -- what was not checked ---------------------------------------------------------------------------------------------
+
+
+def parapet(*, E: float = 1.2) -> Model:
+    roof = concio.Body("roof", np.array([[-0.5, 8.5], [1, 8.5], [1, 9], [-0.5, 9.0]]), kind="fixed")
+    block = concio.Body("c1", np.array([[0, 9], [0.3, 9], [0.3, 9 + E], [0, 9 + E]]), kind="rigid")
+    return Model((roof, block), {"block": Rigid(18.0)}, {"joint": JointLaw(0.7)}, loads=(Load("weight", (0, -1)),))
+
+
+QUIET = {"SLV": {"a_g": 0.15, "F0": 2.45, "Tc": 0.32}}
+
+
+def test_a_parapet_is_not_verified_on_the_ground() -> None:
+    open_ = assessed(parapet(), site=site(hazard=QUIET))
+    assert open_.verdict.outcome is Outcome.INCOMPLETE
+    assert open_.zeta == pytest.approx(1.119, abs=1e-3)
+    assert "[site.building]" in open_.verdict.sentence
+    assert not open_.holds
+    high = assessed(parapet(), site=site(hazard=QUIET, building={"height": 9.0, "storeys": 3}))
+    assert high.verdict.outcome is Outcome.FAILS
+    assert high.zeta < 1
+    answered = assessed(parapet(), site=site(hazard=QUIET), elsewhere=["height"])
+    assert answered.verdict.outcome is Outcome.HOLDS
+    assert "answers for it" in " ".join(answered.verdict.limits)
+    with pytest.raises(InputError, match="no check that is made elsewhere 'heights'"):
+        assessed(parapet(), elsewhere=["heights"])
+
+
+def test_a_facade_in_elevation_can_leave_its_plane() -> None:
+    wide = plain(*strip(1, 1.5, 4.0))
+    assert assessed(wide, site=site(hazard=QUIET)).open[-1].kind == "out of plane"
+    answered = assessed(wide, site=site(hazard=QUIET), elsewhere=["out of plane"])
+    assert answered.verdict.outcome is Outcome.HOLDS
+
+
+def test_a_tie_without_yield_force_is_no_verified_tie() -> None:
+    weak = site(hazard={"SLV": {**QUIET["SLV"], "a_g": 0.01}})
+    found = assessed(plain(*strip(), ties=(rod(most=None, longest=0.3),)), site=weak)
+    assert found.least > 1
+    assert [item.kind for item in found.open] == ["tie"]
+    assert found.verdict.exit_code == 4
+    assert "1500 kN" in found.verdict.unchecked[0]
+
+
+def test_limit_states_without_hazard_and_numbers_of_no_site() -> None:
+    found = assessed(overturning(), site=site(hazard={"SLV": {"a_g": 0.05}}), levels=None)
+    assert [item.kind for item in found.open] == ["levels", "hazard"]
+    assert found.verdict.unchecked[0].startswith("SLD, SLC: no hazard")
+    assert found.verdict.unchecked[1].startswith("F0, Tc of SLV were not given")
+    assert found.verdict.outcome is Outcome.INCOMPLETE
+    fixed = assessed(overturning(), site=concio.Site(hazard={"SLV": {"a_g": 0.05}}, code="en1998"))
+    assert not fixed.open  # its spectra have no such numbers
+    with pytest.raises(InputError, match=r"a_g = 0\.2 g of SLD is larger than a_g = 0\.08 g of SLV"):
+        site(hazard={"SLD": {"a_g": 0.2}, "SLV": {"a_g": 0.08}})
+
+
+def test_a_confidence_factor_of_the_author_is_not_that_of_the_level() -> None:
+    found = assessed(overturning(), confidence=1.0)
+    assert any("that of LC1 would be 1.35" in line for line in found.verdict.attention)
+
+
+def test_zeta_beside_capacity_over_demand_has_its_sentence() -> None:
+    found = assessed(overturning(), site=site(hazard={"SLV": {"a_g": 0.35, "F0": 2.45, "Tc": 0.32}}))
+    check = found.worst.decisive.check  # type: ignore[union-attr]
+    assert abs(found.zeta / check.ratio - 1) > 0.01
+    assert any("is a ratio of accelerations" in line for line in found.verdict.limits)
+
+
+def test_what_only_friction_locks_is_left_open() -> None:
+    """Wedged between two walls a block takes any push if its joints open as they slide; Coulomb's do not."""
+    left = concio.Body("left", np.array([[-1, 0], [0, 0], [0, 7], [-1, 7.0]]), kind="fixed")
+    model = overturning()
+    found = assessed(replace(model, bodies=(*model.bodies, left)))
+    assert found.worst is None
+    assert found.verdict.outcome is Outcome.HOLDS  # a smooth rock holds it too
+    assert not found.locked[0].doubtful
+
+
+def test_both_languages_have_the_same_words() -> None:
+    import re
+
+    assert list(EN) == list(IT)
+    for key, text in EN.items():
+        assert set(re.findall(r"\{(\w+)\}", text)) == set(re.findall(r"\{(\w+)\}", IT[key])), key
+
+
+PARAPET = """
+[materials.wall]
+kind = "rigid"
+unit_weight = "18 kN/m3"
+[joints.bed]
+friction = 0.7
+[[blocks]]
+name = "roof"
+kind = "fixed"
+rectangle = [[-0.5, 8.5], [1.0, 9.0]]
+[[blocks]]
+name = "parapet"
+material = "wall"
+rectangle = [[0.0, 9.0], [0.30, 10.2]]
+[[loads]]
+kind = "weight"
+value = [0, -1]
+[site]
+soil = "B"
+[site.hazard]
+SLV = { a_g = 0.15, F0 = 2.45, Tc = 0.32 }
+[assessment]
+direction = "left"
+levels = ["SLV"]
+"""
+
+
+def test_the_command_ends_with_the_exit_code_of_the_verdict(tmp_path: Path) -> None:
+    for more, code, word in (("", 4, "incomplete"), ('elsewhere = ["height"]\n', 0, "verified")):
+        path = tmp_path / f"{word}.toml"
+        path.write_text(PARAPET + more, encoding="utf-8")
+        ended, shown, _ = run("assess", path, "--json")
+        told = json.loads(shown)
+        assert (ended, told["status"], told["verdict"]["exit_code"]) == (code, word, code)
+        assert told["verdict"]["question"]["acting"][0]["role"] == "multiplied"
+        _, lines, _ = run("assess", path)
+        assert lines.splitlines()[1] == told["verdict"]["sentence"]
+        assert lines.splitlines()[3].strip().startswith("acts")

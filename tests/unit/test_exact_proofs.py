@@ -1,0 +1,222 @@
+"""Exact certificates: multipliers as fractions, and a program of its own that refuses whatever was changed."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Iterator
+from copy import deepcopy
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import concio
+from commands import run
+from concio import Body, JointLaw, Load, Model, Polyhedron, Rigid, Tie
+from concio.errors import InputError, SolverError
+from concio.proof import verify
+from concio.proof.certificate import prove_collapse, prove_limit, sealed
+from concio.proof.exact_solve import solve_exactly
+from pillars import ARCH, THIN, pillar, sideways, slot
+from samples import sample
+
+
+def box(mu: float, phi: float, size: tuple[float, float, float] = (1.0, 2.0, 3.0)) -> Model:
+    """Return a box on a plane, pushed in the direction phi in plan."""
+    ground = Polyhedron.box("ground", (-9, -9, -1), (9, 9, 0), kind="fixed")
+    loads = (Load("weight", (0, 0, -1)), Load("weight", (np.cos(phi), np.sin(phi), 0), group="live"))
+    block = Polyhedron.box("box", (0, 0, 0), size, kind="rigid")
+    return Model((ground, block), {"block": Rigid(20.0)}, {"joint": JointLaw(mu)}, loads=loads)
+
+
+def bounds(made: dict[str, Any]) -> tuple[Fraction, Fraction]:
+    return Fraction(made["lower"]), Fraction(made["upper"])
+
+
+@pytest.mark.parametrize("n", [1, 4, 12])
+def test_systems_of_fractions_are_solved_exactly(n: int) -> None:
+    """Against elimination in fractions, which shares nothing with the factor in floating point."""
+    rng = np.random.default_rng(n)
+    whole = rng.integers(-9, 10, (n, n)) + 12 * np.eye(n, dtype=int)
+    scale = [Fraction(float(v)) for v in 10.0 ** rng.uniform(-30, 30, n)]
+    rows = [{j: s * int(v) for j, v in enumerate(row) if v} for row, s in zip(whole, scale, strict=True)]
+    right = [Fraction(float(v)) for v in rng.normal(size=n)]
+    assert solve_exactly(rows, right) == eliminated(rows, right)
+
+
+def eliminated(rows: list[dict[int, Fraction]], right: list[Fraction]) -> list[Fraction]:
+    n = len(rows)
+    table = [[row.get(j, Fraction(0)) for j in range(n)] + [b] for row, b in zip(rows, right, strict=True)]
+    for j in range(n):
+        pivot = next(i for i in range(j, n) if table[i][j])
+        table[j], table[pivot] = table[pivot], table[j]
+        for i in range(n):
+            if i != j and table[i][j]:
+                share = table[i][j] / table[j][j]
+                table[i] = [p - share * q for p, q in zip(table[i], table[j], strict=True)]
+    return [table[j][n] / table[j][j] for j in range(n)]
+
+
+def test_a_singular_system_has_no_solution() -> None:
+    one = Fraction(1)
+    assert solve_exactly([{0: one, 1: one}, {0: one, 1: one}], [one, one]) is None
+
+
+def test_closed_forms_are_fractions() -> None:
+    upright = concio.assemble(concio.loads(pillar(sideways(1.0))))
+    assert bounds(prove_limit(upright, numbers="decimal")) == (Fraction(1, 4), Fraction(1, 4))
+    slides = concio.assemble(concio.loads(pillar(sideways(1.0), friction=0.2)))
+    assert bounds(prove_limit(slides, numbers="decimal")) == (Fraction(1, 5), Fraction(1, 5))
+    lean = concio.assemble(concio.loads(pillar(sideways(1.0), lean=0.1)))
+    assert bounds(prove_limit(lean, numbers="decimal")) == (Fraction(3, 16), Fraction(3, 16))
+
+
+@pytest.mark.parametrize("phi", [0.0, 0.3, np.arctan(0.5), 1.2])
+@pytest.mark.parametrize("mu", [0.2, 0.9])
+def test_in_space_fractions_bound_the_closed_form_from_both_sides(mu: float, phi: float) -> None:
+    """A box tips over an edge or a corner, or slides; round cones leave a hair between the bounds."""
+    right = min(mu, 1 / 3 / abs(np.cos(phi)), 2 / 3 / max(abs(np.sin(phi)), 1e-300))
+    found = concio.limit(box(mu, phi), path=False, steps=False, search=False)
+    low, high = bounds(found.proof())
+    assert float(low) <= right * (1 + 1e-12)
+    assert float(high) >= right * (1 - 1e-12)
+    assert float(high - low) <= 1e-5 * right
+
+
+def random_wall(number: int) -> Model:
+    """Return a wall of random courses, friction and weight, pushed to a random side."""
+    rng = np.random.default_rng(number)
+    size = (float(rng.uniform(0.3, 0.6)), float(rng.uniform(0.15, 0.3)))
+    n, m = int(rng.integers(2, 4)), int(rng.integers(2, 5))
+    return concio.wall(
+        length=n * size[0], height=m * size[1], block_size=size, block="rigid", unit_weight=float(rng.uniform(15, 28)),
+        friction=float(rng.uniform(0.2, 0.9)), horizontal=float(rng.choice([-1.0, 1.0])),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("number", range(sample(4, 60)))
+def test_fractions_enclose_the_multiplier_of_the_linear_programme(number: int) -> None:
+    assembly = concio.assemble(random_wall(number))
+    found = concio.limit(assembly, path=False, steps=False, search=False)
+    low, high = bounds(found.proof())
+    assert low <= high
+    assert float(low) == pytest.approx(found.associated.multiplier, rel=2e-9)
+    assert float(high) == pytest.approx(found.associated.multiplier, rel=2e-9)
+
+
+def test_loads_that_are_not_balanced_are_proved_so() -> None:
+    made = prove_collapse(concio.assemble(concio.loads(THIN)))
+    assert "no forces with friction at the 32 joint points stated balance dead x 1, live x 1" in verify.check(made)
+    with pytest.raises(SolverError, match="no exact motion"):
+        prove_collapse(concio.assemble(concio.loads(ARCH)))
+    with pytest.raises(SolverError, match="no exact motion"):  # forces in balance exist: nothing puts them there
+        prove_collapse(concio.assemble(concio.loads(slot())))
+
+
+def places(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[tuple[Any, ...], str]]:
+    """Yield every text of a certificate with its place."""
+    if isinstance(value, str):
+        yield path, value
+    elif isinstance(value, dict):
+        for key, inner in value.items():
+            yield from places(inner, (*path, key))
+    elif isinstance(value, list):
+        for k, inner in enumerate(value):
+            yield from places(inner, (*path, k))
+
+
+def changed(made: dict[str, Any], place: tuple[Any, ...], text: str) -> dict[str, Any]:
+    other = deepcopy(made)
+    inner: Any = other
+    for key in place[:-1]:
+        inner = inner[key]
+    inner[place[-1]] = text
+    return other
+
+
+def test_every_digit_of_a_certificate_is_looked_at() -> None:
+    """Any digit changed is refused; forces and lower bound are refused even where the digest is made anew."""
+    made = prove_limit(concio.assemble(concio.loads(pillar(sideways(1.0)))))
+    assert "is balanced" in verify.check(made)
+    tried = 0
+    for place, text in places(made):
+        for k, letter in enumerate(text):
+            if not letter.isdigit():
+                continue
+            other = changed(made, place, text[:k] + str((int(letter) + 1) % 10) + text[k + 1 :])
+            with pytest.raises(ValueError, match="digest"):
+                verify.check(other)
+            if place[0] in ("forces", "lower"):
+                tried += 1
+                with pytest.raises((ValueError, ZeroDivisionError)):
+                    verify.check(sealed(other))
+    assert tried > 100
+
+
+def test_bounds_that_are_too_good_are_refused_by_the_equations() -> None:
+    made = prove_limit(concio.assemble(concio.loads(pillar(sideways(1.0)))))
+    low, high = bounds(made)
+    for key, value in (("lower", low + Fraction(1, 10**30)), ("upper", high - Fraction(1, 10**30))):
+        with pytest.raises(ValueError, match=r"balance|work"):
+            verify.check(sealed({**made, key: str(value)}))
+    assert verify.check(sealed({**made, "upper": str(high + 1)})), "a larger upper bound is true as well"
+
+
+def test_the_program_runs_alone(tmp_path: Path) -> None:
+    file = tmp_path / "proof.json"
+    file.write_text(json.dumps(prove_limit(concio.assemble(concio.loads(pillar(sideways(1.0)))))))
+    alone = [sys.executable, "-I", "-S", str(Path(verify.__file__)), str(file)]
+    done = subprocess.run(alone, capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert done.returncode == 0
+    assert "proved exactly" in done.stdout
+    file.write_text(file.read_text().replace("0x", "0X", 1))
+    done = subprocess.run(alone, capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert (done.returncode, done.stdout[:8]) == (1, "REFUSED:")
+    assert "concio" not in [line.split()[1].split(".")[0] for line in Path(verify.__file__).read_text().splitlines()
+                            if line.startswith(("import", "from"))]  # fmt: skip
+
+
+def test_commands_prove_and_verify(tmp_path: Path) -> None:
+    model = tmp_path / "pillar.toml"
+    model.write_text(pillar(sideways(1.0)))
+    code, out, _ = run("prove", model, "--numbers", "decimal")
+    assert code == 0
+    assert "1/4 = 0.25 is balanced; nothing above 1/4 = 0.25 is: proved exactly" in out
+    place = tmp_path / "pillar.proof.json"
+    code, out, _ = run("verify", place)
+    assert (code, "proved exactly" in out) == (0, True)
+    assert json.loads(run("verify", place, "--json")[1])["sentence"] in out
+    code, _, err = run("prove", model)
+    assert (code, "--force" in err) == (2, True)
+    place.write_text(place.read_text().replace("1/4", "1/3"))
+    code, _, err = run("verify", place)
+    assert code == 2
+    assert "refused: the file was changed" in err
+    place.write_text("[1, 2]")
+    assert run("verify", place)[0] == 2
+    assert run("verify", tmp_path / "none.json")[0] == 2
+
+
+def plain(**more: Any) -> Model:
+    ground = Body("ground", [(-1, -1), (3, -1), (3, 0), (-1, 0)], kind="fixed")
+    block = Body("a", [(0, 0), (1, 0), (1, 1), (0, 1)], kind="rigid")
+    given: dict[str, Any] = {"laws": {"joint": JointLaw(0.6)}, "loads": (Load("weight", (0, -1)),)}
+    return Model((ground, block), {"block": Rigid(20.0)}, **{**given, **more})
+
+
+@pytest.mark.parametrize(
+    ("model", "words"),
+    [
+        (plain(laws={"joint": JointLaw(0.6, cohesion=10.0)}), "cohesion"),
+        (plain(laws={"joint": JointLaw(0.6, compressive_strength=1e3)}), "crushes"),
+        (plain(laws={"joint": JointLaw(0.6, dilatancy=0.1)}), "dilates"),
+        (plain(ties=(Tie("rod", "a", (1, 1), "", (3, 1), 1e4, yield_force=9.0),)), "tie 'rod'"),
+    ],
+)
+def test_what_is_not_proved_exactly_is_refused_by_name(model: Model, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        prove_collapse(concio.assemble(model))

@@ -1,0 +1,274 @@
+"""The verdict of a limit load: what it is asked, what to design with, and what a locked bound does not say."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import concio
+from concio import JointLaw, Load, Model, Polyhedron, Rigid
+from concio.analysis.limit_torsion import twisting
+from concio.cli.main import app
+from concio.problem.solution import PROVEN_FAILURES
+from concio.verdict.limit_words import limit_lines
+from concio.verdict.verdict import Outcome
+from models import box, model_of
+from samples import sample
+
+DEAD = Load("weight", (0.0, -1.0))
+
+
+def slot(width: float = 0.5, friction: float = 0.6, kind: str = "rigid", live: float = 10.0) -> Model:
+    """Return two blocks between two fixed walls, nothing below: weight, and a pressure from above, pull them down."""
+    material = Rigid(20.0) if kind == "rigid" else concio.Elastic(5e6, 0.2, 20.0)
+    return model_of(
+        box("left", -1.0, 0.0, -0.5, 1.5, kind="fixed"),
+        box("right", 2 * width, 2 * width + 1, -0.5, 1.5, kind="fixed"),
+        box("b1", 0.0, width, 0.0, 1.0, kind=kind),
+        box("b2", width, 2 * width, 0.0, 1.0, kind=kind),
+        law=friction,
+        materials={"block": material},
+        loads=(DEAD, Load("point", (0.0, -live), bodies=("b1",), at=(width / 2, 1.0), group="live")),
+    )
+
+
+def pillar(direction: tuple[float, float], at: float = 1.6, friction: float = 0.7) -> Model:
+    """Return a pillar of 0.4 x 1.6 m, 12.8 kN, on the ground, with a force on its right side or its top."""
+    return model_of(
+        box("floor", -3, 3, -0.5, 0, kind="fixed"),
+        box("pillar", -0.2, 0.2, 0, 1.6, kind="rigid"),
+        law=friction,
+        materials={"block": Rigid(20.0)},
+        loads=(DEAD, Load("point", direction, bodies=("pillar",), at=(0.0 if at == 1.6 else 0.2, at), group="live")),
+    )
+
+
+@pytest.mark.parametrize("kind", ["rigid", "elastic"])
+def test_what_falls_out_of_a_slot_is_not_carried_though_its_bound_is_locked(kind: str) -> None:
+    """`run` proves that it collapses; "friction and geometry carry any multiple", checked, exit 0, was the answer."""
+    model = slot(kind=kind)
+    assert concio.solve(model, on_failure="return", factors={"live": 0.0}).status in PROVEN_FAILURES
+    found = concio.limit(model, search=False)
+    verdict = found.verdict
+    assert found.associated.locked
+    assert verdict.outcome is Outcome.FAILS
+    assert verdict.exit_code == 3
+    assert verdict.sentence.startswith("Nothing can be added: under dead (20 kN) alone")
+    assert found.design == 0.0
+    assert "any multiple" not in "\n".join(limit_lines(found))
+
+
+def test_a_load_that_nothing_carries_is_not_carried_at_any_multiple() -> None:
+    """Without own weight all multiples are alike: one proof is that of every other."""
+    model = replace(slot(), loads=(slot().loads[1],))
+    found = concio.limit(model, search=False, path=False, steps=True)
+    assert found.associated.locked
+    assert found.verdict.outcome is Outcome.FAILS
+    assert "No multiple of 'live' is carried" in found.verdict.sentence
+    assert found.design == 0.0
+
+
+def test_where_locking_is_right_it_is_said_why() -> None:
+    found = concio.limit(pillar((0.0, -1.0)))
+    assert found.endless
+    assert found.verdict.outcome is Outcome.HOLDS
+    assert "certified at any length, since no joint changes its state" in found.verdict.sentence
+    assert found.summary()["grows_without_end"]
+    assert found.summary()["design_multiplier"] is None
+
+
+@pytest.mark.parametrize("seed", range(sample(3, 16)))
+def test_locked_structures_agree_with_one_step_at_a_large_factor(seed: int) -> None:
+    """A pillar pressed by a force that leans within its friction cone, or a block in a slot: limit against run."""
+    rng = np.random.default_rng(seed)
+    if seed % 2:
+        lean = rng.uniform(-0.1, 0.1)
+        model = pillar((lean, -1.0), at=1.6, friction=rng.uniform(0.3, 0.9))
+    else:
+        model = slot(rng.uniform(0.3, 0.7), rng.uniform(0.2, 0.9), live=rng.uniform(1.0, 30.0))
+    found = concio.limit(model, search=False, path=False, steps=True)
+    far = concio.solve(model, factors={"live": 3e3}, on_failure="return").status
+    if found.endless:
+        assert far.name == "SOLVED"
+    if found.verdict.outcome is Outcome.FAILS:
+        assert far in PROVEN_FAILURES
+    assert found.endless or not found.associated.locked or found.verdict.outcome is not Outcome.HOLDS
+
+
+def test_the_question_says_what_is_multiplied_and_what_acts_constantly() -> None:
+    found = concio.limit(pillar((1.0, 0.0), at=0.8), path=True)
+    (dead, live) = found.verdict.question.acting
+    assert (dead.group, dead.role, dead.force) == ("dead", "constant", pytest.approx((0.0, -12.8)))
+    assert (live.group, live.role, live.force) == ("live", "multiplied", pytest.approx((1.0, 0.0)))
+    assert live.factor == pytest.approx(found.design)
+    assert found.design == pytest.approx(3.2, rel=1e-6)
+    assert "(3.2 kN) at most" in found.verdict.sentence
+    assert found.summary()["verdict"] == found.verdict.as_dict()
+
+
+def test_a_dead_load_that_is_not_carried_stands_first(tmp_path: Path) -> None:
+    file = tmp_path / "slot.toml"
+    concio.save(slot(), file)
+    done = CliRunner().invoke(app, ["limit", str(file), "--no-search", "--no-friction", "--json"])
+    assert done.exit_code == 3
+    told = json.loads(done.output)
+    assert told["verdict"]["outcome"] == "fails"
+    assert told["dead_load_alone"] == "collapses"
+    assert told["status"] == "collapses"
+
+
+def test_what_is_odd_about_the_model_is_told() -> None:
+    """A friction of 31, an angle in degrees: `run` warned, `limit` did not."""
+    found = concio.limit(concio.wall(length=1.0, height=0.25, friction=31, block="rigid", horizontal=1.0), path=False)
+    assert any("88.2 degrees" in line for line in found.verdict.attention)
+    assert any("88.2 degrees" in line for line in limit_lines(found))
+
+
+def footing(points: str | int) -> Model:
+    """Return a square block of 10 kN on the ground under a couple about the vertical: 1.530 for an even pressure."""
+    return Model(
+        (
+            Polyhedron.box("g", (-5, -5, -1), (5, 5, 0), kind="fixed"),
+            Polyhedron.box("b", (0, 0, 0), (1, 1, 0.5), kind="rigid"),
+        ),
+        {"block": Rigid(20.0)},
+        {"joint": JointLaw(0.4)},
+        loads=(
+            Load("weight", (0, 0, -1)),
+            Load("point", (0, 1.0, 0), bodies=("b",), at=(1, 0.5, 0), group="live"),
+            Load("point", (0, -1.0, 0), bodies=("b",), at=(0, 0.5, 0), group="live"),
+        ),
+        contact_points=points,
+    )
+
+
+EVEN = 0.4 * 10.0 * (np.sqrt(2) + np.log(1 + np.sqrt(2))) / 6
+
+
+@pytest.mark.parametrize("points", ["auto", *(pytest.param(n, marks=pytest.mark.long) for n in (4, 8))])
+def test_a_footing_that_twists_is_designed_with_an_even_pressure_whatever_its_points(points: str | int) -> None:
+    """2.83, 1.26 and 0.59 with corners, 4 x 4 and 8 x 8 points; an even pressure carries 1.530."""
+    found = concio.limit(footing(points))
+    assert pytest.approx(1.5303, abs=1e-4) == EVEN
+    assert found.design == pytest.approx(EVEN, rel=0.02)
+    assert found.associated.multiplier == pytest.approx(2 * np.sqrt(2), rel=1e-6)
+    if points == "auto":
+        assert found.twisting == 1
+        assert found.spread is not None
+        assert "6 x 6 points" in found.verdict.sentence
+    else:
+        assert not found.state_counts
+        assert "is not counted" in "\n".join(found.verdict.limits)
+
+
+def test_a_block_that_slides_or_tips_twists_no_joint() -> None:
+    assembly = concio.assemble(footing("corners"))
+    reach = assembly.disc.reach[1]
+    for motion, twists in (
+        ([1.0, 0.3, 0, 0, 0, 0], 0), ([0.0, 0, 0.5, 0, reach, 0], 0), ([0.2, 0, 0, 0, 0, reach], 1),
+    ):  # fmt: skip
+        assert len(twisting(assembly, np.array(motion))) == twists
+
+
+def walls(seed: int) -> Model:
+    rng = np.random.default_rng(seed)
+    kind = seed % 3
+    options = {"friction": rng.uniform(0.3, 0.9), "block": "rigid", "horizontal": 1.0}
+    if kind == 0:
+        return concio.wall(length=0.5, height=0.25, block_size=(0.25, 0.125), **options)
+    if kind == 1:
+        return concio.column(width=rng.uniform(0.2, 0.6), height=1.0, blocks=2, **options)
+    return concio.wall(length=rng.uniform(0.3, 0.6), height=0.5, block_size=(0.3, 0.25), **options)
+
+
+@pytest.mark.parametrize("seed", range(sample(3, 30)))
+def test_what_to_design_with_is_least_and_below_the_bound(seed: int) -> None:
+    found = concio.limit(walls(seed), path=True, steps=True, search=True)
+    low, top = found.bracket
+    assert low <= top * (1 + 1e-6)
+    assert found.carried <= top * (1 + 1e-6)
+    state = found.collapse_state
+    if state is not None:
+        assert low <= state.multiplier <= top * (1 + 1e-6)
+    if not np.isnan(found.carried):
+        assert low <= found.carried * (1 + 1e-12)
+    text = found.verdict.sentence
+    assert text.count("Design with") == 1
+    assert f"Design with {low:.6g} times" in text
+    assert "not carried" not in text or "in one step" in text
+
+
+@pytest.mark.parametrize("seed", range(sample(3, 12)))
+def test_a_load_s_times_as_large_has_one_s_th_of_the_multiplier_and_the_same_kN(seed: int) -> None:
+    model = walls(seed)
+    s = float(np.exp(np.random.default_rng(seed).uniform(-3, 3)))
+    grown = {"live": s, "dead": 1.0}
+    larger = replace(
+        model, loads=tuple(replace(x, value=tuple(grown[x.group] * v for v in x.value)) for x in model.loads)
+    )
+    one, two = concio.limit(model, search=False), concio.limit(larger, search=False)
+    assert two.design * s == pytest.approx(one.design, rel=1e-6)
+    assert two.associated.multiplier * s == pytest.approx(one.associated.multiplier, rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(sample(3, 12)))
+def test_names_of_groups_and_a_block_elsewhere_change_nothing(seed: int) -> None:
+    model = walls(seed)
+    one = concio.limit(model, search=False)
+    renamed = replace(
+        model,
+        loads=tuple(replace(x, group={"live": "quake", "dead": "g"}[x.group]) for x in model.loads),
+        stages=(),
+    )
+    two = concio.limit(renamed, "quake", search=False)
+    assert two.design == pytest.approx(one.design, rel=1e-9)
+    names = tuple(body.name for body in model.bodies if body.kind != "fixed")
+    apart = replace(
+        model,
+        bodies=(
+            *model.bodies,
+            box("far ground", 50, 52, -1, 0, kind="fixed"),
+            box("far", 50.5, 51, 0, 0.1, kind="rigid", material="heavy"),
+        ),
+        materials={**model.materials, "heavy": Rigid(5.0)},
+        loads=(*(replace(x, bodies=names) for x in model.loads), Load("weight", (0.0, -1.0), bodies=("far",))),
+        stages=(),
+    )
+    three = concio.limit(apart, search=False)
+    assert three.design == pytest.approx(one.design, rel=1e-6)
+    assert three.associated.multiplier == pytest.approx(one.associated.multiplier, rel=1e-6)
+
+
+def tied(*ties: concio.Tie) -> Model:
+    """Return a pillar that tips at 3.2 kN at half its height, held by ties."""
+    return replace(pillar((1.0, 0.0), at=0.8), ties=ties)
+
+
+def rod(name: str, stiffness: float, breaks: float, yields: float) -> concio.Tie:
+    return concio.Tie(
+        name, "pillar", (-0.2, 1.2), "", (-2.0, 1.2), stiffness=stiffness, yield_force=yields, break_elongation=breaks
+    )
+
+
+def test_ties_that_break_one_after_the_other_are_not_added_up() -> None:
+    """By hand 3.2 kN, and 1.5 times a tie: the stiff one breaks at 1 kN when the soft one has taken 0.01 kN."""
+    stiff, soft = rod("stiff", 1000.0, 1e-3, 5.0), rod("soft", 10.0, 0.1, 5.0)
+    found = concio.limit(tied(stiff, soft))
+    assert found.associated.multiplier == pytest.approx(3.2 + 1.5 * 2.0, rel=1e-6)
+    assert found.untied is not None
+    assert found.untied.multiplier == pytest.approx(3.2, rel=1e-6)
+    assert found.design == pytest.approx(3.2 + 1.5 * 1.01, rel=1e-3)
+    assert "while every tie is whole; then one breaks" in found.verdict.sentence
+    assert any("2 ties that can break" in line and "the first breaks at" in line for line in found.verdict.limits)
+    unknown = concio.limit(tied(stiff, soft), path=False)
+    assert unknown.design <= 3.2 * (1 + 1e-9)
+
+
+def test_one_tie_that_breaks_holds_until_it_does() -> None:
+    found = concio.limit(tied(rod("one", 1000.0, 1e-3, 5.0)))
+    assert found.design == pytest.approx(3.2 + 1.5, rel=1e-6)

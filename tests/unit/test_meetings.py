@@ -1,0 +1,47 @@
+"""Steps that end where bodies meet: what they cost, and that they come back to the grid of steps."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import concio
+from concio.analysis.motion.meetings import EARNED, MOST, Meetings
+from motion_models import G, standing
+
+
+def followed(meets, count, h=1.0):
+    """Return the lengths of the steps from 0, where something meets at certain times."""
+    meetings, time, lengths = Meetings(h / 64), 0.0, []
+    while time < count - 1e-9:
+        length = meetings.length(time, h)
+        ahead = min((m - time for m in meets if m > time + 1e-12), default=np.inf)
+        cut = meetings.located(ahead, length)
+        meetings.after(time, cut is not None, 0.0, length)
+        lengths.append(length if cut is None else cut)
+        time += lengths[-1]
+    return lengths
+
+
+def test_a_step_ends_where_bodies_meet_and_the_next_but_one_where_it_would_have():
+    times = np.cumsum(followed([1.3], 4))
+    assert times == pytest.approx([1.0, 1.3, 1.3 + 1 / 64, 2.0, 3.0, 4.0])
+
+
+def test_no_more_impacts_are_located_than_steps_have_earned():
+    """With one in every step, in the long run one in twenty-five is, and each makes three steps of one."""
+    count = 400
+    lengths = followed([k + 0.4 for k in range(count)], count)
+    located = sum(abs(length - 0.4) < 1e-9 for length in lengths)
+    assert located <= MOST + EARNED * len(lengths)
+    assert len(lengths) <= count * (1 + 2.2 * EARNED) + 2 * MOST
+
+
+def test_shots_stay_on_the_grid_of_steps():
+    """But for those right after an impact, kept placements are a step apart."""
+    tilt = 0.5 * np.arctan(1 / 3)
+    found = concio.dynamics(standing(tilt=tilt), duration=0.6, step=1e-3, start="as described", gravity=G, every=1e-9)
+    steps = found.shots.time * 1e3
+    off = np.abs(steps - np.round(steps)) > 1e-6
+    assert 1 <= off.sum() <= 2 * MOST
+    assert not off[-1]
