@@ -42,6 +42,11 @@ def box(dim, name, low, high, kind="rigid", material="stone"):
     return Polyhedron.box(name, (x0, 0.0, z0), (x1, z1 - z0 or 1.0, z1), kind=kind, material=material)
 
 
+def same(found, wanted):
+    """Equal but for the last bit or two: where an array lies in memory decides the order in which BLAS adds."""
+    np.testing.assert_allclose(found, wanted, rtol=1e-14, atol=1e-14 * np.abs(wanted).max(initial=0.0))
+
+
 def stack(dim, kind):
     """Two blocks on a ground, the upper one off its middle."""
     return [
@@ -94,7 +99,7 @@ def test_an_unconnected_body_changes_no_digit_of_the_rest(dim, kind, law, build,
     of_rest = np.array([names[b] not in ("other", "other ground") for b in both.assembly.pairs.body_b])
     assert both.status is alone.status
     for name in ("normal_force", "friction_force", "gap", "slip"):
-        np.testing.assert_array_equal(getattr(both.solution, name)[of_rest], getattr(alone.solution, name))
+        same(getattr(both.solution, name)[of_rest], getattr(alone.solution, name))
     told = {names[int(b)]: part for part in both.solution.parts for b in part.bodies}
     assert told["other"].status is Status.SOLVED
     assert told[here[-1].name].status is alone.status
@@ -104,7 +109,7 @@ def test_an_unconnected_body_changes_no_digit_of_the_rest(dim, kind, law, build,
         still = both.node_displacement("other", both.mechanism_velocity)
         assert not still.any(), "what stands has no part in the motion"
         moves = both.node_displacement(here[-1].name, both.mechanism_velocity)
-        np.testing.assert_array_equal(moves, alone.node_displacement(here[-1].name, alone.mechanism_velocity))
+        same(moves, alone.node_displacement(here[-1].name, alone.mechanism_velocity))
 
 
 @pytest.mark.parametrize("dim", [2, pytest.param(3, marks=pytest.mark.long)])

@@ -279,7 +279,7 @@ def _swap(root: Path, hidden: Path, where: str) -> None:
                 raise _in_the_way(Path(name), where) from None
         write_list(root, hidden, Listing(files))
     except BaseException as error:
-        if not _undone(root, hidden, listing, done):
+        if not _undone(root, hidden, listing, done, names):
             raise UnfinishedError(str(error)) from error
         raise
 
@@ -351,9 +351,12 @@ def _move(start: Path, end: Path, done: list[tuple[Path, Path]]) -> None:
         start.unlink()
 
 
-def _undone(root: Path, hidden: Path, listing: Listing, done: list[tuple[Path, Path]]) -> bool:
+def _undone(
+    root: Path, hidden: Path, listing: Listing, done: list[tuple[Path, Path]], names: Iterable[str]
+) -> bool:
     """Move everything back and write the list that was there; tell whether all of it could be done."""
     well = True
+    _remove_empty(root, names)  # made for a file that did not come: one that was there may have the folder's name
     for start, end in reversed(done):
         try:
             if not os.path.lexists(start):
