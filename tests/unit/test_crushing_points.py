@@ -12,7 +12,7 @@ import concio
 from concio import JointLaw, Load, Model, Polyhedron, Rigid
 from concio.analysis.limit import dead_and_live
 from concio.contact.joint_points import edge, graded_error, graded_half, graded_rule, joint_rule, points_along
-from concio.contact.patch_points import spread_points
+from concio.contact.patch_points import CRUSHING, spread_points
 from concio.model.interfaces.patches import Patch
 from concio.solvers.statics.limit import associated_limit
 from samples import sample
@@ -59,10 +59,11 @@ def test_near_an_edge_the_plane_crushes_at_the_strength_by_hand(share: float) ->
     assert carried(pressed(share * WIDTH, 2)) == pytest.approx(by_hand, rel=0.02)
 
 
-@pytest.mark.parametrize("share", [0.0, 0.3, 0.40, 0.44, 0.46])
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.40, 0.44, 0.46, 0.48])
 def test_near_an_edge_space_crushes_within_the_error_told(share: float) -> None:
+    """With 12 points a side, whose outer share was 2.8 % of the width, 1.11 of the hand value were certified at .48."""
     by_hand = STRENGTH * DEPTH * WIDTH * (1 - 2 * share)
-    assert carried(pressed(share * WIDTH, 3)) == pytest.approx(by_hand, rel=graded_error(12))
+    assert carried(pressed(share * WIDTH, 3)) == pytest.approx(by_hand, rel=graded_error(CRUSHING))
 
 
 def test_more_points_in_space_reach_the_edge() -> None:
@@ -132,7 +133,7 @@ def test_how_well_crushing_is_told_stands_in_the_verdict() -> None:
     plane = concio.solve(pressed(0.1, 2), factors={"live": 10.0})
     assert any("right to 2 %" in line for line in plane.verdict.limits)
     space = concio.solve(pressed(0.1, 3), factors={"live": 10.0})
-    assert any("12 x 12 points: their strength is right to 6 %" in line for line in space.verdict.limits)
+    assert any("14 x 14 points: their strength is right to 5 %" in line for line in space.verdict.limits)
     few = concio.solve(pressed(0.1, 3, 4), factors={"live": 10.0})
     assert any("too few points" in line for line in few.verdict.limits)
     tied = concio.Tie("tie", "b", (0.0, 0.5), "", (-1.0, 0.5), stiffness=1e3, yield_force=5.0)

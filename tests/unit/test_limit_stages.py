@@ -1,4 +1,4 @@
-"""``limit`` number by number: the quick ones first, each printed when it is found, the slow ones on request."""
+"""``limit`` number by number: the quick ones first, the answer printed before them, the slow ones on request."""
 
 from __future__ import annotations
 
@@ -160,7 +160,7 @@ def test_what_the_load_as_given_is_beside_the_bound(multiplier: float, said: str
     assert as_given(multiplier) == said
 
 
-def test_what_was_printed_before_an_interruption_stays(wall: concio.Model, tmp_path: Path, monkeypatch) -> None:
+def test_what_was_known_before_an_interruption_is_printed(wall: concio.Model, tmp_path: Path, monkeypatch) -> None:
     file = tmp_path / "wall.toml"
     concio.save(wall, file)
     whole = limits.limit_stages
@@ -175,6 +175,17 @@ def test_what_was_printed_before_an_interruption_stays(wall: concio.Model, tmp_p
     assert done.exit_code == 130
     assert "associated bound" in done.output
     assert "stopped on request" in done.output
+
+
+def test_the_answer_stands_before_the_numbers(wall: concio.Model, tmp_path: Path) -> None:
+    """As of every command: the title, the sentence of the verdict, and only then what was found on the way."""
+    file = tmp_path / "wall.toml"
+    concio.save(wall, file)
+    done = CliRunner().invoke(app, ["limit", str(file), "--no-path", "--no-search"])
+    lines = done.output.splitlines()
+    assert lines[1] == concio.limit(wall, path=False, search=False, friction=True).verdict.sentence
+    assert sum(lines[1] in line for line in lines) == 1
+    assert any("associated bound" in line for line in lines[2:])
 
 
 def test_load_steps_halve_towards_a_multiplier_that_failed(monkeypatch) -> None:

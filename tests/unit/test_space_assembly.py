@@ -130,7 +130,7 @@ def test_the_choice_of_contact_points_is_stated() -> None:
     for choice, law, name, number in (
         ("auto", JointLaw(0.6), "corners of the patch", 4),
         ("auto", JointLaw(0.6, normal_stiffness=1e6), "points over the patch", 16),
-        ("auto", JointLaw(0.6, compressive_strength=1e3), "points over the patch", 144),
+        ("auto", JointLaw(0.6, compressive_strength=1e3), "points over the patch", 196),
         ("corners", JointLaw(0.6, normal_stiffness=1e6), "corners of the patch", 4),
         (5, JointLaw(0.6), "points over the patch", 25),
     ):

@@ -54,7 +54,7 @@ def limit(
 ) -> int:
     """Find the load multiplier: the associated bound, what Coulomb friction is shown to carry, and the friction margin.
 
-    Each number is printed as soon as it is found. Ctrl-C ends the search and keeps what was printed.
+    The answer stands first, then each number with what it is. Ctrl-C ends the search and prints what is known by then.
 
     Example: concio limit wall.toml --group live --out limit
     """
@@ -62,7 +62,7 @@ def limit(
     from concio.analysis.limit import limit_stages
     from concio.analysis.margins import friction_by_solving, load_margin
     from concio.cli.limit_files import write_limit
-    from concio.verdict.limit_words import answer_lines, head_lines, question_lines, solving_line, stage_lines
+    from concio.verdict.limit_words import limit_lines, solving_line
 
     groups = list(group or ["live"])
     if out is not None:
@@ -76,23 +76,20 @@ def limit(
             say(line)
         sys.stdout.flush()
 
-    tell(head_lines(assembly))
-    asked = False
     try:
         with progress_bar(shown=not json) as progress:
             stages = limit_stages(
                 assembly, groups, path=path, steps=steps, search=search, friction=wanted, progress=progress
             )
-            for name, found in stages:
-                tell([*(question_lines(found) if not asked else []), *stage_lines(name, found)])
-                asked = True
+            for _, known in stages:
+                found = known
     except KeyboardInterrupt:
         if found is not None:
-            tell(answer_lines(found))
+            tell(limit_lines(found))
         raise
     assert found is not None  # the bound comes first, or an error
     verdict = found.verdict
-    tell(answer_lines(found))
+    tell(limit_lines(found))
     told = {"status": verdict.status, "groups": groups, **found.summary()}
     if solves:
         for word, margin in (("load", load_margin), ("friction", friction_by_solving)):

@@ -27,7 +27,7 @@ from concio.model.interfaces.patch import Patch
 
 Array = np.ndarray
 
-STIFF, CRUSHING = 4, 12
+STIFF, CRUSHING = 4, 14
 """Points along each side of a quadrilateral for joints with stiffness, and for those that crush."""
 
 

@@ -76,7 +76,7 @@ class Model:
     contact_points : {"auto", "corners"} or int
         Where contact is stated between two blocks in space that are not meshed: at the corners of each patch, or at
         n x n points over it, which distribute pressure. "auto" takes corners for hard joints, 4 x 4 points for joints
-        with stiffness, 12 x 12 for joints that crush.
+        with stiffness, 14 x 14 for joints that crush.
     report : Units
         Units in which texts, figures and reports tell what was found; arrays and files are in kN and m.
     engine : {"superlu", "pardiso"}

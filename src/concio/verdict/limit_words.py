@@ -14,18 +14,12 @@ from concio.verdict.verdict import Verdict
 if TYPE_CHECKING:
     from concio.analysis.limit_result import LimitResult
     from concio.analysis.margins import Margin
-    from concio.contact.assembly import Assembly
     from concio.solvers.statics.friction import FrictionMargin
 
 NOT_ASKED = "not asked for"
 
 REST = " " * 23
 """Where a number is told on."""
-
-
-def head_lines(assembly: Assembly) -> list[str]:
-    """Return what is asked about."""
-    return [assembly.model.title or "model without a title"]
 
 
 def question_lines(found: LimitResult) -> list[str]:
@@ -39,18 +33,12 @@ def question_lines(found: LimitResult) -> list[str]:
 def limit_lines(found: LimitResult) -> list[str]:
     """Return all that is known in words: the answer first, the question, then every number with what it is."""
     verdict = limit_verdict(found)
-    lines = [*head_lines(found.assembly), f"  {verdict.sentence}", *question_lines(found)]
+    lines = [found.assembly.model.title or "model without a title", verdict.sentence, *question_lines(found)]
     lines += [*bound_lines(found), *stage_lines("friction", found)]
     lines += step_lines(found) if found.steps is not None else []
     lines += collapse_lines(found) if found.search != NOT_ASKED else []
     lines += [*one_step_lines(found), *spread_lines(found), *path_lines(found)]
     return [*lines, *rest_lines(verdict)]
-
-
-def answer_lines(found: LimitResult) -> list[str]:
-    """Return the answer in the end, and all that limits it."""
-    verdict = limit_verdict(found)
-    return [f"  in short             {verdict.sentence}", *rest_lines(verdict)]
 
 
 def rest_lines(verdict: Verdict) -> list[str]:
