@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 import concio
+from concio.views import VIEWS, view
 from sources import source
 
 ROOT = Path(concio.__file__).parent
 ORDER = (
-    "__version__", "representation", "argument_types", "errors", "files", "synonyms", "arguments", "units", "display",
+    "__version__", "representation", "views", "argument_types", "errors", "files", "synonyms", "arguments", "units",
+    "display",
     "kinematics", "model", "model/motion", "model/interfaces", "model/generate", "model/drawing", "model/solids",
     "model/file",
     "fem", "problem", "contact", "contact/moving",
@@ -25,24 +29,6 @@ ORDER = (
     "analysis/continuum", "analysis/seismic", "post", "plot", "report", "io", "studies", "cli", "__main__",
 )  # fmt: skip
 """Rooms in the order in which things flow: each imports from itself and from those before it."""
-DOORS = {
-    ("analysis/result.py", "concio.plot.plots_of"),
-    ("analysis/result.py", "concio.post.tables_of"),
-    ("analysis/result.py", "concio.report.notebook"),
-    ("model/model.py", "concio.report.notebook"),
-    ("analysis/limit_result.py", "concio.plot.limit_accessor"),
-    ("analysis/limit_result.py", "concio.report.notebook"),
-    ("analysis/path_result.py", "concio.plot.path_accessor"),
-    ("analysis/path_result.py", "concio.report.notebook"),
-    ("analysis/seismic/assessment.py", "concio.report.assessment_page"),
-    ("analysis/seismic/assessment.py", "concio.report.notebook"),
-    ("analysis/cells/moduli.py", "concio.plot.cell_accessor"),
-    ("analysis/cells/strength.py", "concio.plot.cell_accessor"),
-    ("analysis/cells/path_result.py", "concio.plot.cell_accessor"),
-    ("analysis/continuum/comparison.py", "concio.plot.continuum_accessor"),
-    ("analysis/continuum/halving.py", "concio.plot.continuum_accessor"),
-}
-"""The only imports upward: what a result offers by name, loaded where it is asked for."""
 MODULES = sorted(ROOT.rglob("*.py"))
 
 
@@ -88,22 +74,26 @@ def test_rooms_import_only_from_earlier_rooms(path: Path) -> None:
     assert own in ORDER, f"there is no room '{own}' in the architecture"
     for module in imports(path, lazy=True):
         other = room_of(place(module))
-        assert (here, module) in DOORS or ORDER.index(other) <= ORDER.index(own), f"{own} imports {module}"
+        assert ORDER.index(other) <= ORDER.index(own), f"{own} imports {module}"
 
 
-def test_the_doors_upward_are_all_used() -> None:
-    for path, module in DOORS:
-        assert module in imports(ROOT / path, lazy=True)
-        assert module not in imports(ROOT / path, lazy=False)
+def test_every_view_is_of_a_class_that_there_is_and_made_by_what_there_is() -> None:
+    classes = [re.match(r"class (\w+)", line) for path in MODULES for line in path.read_text().splitlines()]
+    names = [found[1] for found in classes if found]
+    for name, makers in VIEWS.items():
+        for cls, maker in makers.items():
+            assert names.count(cls) == 1, f"{name} of {cls}"
+            module, _, function = maker.partition(":")
+            assert callable(getattr(import_module(module), function))
+
+
+def test_what_has_no_view_says_so() -> None:
+    with pytest.raises(TypeError, match="float has no view 'plot'"):
+        view(1.0, "plot")
 
 
 def test_no_module_imports_itself_by_a_detour() -> None:
-    graph = {
-        path.relative_to(ROOT).as_posix(): sorted(
-            place(m) for m in imports(path, lazy=True) if (path.relative_to(ROOT).as_posix(), m) not in DOORS
-        )
-        for path in MODULES
-    }
+    graph = {path.relative_to(ROOT).as_posix(): sorted(place(m) for m in imports(path, lazy=True)) for path in MODULES}
     done: set[str] = set()
 
     def follow(at: str, trail: list[str]) -> None:

@@ -18,6 +18,7 @@ from concio.solvers.statics.limit import LimitLoad
 from concio.verdict.limit_verdict import limit_verdict
 from concio.verdict.limit_words import NOT_ASKED, limit_lines
 from concio.verdict.verdict import Verdict
+from concio.views import Shown, view
 
 if TYPE_CHECKING:
     from concio.plot.limit_accessor import LimitPlots
@@ -26,7 +27,7 @@ Array = np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
-class LimitResult:
+class LimitResult(Shown):
     """Limit multipliers of the live load.
 
     Parameters
@@ -91,17 +92,11 @@ class LimitResult:
         title, *lines = limit_lines(self)
         return "\n".join([f"LimitResult: {title}", *lines])
 
-    def _repr_html_(self) -> str:
-        from concio.report.notebook import limit_html
-
-        return limit_html(self)
-
     @property
     def plot(self) -> LimitPlots:
         """Figures by name: ``limit.plot.mechanism()``; matplotlib is loaded here."""
-        from concio.plot.limit_accessor import LimitPlots
-
-        return LimitPlots(self)
+        plots: LimitPlots = view(self, "plot")
+        return plots
 
     @property
     def verdict(self) -> Verdict:

@@ -24,6 +24,7 @@ from concio.solvers.path.record import Event, Outcome
 from concio.solvers.path.state import LinearPath, PathState, path_kinematics, weakened
 from concio.verdict.path_verdict import path_lines, path_verdict
 from concio.verdict.verdict import Verdict
+from concio.views import Shown, view
 
 if TYPE_CHECKING:
     from concio.plot.path_accessor import PathPlots
@@ -99,7 +100,7 @@ class NamedEvent:
 
 
 @dataclass(frozen=True, eq=False)
-class PathResult:
+class PathResult(Shown):
     """A load path with every step and every event.
 
     Parameters
@@ -126,11 +127,6 @@ class PathResult:
 
     def __repr__(self) -> str:
         return "\n".join(path_lines(self))
-
-    def _repr_html_(self) -> str:
-        from concio.report.notebook import path_html
-
-        return path_html(self)
 
     @property
     def complete(self) -> bool:
@@ -211,9 +207,8 @@ class PathResult:
     @property
     def plot(self) -> PathPlots:
         """Figures by name: ``path.plot.curve()``; matplotlib is loaded here."""
-        from concio.plot.path_accessor import PathPlots
-
-        return PathPlots(self)
+        plots: PathPlots = view(self, "plot")
+        return plots
 
     @property
     def certificate(self) -> float:

@@ -29,6 +29,7 @@ from concio.solvers.statics.self_stress import SelfStress
 from concio.solvers.statics.sufficient import SufficientCondition, sufficient_condition
 from concio.verdict.step_verdict import result_lines, self_stress, step_verdict
 from concio.verdict.verdict import Verdict
+from concio.views import Shown, view
 
 if TYPE_CHECKING:
     from concio.plot.accessor import Plots
@@ -78,7 +79,7 @@ class JointMotion:
 
 
 @dataclass(frozen=True, eq=False)
-class Result:
+class Result(Shown):
     """Answer of one load step, with what it was computed from.
 
     Parameters
@@ -330,21 +331,14 @@ class Result:
     @property
     def plot(self) -> Plots:
         """Figures by name: ``result.plot.deformed()``; matplotlib is loaded here."""
-        from concio.plot.plots_of import plots_of
-
-        return plots_of(self)
+        plots: Plots = view(self, "plot")
+        return plots
 
     @property
     def tables(self) -> Tables:
         """Tables by name, as dicts of arrays: ``pandas.DataFrame(result.tables.joints())``."""
-        from concio.post.tables_of import tables_of
-
-        return tables_of(self)
-
-    def _repr_html_(self) -> str:
-        from concio.report.notebook import notebook_html
-
-        return notebook_html(self)
+        tables: Tables = view(self, "tables")
+        return tables
 
     @cached_property
     def self_stress(self) -> SelfStress | None:

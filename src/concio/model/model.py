@@ -22,6 +22,7 @@ from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.polyhedron import Polyhedron
 from concio.model.rules import JointRule, check_rules
 from concio.model.stages import Stage
+from concio.views import Shown
 
 __all__ = [
     "ENGINES", "FACES", "Array", "Body", "Face", "JointRule", "Kind", "Load", "Model", "Periods", "Point", "Support",
@@ -38,7 +39,7 @@ ENGINES = ("superlu", "pardiso")
 
 @strict_class
 @dataclass(frozen=True, eq=False)
-class Model:
+class Model(Shown):
     """A masonry structure in the plane or in space.
 
     Parameters
@@ -106,11 +107,6 @@ class Model:
 
     def __repr__(self) -> str:
         return "\n".join(model_lines(self))
-
-    def _repr_html_(self) -> str:
-        from concio.report.notebook import model_html
-
-        return model_html(self)
 
     def __post_init__(self) -> None:
         if not self.bodies:

@@ -12,7 +12,6 @@ import numpy as np
 
 from concio.display import DEFAULT, Units
 from concio.post.tables import KINDS
-from concio.report.wording import Verdict as Shown
 from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -31,12 +30,10 @@ LARGEST_SVG = 350_000
 """Drawings above this many bytes are embedded as images of dots."""
 
 
-def verdict_html(verdict: Verdict | Shown, certificate: str, details: str = "", *, units: Units = DEFAULT) -> str:
+def verdict_html(verdict: Verdict, certificate: str, details: str = "", *, units: Units = DEFAULT) -> str:
     """Return an outcome: headline, meaning and certificate, its question, details in HTML, and what to do next."""
     steps = "".join(f"<li>{escape(s)}</li>" for s in verdict.next_steps)
-    asked = answer = ""
-    if isinstance(verdict, Verdict):
-        asked, answer = question_html(verdict, units), f"<p><b>{escape(verdict.sentence)}</b></p>"
+    asked, answer = question_html(verdict, units), f"<p><b>{escape(verdict.sentence)}</b></p>"
     head = f'<div class="verdict {verdict.tone}"><h2>{escape(verdict.headline)}</h2>{answer}'
     meaning = f"<p>{escape(verdict.meaning)}</p><p class=cert>{escape(certificate)}</p></div>"
     return f"{head}{meaning}{asked}{details}<h3>What to do next</h3><ul>{steps}</ul>"

@@ -35,6 +35,7 @@ from concio.studies.store import DESCRIPTION, ROWS, SAMPLE
 from concio.studies.variables import Variable
 from concio.verdict.study_verdict import output_words, study_verdict
 from concio.verdict.verdict import Verdict
+from concio.views import Shown, view
 
 if TYPE_CHECKING:
     from concio.plot.study_figures import StudyPlots
@@ -44,7 +45,7 @@ Event = str | Callable[[Mapping[str, Any]], bool]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class StudyResult:
+class StudyResult(Shown):
     """Rows of a study, in the order of its sample.
 
     Parameters
@@ -258,14 +259,8 @@ class StudyResult:
     @property
     def plot(self) -> StudyPlots:
         """Figures by name; matplotlib is loaded here."""
-        from concio.plot.study_figures import StudyPlots
-
-        return StudyPlots(self)
-
-    def _repr_html_(self) -> str:
-        from concio.report.study_page import study_notebook
-
-        return study_notebook(self)
+        plots: StudyPlots = view(self, "plot")
+        return plots
 
 
 class _Read(dict[str, Any]):

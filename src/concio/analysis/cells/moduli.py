@@ -40,6 +40,7 @@ from concio.solvers.path.state import CLOSED, OPEN, STICK, LinearPath
 from concio.solvers.path.state_rates import state_rates
 from concio.verdict.cell_verdict import cell_verdict
 from concio.verdict.verdict import Verdict
+from concio.views import view
 
 if TYPE_CHECKING:
     from concio.plot.cell_accessor import ModuliPlots
@@ -211,9 +212,8 @@ class Moduli:
     @property
     def plot(self) -> ModuliPlots:
         """Figures by name; matplotlib is loaded here."""
-        from concio.plot.cell_accessor import ModuliPlots
-
-        return ModuliPlots(self)
+        plots: ModuliPlots = view(self, "plot")
+        return plots
 
     def summary(self) -> dict[str, Any]:
         """Return the numbers as plain types, kN and m."""

@@ -22,6 +22,7 @@ from concio.solvers.path.record import Outcome
 from concio.solvers.path.state import LinearPath, PathState, path_kinematics
 from concio.verdict.cell_verdict import cell_verdict
 from concio.verdict.verdict import Verdict
+from concio.views import view
 
 if TYPE_CHECKING:
     from concio.plot.cell_accessor import CellPathPlots
@@ -153,9 +154,8 @@ class CellPath:
     @property
     def plot(self) -> CellPathPlots:
         """Figures by name; matplotlib is loaded here."""
-        from concio.plot.cell_accessor import CellPathPlots
-
-        return CellPathPlots(self)
+        plots: CellPathPlots = view(self, "plot")
+        return plots
 
     def table(self) -> dict[str, Array]:
         """Return the steps as columns: stage, parameter, strains, stresses [kN/m2], pairs by state, energies [kN m]."""

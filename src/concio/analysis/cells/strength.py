@@ -37,6 +37,7 @@ from concio.solvers.statics.limit import LimitLoad, associated_limit
 from concio.verdict.cell_verdict import cell_verdict
 from concio.verdict.not_standing import BY_A_MECHANISM
 from concio.verdict.verdict import Verdict
+from concio.views import view
 
 if TYPE_CHECKING:
     from concio.plot.cell_accessor import StrengthPlots
@@ -155,9 +156,8 @@ class StrengthDomain:
     @property
     def plot(self) -> StrengthPlots:
         """Figures by name; matplotlib is loaded here."""
-        from concio.plot.cell_accessor import StrengthPlots
-
-        return StrengthPlots(self)
+        plots: StrengthPlots = view(self, "plot")
+        return plots
 
     def table(self) -> dict[str, Array]:
         """Return the directions as columns: direction, multipliers, stress at the bound, strain rate, checks."""

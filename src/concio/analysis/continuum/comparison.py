@@ -36,6 +36,7 @@ from concio.model.model import Model
 from concio.problem.solution import Progress, ProgressCallback
 from concio.verdict.continuum_verdict import continuum_verdict
 from concio.verdict.verdict import Verdict
+from concio.views import view
 
 if TYPE_CHECKING:
     from concio.plot.continuum_accessor import ContinuumPlots
@@ -78,9 +79,8 @@ class ContinuumComparison:
     @property
     def plot(self) -> ContinuumPlots:
         """Figures by name, blocks to the left, continuum to the right; matplotlib is loaded here."""
-        from concio.plot.continuum_accessor import ContinuumPlots
-
-        return ContinuumPlots(self)
+        plots: ContinuumPlots = view(self, "plot")
+        return plots
 
     @property
     def verdict(self) -> Verdict:

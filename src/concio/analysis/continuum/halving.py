@@ -18,6 +18,7 @@ from concio.model.model import Model
 from concio.problem.solution import Progress, ProgressCallback
 from concio.verdict.continuum_verdict import continuum_verdict
 from concio.verdict.verdict import Verdict
+from concio.views import view
 
 if TYPE_CHECKING:
     from concio.plot.continuum_accessor import HalvingPlots
@@ -80,9 +81,8 @@ class BlockHalving:
     @property
     def plot(self) -> HalvingPlots:
         """Figures by name; matplotlib is loaded here."""
-        from concio.plot.continuum_accessor import HalvingPlots
-
-        return HalvingPlots(self)
+        plots: HalvingPlots = view(self, "plot")
+        return plots
 
 
 @strict

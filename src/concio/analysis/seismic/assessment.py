@@ -19,12 +19,13 @@ from concio.solvers.statics.limit import LimitLoad
 from concio.verdict.assessment_verdict import assessment_verdict
 from concio.verdict.question import Acting
 from concio.verdict.verdict import Verdict
+from concio.views import Shown, view
 
 __all__ = ["Assessment", "LevelOutcome", "LocalMechanism", "NoMechanism"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Assessment:
+class Assessment(Shown):
     """What :func:`concio.assess` found.
 
     Parameters
@@ -129,14 +130,8 @@ class Assessment:
         Path
             ``path``.
         """
-        from concio.report.assessment_page import write_assessment_report
-
-        return write_assessment_report(self, Path(path), language=language, **options)
-
-    def _repr_html_(self) -> str:
-        from concio.report.notebook import assessment_html
-
-        return assessment_html(self)
+        written: Path = view(self, "report", Path(path), language=language, **options)
+        return written
 
     def __repr__(self) -> str:
         lines = [f"<Assessment: {len(self.mechanisms)} mechanisms, {self.verdict.outcome.value}"]
