@@ -153,7 +153,7 @@ def step_lines(found: LimitResult) -> list[str]:
     if found.associated.locked and steps.state is None:
         said = (
             "is carried, and so is every other" if found.endless else "is not carried "
-            "({one_word(steps.outcome)}), nor is any other"
+            f"({one_word(steps.outcome)}), nor is any other"
         )
         return [f"{head}1 times it {said}: nothing else acts, and all multiples are alike"]
     tried = "" if math.isnan(steps.failed) else f"; none found at {steps.failed:.6g}"
