@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 import concio
 from concio import Assessment, JointLaw, Load, Tie
-from concio.analysis.seismic.applied import EARTHQUAKE, pushed
 from concio.analysis.seismic.local_mechanism import LocalMechanism
+from concio.contact.applied import EARTHQUAKE, pushed
 from concio.errors import InputError, NoEquilibriumError
 from seismic_walls import HAZARD, bending, overturning, site
 

@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 import concio
 from commands import run
 from concio import Assessment, JointLaw, Load, Model, Polyhedron, Rigid, Tie
-from concio.analysis.seismic.applied import sideways
 from concio.analysis.seismic.tie_history import TieHistory, together
 from concio.analysis.seismic.variations import tie_force
+from concio.contact.applied import sideways
 from concio.errors import InputError, NoEquilibriumError
 from concio.report.assessment_page import AssessmentReport
 from concio.verdict.assessment_words import EN, IT

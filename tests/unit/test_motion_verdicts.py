@@ -167,15 +167,16 @@ def test_a_push_that_ends_before_its_peak_shows_no_peak(tmp_path):
 
 
 def test_a_push_says_what_it_multiplies_and_what_acts_beside():
-    """The weights are multiplied, nothing else; a group called live acts as it is."""
-    live = concio.Load("point", (0.0, -3.0), bodies=("block",), at=(0.0, 1.2), group="live")
+    """Weights are multiplied, loads from above too; a group called live acts as it is, sideways it is no weight."""
+    live = concio.Load("point", (-0.5, -3.0), bodies=("block",), at=(0.0, 1.2), group="live")
     model = standing()
     model = replace(model, loads=(*model.loads, live))
     found = concio.push(model, live=())
     acting = {a.group: a for a in found.verdict.question.acting}
     assert acting["live"].role == "constant"
     assert acting["weights"].role == "multiplied"
-    assert acting["weights"].force == pytest.approx((-acting["dead"].force[1], 0.0))
+    assert acting["live"].force == pytest.approx((-0.5, -3.0))
+    assert acting["weights"].force == pytest.approx((3.0 - acting["dead"].force[1], 0.0))
     assert acting["weights"].factor == pytest.approx(found.peak)
 
 

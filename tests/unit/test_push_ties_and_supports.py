@@ -9,6 +9,7 @@ import pytest
 
 import concio
 from models import box, model_of, weight
+from seismic_walls import site
 
 B, H = 0.4, 1.6
 
@@ -122,3 +123,22 @@ def test_a_block_without_weight_under_a_point_load_is_pushed():
     found = concio.push(replace(model, loads=loads), until=0.02)
     assert found.certified
     assert found.peak == pytest.approx(6.0, rel=1e-4)
+
+
+def test_a_push_of_the_weights_has_the_multiplier_of_an_assessment():
+    """A wall that carries a floor: half its width over the height of all weights, by hand, by push, by assess."""
+    floor = 24.0
+    load = concio.Load("point", (0.0, -floor), bodies=("pillar",), at=(0.0, H), group="floor")
+    model = pillar(loads=(load,))
+    own = 20.0 * B * H
+    wanted = (own + floor) * B / 2 / (own * H / 2 + floor * H)
+    assert wanted < 0.9 * B / H  # own weights alone would carry more
+    found = concio.push(model, live=())
+    assert found.peak == pytest.approx(wanted, rel=3e-4)
+    (weights,) = [a for a in found.verdict.question.acting if a.role == "multiplied"]
+    assert weights.size == pytest.approx(own + floor)
+    assert f"dead {own:.4g} kN, floor {floor:.4g} kN" in weights.what
+    checked = concio.assess(model, site=site(), direction="right", levels=["SLV"])
+    assert min(m.multiplier for m in checked.mechanisms) == pytest.approx(found.peak, rel=3e-4)
+    doubled = concio.push(model, live=(), factors={"floor": 2.0}).peak
+    assert doubled == pytest.approx((own + 2 * floor) * B / 2 / (own * H / 2 + 2 * floor * H), rel=3e-4)

@@ -91,7 +91,7 @@ def test_pivoting_goes_on_from_the_states_a_step_has_reached(monkeypatch):
 def test_turned_blocks_slip_by_what_their_points_move_along_the_joint():
     """First order from the rows, the rest from finite rotations: together the chords of the points of both sides."""
     stack = concio.column(width=0.4, height=1.2, blocks=2, block="rigid", friction=0.5)
-    statics = Statics(Reference.of(stack, G), Scheme(), {}, (), np.array([1.0, 0.0]))
+    statics = Statics(Reference.of(stack, G), Scheme(), {})
     rest = at_rest(statics.reference)
     look = statics.look(rest, rest.memory, np.zeros(0), 0.0)
     before = statics.moved(rest, np.array([2e-4, 1e-4, 5e-4, 1e-4, 0.0, -2e-4]), look)

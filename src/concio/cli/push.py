@@ -43,7 +43,7 @@ def push(
         typer.Option("--group", "-g", help="Load group that grows (repeatable); by default live, or else the weights."),
     ] = None,
     weights: Annotated[
-        bool, typer.Option("--weights", help="Multiply a horizontal share of the weights, whatever groups there are.")
+        bool, typer.Option("--weights", help="Multiply all weights, vertical loads too, as assess does.")
     ] = False,
     direction: Annotated[
         Literal["x", "-x", "y", "-y"] | None,
@@ -66,7 +66,8 @@ def push(
 ) -> int:
     """Push a structure over: equilibria where the bodies stand, past the peak, until nothing is carried any more.
 
-    What is multiplied is the load group "live", other groups by --group, or a horizontal share of all weights.
+    What is multiplied is the load group "live", other groups by --group, or a horizontal share of all weights
+    that the structure carries: own weights and loads from above, as in "concio assess".
 
     The exit code is 0 where the curve was followed to its end, 3 where the structure does not stand to begin with, 4
     where the curve was lost or stopped before its end.

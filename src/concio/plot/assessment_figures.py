@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from concio.analysis.seismic.applied import applied_forces
+from concio.contact.applied import applied_forces
 from concio.display import number
 from concio.plot import style
 from concio.plot.assessment_in_space import mechanism_in_space, model_in_space

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import concio
-from concio.analysis.seismic.applied import applied_forces
 from concio.analysis.seismic.asked import Head
 from concio.analysis.seismic.floor import Storeys
+from concio.contact.applied import applied_forces
 from concio.plot.assessment_figures import model_figure
 from concio.report.assessment_mechanism import mechanism_html
 from concio.report.assessment_texts import Texts

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.contact.applied import resultants, sideways
+from concio.contact.factors import load_factor
 from concio.contact.moving.reference import Reference
 from concio.display import number
 from concio.fem.discretisation import Discretisation
@@ -50,7 +52,6 @@ def push_verdict(found: PushResult) -> Verdict:
         meaning=_meaning(found),
         limits=(
             *joints_not_made(reference.detection),
-            *_not_masses(found),
             *((LENT,) if found.lent_compliance else ()),
             SEVERAL,
         ),
@@ -118,8 +119,7 @@ def _question(found: PushResult) -> Question:
     if found.live:
         return question
     force = tuple(found.force.tolist())
-    what = "the weights of all bodies and of masses, and nothing else, turned to the side"
-    own = Acting(WEIGHTS, what, force, float(np.linalg.norm(force)), found.peak, "multiplied")
+    own = Acting(WEIGHTS, _turned(found), force, float(np.linalg.norm(force)), found.peak, "multiplied")
     return Question(question.asked, (*question.acting, own), question.assumptions)
 
 
@@ -149,11 +149,15 @@ def _answer(found: PushResult) -> str:
     return f"{told} {endings[found.ending.name]}"
 
 
-def _not_masses(found: PushResult) -> tuple[str, ...]:
-    """Return a word on loads that rest on the structure and do not push, where the weights are multiplied."""
-    if found.live or not any(load.kind != "weight" for load in found.model.loads):
-        return ()
-    return ("loads other than own weights act as they are; an assessment lets vertical ones push sideways as well",)
+def _turned(found: PushResult) -> str:
+    """Return which weights are multiplied, with their kN by the load group they come from: those of an assessment."""
+    model = found.model
+    made, numbers = sideways(model, found.direction.tolist(), WEIGHTS)
+    forces = resultants(replace(model, loads=tuple(made)), range(len(made)), [model.loads[k].group for k in numbers])
+    words = ", ".join(
+        f"{group} {number(load_factor(found.factors, group) * size, 4)} kN" for group, (_, size) in forces.items()
+    )
+    return f"weights and what loads bodies from above, turned to the side: {words}"
 
 
 def _proof(found: PushResult) -> str:

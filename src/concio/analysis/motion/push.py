@@ -10,19 +10,27 @@ from typing import Literal
 import numpy as np
 
 from concio.analysis.engine import by_its_engine
-from concio.analysis.motion.frames import Frames
 from concio.analysis.motion.interruption import Interruption
 from concio.analysis.motion.joint_events import JointEvent, joint_events, tie_events
 from concio.analysis.motion.moved_supports import begun
 from concio.analysis.motion.observer import Observer
+from concio.analysis.motion.push_asked import (
+    control_asked,
+    direction_asked,
+    factors_asked,
+    live_asked,
+    positive,
+    side_asked,
+    what_moves,
+)
 from concio.analysis.motion.push_result import PushEnding, PushResult
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import Balanced, Statics
 from concio.analysis.motion.stepper import at_rest
-from concio.arguments import closest, strict
+from concio.arguments import strict
+from concio.contact.applied import free_group, pushed
 from concio.contact.assembly import assemble
-from concio.contact.factors import load_factor
 from concio.contact.moving.edges import as_complex, as_vectors
 from concio.contact.moving.points import Followed
 from concio.contact.moving.reference import Reference
@@ -35,9 +43,6 @@ from concio.units import GRAVITY
 from concio.verdict.not_standing import not_standing
 
 Array = np.ndarray
-
-LIVE = "live"
-"""Load group that is multiplied unless another is named."""
 
 STEP = 1 / 20
 """Step over the median width of the bodies where none is given."""
@@ -67,9 +72,6 @@ MOST_CREEPING = 25
 
 MOST_POINTS = 5000
 """Points of a curve at most."""
-
-ASIDE = 1e-6
-"""Share of a resultant along a direction below which it points aside."""
 
 LOCATED = 1e-9
 """Steps over that asked for to which the yielding and breaking of ties is located."""
@@ -110,7 +112,7 @@ def push(
         (for a share of the weights, the mean displacement of the masses).
     live : str or sequence of str, optional
         Load groups that the multiplier scales. By default the group "live", and where a model has none a share of all
-        weights along ``direction``.
+        weights along ``direction``: own weights, and what loads bodies from above, as :func:`concio.assess` takes them.
     direction : float or (x, y), optional
         Direction of that share, by default along x; 1 or -1 is along x. Of load groups that are multiplied, the side to
         which they push: where their resultant points to the other side they grow with the opposite sign.
@@ -146,128 +148,52 @@ def push(
         The structure does not stand at multiplier zero.
     """
     reference = Reference.of(model, gravity)
-    chosen = _factors(reference, factors)
-    groups = _live(reference, live)
-    along = _direction(1.0 if direction is None else direction)
-    sign = _side(reference, groups, chosen, None if direction is None else along)
-    if not groups and not reference.body_mass.sum() > 0:
-        msg = "no block has a weight, and no load group is named: there is nothing to push with"
-        raise InputError(msg, hint="give materials a unit_weight, or name the groups to multiply (live)")
-    point, by_load = _control(control)
+    chosen = factors_asked(reference, factors)
+    groups = stated = live_asked(reference, live)
+    along = direction_asked(1.0 if direction is None else direction)
+    sign = side_asked(reference, groups, chosen, None if direction is None else along)
+    if not stated:
+        groups = (free_group(model),)
+        reference = Reference.of(pushed(model, along.tolist(), groups[0], chosen), gravity)
+    point, by_load = control_asked(control)
     scheme = Scheme(brittle=brittle)
-    statics = Statics(reference, scheme, chosen, groups, None if groups else along, point, engine, sign=sign)
+    statics = Statics(reference, scheme, chosen, groups, point, engine, sign=sign)
     if by_load:
-        step = LOAD_STEP if step is None else _positive(step, "step")
+        step = LOAD_STEP if step is None else positive(step, "step")
     else:
-        step = STEP * statics.width if step is None else _positive(step, "step")
-    until = np.inf if until is None else _positive(until, "until")
+        step = STEP * statics.width if step is None else positive(step, "step")
+    until = np.inf if until is None else positive(until, "until")
+    unit = statics.unit(np.ones(len(model.bodies), dtype=complex))
+    if not unit.any():
+        msg = "what is to be multiplied has no force: there is nothing to push with"
+        raise InputError(msg, hint="give materials a unit_weight, or name the groups to multiply (live)")
     Followed.of(reference, *points)  # what cannot be followed is said before anything moves
     clock_begun = clock.perf_counter()
     start, share, _ = begun(statics, at_rest(reference))
     if not start.found:
-        msg = "the structure does not stand before it is pushed" + _what_moves(reference, start)
+        msg = "the structure does not stand before it is pushed" + what_moves(reference, start)
         if 0.0 < share < 1.0:
             msg += f", where its supports have moved by {share:.3g} of what was asked for"
         hint = "see 'concio run' for its collapse; the factors of dead loads may be meant otherwise"
         asked = "a capacity curve at large displacements"
-        told = not_standing(assemble(model), asked, msg, factors=chosen, multiplied=groups)
+        told = not_standing(assemble(model), asked, msg, factors=chosen, multiplied=stated)
         raise NoEquilibriumError(msg, hint=hint, verdict=told)
     run = _Push(reference, statics, chosen, step, until, float(smallest), progress)
     run.keep(start, 0.0)
     with Interruption() as run.interruption:
         ending = run.by_load() if by_load else run.by_displacement()
-    unit = statics.unit(np.ones(len(model.bodies), dtype=complex))
     at = np.concatenate([statics.frames.x, statics.frames.node_x])
     return PushResult(
         model=model, gravity=gravity, ending=ending, displacement=np.array(run.displacement),
         multiplier=np.array(run.multiplier), residual=np.array(run.residual),
         centre=np.array([s.centre for s in run.states]), rotation=np.array([s.rotation for s in run.states]),
         strain=np.array([s.strain for s in run.states]), reaction=np.array(run.reactions),
-        reactions_of=run.observer.names, events=tuple(run.events), live=groups, direction=along,
+        reactions_of=run.observer.names, events=tuple(run.events), live=stated, direction=along,
         force=np.array([unit[at].sum(), unit[at + 1].sum()]), factors=chosen, control=point, points=tuple(points),
         notes=tuple(run.notes), seconds=clock.perf_counter() - clock_begun,
         lent_compliance=statics.maker.joints.lent if len(reference.rigid) else 0.0, end=run.states[-1],
         until=until if np.isfinite(until) else None, by_load=by_load, reversed=sign < 0,
     )  # fmt: skip
-
-
-def _what_moves(reference: Reference, found: Balanced) -> str:
-    """Return the name of the block that moves away most, and how many others go with it."""
-    size = np.abs(found.moved)
-    offsets = reference.disc.offsets
-    away = {b: float(size[offsets[b] : offsets[b + 1]].max()) for b in reference.free.tolist()}
-    first = max(away, key=away.__getitem__)
-    others = sum(v > 0.1 * away[first] for v in away.values()) - 1
-    if not away[first] > 0:
-        return ""
-    return f": '{reference.model.bodies[first].name}' moves away" + (f", and {others} others" if others else "")
-
-
-def _control(control: object) -> tuple[ControlPoint | None, bool]:
-    """Return the point that controls, if one does, and whether the load does."""
-    if isinstance(control, ControlPoint):
-        return control, False
-    if control is not None and control != "load":
-        msg = f"control = {control!r} is neither a ControlPoint nor 'load'"
-        raise InputError(msg, hint="leave it out for the mean displacement on which the load works")
-    return None, control == "load"
-
-
-def _positive(value: float, name: str) -> float:
-    if not 0 < value < np.inf:
-        msg = f"{name} = {value:g} must be positive and finite"
-        raise InputError(msg)
-    return float(value)
-
-
-def _factors(reference: Reference, factors: Mapping[str, float] | None) -> dict[str, float]:
-    chosen, known = dict(factors or {}), list(reference.model.load_groups)
-    for group in chosen:
-        if group not in known:
-            msg = f"there is no load group '{group}'"
-            raise InputError(msg, where="factors", hint=closest(group, known, names="groups"))
-    return chosen
-
-
-def _live(reference: Reference, live: str | Sequence[str] | None) -> tuple[str, ...]:
-    known = list(reference.model.load_groups)
-    if live is None:
-        return (LIVE,) if LIVE in known else ()
-    wanted = (live,) if isinstance(live, str) else tuple(live)
-    for group in wanted:
-        if group not in known:
-            msg = f"there is no load group '{group}'"
-            raise InputError(msg, where="live", hint=closest(group, known, names="groups"))
-    return wanted
-
-
-def _direction(direction: float | Sequence[float]) -> Array:
-    given = np.array([direction, 0.0] if np.ndim(direction) == 0 else direction, dtype=float)
-    size = float(np.linalg.norm(given)) if given.shape == (2,) else np.nan
-    if not 0 < size < np.inf:
-        msg = f"direction = {direction} is no direction"
-        raise InputError(msg, hint="1 or -1 along x, or (x, y)")
-    along: Array = given / size
-    return along
-
-
-def _side(
-    reference: Reference, groups: tuple[str, ...], factors: Mapping[str, float], along: Array | None
-) -> float:
-    """Return the sign with which load groups grow, so that they push along a direction that was asked for."""
-    if along is None or not groups:
-        return 1.0
-    here = np.ones(len(reference.model.bodies), dtype=complex)
-    only = {g: load_factor(factors, g) if g in groups else 0.0 for g in reference.loads.groups}
-    unit, frames = reference.loads.forces(only, here), Frames(reference, Scheme())
-    at = np.concatenate([frames.x, frames.node_x])
-    force = np.array([unit[at].sum(), unit[at + 1].sum()])
-    part = float(force @ along)
-    if abs(part) <= ASIDE * float(np.linalg.norm(force)) or not part:
-        msg = f"the loads of {', '.join(groups)} have no resultant along the direction ({along[0]:g}, {along[1]:g})"
-        hint = "leave the direction out, or multiply a share of the weights: live=(), on the command line --weights"
-        raise InputError(msg, where="direction", hint=hint)
-    return float(np.sign(part))
 
 
 @dataclass

@@ -47,7 +47,7 @@ class RockingResult:
 
 @strict
 def rock(model: Model, *, direction: float = 1.0, step: float = 0.005, smallest: float = 0.0) -> RockingResult:
-    """Follow the collapse of rigid blocks under a horizontal share of their weight in large displacements.
+    """Follow the collapse of rigid blocks under a horizontal share of the weights they carry in large displacements.
 
     Parameters
     ----------

@@ -90,8 +90,6 @@ class SmallDisplacements:
         Load factors; groups not named have 1.
     live : tuple of str
         Groups that the multiplier scales on top of their factors.
-    push : (2,) array, optional
-        Share of the weights that the multiplier lets act along this direction, where no group is live.
     control : ControlPoint, optional
         Whose displacement controls the load; otherwise the mean displacement on which the load works.
     sag : float
@@ -102,10 +100,10 @@ class SmallDisplacements:
 
     def __init__(
         self, reference: Reference, scheme: Scheme, factors: Mapping[str, float], live: tuple[str, ...],
-        push: Array | None, control: ControlPoint | None, sag: float, sign: float = 1.0,
+        control: ControlPoint | None, sag: float, sign: float = 1.0,
     ) -> None:  # fmt: skip
         self.sign = sign
-        self.reference, self.factors, self.live, self.push = reference, dict(factors), live, push
+        self.reference, self.factors, self.live = reference, dict(factors), live
         self.frames = Frames(reference, scheme)
         self.maker = PairMaker(reference, scheme, sag)
         self.control = None if control is None else Followed.of(reference, control)
@@ -208,24 +206,12 @@ class SmallDisplacements:
         """
         loads = self.reference.loads
         total = look.internal + (loads.forces(self.factors_at(multiplier), look.turn) if loads.groups else 0.0)
-        if self.live or self.push is None:
-            return total
-        f, weight = self.frames, multiplier * self.gravity * self.push
-        total[f.x] += weight[0] * f.mass[f.x]
-        total[f.y] += weight[1] * f.mass[f.y]
-        if f.elastic:
-            local = np.conj(look.turn[f.body]) * complex(*weight)
-            total[f.node_x] += f.node_mass * local.real
-            total[f.node_y] += f.node_mass * local.imag
         return np.asarray(total)
 
     def unit(self, turn: Array) -> Array:
         """Return the load of a multiplier of one (N,) [kN]."""
-        f = self.frames
-        if self.live:
-            groups = self.reference.loads.groups
-            only = {g: (self.sign * load_factor(self.factors, g) if g in self.live else 0.0) for g in groups}
-            return f.loads(Drive(np.zeros(2), np.zeros(2), only), turn)
-        if self.push is None:
-            return np.zeros(f.n)
-        return f.ground(Drive(-self.gravity * self.push, np.zeros(2), {}), turn)
+        if not self.live:
+            return np.zeros(self.frames.n)
+        groups = self.reference.loads.groups
+        only = {g: (self.sign * load_factor(self.factors, g) if g in self.live else 0.0) for g in groups}
+        return self.frames.loads(Drive(np.zeros(2), np.zeros(2), only), turn)

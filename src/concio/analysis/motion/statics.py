@@ -96,7 +96,7 @@ class Statics(SmallDisplacements):
 
     Parameters
     ----------
-    reference, scheme, factors, live, push, control, sag, sign
+    reference, scheme, factors, live, control, sag, sign
         See :class:`concio.analysis.motion.small_displacements.SmallDisplacements`.
     engine : {"superlu", "pardiso"}, optional
     """
@@ -107,13 +107,12 @@ class Statics(SmallDisplacements):
         scheme: Scheme,
         factors: Mapping[str, float],
         live: tuple[str, ...] = (),
-        push: Array | None = None,
         control: ControlPoint | None = None,
         engine: Engine | None = None,
         sag: float = SAG,
         sign: float = 1.0,
     ) -> None:
-        super().__init__(reference, scheme, factors, live, push, control, sag, sign)
+        super().__init__(reference, scheme, factors, live, control, sag, sign)
         self.solver = StepSolver(engine)
         self._unsolved = 0
 

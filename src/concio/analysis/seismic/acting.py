@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from concio.analysis.seismic.applied import resultants
 from concio.analysis.seismic.directions import Push
+from concio.contact.applied import resultants
 from concio.display import number
 from concio.model.model import Model
 from concio.verdict.question import Acting, group_words

@@ -18,9 +18,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from concio.analysis.seismic.applied import applied_forces
 from concio.analysis.seismic.linkage import Force
 from concio.analysis.seismic.macro_blocks import Mechanics
+from concio.contact.applied import applied_forces
 from concio.model.model import Model
 
 Array = np.ndarray

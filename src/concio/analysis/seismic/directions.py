@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from concio.analysis.seismic.applied import EARTHQUAKE, applied_forces, resultants, sideways
 from concio.arguments import closest
+from concio.contact.applied import applied_forces, free_group, resultants, sideways
 from concio.errors import InputError
 from concio.model.model import Model
 
@@ -111,9 +111,7 @@ def pushes(model: Model, direction: Direction | None, groups: tuple[str, ...]) -
 
 def _by_weights(model: Model, way: str, vector: Array) -> Push:
     """Return the push of all weights, in a load group of its own whatever the groups of the model are called."""
-    group, taken = EARTHQUAKE, {load.group for load in model.loads} | {s.group for s in model.supports}
-    while group in taken:
-        group += " of the weights"
+    group = free_group(model)
     made, numbers = sideways(model, vector.tolist(), group)
     first = len(model.loads)
     whole = replace(model, loads=(*model.loads, *made))

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from concio.contact.face_loads import loaded_parts, plane_of
+from concio.contact.factors import load_factor
 from concio.contact.load_faces import loaded_bodies, loaded_faces
 from concio.errors import InputError
 from concio.model.model import Load, Model
@@ -82,37 +83,60 @@ def applied_forces(model: Model, numbers: Sequence[int]) -> list[Applied]:
     return found
 
 
-def pushed(model: Model, direction: Sequence[float], group: str = EARTHQUAKE) -> Model:
+def free_group(model: Model) -> str:
+    """Return a name for the load group of the weights turned sideways that no group of a model has."""
+    group, taken = EARTHQUAKE, {load.group for load in model.loads} | {s.group for s in model.supports}
+    while group in taken:
+        group += " of the weights"
+    return group
+
+
+def pushed(
+    model: Model, direction: Sequence[float], group: str = EARTHQUAKE, factors: Mapping[str, float] | None = None
+) -> Model:
     """Return a model with one more load group: every weight it carries once more, sideways.
 
     Parameters
     ----------
     model : Model
     direction : sequence of float
-        Unit vector: (1,) or (-1,) in the plane, horizontal (x, y) in space.
+        Unit vector: (1,) or (-1,) in the plane, horizontal (x, y) in space; (d,) of any direction.
     group : str
         Name of that load group.
+    factors : mapping of str to float, optional
+        With which the load groups act; groups not named have 1.
 
     Raises
     ------
     InputError
         Nothing in it has weight.
     """
-    made, _ = sideways(model, direction, group)
-    return replace(model, loads=(*model.loads, *made))
+    made, numbers = sideways(model, direction, group)
+    factor = [load_factor(factors or {}, model.loads[k].group) for k in numbers]
+    loads = [replace(load, value=tuple(f * v for v in load.value)) for load, f in zip(made, factor, strict=True)]
+    return replace(model, loads=(*model.loads, *loads))
 
 
 def sideways(model: Model, direction: Sequence[float], group: str = EARTHQUAKE) -> tuple[list[Load], list[int]]:
     """Return every weight that a model carries as a horizontal load, with the numbers of the loads they are made of.
 
-    A load is a weight as far as it acts downwards: what pushes up, or to the side, is none.
+    A load is a weight as far as it acts downwards: what pushes up, or to the side, is none. So floors and roofs that
+    load a structure from above are masses.
+
+    Parameters
+    ----------
+    model : Model
+    direction : sequence of float
+        Unit vector, horizontal (d - 1,) or of any direction (d,).
+    group : str
+        Name of their load group.
 
     Raises
     ------
     InputError
         Nothing in the model has weight.
     """
-    way = np.array(direction, dtype=float)
+    way = np.append(np.array(direction, dtype=float), 0.0)[: model.dim]
     made, numbers = [], []
     for k, load in enumerate(model.loads):
         turned = None
@@ -121,17 +145,19 @@ def sideways(model: Model, direction: Sequence[float], group: str = EARTHQUAKE) 
                 falls = sum(float(f.force[-1]) for f in applied_forces(model, [k])) < 0
                 turned = _sideways(load, way, group) if falls else None
         elif load.value[-1] < 0:
-            turned = replace(load, value=(*(-way * load.value[-1]).tolist(), 0.0), group=group)
+            turned = replace(load, value=tuple((-way * load.value[-1]).tolist()), group=group)
         if turned is not None and any(turned.value):
             made.append(turned)
             numbers.append(k)
     if not made:
-        msg = "the model has no weight that an earthquake could push with"
+        msg = "the model has no weight that could push it sideways"
         raise InputError(msg, hint='give it Load("weight", (0, -1)) and a material with a unit_weight')
     return made, numbers
 
 
-def resultants(model: Model, numbers: Sequence[int]) -> dict[str, tuple[Array, float]]:
+def resultants(
+    model: Model, numbers: Sequence[int], groups: Sequence[str] | None = None
+) -> dict[str, tuple[Array, float]]:
     """Return by load group the resultant (d,) and the sum of sizes of the forces on free bodies [kN].
 
     Parameters
@@ -139,22 +165,24 @@ def resultants(model: Model, numbers: Sequence[int]) -> dict[str, tuple[Array, f
     model : Model
     numbers : sequence of int
         Which of its loads.
+    groups : sequence of str, optional
+        Group of each load of the model, where they are summed by others than their own.
     """
     found: dict[str, tuple[Array, float]] = {}
     for f in applied_forces(model, numbers):
-        group = model.loads[f.load].group
+        group = model.loads[f.load].group if groups is None else groups[f.load]
         total, size = found.get(group, (np.zeros(model.dim), 0.0))
         found[group] = total + f.force, size + float(np.linalg.norm(f.force))
     return found
 
 
 def _sideways(load: Load, way: Array, group: str) -> Load:
-    """Return a pressure from above as a horizontal traction of the size of its vertical part."""
+    """Return a pressure from above as a traction along a direction (d,), of the size of its vertical part."""
     if load.polygon is not None:
         share = abs(float(plane_of(np.array(load.polygon, dtype=float))[1][2]))
     else:
         assert load.edge is not None
         p, q = (np.array(end, dtype=float) for end in load.edge)
         share = abs(q[0] - p[0]) / float(np.linalg.norm(q - p))
-    value = (*(way * max(load.value[0], 0.0) * share).tolist(), 0.0)
+    value = tuple((way * max(load.value[0], 0.0) * share).tolist())
     return replace(load, kind="traction", value=value, group=group)

@@ -1,0 +1,107 @@
+"""What a push is asked for: load groups, direction, control; and what is said where a structure does not stand."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from concio.analysis.motion.frames import Frames
+from concio.analysis.motion.scheme import Scheme
+from concio.analysis.motion.statics import Balanced
+from concio.arguments import closest
+from concio.contact.factors import load_factor
+from concio.contact.moving.reference import Reference
+from concio.errors import InputError
+from concio.model.stages import ControlPoint
+
+Array = np.ndarray
+
+LIVE = "live"
+"""Load group that is multiplied unless another is named."""
+
+ASIDE = 1e-6
+"""Share of a resultant along a direction below which it points aside."""
+
+
+def what_moves(reference: Reference, found: Balanced) -> str:
+    """Return the name of the block that moves away most, and how many others go with it."""
+    size = np.abs(found.moved)
+    offsets = reference.disc.offsets
+    away = {b: float(size[offsets[b] : offsets[b + 1]].max()) for b in reference.free.tolist()}
+    first = max(away, key=away.__getitem__)
+    others = sum(v > 0.1 * away[first] for v in away.values()) - 1
+    if not away[first] > 0:
+        return ""
+    return f": '{reference.model.bodies[first].name}' moves away" + (f", and {others} others" if others else "")
+
+
+def control_asked(control: object) -> tuple[ControlPoint | None, bool]:
+    """Return the point that controls, if one does, and whether the load does."""
+    if isinstance(control, ControlPoint):
+        return control, False
+    if control is not None and control != "load":
+        msg = f"control = {control!r} is neither a ControlPoint nor 'load'"
+        raise InputError(msg, hint="leave it out for the mean displacement on which the load works")
+    return None, control == "load"
+
+
+def positive(value: float, name: str) -> float:
+    """Return a number that was given; raise where it is not positive and finite."""
+    if not 0 < value < np.inf:
+        msg = f"{name} = {value:g} must be positive and finite"
+        raise InputError(msg)
+    return float(value)
+
+
+def factors_asked(reference: Reference, factors: Mapping[str, float] | None) -> dict[str, float]:
+    """Return load factors that were given; raise where a group is not known."""
+    chosen, known = dict(factors or {}), list(reference.model.load_groups)
+    for group in chosen:
+        if group not in known:
+            msg = f"there is no load group '{group}'"
+            raise InputError(msg, where="factors", hint=closest(group, known, names="groups"))
+    return chosen
+
+
+def live_asked(reference: Reference, live: str | Sequence[str] | None) -> tuple[str, ...]:
+    """Return the load groups that are multiplied; none where the weights are."""
+    known = list(reference.model.load_groups)
+    if live is None:
+        return (LIVE,) if LIVE in known else ()
+    wanted = (live,) if isinstance(live, str) else tuple(live)
+    for group in wanted:
+        if group not in known:
+            msg = f"there is no load group '{group}'"
+            raise InputError(msg, where="live", hint=closest(group, known, names="groups"))
+    return wanted
+
+
+def direction_asked(direction: float | Sequence[float]) -> Array:
+    """Return the unit vector (2,) of a direction that was given."""
+    given = np.array([direction, 0.0] if np.ndim(direction) == 0 else direction, dtype=float)
+    size = float(np.linalg.norm(given)) if given.shape == (2,) else np.nan
+    if not 0 < size < np.inf:
+        msg = f"direction = {direction} is no direction"
+        raise InputError(msg, hint="1 or -1 along x, or (x, y)")
+    along: Array = given / size
+    return along
+
+
+def side_asked(
+    reference: Reference, groups: tuple[str, ...], factors: Mapping[str, float], along: Array | None
+) -> float:
+    """Return the sign with which load groups grow, so that they push along a direction that was asked for."""
+    if along is None or not groups:
+        return 1.0
+    here = np.ones(len(reference.model.bodies), dtype=complex)
+    only = {g: load_factor(factors, g) if g in groups else 0.0 for g in reference.loads.groups}
+    unit, frames = reference.loads.forces(only, here), Frames(reference, Scheme())
+    at = np.concatenate([frames.x, frames.node_x])
+    force = np.array([unit[at].sum(), unit[at + 1].sum()])
+    part = float(force @ along)
+    if abs(part) <= ASIDE * float(np.linalg.norm(force)) or not part:
+        msg = f"the loads of {', '.join(groups)} have no resultant along the direction ({along[0]:g}, {along[1]:g})"
+        hint = "leave the direction out, or multiply a share of the weights: live=(), on the command line --weights"
+        raise InputError(msg, where="direction", hint=hint)
+    return float(np.sign(part))
