@@ -14,9 +14,11 @@ from typing import Any
 
 import pytest
 
+import concio
 from concio.errors import ConcioError, InputError
 from concio.io.listing import CONTENTS
 from concio.io.owned_dir import look_at, owned_directory, settle
+from motion_models import standing
 from samples import sample
 
 STEPS = ("rename", "replace", "link", "unlink", "mkdir", "rmdir")
@@ -262,3 +264,35 @@ def test_processes_side_by_side_some_of_which_are_killed(tmp_path: Path) -> None
     assert found in [{"a.txt": i, "b.txt": i, f"only{i}": i} for i in "012"]
     write(place, {"a.txt": "after"})
     assert tree(place) == {"a.txt": "after", "thesis.txt": "mine"}
+
+
+def test_a_motion_is_read_whole_after_a_run_died_at_any_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    motions = [concio.push(standing(0.2, 1.0), step=0.1, until=until) for until in (0.05, 0.1)]
+
+    def put(place: Path, which: int) -> None:
+        with owned_directory(place) as folder:
+            concio.save_motion(motions[which], folder / "motion.npz")
+            (folder / ("old.txt", "new.txt")[which]).write_text("beside it")
+
+    ended: list[int] = []
+    for k in range(1, 100):
+        place, died = tmp_path / str(k), False
+        put(place, 0)
+
+        def die(step: int, last: int = k) -> None:
+            if step >= last:
+                raise DiedError
+
+        with counted(monkeypatch, die):
+            try:
+                put(place, 1)
+            except DiedError:
+                died = True
+        found = concio.load_motion(place / "motion.npz")
+        ended.append([m.until for m in motions].index(found.until))
+        beside = [name for name in ("old.txt", "new.txt") if (place / name).exists()]
+        assert beside == [("old.txt", "new.txt")[ended[-1]]], f"step {k}: files of one run"
+        if not died:
+            break
+    assert set(ended) == {0, 1}
+    assert len(ended) > 5

@@ -27,6 +27,7 @@ from concio.arguments import strict
 from concio.errors import InputError
 from concio.files import whole_file
 from concio.io.motion_check import check_array, check_arrays
+from concio.io.owned_dir import settle
 from concio.model.file.reading import loads
 from concio.model.file.writing import dumps
 from concio.model.stages import ControlPoint
@@ -123,6 +124,8 @@ def save_motion(result: PushResult | DynamicsResult, path: Path | str) -> Path:
 def load_motion(path: Path | str) -> PushResult | DynamicsResult:
     """Return the motion that a file holds.
 
+    Where a run was killed while it put its files into the directory, that is ended first.
+
     Parameters
     ----------
     path : Path or str
@@ -130,9 +133,11 @@ def load_motion(path: Path | str) -> PushResult | DynamicsResult:
     Raises
     ------
     InputError
-        There is no such file, or it holds no motion.
+        There is no such file, or it holds no motion; or a killed run left the directory half changed and it cannot be
+        written.
     """
     path = Path(path)
+    settle(path.parent)
     if not path.is_file():
         msg = "there is no such file"
         raise InputError(msg, where=str(path), hint="give a file that save_motion, push or shake wrote: motion.npz")
