@@ -71,7 +71,7 @@ def run(
             say(line)
         for line in where_written(written):
             say(line)
-    return result.status.exit_code
+    return result.verdict.exit_code
 
 
 def loaded(file: Path, units: str | None = None, engine: Engine | None = None) -> Model:

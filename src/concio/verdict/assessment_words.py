@@ -54,6 +54,8 @@ EN = {
     "open_curve": "'{name}', push {way}, at {levels}: its curve does not tell ({reason})",
     "open_bound": "whether '{name}', push {way}, begins to move below {alpha}, which is an upper bound only",
     "open_tie": "tie '{tie}', which has no yield force: it was taken to pull with up to {force} kN",
+    "open_unseen": "whether {names} {verb} held: the loads there are less than {share} of those of the structure "
+    "around, which is as far as residuals tell",
     "open_locked": "'{name}', push {way}: with joints that open as they slide it is locked, with Coulomb friction "
     "that is no answer, and no collapse state was found",
     "high": "'{name}' (z = {z} m)",
@@ -116,6 +118,8 @@ IT = {
     "open_curve": "«{name}», spinta {way}, allo {levels}: la curva non lo dice ({reason})",
     "open_bound": "se «{name}», spinta {way}, si muova sotto {alpha}, che è solo un limite superiore",
     "open_tie": "la catena «{tie}», senza forza di snervamento: si è ammesso che tiri fino a {force} kN",
+    "open_unseen": "se {names} stiano in equilibrio: i carichi su quei corpi sono meno di {share} di quelli della "
+    "struttura intorno, ed è quanto i residui possono dire",
     "open_locked": "«{name}», spinta {way}: con giunti che si aprono scorrendo è bloccato, con l'attrito di Coulomb "
     "non è una risposta, e non è stato trovato alcuno stato di collasso",
     "high": "«{name}» (z = {z} m)",

@@ -25,7 +25,7 @@ def apart(model: Model, detection: Detection) -> list[str]:
     links += [(k, ground) for k, body in enumerate(model.bodies) if body.kind == "fixed"]
     if model.periods is not None or not detection.interfaces:
         return []
-    part = _groups(links, ground + 1)
+    part = connected_bodies(links, ground + 1)
     loose = [body.name for k, body in enumerate(model.bodies) if part[k] != part[ground]]
     found = []
     if loose:
@@ -34,7 +34,7 @@ def apart(model: Model, detection: Detection) -> list[str]:
     if model.dim == 2:
         return found
     free = [k for k, body in enumerate(model.bodies) if body.kind != "fixed" and part[k] == part[ground]]
-    among = _groups([(p, q) for p, q in links if {p, q} <= set(free)], ground + 1)
+    among = connected_bodies([(p, q) for p, q in links if {p, q} <= set(free)], ground + 1)
     groups: dict[int, list[str]] = defaultdict(list)
     for k in free:
         groups[int(among[k])].append(model.bodies[k].name)
@@ -45,7 +45,7 @@ def apart(model: Model, detection: Detection) -> list[str]:
     return found + _hanging(model, detection)
 
 
-def _groups(links: list[tuple[int, int]], count: int) -> np.ndarray:
+def connected_bodies(links: list[tuple[int, int]], count: int) -> np.ndarray:
     """Return the number of the group (count,) of each body, of those that links hold together."""
     a, b = np.array(links, dtype=int).reshape(-1, 2).T
     graph = sp.coo_array((np.ones(len(a)), (a, b)), shape=(count, count))

@@ -12,6 +12,7 @@ from concio.units import GRAVITY
 from concio.verdict.attention import attention_of, joints_not_made
 from concio.verdict.push_verdict import Described
 from concio.verdict.question import question_of
+from concio.verdict.unseen import unseen
 from concio.verdict.verdict import Outcome, Verdict
 
 if TYPE_CHECKING:
@@ -42,11 +43,14 @@ def dynamics_verdict(found: DynamicsResult) -> Verdict:
     """
     outcome = _outcome(found)
     reference = found.reference
+    small = unseen(Described(reference), found.factors)
+    if small and not found.fallen and outcome in (Outcome.HOLDS, Outcome.FAILS):
+        outcome = Outcome.INCOMPLETE  # neither that it rests nor that it does not stand is shown of such bodies
     return Verdict(
         outcome=outcome,
         status=_status(found, outcome),
         question=question_of(_asked(found), Described(reference), found.factors),
-        headline=HEADLINES[outcome] if found.stands is not False else "The structure does not stand at the start.",
+        headline=_headline(found, outcome),
         answer=_answer(found, outcome),
         proof=_proof(found),
         meaning=(
@@ -54,10 +58,16 @@ def dynamics_verdict(found: DynamicsResult) -> Verdict:
             "different may end otherwise; what was not computed is not known."
         ),
         limits=(*joints_not_made(reference.detection), SENSITIVE),
-        unchecked=_unchecked(found, outcome),
+        unchecked=(*_unchecked(found, outcome), *small),
         attention=(*attention_of(found.model, reference.detection), *_noticed(found)),
         next_steps=("Repeat it with half the step, and with the record scaled by 0.9 and 1.1.",),
     )
+
+
+def _headline(found: DynamicsResult, outcome: Outcome) -> str:
+    if outcome is Outcome.INCOMPLETE and found.ending.name != "STOPPED":
+        return "What becomes of some bodies was not seen."
+    return HEADLINES[outcome] if found.stands is not False else "The structure does not stand at the start."
 
 
 def _outcome(found: DynamicsResult) -> Outcome:
@@ -104,7 +114,7 @@ def _answer(found: DynamicsResult, outcome: Outcome) -> str:
         told.append(f"At {time} it has fallen: {'; '.join(found.fallen[:MOST_FALLEN])}{more}.")
     elif outcome is Outcome.UNDECIDED:
         told.append(f"After {time} no step, however small, satisfies its equations.")
-    elif outcome is Outcome.INCOMPLETE:
+    elif found.ending.name == "STOPPED":
         told.append(f"It was stopped on request at {time}.")
     elif found.rests:
         told.append(f"It has come to rest at {time}, in an equilibrium that was found where it stands.")

@@ -15,6 +15,7 @@ from concio.verdict.attention import MOTION_TURNED, attention, joints_not_made
 from concio.verdict.crushing import crushing
 from concio.verdict.question import Acting, Question, question_of
 from concio.verdict.step_verdict import REGULARISED, SEVERAL, loads_in_short
+from concio.verdict.unseen import unseen
 from concio.verdict.verdict import Outcome, Verdict
 
 if TYPE_CHECKING:
@@ -44,6 +45,9 @@ def limit_verdict(found: LimitResult) -> Verdict:
     """
     question = limit_question(found)
     outcome, headline = _outcome(found)
+    open_ = _unchecked(found, outcome)
+    if outcome is Outcome.HOLDS and _unseen(found):
+        outcome = Outcome.INCOMPLETE
     return Verdict(
         outcome=outcome,
         status=_status(found, outcome),
@@ -55,7 +59,7 @@ def limit_verdict(found: LimitResult) -> Verdict:
         "grew, by a certified state at which the structure can begin to move, or with pressure spread over joints that "
         "twist. The associated bound lies above all of them: it is never what to design with.",
         limits=_limits(found),
-        unchecked=_unchecked(found),
+        unchecked=open_,
         attention=attention(found.assembly),
     )
 
@@ -314,7 +318,7 @@ def _torsion(found: LimitResult) -> str:
     return f"{joints} as the structure begins to move: {strong}; the number to design with is without that"
 
 
-def _unchecked(found: LimitResult) -> tuple[str, ...]:
+def _unchecked(found: LimitResult, outcome: Outcome) -> tuple[str, ...]:
     """Return what would be expected of a limit load and was not checked."""
     told = []
     if found.steps is None and found.path is None:
@@ -324,4 +328,10 @@ def _unchecked(found: LimitResult) -> tuple[str, ...]:
         )
     if found.dead is None:
         told.append("whether the loads that stay constant are carried alone with Coulomb friction")
-    return tuple(told)
+    return (*told, *(() if outcome is Outcome.FAILS else _unseen(found)))
+
+
+def _unseen(found: LimitResult) -> tuple[str, ...]:
+    """Return a sentence on bodies that no certificate can see without the load or with what is designed with."""
+    most = found.design if math.isfinite(found.design) else 1.0
+    return unseen(found.assembly, dict.fromkeys(found.groups, 0.0), dict.fromkeys(found.groups, most))

@@ -10,6 +10,7 @@ from concio.problem.tolerances import CERTIFIED
 from concio.solvers.path.record import Outcome as Ended
 from concio.verdict.attention import attention, joints_not_made
 from concio.verdict.question import Question, question_of
+from concio.verdict.unseen import unseen
 from concio.verdict.verdict import Outcome, Verdict
 
 if TYPE_CHECKING:
@@ -204,6 +205,8 @@ def _unchecked(found: PathResult) -> tuple[str, ...]:
     lines = [f"'{stage.name}', which was not begun" for stage in found.stages[len(found.outcomes) :]]
     if found.collapsed or not found.steps:
         return tuple(lines)
+    ends = {step.stage: step.factors for step in found.steps}
+    lines += unseen(found.assembly, *ends.values())
     missing = weightless(found.assembly.model, found.steps[-1].factors)
     if missing and len(found.outcomes) == len(found.stages):
         named = " and ".join(f"'{group}'" for group in missing)

@@ -12,10 +12,12 @@ from concio.contact.factors import load_factor
 from concio.contact.moving.reference import Reference
 from concio.display import number
 from concio.fem.discretisation import Discretisation
+from concio.model.interfaces.detect import Detection
 from concio.model.model import Model
 from concio.problem.tolerances import CERTIFIED
 from concio.verdict.attention import attention_of, joints_not_made
 from concio.verdict.question import Acting, Question, question_of
+from concio.verdict.unseen import unseen
 from concio.verdict.verdict import Outcome, Verdict
 
 if TYPE_CHECKING:
@@ -42,11 +44,14 @@ def push_verdict(found: PushResult) -> Verdict:
     """
     outcome = _outcome(found)
     reference = found.reference
+    open_ = (*_unchecked(found), *_unseen(found))
+    if outcome is Outcome.HOLDS and open_:
+        outcome = Outcome.INCOMPLETE
     return Verdict(
         outcome=outcome,
         status=found.ending.name.lower() if found.certified else "not_certified",
         question=_question(found),
-        headline=HEADLINES[outcome],
+        headline=HEADLINES[_outcome(found)],
         answer=_answer(found),
         proof=_proof(found),
         meaning=_meaning(found),
@@ -55,7 +60,7 @@ def push_verdict(found: PushResult) -> Verdict:
             *((LENT,) if found.lent_compliance else ()),
             SEVERAL,
         ),
-        unchecked=_unchecked(found),
+        unchecked=open_,
         attention=attention_of(found.model, reference.detection),
         next_steps=(
             "Look at the events: where joints open, slip or close, and where ties yield or break.",
@@ -79,6 +84,11 @@ class Described:
     def model(self) -> Model:
         """The model."""
         return self.reference.model
+
+    @property
+    def detection(self) -> Detection:
+        """Its interfaces as described."""
+        return self.reference.detection
 
     @property
     def disc(self) -> Discretisation:
@@ -183,3 +193,10 @@ def _unchecked(found: PushResult) -> tuple[str, ...]:
         where = found.model.report.text("motion", float(found.displacement[-1]), 4)
         return (f"the curve beyond {where}",)
     return ()
+
+
+def _unseen(found: PushResult) -> tuple[str, ...]:
+    """Return a sentence on bodies that no certificate can see at the beginning or at the peak."""
+    sign = -1.0 if found.reversed else 1.0
+    ends = [dict.fromkeys(found.live, m) for m in (0.0, sign * found.peak)]
+    return unseen(Described(found.reference), *({**found.factors, **end} for end in ends))

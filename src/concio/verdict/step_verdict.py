@@ -14,9 +14,10 @@ from concio.problem.tolerances import CERTIFIED
 from concio.solvers.statics.self_stress import SelfStress, least_compression, least_compression_of
 from concio.verdict.attention import attention, joints_not_made, torsion
 from concio.verdict.crushing import crushing
-from concio.verdict.part_words import parts_told, regularised, unresolved
+from concio.verdict.part_words import parts_told, regularised
 from concio.verdict.question import Question, question_of
 from concio.verdict.step_words import OUTCOMES, WORDS
+from concio.verdict.unseen import unseen
 from concio.verdict.verdict import Outcome, Verdict
 from concio.verdict.weights import odd_weights
 
@@ -59,9 +60,9 @@ def step_verdict(result: Result) -> Verdict:
     )
     odd = (*attention(result.assembly), *_noticed(result), *broken_words(result))
     first = [f"{line[0].upper()}{line[1:]}." for line in odd]
-    unseen = unresolved(result)
+    open_ = unseen(result.assembly, result.factors) if result.solved else ()
     return Verdict(
-        outcome=Outcome.INCOMPLETE if unseen else OUTCOMES[status],
+        outcome=Outcome.INCOMPLETE if open_ else OUTCOMES[status],
         status=status.name.lower(),
         question=question,
         headline=words.headline,
@@ -69,7 +70,7 @@ def step_verdict(result: Result) -> Verdict:
         proof=proof(result),
         meaning=words.meaning,
         limits=_limits(result),
-        unchecked=unseen,
+        unchecked=open_,
         attention=odd,
         next_steps=(*first, *words.next_steps),
     )

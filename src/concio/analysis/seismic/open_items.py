@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from concio.model.model import Model
+from concio.verdict.unseen import SEEN, listed, unseen_bodies
 
 if TYPE_CHECKING:
     from concio.analysis.seismic.assessment import Assessment
@@ -27,7 +28,7 @@ class OpenItem:
     Parameters
     ----------
     kind : str
-        "levels", "hazard", "height", "out of plane", "curve", "bound", "tie" or "locked"; the words are in
+        "levels", "hazard", "height", "out of plane", "curve", "bound", "tie", "unseen" or "locked"; the words are in
         :mod:`concio.verdict.assessment_words`.
     values : mapping
         What the words name.
@@ -70,6 +71,9 @@ def open_items(found: Assessment) -> tuple[OpenItem, ...]:
     if "ties" not in excused:
         items += [OpenItem("tie", {"tie": t.name, "force": t.strength}) for t in found.model.ties
                   if t.yield_force is None]  # fmt: skip
+    if small := unseen_bodies(found.assembly, (None,)):
+        told = {"names": listed(small), "verb": "is" if len(small) == 1 else "are", "share": f"{SEEN:.0e}"}
+        items.append(OpenItem("unseen", told))
     items += [OpenItem("locked", {"name": n.name, "way": n.direction}) for n in found.locked if n.doubtful]
     return tuple(items)
 
