@@ -93,8 +93,9 @@ def test_what_is_seen_depends_on_shares_alone(share: float, size: float, dim: in
         return concio.Polyhedron.box(name, low, high, kind=kind, material=material)
 
     bodies = (
-        block("ground", 0.0, -1.0, 1.0, kind="fixed"), block("wall", 0.0, 0.0, 1.0), block("light", 0.0, 1.0, 0.1, "dust"),
-        block("far ground", 9.0, -1.0, 1.0, kind="fixed"), block("far", 9.0, 0.0, 1.0, "lead"),
+        block("ground", 0.0, -1.0, 1.0, kind="fixed"), block("wall", 0.0, 0.0, 1.0),
+        block("light", 0.0, 1.0, 0.1, "dust"), block("far ground", 9.0, -1.0, 1.0, kind="fixed"),
+        block("far", 9.0, 0.0, 1.0, "lead"),
     )  # fmt: skip
     dust = share * 20.0 / 0.1**dim
     materials = {"stone": concio.Rigid(20.0), "dust": concio.Rigid(dust), "lead": concio.Rigid(20.0 / share)}
