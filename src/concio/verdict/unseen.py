@@ -1,4 +1,4 @@
-"""Bodies whose loads are too small beside those of their part for any certificate to see: whether they are held is open.
+"""Bodies whose loads are too small beside those of their part for a certificate to see: whether they are held is open.
 
 Errors are measured by the loads of a connected part (:mod:`concio.problem.units`). Where the loads of a body are less
 than what passes as an error of its part, leaving them out of the balance would not be noticed. Every command that says
@@ -35,7 +35,7 @@ class LoadedJoints(Loaded, Protocol):
 
 
 def unseen(loaded: LoadedJoints, *factors: Mapping[str, float] | None) -> tuple[str, ...]:
-    """Return a sentence on the bodies that no certificate can see under loads at given factors, none where all are seen.
+    """Return a sentence on the bodies that no certificate can see under loads at given factors, if there are any.
 
     Parameters
     ----------
