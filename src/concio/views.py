@@ -19,15 +19,12 @@ VIEWS: dict[str, dict[str, str]] = {
         "CellPath": "concio.plot.cell_accessor:CellPathPlots",
         "ContinuumComparison": "concio.plot.continuum_accessor:ContinuumPlots",
         "BlockHalving": "concio.plot.continuum_accessor:HalvingPlots",
+        "StudyResult": "concio.plot.study_figures:StudyPlots",
     },
     "tables": {"Result": "concio.post.tables_of:tables_of"},
     "notebook": {
         "Model": "concio.report.notebook:model_html",
-        "Result": "concio.report.notebook:notebook_html",
-        "LimitResult": "concio.report.notebook:limit_html",
-        "PathResult": "concio.report.notebook:path_html",
-        "Assessment": "concio.report.notebook:assessment_html",
-        "StudyResult": "concio.report.study_page:study_notebook",
+        "Shown": "concio.report.notebook:result_html",
     },
     "report": {
         "Assessment": "concio.report.assessment_page:write_assessment_report",
@@ -61,7 +58,7 @@ def view(shown: object, name: str, *args: Any, **options: Any) -> Any:
 
 
 class Shown:
-    """Base of what shows itself in a notebook."""
+    """Base of what shows itself in a notebook; a result by the sentence and the question of its verdict."""
 
     def _repr_html_(self) -> str:
         return str(view(self, "notebook"))

@@ -25,11 +25,13 @@ import numpy as np
 from concio.analysis.beside import Beside
 from concio.analysis.coulomb_path import coulomb_path, dead_state, live_load_path
 from concio.analysis.engine import by_its_engine, step_by_step
+from concio.analysis.friction_margin import FrictionMargin
 from concio.analysis.lent_compliance import lent_assembly
 from concio.analysis.limit_result import LimitResult
 from concio.analysis.limit_ties import whole_up_to
 from concio.analysis.limit_torsion import spread_steps, twisted_joints
 from concio.analysis.load_steps import by_scale, in_one_step, load_steps
+from concio.analysis.margin_of import MarginOf
 from concio.analysis.tie_forces import without_breakable
 from concio.arguments import closest, strict
 from concio.contact.assembly import Assembly, as_assembly
@@ -41,7 +43,7 @@ from concio.solvers.methods import find
 from concio.solvers.statics.collapse_search import WORK_OF_ALL, find_collapse_state
 from concio.solvers.statics.collapse_state import CollapseState
 from concio.solvers.statics.existence import find_mechanism
-from concio.solvers.statics.friction import FrictionMargin, smallest_friction
+from concio.solvers.statics.friction import smallest_friction
 from concio.solvers.statics.limit import LimitLoad, associated_limit
 from concio.verdict.limit_verdict import DEAD_NOT_CARRIED
 from concio.verdict.not_standing import not_standing
@@ -287,7 +289,17 @@ def friction_margin(
     InputError
         A group does not exist; or a factor is given, and there is no live group to multiply.
     """
-    return smallest_friction(factored_problem(as_assembly(model), live, factor))
+    assembly = as_assembly(model)
+    found = smallest_friction(factored_problem(assembly, live, factor))
+    of = MarginOf(assembly, live_groups(assembly, live), "friction", factor)
+    return FrictionMargin(found.factor, found.below, found.programmes, of)
+
+
+def live_groups(assembly: Assembly, live: str | Sequence[str] | None) -> tuple[str, ...]:
+    """Return the names of live groups; by default the group "live" where there is one."""
+    if live is None:
+        return (LIVE,) if LIVE in assembly.groups else ()
+    return (live,) if isinstance(live, str) else tuple(live)
 
 
 def factored_problem(assembly: Assembly, live: str | Sequence[str] | None, factor: float) -> ContactProblem:
@@ -306,7 +318,7 @@ def factored_problem(assembly: Assembly, live: str | Sequence[str] | None, facto
 
 def dead_and_live(assembly: Assembly, live: str | Sequence[str]) -> tuple[ContactProblem, Array]:
     """Return the problem without the live groups, and their loads (N,) for factor 1."""
-    groups = (live,) if isinstance(live, str) else tuple(live)
+    groups = live_groups(assembly, live)
     for group in groups:
         if group not in assembly.groups:
             msg = f"there is no load group '{group}'"

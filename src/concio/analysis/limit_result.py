@@ -13,7 +13,7 @@ from concio.contact.assembly import Assembly
 from concio.problem.solution import PROVEN_FAILURES, Status
 from concio.solvers.path.record import EventPath
 from concio.solvers.statics.collapse_state import CollapseState
-from concio.solvers.statics.friction import FrictionMargin
+from concio.solvers.statics.friction import FrictionBounds
 from concio.solvers.statics.limit import LimitLoad
 from concio.verdict.limit_verdict import limit_verdict
 from concio.verdict.limit_words import NOT_ASKED, limit_lines
@@ -54,7 +54,7 @@ class LimitResult(Shown):
         Whether the largest multiplier of the path is shown to be that of its collapse: the structure can move at it,
         or a mechanism proves that it carries no more, or the load falls as the structure moves far beyond it. A path
         that was lost shows only what the structure carries.
-    friction : FrictionMargin or None
+    friction : FrictionBounds or None
         Smallest friction with which admissible forces carry the load as given; None where that was not asked for.
     lent_compliance : float
         Normal compliance lent to hard joints of rigid blocks [m/kN]; 0 where none was needed.
@@ -80,7 +80,7 @@ class LimitResult(Shown):
     search: str = NOT_ASKED
     first_limit: float = float("nan")
     collapse_shown: bool = False
-    friction: FrictionMargin | None = None
+    friction: FrictionBounds | None = None
     lent_compliance: float = 0.0
     dead: Status | None = None
     twisting: int = 0

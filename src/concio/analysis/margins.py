@@ -13,13 +13,14 @@ was found, no more.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from concio.analysis.engine import by_its_engine
 from concio.analysis.lent_compliance import lent_assembly
-from concio.analysis.limit import dead_and_live, factored_problem
+from concio.analysis.limit import dead_and_live, factored_problem, live_groups
+from concio.analysis.margin_of import MarginOf
 from concio.arguments import strict
 from concio.contact.assembly import Assembly
 from concio.model.model import Model
@@ -30,6 +31,9 @@ from concio.solvers.methods import find
 from concio.solvers.statics.friction import smallest_friction
 from concio.solvers.statics.limit import associated_limit
 from concio.verdict.limit_words import margin_words
+from concio.verdict.margin_verdict import margin_verdict
+from concio.verdict.verdict import Verdict
+from concio.views import Shown
 
 Array = np.ndarray
 
@@ -39,7 +43,7 @@ FAR = 1e6
 
 @short_repr
 @dataclass(frozen=True)
-class Margin:
+class Margin(Shown):
     """Load factor or friction factor at which a structure comes to its limit.
 
     Parameters
@@ -55,6 +59,8 @@ class Margin:
         Associated limit: beyond this load, or below this friction, no equilibrium exists (to rounding).
     solves : int
         Load steps solved.
+    of : MarginOf or None
+        The structure, its loads, and what grows or falls; None of a bare problem.
     """
 
     holds: float
@@ -62,6 +68,12 @@ class Margin:
     outcome: Status | None
     proven: float
     solves: int
+    of: MarginOf | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def verdict(self) -> Verdict:
+        """The margin with its question, what shows either end, and what it leaves out."""
+        return margin_verdict(self)
 
     @property
     def locked(self) -> bool:
@@ -96,6 +108,10 @@ def load_margin(model: Model | Assembly, live: str | Sequence[str] = "live", tol
     """
     assembly = lent_assembly(model)
     dead, load = dead_and_live(assembly, live)
+    return replace(_load_margin(dead, load, tolerance), of=MarginOf(assembly, live_groups(assembly, live), "load"))
+
+
+def _load_margin(dead: ContactProblem, load: Array, tolerance: float) -> Margin:
     limit = associated_limit(dead, load).multiplier
     if np.isnan(limit):
         return Margin(float("nan"), float("nan"), None, limit, 0)
@@ -126,9 +142,11 @@ def friction_by_solving(
     InputError
         A group does not exist, or the live groups hold no load.
     """
-    loaded = factored_problem(lent_assembly(model), live, factor)
+    assembly = lent_assembly(model)
+    loaded = factored_problem(assembly, live, factor)
     least = smallest_friction(loaded).factor
-    return _bisect(loaded.with_friction, 1.0, least, tolerance)
+    found = _bisect(loaded.with_friction, 1.0, least, tolerance)
+    return replace(found, of=MarginOf(assembly, live_groups(assembly, live), "friction", factor))
 
 
 def _without_bound(dead: ContactProblem, load: Array, tolerance: float) -> Margin:

@@ -15,13 +15,15 @@ from concio.errors import InputError
 from concio.model.model import Model
 from concio.problem.solution import ProgressCallback
 from concio.representation import short_repr
+from concio.verdict.verdict import Verdict
+from concio.views import Shown
 
 Array = np.ndarray
 
 
 @short_repr
 @dataclass(frozen=True, eq=False)
-class SettlementResult:
+class SettlementResult(Shown):
     """Movement of supports after the dead load.
 
     Parameters
@@ -42,6 +44,11 @@ class SettlementResult:
     def reached(self) -> bool:
         """True when the whole movement was imposed without the structure falling."""
         return self.path.complete
+
+    @property
+    def verdict(self) -> Verdict:
+        """Whether loads and movement were carried to their end: the verdict of the path of both stages."""
+        return self.path.verdict
 
 
 @strict

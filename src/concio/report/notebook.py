@@ -1,25 +1,38 @@
-"""How models, results, paths and limit loads show themselves in a notebook: what was found, numbers, one figure."""
+"""How models and results show themselves in a notebook: the verdict with its question, numbers, one figure.
+
+What is shown of a result begins with the sentence and the question of its verdict, whatever result it is; what else
+there is to show is looked up by the name of its class.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from html import escape
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from concio.display import Units
+from concio.display import DEFAULT, Units
 from concio.model.described import model_lines
 from concio.report.html_parts import figure_html
-from concio.verdict.limit_words import limit_lines
+from concio.verdict.limit_words import number_lines
 from concio.verdict.path_verdict import stage_loads
+from concio.verdict.study_verdict import output_words, verdict_counts
 from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
+    from concio.analysis.cells.path_result import CellPath
+    from concio.analysis.cells.strength import StrengthDomain
     from concio.analysis.limit_result import LimitResult
+    from concio.analysis.motion.dynamics_result import DynamicsResult
+    from concio.analysis.motion.push_result import PushResult
     from concio.analysis.path_result import PathResult
     from concio.analysis.result import Result
     from concio.analysis.seismic.assessment import Assessment
+    from concio.analysis.settlement import SettlementResult
     from concio.model.model import Model
+    from concio.studies.compare import ComparisonTable
+    from concio.studies.study_result import StudyResult
 
 _TONE = {"good": "#0072B2", "bad": "#D55E00", "unsure": "#B07800"}
 
@@ -29,13 +42,63 @@ HEAD = 23
 LARGEST = 2000
 """Models with more bodies than this show no figure by themselves."""
 
+Rows = list[tuple[str, str]]
 
-def notebook_html(result: Result) -> str:
-    """Return the result as a piece of HTML."""
-    v = result.verdict
-    rows = [("model", result.model.title or "untitled"), ("method", result.solved_by)]
-    rows += verdict_rows(v, result.model.report)
-    rows.append(("size", f"{len(result.model.free_bodies)} bodies, {len(result.assembly.pairs)} contact pairs"))
+
+class HasVerdict(Protocol):
+    """A result."""
+
+    @property
+    def verdict(self) -> Verdict:
+        """Its verdict."""
+
+
+def result_html(found: HasVerdict) -> str:
+    """Return a result as a piece of HTML: its verdict with the question, then numbers and a figure of its kind.
+
+    Parameters
+    ----------
+    found : Result, LimitResult, PathResult or any other result with a verdict
+    """
+    v, model = found.verdict, model_of(found)
+    units = model.report if model is not None else DEFAULT
+    more, figure = BENEATH.get(type(found).__name__, _nothing_more)(found)
+    rows = verdict_rows(v, units)
+    rows += [("model", model.title or "untitled")] if model is not None else []
+    return _piece(v.tone, v.headline, f"{v.sentence} {v.proof}", [*rows, *more], figure)
+
+
+def model_of(found: object) -> Model | None:
+    """Return the model that a result is of, or None of a bare problem or of many models."""
+    for way in (("model",), ("assembly", "model"), ("cell", "model"), ("path", "assembly", "model"),
+                ("of", "assembly", "model"), ("pushed", "model"), ("comparisons", 0, "assembly", "model")):  # fmt: skip
+        at: Any = found
+        for name in way:
+            at = at[name] if isinstance(name, int) else getattr(at, name, None)
+            if at is None:
+                break
+        if at is not None:
+            return at  # type: ignore[no-any-return]
+    return None
+
+
+def verdict_rows(verdict: Verdict, units: Units) -> Rows:
+    """Return question, what acts, what limits an answer, what was not checked and what is odd, a row each."""
+    question = verdict.question
+    parts = (("asked", (question.asked,)), ("acts", question.loads(units)), ("assumed", question.assumptions),
+             ("limits", verdict.limits), ("not checked", verdict.unchecked),
+             ("attention", verdict.attention))  # fmt: skip
+    return [(head, line) for head, lines in parts for line in lines]
+
+
+def _nothing_more(_: object) -> tuple[Rows, str]:
+    return [], ""
+
+
+def _of_step(result: Result) -> tuple[Rows, str]:
+    """Return the numbers of a load step, and its deformed shape or mechanism."""
+    size = f"{len(result.model.free_bodies)} bodies, {len(result.assembly.pairs)} contact pairs"
+    rows = [("method", result.solved_by), ("size", size)]
     if result.solved:
         contacts, units = result.contacts, result.model.report
         largest = max((float(np.linalg.norm(force)) for force in result.reactions.values()), default=0.0)
@@ -49,14 +112,88 @@ def notebook_html(result: Result) -> str:
             figure = figure_html(result.plot.deformed(), "deformed", "deformed shape")
         elif result.mechanism is not None:
             figure = figure_html(result.plot.mechanism(), "mechanism", "collapse mechanism")
-    return _piece(v.tone, v.headline, f"{v.sentence} {v.proof}", rows, figure)
+    return rows, figure
 
 
-def verdict_rows(verdict: Verdict, units: Units) -> list[tuple[str, str]]:
-    """Return what acts, what limits an answer, what was not checked and what is odd, a row each."""
-    parts = (("acts", verdict.question.loads(units)), ("limits", verdict.limits), ("not checked", verdict.unchecked),
-             ("attention", verdict.attention))  # fmt: skip
-    return [(head, line) for head, lines in parts for line in lines]
+def _of_path(path: PathResult) -> tuple[Rows, str]:
+    """Return the stages of a load path, and its load curve."""
+    rows = [
+        (f"stage {path.stages[k].name}", f"{ended.name.lower()}, {stage_loads(path, k)}")
+        for k, ended in enumerate(path.outcomes)
+    ]
+    rows.append(("size", f"{len(path.steps):,} states, {len(path.events):,} events"))
+    return rows, figure_html(path.plot.curve(), "path", "load path")
+
+
+def _of_settlement(found: SettlementResult) -> tuple[Rows, str]:
+    """Return what a movement of supports reached, and the path that it is."""
+    share = float(found.share[-1]) if len(found.share) else 0.0
+    rows, figure = _of_path(found.path)
+    return [("share of the movement", f"{share:.6g}"), *rows], figure
+
+
+def _of_limit(found: LimitResult) -> tuple[Rows, str]:
+    """Return every multiplier with what it is, and the associated mechanism."""
+    rows = [(line[2:HEAD].strip(), line[HEAD:].strip()) for line in number_lines(found)]
+    model, figure = found.assembly.model, ""
+    if found.associated.mechanism is not None and model.dim == 2 and len(model.bodies) <= LARGEST:
+        figure = figure_html(found.plot.mechanism(), "mechanism", "associated mechanism")
+    return rows, figure
+
+
+def _of_assessment(found: Assessment) -> tuple[Rows, str]:
+    """Return every mechanism with its multiplier and zeta_E."""
+    return [(f"{m.name}, push {m.direction}", f"alpha_0 {m.multiplier:.6g}, zeta_E {m.zeta:.4g}")
+            for m in found.mechanisms], ""  # fmt: skip
+
+
+def _of_push(found: PushResult) -> tuple[Rows, str]:
+    """Return the events of a push, and its curve."""
+    from concio.plot.motion_figure import plot_capacity
+
+    rows = [("points", f"{len(found):,}"), *(("event", str(e)) for e in found.events[:FEW])]
+    return rows, figure_html(plot_capacity(found), "capacity", "capacity curve")
+
+
+def _of_motion(found: DynamicsResult) -> tuple[Rows, str]:
+    """Return how long a motion was followed, and the rotations in time."""
+    from concio.plot.motion_figure import plot_history
+
+    return [("steps", f"{len(found.steps.time):,}")], figure_html(plot_history(found), "history", "rotations")
+
+
+def _of_cell_path(found: CellPath) -> tuple[Rows, str]:
+    """Return the size of a path of a cell, and its curve."""
+    return [("size", f"{len(found.steps):,} states")], figure_html(found.plot.curve(), "path", "stress and strain")
+
+
+def _of_strength(found: StrengthDomain) -> tuple[Rows, str]:
+    """Return the strength in each direction."""
+    from concio.verdict.cell_verdict import direction_words, ray_words
+
+    return [(direction_words(ray), "; ".join(ray_words(ray))) for ray in found.rays], ""
+
+
+def _of_study(found: StudyResult) -> tuple[Rows, str]:
+    """Return what came out of a study, and how many runs came to what."""
+    rows = [(o.name if o.unit == "-" else f"{o.name} [{o.unit}]", output_words(found, o)) for o in found.outputs]
+    return [("runs", verdict_counts(found)), *rows], ""
+
+
+def _of_comparison(found: ComparisonTable) -> tuple[Rows, str]:
+    """Return what each method made of the problem."""
+    return [(row.method, f"{row.outcome}, certificate {row.worst:.1e}") for row in found.rows], ""
+
+
+BENEATH: dict[str, Callable[[Any], tuple[Rows, str]]] = {
+    "Result": _of_step, "PathResult": _of_path, "SettlementResult": _of_settlement, "LimitResult": _of_limit,
+    "Assessment": _of_assessment, "PushResult": _of_push, "DynamicsResult": _of_motion, "CellPath": _of_cell_path,
+    "StrengthDomain": _of_strength, "ComparisonTable": _of_comparison, "StudyResult": _of_study,
+}  # fmt: skip
+"""What a result shows beneath its verdict, by the name of its class: rows, and a figure."""
+
+FEW = 8
+"""Events shown of a push."""
 
 
 def model_html(model: Model) -> str:
@@ -74,42 +211,6 @@ def model_html(model: Model) -> str:
             axes = plot_space_model(model)
         figure = figure_html(axes, "model", "the model")
     return _piece("good", title, "", [_halves(line) for line in lines], figure)
-
-
-def path_html(path: PathResult) -> str:
-    """Return a load path as a piece of HTML: how it ended, its stages, and its load curve."""
-    v = path.verdict
-    rows = [("model", path.assembly.model.title or "untitled")]
-    for k, ended in enumerate(path.outcomes):
-        rows.append((f"stage {path.stages[k].name}", f"{ended.name.lower()}, {stage_loads(path, k)}"))
-    rows.append(("size", f"{len(path.steps):,} states, {len(path.events):,} events"))
-    rows += verdict_rows(v, path.assembly.model.report)
-    figure = figure_html(path.plot.curve(), "path", "load path")
-    return _piece(v.tone, v.headline, f"{v.sentence} {v.proof}", rows, figure)
-
-
-def limit_html(found: LimitResult) -> str:
-    """Return a limit load as a piece of HTML: every number with what it is, and the associated mechanism."""
-    title, _, *lines = limit_lines(found)
-    v = found.verdict
-    rows: list[tuple[str, str]] = []
-    for line in lines:
-        head, text = line[2:HEAD].strip(), line[HEAD:].strip()
-        rows.append((head, text))
-    figure = ""
-    model = found.assembly.model
-    if found.associated.mechanism is not None and model.dim == 2 and len(model.bodies) <= LARGEST:
-        figure = figure_html(found.plot.mechanism(), "mechanism", "associated mechanism")
-    return _piece(v.tone, v.headline, v.sentence, [("model", title), *rows], figure)
-
-
-def assessment_html(found: Assessment) -> str:
-    """Return an assessment as a piece of HTML: its verdict, and every mechanism with its multiplier and zeta_E."""
-    v = found.verdict
-    rows = [("model", found.model.title or "untitled"), *verdict_rows(v, found.model.report)]
-    rows += [(f"{m.name}, push {m.direction}", f"alpha_0 {m.multiplier:.6g}, zeta_E {m.zeta:.4g}")
-             for m in found.mechanisms]  # fmt: skip
-    return _piece(v.tone, v.headline, f"{v.sentence} {v.proof}", rows, "")
 
 
 def _halves(line: str) -> tuple[str, str]:

@@ -65,11 +65,6 @@ def study_html(study: StudyResult, *, title: str = "Study", figures: bool = True
     )
 
 
-def study_notebook(study: StudyResult) -> str:
-    """Return a study as a piece of HTML for notebooks."""
-    return f"<div>{_head(study)}{_outputs(study)}</div>"
-
-
 def _head(study: StudyResult) -> str:
     v = study.verdict
     rows = "".join(f"<li>{escape(line)}</li>" for line in v.lines(indent=""))

@@ -23,6 +23,7 @@ from concio.problem.solution import Progress, ProgressCallback, Solution
 from concio.solvers.methods import METHODS, check_options, find
 from concio.verdict.comparison_verdict import comparison_verdict, word_of
 from concio.verdict.verdict import Verdict
+from concio.views import Shown
 
 ENGINE = "interior-point"
 """The method the seconds of all others are divided by."""
@@ -69,7 +70,7 @@ class ComparisonRow:
 
 
 @dataclass(frozen=True)
-class ComparisonTable:
+class ComparisonTable(Shown):
     """The rows of a comparison and the size of its problem.
 
     Parameters

@@ -14,7 +14,7 @@ from concio.verdict.verdict import Verdict
 if TYPE_CHECKING:
     from concio.analysis.limit_result import LimitResult
     from concio.analysis.margins import Margin
-    from concio.solvers.statics.friction import FrictionMargin
+    from concio.solvers.statics.friction import FrictionBounds
 
 NOT_ASKED = "not asked for"
 
@@ -33,12 +33,16 @@ def question_lines(found: LimitResult) -> list[str]:
 def limit_lines(found: LimitResult) -> list[str]:
     """Return all that is known in words: the answer first, the question, then every number with what it is."""
     verdict = limit_verdict(found)
-    lines = [found.assembly.model.title or "model without a title", verdict.sentence, *question_lines(found)]
-    lines += [*bound_lines(found), *stage_lines("friction", found)]
+    head = [found.assembly.model.title or "model without a title", verdict.sentence, *question_lines(found)]
+    return [*head, *number_lines(found), *rest_lines(verdict)]
+
+
+def number_lines(found: LimitResult) -> list[str]:
+    """Return every number with what it is."""
+    lines = [*bound_lines(found), *stage_lines("friction", found)]
     lines += step_lines(found) if found.steps is not None else []
     lines += collapse_lines(found) if found.search != NOT_ASKED else []
-    lines += [*one_step_lines(found), *spread_lines(found), *path_lines(found)]
-    return [*lines, *rest_lines(verdict)]
+    return [*lines, *one_step_lines(found), *spread_lines(found), *path_lines(found)]
 
 
 def rest_lines(verdict: Verdict) -> list[str]:
@@ -116,7 +120,7 @@ def as_given(multiplier: float) -> str:
     return "not carried, nor is any part of it"
 
 
-def margin_line(margin: FrictionMargin) -> str:
+def margin_line(margin: FrictionBounds) -> str:
     """Return the friction margin in words: it is that of admissible forces, hence a bound."""
     head = "  friction             "
     if margin.factor == 0:

@@ -40,7 +40,7 @@ from concio.solvers.path.state import CLOSED, OPEN, STICK, LinearPath
 from concio.solvers.path.state_rates import state_rates
 from concio.verdict.cell_verdict import cell_verdict
 from concio.verdict.verdict import Verdict
-from concio.views import view
+from concio.views import Shown, view
 
 if TYPE_CHECKING:
     from concio.plot.cell_accessor import ModuliPlots
@@ -95,7 +95,7 @@ class ModuliCertificate:
 
 @short_repr
 @dataclass(frozen=True, eq=False)
-class Moduli:
+class Moduli(Shown):
     """Homogenised moduli, with the states of the joints for which they hold.
 
     Parameters

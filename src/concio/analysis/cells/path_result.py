@@ -22,7 +22,7 @@ from concio.solvers.path.record import Outcome
 from concio.solvers.path.state import LinearPath, PathState, path_kinematics
 from concio.verdict.cell_verdict import cell_verdict
 from concio.verdict.verdict import Verdict
-from concio.views import view
+from concio.views import Shown, view
 
 if TYPE_CHECKING:
     from concio.plot.cell_accessor import CellPathPlots
@@ -69,7 +69,7 @@ class CellStep:
 
 @short_repr
 @dataclass(frozen=True, eq=False)
-class CellPath:
+class CellPath(Shown):
     """Response of a cell along a path of macroscopic strains and stresses.
 
     Parameters

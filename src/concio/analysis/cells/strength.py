@@ -37,7 +37,7 @@ from concio.solvers.statics.limit import LimitLoad, associated_limit
 from concio.verdict.cell_verdict import cell_verdict
 from concio.verdict.not_standing import BY_A_MECHANISM
 from concio.verdict.verdict import Verdict
-from concio.views import view
+from concio.views import Shown, view
 
 if TYPE_CHECKING:
     from concio.plot.cell_accessor import StrengthPlots
@@ -99,7 +99,7 @@ class StrengthRay:
 
 @short_repr
 @dataclass(frozen=True, eq=False)
-class StrengthDomain:
+class StrengthDomain(Shown):
     """Strength of a cell in some directions, and as a domain.
 
     Parameters

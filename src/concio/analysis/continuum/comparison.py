@@ -36,7 +36,7 @@ from concio.model.model import Model
 from concio.problem.solution import Progress, ProgressCallback
 from concio.verdict.continuum_verdict import continuum_verdict
 from concio.verdict.verdict import Verdict
-from concio.views import view
+from concio.views import Shown, view
 
 if TYPE_CHECKING:
     from concio.plot.continuum_accessor import ContinuumPlots
@@ -52,7 +52,7 @@ steep or flat lines need such lines in the mesh."""
 
 
 @dataclass(frozen=True, eq=False)
-class ContinuumComparison:
+class ContinuumComparison(Shown):
     """A wall of blocks beside its homogenised continuum.
 
     Parameters

@@ -18,7 +18,7 @@ from concio.model.model import Model
 from concio.problem.solution import Progress, ProgressCallback
 from concio.verdict.continuum_verdict import continuum_verdict
 from concio.verdict.verdict import Verdict
-from concio.views import view
+from concio.views import Shown, view
 
 if TYPE_CHECKING:
     from concio.plot.continuum_accessor import HalvingPlots
@@ -27,7 +27,7 @@ Array = np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
-class BlockHalving:
+class BlockHalving(Shown):
     """A wall with blocks of several sizes beside its continuum.
 
     Parameters

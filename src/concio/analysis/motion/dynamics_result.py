@@ -22,6 +22,7 @@ from concio.model.stages import ControlPoint
 from concio.problem.tolerances import CERTIFIED
 from concio.verdict.dynamics_verdict import dynamics_verdict
 from concio.verdict.verdict import Verdict
+from concio.views import Shown
 
 Array = np.ndarray
 
@@ -38,7 +39,7 @@ class Ending(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class DynamicsResult:
+class DynamicsResult(Shown):
     """A motion.
 
     Parameters

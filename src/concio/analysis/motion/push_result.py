@@ -22,6 +22,7 @@ from concio.model.stages import ControlPoint
 from concio.problem.tolerances import CERTIFIED
 from concio.verdict.push_verdict import push_verdict
 from concio.verdict.verdict import Verdict
+from concio.views import Shown
 
 Array = np.ndarray
 
@@ -38,7 +39,7 @@ class PushEnding(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class PushResult:
+class PushResult(Shown):
     """A capacity curve of n points.
 
     Parameters

@@ -12,16 +12,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from concio.analysis.motion.push import push
-from concio.analysis.motion.push_result import PushEnding
+from concio.analysis.motion.push_result import PushEnding, PushResult
 from concio.arguments import strict
 from concio.errors import InputError
 from concio.model.model import Load, Model, require_model
+from concio.verdict.verdict import Verdict
+from concio.views import Shown
 
 Array = np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
-class RockingResult:
+class RockingResult(Shown):
     """A rocking curve, from its peak on.
 
     Parameters
@@ -36,6 +38,8 @@ class RockingResult:
         Names of the free bodies.
     reason : str
         Why the curve ends, in words.
+    pushed : PushResult
+        The push whose curve it is, from its beginning.
     """
 
     multiplier: Array
@@ -43,6 +47,12 @@ class RockingResult:
     centroid: Array
     names: tuple[str, ...]
     reason: str
+    pushed: PushResult
+
+    @property
+    def verdict(self) -> Verdict:
+        """What the structure carries sideways: the verdict of the push."""
+        return self.pushed.verdict
 
 
 @strict
@@ -88,4 +98,5 @@ def rock(model: Model, *, direction: float = 1.0, step: float = 0.005, smallest:
         found.centre[at][:, free],
         tuple(model.bodies[i].name for i in free),
         fell if found.ending is PushEnding.LOST else found.ending.value,
+        found,
     )

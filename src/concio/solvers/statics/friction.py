@@ -26,7 +26,7 @@ MOST = 200
 
 @short_repr
 @dataclass(frozen=True)
-class FrictionMargin:
+class FrictionBounds:
     """Smallest common factor of the friction coefficients at which admissible forces still exist, as two proofs.
 
     Parameters
@@ -128,7 +128,7 @@ class _Search:
                 break
 
 
-def smallest_friction(problem: ContactProblem, *, tolerance: float = 1e-7) -> FrictionMargin:
+def smallest_friction(problem: ContactProblem, *, tolerance: float = 1e-7) -> FrictionBounds:
     """Find the smallest friction that still admits equilibrium under the problem's loads (associated bound).
 
     What is left unbalanced falls to zero as friction grows, and its slope is known from the dual motion,
@@ -143,4 +143,4 @@ def smallest_friction(problem: ContactProblem, *, tolerance: float = 1e-7) -> Fr
     search = _Search(problem)
     if search.bracket():
         search.close_in(tolerance * max(1.0, search.high))
-    return FrictionMargin(search.high, search.low, search.programmes)
+    return FrictionBounds(search.high, search.low, search.programmes)
