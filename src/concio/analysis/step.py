@@ -18,6 +18,7 @@ from concio.problem.solution import PROVEN_FAILURES, ProgressCallback, Solver, S
 from concio.solvers.algebra.sparse_factor import factorised_by
 from concio.solvers.algebra.stiff_limit import without_compliance
 from concio.solvers.methods import check_options, find
+from concio.verdict.unanswered import with_a_verdict
 
 
 @strict
@@ -69,8 +70,9 @@ def solve(
     assembly = as_assembly(model, jointless=True, periodic=bool(factors))
     assembled = time.perf_counter() - begin
     result = _solve(assembly, method, factors, progress, options)
-    while broken := _breaking(result):
-        result = _without(result, broken, method, factors, progress, options)
+    with with_a_verdict(assembly, "solve"):
+        while broken := _breaking(result):
+            result = _without(result, broken, method, factors, progress, options)
     seconds = {**result.seconds, "assemble": result.seconds["assemble"] + assembled}
     result = replace(result, seconds={**seconds, "total": result.seconds["total"] + assembled})
     solution = result.solution

@@ -85,7 +85,7 @@ def cell(
         with replaced_directory(out) as fresh:
             written = write_cell(own, moduli, domain, path, fresh)
     if json:
-        print_json(cell_facts(own, moduli, domain, path))
+        print_json(cell_facts(own, moduli, domain, path, none=none))
     else:
         for line in cell_lines(own, moduli, domain, path, none=none):
             say(line)

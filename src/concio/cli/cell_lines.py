@@ -21,10 +21,10 @@ MOST_FACES = 12
 
 
 def cell_facts(
-    cell: PeriodicCell, moduli: Moduli | None, domain: StrengthDomain | None, path: CellPath | None
+    cell: PeriodicCell, moduli: Moduli | None, domain: StrengthDomain | None, path: CellPath | None, *, none: str = ""
 ) -> dict[str, Any]:
-    """Return everything as plain types: the object of ``--json``."""
-    verdict = cell_verdict(cell, moduli, domain, path)
+    """Return everything as plain types, the object of ``--json``; ``none`` says why there are no moduli."""
+    verdict = cell_verdict(cell, moduli, domain, path, none=none)
     return {
         "status": verdict.status,
         "verdict": verdict.as_dict(),

@@ -12,6 +12,7 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import Any, NoReturn, ParamSpec
 
 import typer
@@ -53,11 +54,28 @@ def guarded(command: Callable[P, int]) -> Callable[P, None]:
         except Exception as error:
             if os.environ.get(DEBUG):
                 raise
-            fail(*_told(error), as_json)
+            told, code = _told(error)
+            fail(_with_attention(told, kwargs.get("file")) if as_json else told, code, as_json)
         raise typer.Exit(code)
 
     run.__annotations__ = {**command.__annotations__, "return": None}
     return run
+
+
+def _with_attention(told: dict[str, Any], file: object) -> dict[str, Any]:
+    """Return what to say of an exception with what is odd about its model, where the file holds one."""
+    from concio.errors import ConcioError
+
+    if "verdict" in told or not isinstance(file, Path):
+        return told
+    import concio
+    from concio.contact.assembly import detect
+    from concio.verdict.attention import attention_of
+
+    with suppress(ConcioError, OSError, MemoryError):
+        model = concio.load(file)
+        return {**told, "attention": list(attention_of(model, detect(model)))}
+    return told
 
 
 @contextmanager
@@ -159,7 +177,12 @@ def silence() -> None:
 
 
 def print_json(data: Mapping[str, Any]) -> None:
-    """Print one JSON object on standard output; numbers that JSON does not know become null."""
+    """Print one JSON object on standard output; numbers that JSON does not know become null.
+
+    What is odd about the model stands under ``attention``, whatever the command.
+    """
+    if "verdict" in data and "attention" not in data:
+        data = {**data, "attention": data["verdict"]["attention"]}
     _print(json_text.dumps(plain(data), allow_nan=False, ensure_ascii=False) + "\n")
     flush()
 

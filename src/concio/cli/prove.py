@@ -43,24 +43,38 @@ def prove(
     """
     import concio
     from concio.analysis.limit import limit
+    from concio.errors import InputError
     from concio.proof.certificate import prove_collapse
     from concio.proof.verify import check
+    from concio.verdict.proof_verdict import proof_verdict, with_attention
+    from concio.verdict.unanswered import with_a_verdict
 
+    if factor and claim == "limit":
+        msg = "--factor does not go with --claim limit: what is not multiplied acts once"
+        raise InputError(msg, hint="write the loads into the file as they are to act")
+    if group and claim == "collapse":
+        msg = "--group does not go with --claim collapse: nothing is multiplied"
+        raise InputError(msg, hint="give the loads their factors with --factor")
     place = file.with_suffix(".proof.json") if out is None else out
     check_file(place, force=force)
-    assembly = concio.assemble(loaded(file))
-    if claim == "collapse":
-        made = prove_collapse(assembly, factors_of(factor), numbers=numbers)
-    else:
-        found = limit(assembly, live=list(group or ["live"]), path=False, steps=False, search=False)
-        made = found.proof(numbers)
+    assembly, live = concio.assemble(loaded(file)), list(group or ["live"])
+    factors = factors_of(factor) or None
+    with with_a_verdict(assembly, "prove"):
+        if claim == "collapse":
+            live, made = [], prove_collapse(assembly, factors, numbers=numbers)
+        else:
+            made = limit(assembly, live=live, path=False, steps=False, search=False).proof(numbers)
+    made = with_attention(made, assembly)
     sentence = check(made)
+    verdict = proof_verdict(made, sentence, assembly, factors, live)
     with replaced_file(place) as fresh:
         fresh.write_text(json_text.dumps(made, indent=1, ensure_ascii=True) + "\n", encoding="ascii")
     if json:
         bounds = {key: made.get(key) for key in ("lower", "upper")}
-        print_json({"claim": claim, "sentence": sentence, **bounds, "file": str(place), "digest": made["digest"]})
+        told = {"claim": claim, "sentence": sentence, **bounds, "file": str(place), "digest": made["digest"]}
+        print_json({"status": verdict.status, **told, "verdict": verdict.as_dict()})
     else:
-        say(sentence)
+        for line in (sentence, *verdict.lines(assembly.model.report)):
+            say(line)
         say(f"  certificate  {place}, {place.stat().st_size:,} bytes; 'concio verify {place}' recomputes it")
-    return 0
+    return verdict.exit_code

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json as json_text
 from pathlib import Path
 from typing import Annotated
 
@@ -18,6 +19,8 @@ def verify(
 ) -> int:
     """Recompute an exact certificate with Python's own fractions; exit code 2 where it proves nothing.
 
+    What is odd about the model is told as 'concio prove' wrote it down.
+
     The program that does it is one short file without imports from concio, src/concio/proof/verify.py, and runs alone.
 
     Example: concio verify wall.proof.json
@@ -27,6 +30,7 @@ def verify(
 
     try:
         sentence = read(str(certificate))
+        noted = [str(line) for line in json_text.loads(certificate.read_text(encoding="ascii")).get("attention", [])]
     except OSError as error:
         msg = f"cannot be read: {error.strerror or error}"
         raise InputError(msg, where=str(certificate)) from None
@@ -34,7 +38,9 @@ def verify(
         msg = f"refused: {error}"
         raise InputError(msg, where=str(certificate), hint="make it again with 'concio prove'") from None
     if json:
-        print_json({"certificate": str(certificate), "sentence": sentence})
+        print_json({"certificate": str(certificate), "sentence": sentence, "attention": noted})
     else:
         say(sentence)
+        for line in noted:
+            say(f"  attention    {line}")
     return 0

@@ -25,6 +25,7 @@ import numpy as np
 from concio.analysis.cells.half_spaces import HalfSpaces
 from concio.analysis.cells.periodic_cell import PeriodicCell
 from concio.analysis.cells.tensors import rotation
+from concio.analysis.engine import by_its_engine
 from concio.analysis.stress import Stress
 from concio.arguments import strict
 from concio.contact.assembly import Assembly
@@ -239,6 +240,7 @@ def _table(faces: HalfSpaces) -> list[dict[str, Any]]:
 
 
 @strict
+@by_its_engine
 def homogenise(
     cell: Model | Assembly | PeriodicCell, *, contact: Array | None = None, sliding: Array | None = None
 ) -> Moduli:

@@ -1,0 +1,66 @@
+"""The verdict of an exact certificate: what it claims of which loads; the claim itself is proved without rounding."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from concio.contact.assembly import Assembly
+from concio.proof.certificate import sealed
+from concio.verdict.attention import attention, joints_not_made
+from concio.verdict.question import question_of
+from concio.verdict.verdict import Outcome, Verdict
+
+COLLAPSE = "collapse"
+PROOF = "every number recomputed as a fraction: weights, balance of every block, friction cones, work of the motion"
+
+
+def with_attention(made: Mapping[str, Any], assembly: Assembly) -> dict[str, Any]:
+    """Return a certificate that also tells what is odd about its model, sealed again.
+
+    Parameters
+    ----------
+    made : mapping
+        What :func:`concio.proof.certificate.prove_limit` or ``prove_collapse`` returned.
+    assembly : Assembly
+    """
+    return sealed({**made, "attention": list(attention(assembly))})
+
+
+def proof_verdict(
+    made: Mapping[str, Any], sentence: str, assembly: Assembly, factors: Mapping[str, float] | None = None,
+    live: Sequence[str] = (),
+) -> Verdict:  # fmt: skip
+    """Return the verdict of a certificate that was made of an assembly and accepted.
+
+    Parameters
+    ----------
+    made : mapping
+    sentence : str
+        What the checking program said.
+    assembly : Assembly
+    factors : mapping of str to float, optional
+        Of the constant groups.
+    live : sequence of str
+        Groups that are multiplied.
+    """
+    collapse = made["claim"] == COLLAPSE
+    asked = "a proof that no joint forces within friction balance the loads that act"
+    if not collapse:
+        asked = "exact bounds of the multiplier with which joint forces within friction balance the loads"
+    whole = collapse or {"lower", "upper"} <= set(made)
+    missing = "upper" if "lower" in made else "lower"
+    return Verdict(
+        outcome=Outcome.HOLDS if whole else Outcome.INCOMPLETE,
+        status="proved" if whole else "incomplete",
+        question=question_of(asked, assembly, factors, multiplied=live),
+        headline="Proved exactly." if whole else f"Proved from one side: no {missing} bound was found.",
+        answer=f"{sentence[0].upper()}{sentence[1:]}.",
+        proof=PROOF,
+        limits=(
+            *joints_not_made(assembly.detection),
+            "friction that dilates: forces in balance are necessary for Coulomb friction and not sufficient",
+        ),
+        unchecked=() if whole else (f"the {missing} bound",),
+        attention=attention(assembly),
+    )
