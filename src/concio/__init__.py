@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from concio.analysis.cells.strength import strength
     from concio.analysis.continuum.comparison import compare_with_continuum
     from concio.analysis.continuum.halving import halve_blocks
+    from concio.analysis.cracks.diagnose import diagnose
+    from concio.analysis.cracks.diagnosis import Diagnosis
+    from concio.analysis.cracks.measurement import Candidate, Measurement
     from concio.analysis.limit import friction_margin, limit
     from concio.analysis.margins import friction_by_solving, load_margin
     from concio.analysis.motion.dynamics import dynamics
@@ -77,6 +80,9 @@ _HOMES = {
     "concio.analysis.cells.strength": ("strength",),
     "concio.analysis.continuum.comparison": ("compare_with_continuum",),
     "concio.analysis.continuum.halving": ("halve_blocks",),
+    "concio.analysis.cracks.diagnose": ("diagnose",),
+    "concio.analysis.cracks.diagnosis": ("Diagnosis",),
+    "concio.analysis.cracks.measurement": ("Candidate", "Measurement"),
     "concio.analysis.limit": ("friction_margin", "limit"),
     "concio.analysis.margins": ("friction_by_solving", "load_margin"),
     "concio.analysis.path": ("ControlPoint", "PathResult", "Stage", "run_path"),
@@ -141,8 +147,10 @@ __all__ = [
     "Assembly",
     "Assessment",
     "Body",
+    "Candidate",
     "ConcioError",
     "ControlPoint",
+    "Diagnosis",
     "DynamicsResult",
     "Elastic",
     "GeometryError",
@@ -150,6 +158,7 @@ __all__ = [
     "JointLaw",
     "JointRule",
     "Load",
+    "Measurement",
     "MethodError",
     "Model",
     "NoEquilibriumError",
@@ -184,6 +193,7 @@ __all__ = [
     "column",
     "compare_with_continuum",
     "cross_vault",
+    "diagnose",
     "dome",
     "drums",
     "dumps",

@@ -14,7 +14,8 @@ from concio.errors import InputError
 _FORCE = {"N": 1e-3, "kN": 1.0, "MN": 1e3, "kgf": 9.80665e-3, "tf": 9.80665}
 _LENGTH = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "km": 1e3, "in": 0.0254, "ft": 0.3048}
 _MASS = {"g": 1e-6, "kg": 1e-3, "t": 1.0}
-_ANGLE = {"deg": math.pi / 180, "degree": math.pi / 180, "degrees": math.pi / 180, "gon": math.pi / 200, "rad": 1.0}
+_ANGLE = {"deg": math.pi / 180, "degree": math.pi / 180, "degrees": math.pi / 180, "gon": math.pi / 200, "rad": 1.0,
+          "mrad": 1e-3}  # fmt: skip
 _STRESS = {"Pa": 1e-3, "kPa": 1.0, "MPa": 1e3, "GPa": 1e6, "bar": 100.0}
 
 # exponents of (force, length)

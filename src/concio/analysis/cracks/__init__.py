@@ -1,0 +1,1 @@
+"""From cracks to cause: which motions of supports, or changes of loads, explain what was measured on a structure."""

@@ -1,0 +1,230 @@
+"""From cracks to cause: ``concio.diagnose(model, measurements, candidates)``."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from concio.analysis.cracks.cause import Cause, cause_of
+from concio.analysis.cracks.diagnosis import Diagnosis
+from concio.analysis.cracks.fit import Fit, Fitter
+from concio.analysis.cracks.forward import Forward
+from concio.analysis.cracks.future import Future, future_of
+from concio.analysis.cracks.measurement import Candidate, Measurement
+from concio.analysis.cracks.mistakes import Doubt, doubts_of
+from concio.analysis.cracks.moved import moved_model
+from concio.analysis.cracks.observed import readings
+from concio.analysis.cracks.places import next_places
+from concio.analysis.cracks.search import Found, search
+from concio.analysis.cracks.unseen import unseen_of
+from concio.analysis.engine import by_its_engine
+from concio.arguments import strict
+from concio.contact.assembly import as_assembly
+from concio.errors import InputError
+from concio.model.model import Model, require_model
+from concio.problem.solution import ProgressCallback
+
+Array = np.ndarray
+
+LEAST = 5.0
+"""Motions are expected to be at least this many errors large."""
+HALF = 2.0
+"""A rotation that is expected moves points at the size of the structure over this by what was measured."""
+FINER = 4
+"""The simplest cause is followed once more in this many times as many steps."""
+MOST = 3
+"""Motions tried together unless told otherwise."""
+STEPS = 1
+"""Steps of a path that is walked in steps."""
+
+
+@strict
+@by_its_engine
+def diagnose(
+    model: Model,
+    measurements: Sequence[Measurement],
+    candidates: Sequence[Candidate],
+    *,
+    most: int = MOST,
+    beyond: int = 0,
+    confidence: float = 0.95,
+    method: Literal["events", "steps"] | None = None,
+    steps: int = STEPS,
+    large: bool = True,
+    progress: ProgressCallback | None = None,
+) -> Diagnosis:
+    """Return the motions that explain what was measured, all that are within the errors, the simplest first.
+
+    The structure is loaded, then supports are moved; every prediction is a certified settlement path. Choices of few
+    candidates are fitted first, and the search ends with the number of motions at which the first cause is found.
+
+    Parameters
+    ----------
+    model : Model
+        As it stood before anything moved, in the plane or in space.
+    measurements : sequence of Measurement
+    candidates : sequence of Candidate
+    most : int
+        Motions that are tried together at most.
+    beyond : int
+        How many motions more than the simplest cause has are looked at.
+    confidence : float
+        Of the set of causes and of every interval.
+    method : {"events", "steps"}, optional
+        How paths are followed; by default event by event in the plane up to 150 contact pairs, else in steps.
+    steps : int
+        Steps of a path that is walked in steps; the best cause is followed again in four times as many, and the
+        difference is told.
+    large : bool
+        Whether the simplest cause is followed at large displacements, to its limit; in the plane.
+    progress : callable, optional
+
+    Raises
+    ------
+    InputError
+        A measurement or a candidate cannot be used, or there are not more measurements than one.
+    NoEquilibriumError
+        The structure does not stand under its loads before anything moves.
+
+    Examples
+    --------
+    A flat arch that opens by 10 mm at its crown and by 5.3 mm at one springer:
+
+    >>> import concio
+    >>> arch = concio.arch(shape="flat", span=1.2, ring=0.3, voussoirs=6, skew=70, block="rigid", friction=2.0)
+    >>> top = (-0.6 - 0.3 / np.tan(np.deg2rad(70)), 0.3)
+    >>> cracks = [
+    ...     concio.Measurement("crown", "opening", "0.2 mm", "10.1 mm", ("v03", "v04"), at=(0.0, 0.0)),
+    ...     concio.Measurement("springer", "opening", "0.2 mm", "5.2 mm", ("left abutment", "v01"), at=top)]
+    >>> spreads = concio.Candidate("abutment gives way", body="left abutment", direction=(-1, 0), low=0.0)
+    >>> found = concio.diagnose(arch, cracks, [spreads], large=False)
+    >>> print(found.verdict.status, f"{1e3 * found.best.motion[0]:.1f} mm")
+    one_cause 10.0 mm
+    """
+    begun = clock.perf_counter()
+    require_model(model)
+    given = tuple(measurements), tuple(candidates)
+    _check(model, *given, most, beyond, confidence, steps)
+    scale = expected(model, *given)
+    moved = moved_model(model, given[1], scale)
+    assembly = as_assembly(moved.model)
+    found = readings(assembly, given[0])
+    forward = Forward.of(assembly, moved, found, method, steps)
+    low, high = (np.array([getattr(c, key) for c in given[1]]) for key in ("low", "high"))
+    fitter = Fitter(
+        forward, np.array([m.value for m in given[0]]), np.array([m.error for m in given[0]]), low, high, scale
+    )
+    case = _Case(fitter, *given, confidence)
+    searched = search(
+        fitter, [c.mover for c in given[1]], most=most, beyond=beyond, confidence=confidence, progress=progress
+    )
+    causes = tuple(case.cause(fit) for fit in searched.accepted)
+    doubts = case.doubts(searched)
+    nearest = case.nearest(searched) if not causes else None
+    best = causes[0] if causes else doubts[0].cause if doubts else nearest
+    left = [*causes, *(d.cause for d in doubts if d.cause.left_out)]
+    error = float(np.median([m.error for m in given[0] if m.quantity == "motion"] or [scale.min() / LEAST]))
+    names = [c.name for c in given[1]]
+    return Diagnosis(
+        model, *given, found, forward, causes, doubts, searched.trials, nearest,
+        unseen_of(fitter, best, names) if best is not None else (), next_places(forward, left, error),
+        case.future(best, large), case.orders(best), case.refinement(best), confidence, most,
+        clock.perf_counter() - begun,
+    )  # fmt: skip
+
+
+def expected(model: Model, measurements: Sequence[Measurement], candidates: Sequence[Candidate]) -> Array:
+    """Return motions (k,) of the size that the measurements let expect [m, rad, or change of a load factor]."""
+    half = model.size / HALF
+    sizes = [max(abs(m.value), LEAST * m.error) * (half if m.quantity == "rotation" else 1.0) for m in measurements]
+    size = float(max(sizes))
+    kinds = {"motion": size, "rotation": size / half, "number": 1.0}
+    return np.array([min(kinds[c.quantity], max(c.high, -c.low)) for c in candidates])
+
+
+@dataclass(frozen=True, eq=False)
+class _Case:
+    """What was measured, with its fits."""
+
+    fitter: Fitter
+    measurements: tuple[Measurement, ...]
+    candidates: tuple[Candidate, ...]
+    confidence: float
+
+    def cause(self, fit: Fit) -> Cause:
+        """Return a fit as a cause, with intervals."""
+        return cause_of(self.fitter, fit, tuple(c.name for c in self.candidates), self.confidence)
+
+    def doubts(self, searched: Found) -> tuple[Doubt, ...]:
+        """Return the measurements that simpler causes contradict: where causes remain, those with a mistake to name."""
+        forward = self.fitter.forward
+        fits = searched.spoiled
+        if fits and not searched.accepted:
+            fewest = min(len(f.chosen) for f in fits)
+            fits = tuple(f for f in fits if len(f.chosen) == fewest)
+        told = [
+            doubt
+            for fit in fits
+            for doubt in doubts_of(forward, self.cause(fit), self.measurements, forward.readings)
+        ]
+        return tuple(d for d in told if not searched.accepted or d.mistake != "unknown")
+
+    def nearest(self, searched: Found) -> Cause | None:
+        """Return the fit with the least misfit."""
+        fits = [t.fit for t in searched.trials if t.fit is not None]
+        return self.cause(min(fits, key=lambda f: f.misfit)) if fits else None
+
+    def future(self, best: Cause | None, large: bool) -> Future | None:
+        """Return what becomes of the structure if the cause goes on."""
+        return None if best is None else future_of(self.fitter.forward, best, self.candidates, large=large)
+
+    def orders(self, best: Cause | None) -> float:
+        """Return how much the readings change, in errors, where motions come one after the other."""
+        if best is None or len(best.chosen) < 2:
+            return 0.0
+        parts = []
+        for c in best.chosen:
+            part = np.zeros(len(self.candidates))
+            part[c] = best.motions[c]
+            parts.append(part)
+        ends = [self.fitter.forward.in_order(order) for order in (parts, parts[::-1])]
+        changes = [np.abs(e.values - best.predicted) / self.fitter.error for e in ends if e.reached]
+        return float(max((c.max() for c in changes), default=np.inf))
+
+    def refinement(self, best: Cause | None) -> float:
+        """Return how much the readings change, in errors, where the path is walked in finer steps."""
+        if best is None or not best.chosen:
+            return 0.0
+        fine = self.fitter.forward.refined(best.motions, FINER)
+        return float(np.abs((fine.values - best.predicted) / self.fitter.error).max()) if fine.reached else np.inf
+
+
+def _check(
+    model: Model, measurements: tuple[Measurement, ...], candidates: tuple[Candidate, ...], most: int, beyond: int,
+    confidence: float, steps: int,
+) -> None:  # fmt: skip
+    """Refuse what cannot be meant.
+
+    Raises
+    ------
+    InputError
+    """
+    for thing, kind, what in ((measurements, Measurement, "measurements"), (candidates, Candidate, "candidates")):
+        wrong = next((t for t in thing if not isinstance(t, kind)), None)
+        if wrong is not None:
+            msg = f"a {kind.__name__} is needed, {type(wrong).__name__} was given"
+            raise InputError(msg, where=what, hint=f"concio.{kind.__name__}(...)")
+    if len(measurements) < 2:
+        msg = f"{len(measurements)} measurement{'s' * (len(measurements) != 1)}: any motion explains it"
+        raise InputError(msg, where="measurements", hint="give at least two; joints that are closed count as well")
+    if not 0 < confidence < 1:
+        msg = f"confidence = {confidence!r} must lie between 0 and 1"
+        raise InputError(msg, hint="0.95 is usual")
+    for key, value, least in (("most", most, 1), ("beyond", beyond, 0), ("steps", steps, 1)):
+        if value < least:
+            msg = f"{key} = {value!r} must be at least {least}"
+            raise InputError(msg)

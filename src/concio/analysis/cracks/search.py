@@ -1,0 +1,156 @@
+"""Which candidates explain the measurements: every choice of a few, from the fewest on; and which measurement is odd.
+
+A choice is a cause where its misfit is within the errors: below the quantile of chi2 with as many degrees of freedom as
+there are measurements more than motions. Choices that contain a cause are not looked at: they explain no more
+with more. Where a measurement spoils an otherwise good choice it is named, with the mistake that would explain it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from scipy.special import gammainccinv
+
+from concio.analysis.cracks.fit import Fit, Fitter
+from concio.problem.solution import Progress, ProgressCallback
+
+Array = np.ndarray
+
+HOPELESS = 20.0
+"""A misfit without a measurement, to first order, that is this many times the one allowed is not looked at further."""
+CLEAR = 4.0
+"""A measurement that is left out must be further than this from what the others predict, in standard deviations."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A choice of candidates that was looked at.
+
+    Parameters
+    ----------
+    chosen : tuple of int
+    fit : Fit or None
+        None where no motion of them was reached.
+    """
+
+    chosen: tuple[int, ...]
+    fit: Fit | None
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What a search found.
+
+    Parameters
+    ----------
+    accepted : tuple of Fit
+        Causes within the errors, all measurements counted.
+    spoiled : tuple of Fit
+        Causes within the errors where a measurement is left out.
+    trials : tuple of Trial
+        Every choice that was looked at.
+    """
+
+    accepted: tuple[Fit, ...]
+    spoiled: tuple[Fit, ...]
+    trials: tuple[Trial, ...]
+
+
+def allowed(freedom: int, confidence: float) -> float:
+    """Return the misfit that is within the errors with a confidence: the quantile of chi2."""
+    return float(2.0 * gammainccinv(freedom / 2.0, 1.0 - confidence)) if freedom > 0 else 0.0
+
+
+def search(
+    fitter: Fitter, movers: Sequence[str], *, most: int, beyond: int, confidence: float,
+    progress: ProgressCallback | None = None,
+) -> Found:  # fmt: skip
+    """Return the causes of up to ``most`` motions, ``beyond`` more than the simplest needs at most.
+
+    Parameters
+    ----------
+    fitter : Fitter
+    movers : sequence of str
+        What each candidate moves; the causes are ranked by how many of these move, then by motions, then by misfit.
+    most, beyond : int
+    confidence : float
+    progress : callable, optional
+    """
+    candidates = range(len(movers))
+    n = len(fitter.value)
+    accepted: list[Fit] = []
+    spoiled: list[Fit] = []
+    trials: list[Trial] = []
+    last = most
+    for size in range(min(most, n - 1) + 1):
+        if size > last:
+            break
+        choices = [c for c in combinations(candidates, size) if not any(set(a.chosen) <= set(c) for a in accepted)]
+        limit = allowed(n - size, confidence)
+        for i, chosen in enumerate(choices):
+            if progress is not None:
+                progress(Progress("diagnose", len(trials), 1.0 - i / len(choices), f"{size} motions"))
+            fit = fitter.fit(chosen, allowed=limit) if size else _rest(fitter)
+            trials.append(Trial(chosen, fit))
+            if fit is None:
+                continue
+            if fit.misfit <= limit:
+                accepted.append(fit)
+            else:
+                spoiled += without_one(fitter, fit, confidence)
+        if accepted and last == most:
+            last = min(most, size + beyond)
+    simplest = min((len(f.chosen) for f in accepted), default=n)
+    spoiled = [f for f in spoiled if len(f.chosen) < simplest]
+
+    def rank(fit: Fit) -> tuple[int, int, float]:
+        return len({movers[c] for c in fit.chosen}), len(fit.chosen), fit.misfit
+
+    return Found(tuple(sorted(accepted, key=rank)), tuple(sorted(spoiled, key=rank)), tuple(trials))
+
+
+def without_one(fitter: Fitter, fit: Fit, confidence: float) -> list[Fit]:
+    """Return the fits within the errors that leave one measurement out which all others contradict.
+
+    Which one is chosen from the misfit without it to first order, chi2 - r^2 / (1 - h) with the leverage h of the
+    measurement; the choices are then fitted anew.
+    """
+    n, size = len(fit.residual), len(fit.chosen)
+    if n - 1 - size < 2:
+        return []
+    limit = allowed(n - 1 - size, confidence)
+    lever = leverage(fit)
+    loss = fit.misfit - fit.residual**2 / np.maximum(1.0 - lever, 1e-9)
+    found = []
+    for i in np.argsort(loss)[:2].tolist():
+        if loss[i] > HOPELESS * limit:
+            continue
+        kept = np.ones(n, dtype=bool)
+        kept[i] = False
+        again = fitter.fit(fit.chosen, allowed=limit, kept=kept, starts=1) if size else _rest(fitter, kept)
+        if again is not None and again.misfit <= limit and abs(float(again.residual[i])) > CLEAR:
+            found.append(again)
+    return found
+
+
+def leverage(fit: Fit) -> Array:
+    """Return the leverage (n,) of the measurements: the diagonal of J (J'J)^-1 J'."""
+    if not fit.chosen:
+        return np.zeros(len(fit.residual))
+    q, _ = np.linalg.qr(fit.slope)
+    found: Array = (q**2).sum(1)
+    return found
+
+
+def _rest(fitter: Fitter, kept: Array | None = None) -> Fit:
+    """Return the fit in which nothing moves."""
+    motions = np.zeros(len(fitter.scale))
+    prediction = fitter.forward.predict(motions)
+    n = len(fitter.value)
+    kept = np.ones(n, dtype=bool) if kept is None else kept
+    return Fit((), motions, prediction, fitter.residual(prediction), np.zeros((n, 0)), kept, fresh=True)
+
+

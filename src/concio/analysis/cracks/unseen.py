@@ -1,0 +1,69 @@
+"""What the measurements cannot tell: combinations of motions that change none of them by more than its error."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.analysis.cracks.cause import Cause
+from concio.analysis.cracks.fit import Fit, Fitter
+
+Array = np.ndarray
+
+SEEN = 2.0
+"""A combination of motions of the size expected is seen where it changes the readings by more errors than this."""
+PART = 0.1
+"""Motions below this share of the largest of a combination are left out of it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Unseen:
+    """A combination of motions that these measurements do not tell from rest.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Candidates in it.
+    motions : tuple of float
+        How far each moves in it [m, rad, or change of a load factor].
+    change : float
+        Root of the sum of squares of what it changes the readings by, in errors.
+    """
+
+    names: tuple[str, ...]
+    motions: tuple[float, ...]
+    change: float
+
+
+def unseen_of(fitter: Fitter, cause: Cause, names: Sequence[str]) -> tuple[Unseen, ...]:
+    """Return the combinations of motions that the measurements do not tell where a cause has brought the structure.
+
+    Parameters
+    ----------
+    fitter : Fitter
+    cause : Cause
+    names : sequence of str
+        Of all candidates.
+    """
+    k = len(names)
+    kept = np.ones(len(cause.residual), dtype=bool)
+    kept[list(cause.left_out)] = False
+    here = Fit(cause.chosen, cause.motions, cause.prediction, cause.residual, cause.slope, kept)
+    others = [c for c in range(k) if c not in cause.chosen]
+    slope = np.zeros((len(kept), k))
+    slope[:, list(cause.chosen)] = cause.slope
+    if others:
+        slope[:, others], _ = fitter.derivatives(here, others, central=False)
+    _, size, vt = np.linalg.svd(slope[kept] * fitter.scale, full_matrices=True)
+    size = np.concatenate([size, np.zeros(k - len(size))])
+    found = []
+    for change, row in zip(size.tolist(), vt, strict=True):
+        if change > SEEN:
+            continue
+        parts = np.abs(row) > PART * np.abs(row).max()
+        motions = (row * fitter.scale)[parts] * np.sign(row[np.argmax(np.abs(row))])
+        who = tuple(names[c] for c in np.flatnonzero(parts).tolist())
+        found.append(Unseen(who, tuple(motions.tolist()), change))
+    return tuple(found)
