@@ -43,12 +43,14 @@ if TYPE_CHECKING:
     from concio.io.motion_file import load_motion, save_motion
     from concio.io.solids_out import write_solids
     from concio.model.compose import place
+    from concio.model.crossing import Axle, Fill, Layer, Vehicle
     from concio.model.drawing.drawing import model_from_dxf
     from concio.model.file.reading import load, loads
     from concio.model.file.writing import dumps, save
     from concio.model.generate.arch_on_piers import arch_on_piers
     from concio.model.generate.arches import arch
     from concio.model.generate.barrel import barrel
+    from concio.model.generate.bridges import bridge
     from concio.model.generate.cells import cell
     from concio.model.generate.columns import buttress, column
     from concio.model.generate.dome import dome
@@ -65,6 +67,8 @@ if TYPE_CHECKING:
     from concio.model.motion.records import read_record
     from concio.model.motion.signals import Pulse, Record
     from concio.model.polyhedron import Polyhedron
+    from concio.model.road.earth import with_fill, with_vehicle
+    from concio.model.road.vehicles import find_vehicle
     from concio.model.solids.importing import model_from_solids
     from concio.problem.solution import Status
     from concio.studies.study import Stop, study
@@ -120,6 +124,10 @@ _HOMES = {
     "concio.model.generate.arch_on_piers": ("arch_on_piers",),
     "concio.model.generate.arches": ("arch",),
     "concio.model.generate.barrel": ("barrel",),
+    "concio.model.generate.bridges": ("bridge",),
+    "concio.model.crossing": ("Axle", "Fill", "Layer", "Vehicle"),
+    "concio.model.road.earth": ("with_fill", "with_vehicle"),
+    "concio.model.road.vehicles": ("find_vehicle",),
     "concio.model.generate.dome": ("dome",),
     "concio.model.generate.drums": ("drums",),
     "concio.model.generate.groins": ("cloister_vault", "cross_vault"),
@@ -146,6 +154,7 @@ _HOME = {name: module for module, names in _HOMES.items() for name in names}
 __all__ = [
     "Assembly",
     "Assessment",
+    "Axle",
     "Body",
     "Candidate",
     "ConcioError",
@@ -153,10 +162,12 @@ __all__ = [
     "Diagnosis",
     "DynamicsResult",
     "Elastic",
+    "Fill",
     "GeometryError",
     "InputError",
     "JointLaw",
     "JointRule",
+    "Layer",
     "Load",
     "Measurement",
     "MethodError",
@@ -180,6 +191,7 @@ __all__ = [
     "Tie",
     "Units",
     "Variable",
+    "Vehicle",
     "Verdict",
     "__version__",
     "arch",
@@ -187,6 +199,7 @@ __all__ = [
     "assemble",
     "assess",
     "barrel",
+    "bridge",
     "buttress",
     "cell",
     "cloister_vault",
@@ -199,6 +212,7 @@ __all__ = [
     "dumps",
     "dynamics",
     "extrude",
+    "find_vehicle",
     "friction_by_solving",
     "friction_margin",
     "halve_blocks",
@@ -233,6 +247,8 @@ __all__ = [
     "wall",
     "wall_of_courses",
     "walls",
+    "with_fill",
+    "with_vehicle",
     "write_solids",
 ]
 

@@ -20,8 +20,8 @@ ROOT = Path(concio.__file__).parent
 ORDER = (
     "__version__", "representation", "views", "argument_types", "errors", "files", "synonyms", "arguments", "units",
     "display",
-    "kinematics", "model", "model/motion", "model/interfaces", "model/generate", "model/drawing", "model/solids",
-    "model/file",
+    "kinematics", "model", "model/motion", "model/road", "model/interfaces", "model/generate", "model/drawing",
+    "model/solids", "model/file",
     "fem", "problem", "contact", "contact/moving",
     "solvers/algebra", "solvers/lcp", "solvers/states", "solvers/statics", "solvers/interior", "solvers/pivoting",
     "solvers/forms", "solvers/iterative", "solvers/exhaustive", "solvers/motion", "solvers/stepping", "solvers/auto",

@@ -88,7 +88,11 @@ def check_lines(
         force = f", {units.force_vector(total)} in all" if total else ""
         lines.append(f"load group   {group}: {', '.join(words)}{force}")
     lines += _edge_loads(model, every=every) if model.dim == 2 else []
-    for tie in model.ties:
+    soil = [tie for tie in model.ties if tie.kind == "soil"]
+    if soil:
+        most = units.text("force", sum(tie.strength for tie in soil), 4)
+        lines.append(f"soil         presses {len(soil)} faces, {most} in all at most")
+    for tie in (t for t in model.ties if t.kind == "bar"):
         ends = f"{tie.body_a} to {tie.body_b or 'a fixed point'}"
         lines.append(f"tie          {tie.name}: {ends}; {tie_words(tie, units)}")
     geometry = [f"overlap      {o.sentence}" for o in detection.overlaps if o.sentence not in fault]

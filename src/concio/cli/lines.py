@@ -89,16 +89,28 @@ def _existence(result: Result) -> list[str]:
 def tie_lines(result: Result) -> list[str]:
     """Return the force in each tie, whether it yields, and how far it is stretched."""
     ties, units = result.ties, result.model.report
+    bars = [k for k, tie in enumerate(result.model.ties) if tie.kind == "bar"]
+    soil = [k for k, tie in enumerate(result.model.ties) if tie.kind == "soil"]
+    pressed = ties.tension[soil]
+    told = [
+        f"  soil         presses {int((pressed > 0).sum())} of {len(soil)} faces with "
+        f"{units.text('force', float(pressed.sum()), 4)} in all, "
+        f"{sum(ties.state[k] == 'yields' for k in soil)} with all of its passive pressure"
+    ] if soil else []  # fmt: skip
+    return [*_bar_lines(result, bars), *told]
+
+
+def _bar_lines(result: Result, bars: list[int]) -> list[str]:
+    ties, units = result.ties, result.model.report
     largest = float(np.abs(ties.tension).max(initial=0.0))
-    width = max((len(name) for name in ties.names), default=0)
+    width = max((len(ties.names[k]) for k in bars), default=0)
     lines = []
-    for k, (name, tension, far, state) in enumerate(
-        zip(ties.names, ties.tension.tolist(), ties.elongation.tolist(), ties.state, strict=True)
-    ):
+    for i, k in enumerate(bars):
+        name, tension, far, state = ties.names[k], float(ties.tension[k]), float(ties.elongation[k]), ties.state[k]
         told = f"{units.text('force', tension, 4, size=largest)} of tension"
         stretched = "" if state == "slack" else f", stretched by {units.text('motion', far, 4)}"
         word = {"slack": ", slack", "yields": ", yields"}.get(state, "")
-        lines.append(f"  {'ties' if k == 0 else '':<12} {name:<{width}}  {told}{word}{stretched}")
+        lines.append(f"  {'ties' if i == 0 else '':<12} {name:<{width}}  {told}{word}{stretched}")
     return lines
 
 

@@ -11,8 +11,8 @@ from concio.cli.outcome import guarded, say
 from concio.cli.output import check_file, replaced_file
 
 Kind = Literal[
-    "panel", "wall", "arch", "column", "cell", "assessment", "motion", "blocks", "arch_on_piers", "arcade", "walls",
-    "tower", "barrel", "dome", "cloister_vault", "cross_vault", "drums", "blocks_in_space",
+    "panel", "wall", "arch", "column", "cell", "assessment", "motion", "blocks", "arch_on_piers", "bridge", "arcade",
+    "walls", "tower", "barrel", "dome", "cloister_vault", "cross_vault", "drums", "blocks_in_space",
 ]  # fmt: skip
 
 

@@ -2,7 +2,8 @@
 
 A bar of stiffness k and prestress T0 between points a and b carries ``T = max(0, T0 + k e)`` with the elongation e. As
 a pair: C_n u = -e, compliance 1/k, initial gap -T0/k, so ``0 <= y_n = -T0/k - e + T/k _|_ T >= 0``. It has no friction.
-A bar that yields is a pair with a cap, and so is one that breaks: it never carries more than as it breaks.
+A bar that yields is a pair with a cap, and so is one that breaks: it never carries more than as it breaks. Soil is the
+same with e the shortening: it presses.
 """
 
 from __future__ import annotations
@@ -73,8 +74,8 @@ def _fastened(disc: Discretisation, ties: Sequence[Tie]) -> tuple[Array, Array, 
         where = f"tie '{tie.name}'"
         _check(tie, where)
         a, b = np.array(tie.at_a, dtype=float), np.array(tie.at_b, dtype=float)
-        direction = (b - a) / float(np.linalg.norm(b - a))
-        normals[k] = -direction  # the force on b points back to a
+        direction = tie.sign * (b - a) / float(np.linalg.norm(b - a))
+        normals[k] = -direction  # the force of a bar on b points back to a
         for side, (name, point, sign) in enumerate(((tie.body_a, a, 1.0), (tie.body_b, b, -1.0))):
             if name and name not in number:
                 msg = f"there is no body called '{name}'"

@@ -103,6 +103,9 @@ class Load:
 class Tie:
     """A straight bar that takes tension only, with prestress, between two bodies or a body and a fixed point.
 
+    Of the kind "soil" it is earth that presses: it takes compression only, and stretching is shortening in what
+    follows. Its other end is a fixed point in the ground (:mod:`concio.model.road.earth`).
+
     Parameters
     ----------
     name : str
@@ -118,6 +121,8 @@ class Tie:
         Largest tension, of the bar or of its anchors [kN]; None is unlimited.
     break_elongation : float or None
         Elongation at which it breaks [m]; None is never.
+    kind : {"bar", "soil"}
+        A bar pulls its ends together, soil pushes them apart.
     """
 
     name: str
@@ -129,6 +134,12 @@ class Tie:
     prestress: float = 0.0
     yield_force: float | None = None
     break_elongation: float | None = None
+    kind: Literal["bar", "soil"] = "bar"
+
+    @property
+    def sign(self) -> float:
+        """1 where it takes tension, -1 where it takes compression."""
+        return -1.0 if self.kind == "soil" else 1.0
 
     @property
     def most(self) -> float:

@@ -104,7 +104,7 @@ def place(
     stages = tuple(_moved_stage(s, matrix, shift, renamed) for s in model.stages)
     return replace(
         model, bodies=bodies, supports=tuple(supports), loads=tuple(kept_loads), ties=tuple(ties), rules=tuple(rules),
-        stages=stages,
+        stages=stages, fill=None, vehicle=None,
     )  # fmt: skip
 
 

@@ -16,6 +16,7 @@ from concio.display import DEFAULT, Units
 from concio.errors import InputError
 from concio.model.actions import FACES, Face, Load, Point, Support, Tie
 from concio.model.body import Body, Kind, called
+from concio.model.crossing import Fill, Vehicle
 from concio.model.described import model_lines
 from concio.model.dimensions import WORDS, resolved
 from concio.model.materials import Elastic, JointLaw, Rigid
@@ -82,6 +83,11 @@ class Model(Shown):
         Units in which texts, figures and reports tell what was found; arrays and files are in kN and m.
     engine : {"superlu", "pardiso"}
         What factorises linear systems, in the methods that leave the choice; "pardiso" comes with ``concio[fast]``.
+    fill : Fill or None
+        Fill and road of a bridge, whose loads and soil elements are among ``loads`` and ``ties`` already:
+        :func:`concio.with_fill` puts them there.
+    vehicle : Vehicle or None
+        What crosses it: :func:`concio.with_vehicle`.
     """
 
     bodies: tuple[Body | Polyhedron, ...]
@@ -104,6 +110,8 @@ class Model(Shown):
     contact_points: str | int = "auto"
     report: Units = DEFAULT
     engine: Literal["superlu", "pardiso"] = "superlu"
+    fill: Fill | None = None
+    vehicle: Vehicle | None = None
 
     def __repr__(self) -> str:
         return "\n".join(model_lines(self))

@@ -10,6 +10,7 @@ from concio.arguments import strict
 from concio.kinematics.frames import turned_right
 from concio.model.interfaces.periodic import images
 from concio.plot import style
+from concio.plot.road_figure import draw_fill, draw_vehicle, road_box
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,6 +45,10 @@ def plot_model(model: Model, ax: Axes | None = None, *, names: bool | None = Non
         box = box + np.array([[-1.0], [1.0]]) * 0.35 * (box[1] - box[0])
     if any(load.edge is not None or load.at is not None for load in model.loads):
         box = box + np.array([[-1.0], [1.0]]) * 0.05 * float((box[1] - box[0]).max())
+    if model.fill is not None:
+        road = road_box(model)
+        room = 0.1 * float(np.ptp(road[:, 0])) if model.vehicle is not None else 0.0
+        box = np.array([np.minimum(box[0], road[0]), np.maximum(box[1], road[1] + [0.0, room])])
     size = float((box[1] - box[0]).max())
     ax = style.axes_for(box, ax)
     fixed = [b for b in model.outlines if b.kind == "fixed"]
@@ -79,9 +84,14 @@ def plot_model(model: Model, ax: Axes | None = None, *, names: bool | None = Non
         from matplotlib.lines import Line2D
 
         handles.append(Line2D([], [], color=style.INK, marker="^", ls="none", ms=6, label="support"))
-    for tie in model.ties:
+    bars = [tie for tie in model.ties if tie.kind == "bar"]
+    if model.fill is not None:
+        handles += draw_fill(ax, model)
+        if model.vehicle is not None and model.vehicle.position is not None:
+            draw_vehicle(ax, model, model.vehicle.position)
+    for tie in bars:
         ax.plot(*zip(tie.at_a, tie.at_b, strict=True), color=style.TENSION.colour, ls="-.", lw=1.4, marker="o", ms=3)
-    if model.ties:
+    if bars:
         handles.append(style.handle(style.Line(style.TENSION.colour, "-.", 1.4, "tie rod")))
     if _loads(ax, model, size):
         handles.append(style.handle(style.LOAD, "load"))
@@ -151,7 +161,10 @@ def _support(ax: Axes, model: Model, support: Any, size: float) -> None:
 def _loads(ax: Axes, model: Model, size: float) -> bool:
     """Draw edge and point loads as arrows; own weight is told in words. True where there was anything to draw."""
     drawn = False
+    own = {part.group for part in (model.fill, model.vehicle) if part is not None}
     for load in model.loads:
+        if load.group in own and load.kind == "point":  # drawn as fill and as axles on the road
+            continue
         arrows = _arrows(load, model.report)
         if arrows is None:
             continue

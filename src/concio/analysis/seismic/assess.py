@@ -103,6 +103,9 @@ def assess(
     if model.periods is not None:
         msg = "this is a periodic cell, which has no mechanism of a wall"
         raise InputError(msg, hint="assess the wall itself")
+    if any(tie.kind == "soil" for tie in model.ties):
+        msg = "the fill of this model presses its blocks, which no mechanism of a wall knows of"
+        raise InputError(msg, hint="assess it with passive = 0 in [fill]; 'concio bridge' is for bridges")
     rules = site.rules
     wanted = tuple(site.levels if levels is None else levels)
     for level in wanted:

@@ -108,6 +108,8 @@ class Ties:
         Tension at which they yield, inf where they do not [kN].
     breaks : (k,) array
         Elongation at which they break, inf where they do not [m].
+    sign : (k,) array
+        1 of bars, -1 of soil, which presses.
     """
 
     a: MaterialPoints
@@ -117,6 +119,7 @@ class Ties:
     prestress: Array
     most: Array
     breaks: Array
+    sign: Array
 
     def __len__(self) -> int:
         return len(self.length)
@@ -140,6 +143,7 @@ class Ties:
             np.array([t.stiffness for t in ties]), np.array([t.prestress for t in ties]),
             np.array([t.most for t in ties]),
             np.array([np.inf if t.break_elongation is None else t.break_elongation for t in ties]),
+            np.array([t.sign for t in ties]),
         )  # fmt: skip
 
     @property
@@ -151,11 +155,11 @@ class Ties:
         """Return the rows (k, 2, w) of -elongation, those of swinging, the gaps (k,) and the lengths (k,) [m]."""
         span = self.b.positions(centre, turn, strain) - self.a.positions(centre, turn, strain)
         length = np.abs(span)
-        direction = span / np.where(length > 0, length, 1.0)
+        direction = self.sign * span / np.where(length > 0, length, 1.0)
         row, across = (
             np.concatenate([self.a.rows(v, turn), -self.b.rows(v, turn)], axis=1) for v in (direction, 1j * direction)
         )
-        gap = -self.prestress / self.stiffness - (length - self.length)
+        gap = -self.prestress / self.stiffness - self.sign * (length - self.length)
         nothing = np.zeros_like(row)
         return np.stack([row, nothing], axis=1), np.stack([across, nothing], axis=1), gap, length
 
@@ -166,7 +170,7 @@ class Ties:
         """
         span = self.b.positions(centre, turn, strain) - self.a.positions(centre, turn, strain)
         length = np.abs(span)
-        force = tension * span / np.where(length > 0, length, 1.0)
+        force = self.sign * tension * span / np.where(length > 0, length, 1.0)
         columns, stiffness = [], []
         for end, pull in ((self.a, force), (self.b, -force)):
             arm = turn[np.maximum(end.body, 0)] * end.arm

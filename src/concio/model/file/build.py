@@ -21,6 +21,7 @@ from concio.model.file.bodies import Materials, body_of, rigid_where_its_materia
 from concio.model.file.errors import placed
 from concio.model.file.file_table import FileTable
 from concio.model.file.parts import assembled_parts
+from concio.model.file.road_tables import crossed
 from concio.model.file.tables import (
     CourseTable,
     JointTable,
@@ -74,6 +75,7 @@ def build(data: FileTable, folder: Path, where: str, read: Callable[[str], Model
         parts = _parts(data, bodies, start, materials, laws)
         model = replace(start, **parts) if start else Model(**parts)
     with placed(where):
+        model = crossed(model, data.fill, data.vehicle)
         _check_names(model)
         if data.extrusion is not None:
             with placed("[extrusion]", own="extrude"):

@@ -12,6 +12,7 @@ from concio.model.file.assessment_table import AssessmentEntry, SiteEntry
 from concio.model.file.generator_tables import generator_table
 from concio.model.file.import_tables import DrawingTable, SolidsTable
 from concio.model.file.motion_table import Motion
+from concio.model.file.road_tables import FillTable, VehicleTable
 from concio.model.file.study_table import Study
 from concio.model.file.tables import (
     AnalysisTable,
@@ -57,6 +58,8 @@ class FileTable(Table):
     stages: list[StageTable] = Field(default_factory=list)
     analysis: AnalysisTable = Field(default_factory=AnalysisTable)
     solver: SolverTable | None = None
+    fill: FillTable | None = Field(None, description="fill and road of a bridge")
+    vehicle: VehicleTable | None = Field(None, description="what crosses a bridge")
     record: dict[str, Any] = Field(default_factory=dict, description="how the model was made; not read by concio")
 
 

@@ -25,10 +25,10 @@ from concio.model.generate.wall_panels import Panel
 from concio.model.materials import Elastic, JointLaw, Rigid
 
 LENGTHS = (
-    "at", "base", "bearing", "block_length", "block_size", "chord_tolerance", "course", "depth", "diameter",
-    "eccentricity", "fill", "height", "joint", "length", "lintel", "mesh_size", "oculus", "pier_height", "pier_width",
-    "ring", "rise", "side_gap", "span", "spread", "stone", "thickness", "thrust_at", "top", "top_diameter", "width",
-    "x", "y",
+    "abutment", "at", "backing", "base", "bearing", "block_length", "block_size", "chord_tolerance", "course",
+    "depth", "diameter", "eccentricity", "fill", "height", "joint", "length", "lintel", "mesh_size", "oculus",
+    "pier_height", "pier_width", "ring", "rise", "side_gap", "span", "spread", "springing_ring", "stone", "thickness",
+    "thrust_at", "top", "top_diameter", "width", "x", "y",
 )  # fmt: skip
 KINDS: Mapping[str, str] = {
     **dict.fromkeys(LENGTHS, "length"),
@@ -90,6 +90,12 @@ def field_type(name: str, hint: Any, default: Any = None) -> Any:
     parts = [p for p in _parts(hint) if p is not NoneType]
     if name in BY_NAME:
         return BY_NAME[name]
+    if any(get_origin(p) is Sequence for p in parts) and {int, float} & set(parts):
+        one = StrictInt if int in parts else TYPES[KINDS.get(name, "number")]
+        return Annotated[
+            Annotated[one, Tag("<number>")] | Annotated[GenericAlias(list, (one,)), Tag("<list>")],
+            Discriminator(_one_or_list),
+        ]
     if JointLaw in parts:
         return Friction
     if Elastic in parts or Rigid in parts:
@@ -111,6 +117,10 @@ def field_type(name: str, hint: Any, default: Any = None) -> Any:
         own = GenericAlias(list, (_table_of(Opening if name == "openings" else Panel),))
         return GenericAlias(list, (own,)) if _nested(hint) else own
     return list[list[Number]]
+
+
+def _one_or_list(value: Any) -> str:
+    return "<list>" if isinstance(value, list | tuple) else "<number>"
 
 
 def _nested(hint: Any) -> bool:

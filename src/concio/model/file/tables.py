@@ -269,6 +269,7 @@ class TieTable(Table):
     prestress: Force = 0.0
     yield_force: Force | None = None
     break_elongation: Length | None = None
+    kind: Literal["bar", "soil"] = "bar"
 
 
 class ControlTable(Table):

@@ -20,6 +20,7 @@ from concio.display import Units
 from concio.errors import InputError
 from concio.files import whole_file
 from concio.model.file.block_table import write_blocks
+from concio.model.file.road_tables import fill_table, vehicle_table
 from concio.model.materials import Elastic, Rigid
 from concio.model.model import Body, Load, Model, Support, require_model
 from concio.model.polyhedron import Polyhedron
@@ -62,7 +63,12 @@ def dumps(model: Model, *, blocks_file: str | None = None) -> str:
     for load in model.loads:
         lines += _table("loads", _load(load), many=True)
     for tie in model.ties:
-        lines += _table("ties", {f.name: getattr(tie, f.name) for f in fields(tie)}, many=True)
+        bar = {f.name: getattr(tie, f.name) for f in fields(tie)}
+        lines += _table("ties", {**bar, "kind": None if tie.kind == "bar" else tie.kind}, many=True)
+    if model.fill is not None:
+        lines += _table("fill", fill_table(model.fill))
+    if model.vehicle is not None:
+        lines += _table("vehicle", vehicle_table(model.vehicle))
     for stage in model.stages:
         lines += _table("stages", _stage(stage), many=True)
     if model.generator:

@@ -74,6 +74,8 @@ def extrude(model: Model, thickness: float | str | None = None, *, held: bool = 
         ties=tuple(_tie(t) for t in model.ties),
         stages=tuple(_stage(s) for s in model.stages),
         element=ELEMENTS[model.element],
+        fill=None,
+        vehicle=None,
         generator={"kind": "extrusion", "of": dict(model.generator), "thickness": depth or "own"},
     )
 

@@ -12,6 +12,7 @@ from concio.errors import InputError
 from concio.model.generate.arch_on_piers import arch_on_piers
 from concio.model.generate.arches import arch
 from concio.model.generate.barrel import barrel
+from concio.model.generate.bridges import bridge
 from concio.model.generate.cells import cell
 from concio.model.generate.columns import buttress, column
 from concio.model.generate.dome import dome
@@ -34,6 +35,7 @@ GENERATORS: Mapping[str, Callable[..., Model]] = MappingProxyType(
         "rubble": rubble,
         "cell": cell,
         "arch_on_piers": arch_on_piers,
+        "bridge": bridge,
         "walls": walls,
         "tower": tower,
         "barrel": barrel,

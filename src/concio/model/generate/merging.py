@@ -97,6 +97,8 @@ def merged(models: Sequence[Model], *, title: str = "", joint: JointLaw | float 
         gap_tolerance=max(tolerances) if tolerances else None,
         gap_reach=max(reaches) if reaches else None,
         title=title or first.title,
+        fill=None,
+        vehicle=None,
         generator={"kind": "merged", "parts": tuple(str(m.generator.get("kind", "blocks")) for m in models)},
     )
 

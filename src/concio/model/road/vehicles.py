@@ -1,0 +1,82 @@
+"""Vehicles by name: a library that is data with its sources, and convoys of several."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from concio.arguments import closest, strict
+from concio.errors import InputError
+from concio.model.crossing import Axle, Vehicle
+
+
+@cache
+def vehicles() -> Mapping[str, Vehicle]:
+    """Return the vehicles that come with concio, by name."""
+    text = files("concio.model.road").joinpath("vehicles.toml").read_text(encoding="utf-8")
+    found = {}
+    for name, table in tomllib.loads(text).items():
+        axles = axles_of([*table.pop("axles")], table.pop("lanes", []))
+        found[name] = Vehicle(name, axles, **table)
+    return found
+
+
+@strict
+def find_vehicle(name: str) -> Vehicle:
+    """Return a vehicle of the library.
+
+    Raises
+    ------
+    InputError
+        There is none of that name.
+    """
+    known = vehicles()
+    if name not in known:
+        msg = f"there is no vehicle '{name}'"
+        raise InputError(msg, where="vehicle", hint=closest(name, known) + ", or give axles = [[place, load], ...]")
+    return known[name]
+
+
+def axles_of(axles: Sequence[Any], lanes: Sequence[Sequence[Any]] = ()) -> tuple[Axle, ...]:
+    """Return axles from pairs (place, load) or tables, and stretches of uniform load from (from, to, kN per m).
+
+    Raises
+    ------
+    InputError
+        One has another form.
+    """
+    found = []
+    for k, given in enumerate(axles, 1):
+        if isinstance(given, Axle):
+            found.append(given)
+        elif isinstance(given, Mapping):
+            found.append(Axle(**given))
+        elif isinstance(given, Sequence) and not isinstance(given, str) and len(given) == 2:
+            found.append(Axle(given[0], given[1]))
+        else:
+            msg = f"axle {k} = {given!r} is not a pair"
+            raise InputError(msg, where="vehicle", hint="write [place in m, load in kN]")
+    for k, lane in enumerate(lanes, 1):
+        if len(lane) != 3 or not lane[1] > lane[0]:
+            msg = f"stretch {k} = {list(lane)} is not [from, to, kN per m]"
+            raise InputError(msg, where="vehicle, lanes")
+        first, last, load = (float(v) for v in lane)
+        found.append(Axle(0.5 * (first + last), load * (last - first), length=last - first))
+    return tuple(found)
+
+
+def convoy(vehicle: Vehicle, others: Sequence[tuple[Vehicle, float]]) -> Vehicle:
+    """Return a vehicle followed or preceded by others whose reference points are at distances from its own [m]."""
+    axles = list(vehicle.axles)
+    for other, distance in others:
+        ratio = other.dynamic * other.factor / (vehicle.dynamic * vehicle.factor)
+        for axle in other.axles:
+            length = other.footprint if axle.length is None and other.footprint != vehicle.footprint else axle.length
+            axles.append(replace(axle, at=axle.at + distance, load=axle.load * ratio, length=length))
+    name = " + ".join([vehicle.name, *(f"{other.name} at {distance:g} m" for other, distance in others)])
+    sources = "; ".join(dict.fromkeys(v.source for v in (vehicle, *(o for o, _ in others)) if v.source))
+    return replace(vehicle, name=name, axles=tuple(axles), source=sources)

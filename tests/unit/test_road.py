@@ -1,0 +1,166 @@
+"""Fill, road and vehicles on a model: what reaches the masonry, and what is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import concio
+from concio.errors import InputError
+from concio.model.crossing import Axle, Fill, Layer, Vehicle
+from concio.model.road.earth import ground_of, spread_under, stress_at, with_fill, with_vehicle, without_pressure
+from concio.model.road.spread import spread_rules
+from concio.model.road.vehicles import convoy, find_vehicle, vehicles
+from samples import sample
+
+
+def arch(**more: object) -> concio.Model:
+    """Return a small bridge of rigid voussoirs."""
+    return concio.bridge(span=3.0, rise=0.75, ring=0.215, voussoirs=16, block="rigid", unit_weight=22.0, width=2.0,
+                         **more)  # type: ignore[arg-type]  # fmt: skip
+
+
+def covered(fill: Fill | None = None, **more: object) -> concio.Model:
+    """Return it with fill on it."""
+    return with_fill(arch(**more), fill or Fill(cover=0.3, unit_weight=20.0, passive=1.0))
+
+
+@pytest.mark.parametrize("rule", spread_rules())
+def test_the_total_is_the_axle_for_every_rule_and_position(rule: str) -> None:
+    model = covered(Fill(cover=0.3, spread=rule, gradient=0.05))
+    low, high = ground_of(model)[1].line[[0, -1], 0]
+    model = with_vehicle(model, Vehicle("two", (Axle(0.0, 70.0), Axle(0.0, 30.0, length=0.9))))
+    for x in np.linspace(low, high, sample(7, 60)):
+        found = spread_under(model, float(x))
+        assert found.force.sum() == pytest.approx(100.0, rel=1e-13)
+        assert (found.force > 0).all()
+
+
+@pytest.mark.parametrize("rule", spread_rules())
+def test_on_a_flat_surface_the_load_is_centred_below_the_axle_and_as_long_as_the_rule_says(rule: str) -> None:
+    block = concio.Body("slab", np.array([[0.0, 0.0], [9.0, 0.0], [9.0, 1.0], [0.0, 1.0]]), kind="rigid")
+    flat = concio.Model((block,), {"block": concio.Rigid(20.0)}, {"joint": concio.JointLaw(0.5)})
+    model = with_vehicle(with_fill(flat, Fill(cover=0.5, spread=rule)), Vehicle("one", (Axle(0.0, 10.0),)))
+    found = spread_under(model, 4.0)
+    assert found.at[:, 0] == pytest.approx([4.0], abs=1e-12)
+    one = spread_rules()[rule]
+    length = one.base(0.3) + 0.5 * one.along
+    inside = one.pressure(np.array([0.499, 0.501]) * length, np.array([0.5, 0.5]), one.base(0.3))
+    assert inside[0] > 0
+    assert inside[1] == 0
+
+
+def test_weight_of_the_fill_is_the_area_between_extrados_and_road() -> None:
+    layers = (Layer(0.1, 23.0), Layer(0.05, 25.0))
+    model = covered(Fill(cover=0.3, unit_weight=18.0, layers=layers))
+    surface, road = ground_of(model)
+    found = -sum(load.value[1] for load in model.loads if load.group == "fill")
+    free = [k for k in range(len(surface)) if model.bodies[surface.body[k]].kind != "fixed"]
+    x = np.linspace(surface.start[free[0], 0], surface.end[free[-1], 0], 20_001)
+    middle = 0.5 * (x[1:] + x[:-1])
+    depth = road.height(middle) - surface.height(middle)
+    by_hand = 2.0 * (x[1] - x[0]) * (0.1 * 23 + 0.05 * 25 + 18.0 * (depth - 0.15)).sum()
+    assert found == pytest.approx(by_hand, rel=1e-6)
+    assert stress_at(model.fill, np.array([0.05, 0.12, 0.4])) == pytest.approx(  # type: ignore[arg-type]
+        [1.15, 2.3 + 0.5, 2.3 + 1.25 + 18 * 0.25]
+    )
+
+
+def test_soil_pushes_inwards_up_to_its_passive_pressure_and_never_pulls() -> None:
+    model = covered()
+    soil = [t for t in model.ties if t.kind == "soil"]
+    assert len(soil) == 16
+    assembly = concio.assemble(model)
+    for tie, normal, C in zip(soil, assembly.pairs.normal[assembly.ties], assembly.pairs.C_n[assembly.ties].toarray(),
+                              strict=True):  # fmt: skip
+        side = 1.0 if tie.at_a[0] < 1.5 else -1.0
+        assert -normal == pytest.approx([side, 0.0])  # force on the voussoir
+        body = [b.name for b in model.bodies].index(tie.body_a)
+        assert C[assembly.disc.offsets[body]] == pytest.approx(side)  # moving away from the soil opens the gap
+    assert without_pressure(model).ties == ()
+
+
+def test_passive_pressure_follows_rankine_and_cohesion() -> None:
+    fill = Fill(cover=0.3, friction_angle=30.0, mobilised=0.5, cohesion=4.0)
+    assert fill.passive_coefficient == pytest.approx(1.5)
+    assert fill.passive_cohesion == pytest.approx(0.5 * 2 * 4 * np.sqrt(3.0))
+    assert Fill(cover=0.3, friction_angle=30.0, pressure="active").initial_coefficient == pytest.approx(1 / 3)
+    assert Fill(cover=0.3, friction_angle=30.0, pressure="at rest").initial_coefficient == pytest.approx(0.5)
+
+
+def test_pressure_at_rest_acts_before_anything_moves_and_active_pressure_never_falls_away() -> None:
+    at_rest = covered(Fill(cover=0.3, friction_angle=30.0, pressure="at rest"))
+    assert all(t.prestress > 0 for t in at_rest.ties)
+    active = covered(Fill(cover=0.3, friction_angle=30.0, pressure="active"))
+    sideways = [load.value[0] for load in active.loads if load.group == "fill" and load.value[0]]
+    assert len(sideways) == 16
+    assert sum(sideways) == pytest.approx(0.0, abs=1e-12)  # left and right balance
+    caps = sum(t.yield_force or 0.0 for t in active.ties) + sum(map(abs, sideways))
+    assert caps == pytest.approx(sum(t.yield_force or 0.0 for t in at_rest.ties))
+
+
+def test_a_model_with_fill_and_vehicle_is_saved_and_read_back() -> None:
+    own = {"along": 0.8, "across": 0.8, "shape": "sine"}
+    fill = Fill(cover=0.4, layers=(Layer(0.1, 23.0),), spread=own, friction_angle=32.0, mobilised=0.4)
+    model = with_vehicle(covered(fill), replace(find_vehicle("CS 454 double 2 x 9.5 t"), position=1.0))
+    back = concio.loads(concio.dumps(model))
+    assert concio.dumps(back) == concio.dumps(model)
+    assert back.loads == model.loads
+    assert back.ties == model.ties
+    assert back.vehicle == model.vehicle
+
+
+def test_stretches_of_uniform_load_count_as_far_as_the_road_reaches() -> None:
+    model = with_vehicle(covered(), find_vehicle("LM71"))
+    low, high = ground_of(model)[1].line[[0, -1], 0]
+    found = spread_under(model, 1.5, whole=False)
+    on_road = 80.0 * ((1.5 - 3.2 - low if low < 1.5 - 3.2 else 0.0) + (high - 4.7 if high > 4.7 else 0.0))
+    axles = 250.0 * sum(low <= 1.5 + a <= high for a in (-2.4, -0.8, 0.8, 2.4))
+    assert found.force.sum() == pytest.approx(axles + on_road)
+
+
+def test_vehicles_carry_their_sources_and_convoys_add_up() -> None:
+    assert all(v.source for v in vehicles().values())
+    first = find_vehicle("CS 454 single 11.5 t")
+    both = convoy(first, [(find_vehicle("CS 454 single 9 t"), -5.0)])
+    assert [a.at for a in both.axles] == [0.0, -5.0]
+    assert both.total == pytest.approx(112.8 + 88.3)
+    left = Vehicle("one", (Axle(1.0, 10.0),), direction="left")
+    assert left.footprints(5.0)[0][0] == 4.0
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ("[fill]\ncover = -0.1", "road would lie below the crown"),
+        ("[fill]\ncover = 0.3\ngradient = 0.4", "below the masonry"),
+        ("[fill]\nroad = [[-1.0, 0.5], [4.0, 0.5]]", "road line runs from"),
+        ("[fill]\nroad = [[-9.0, 0.9], [9.0, 0.9]]", "below the masonry"),
+        ("[fill]\ncover = 0.3\nlayers = [{ depth = 0.4, unit_weight = 23 }]", "layers are 0.4 m deep"),
+        ("[fill]\ncover = 0.3\nfriction_angle = 0.52", "hardly meant"),
+        ("[fill]\ncover = 0.3\nmobilised = 3.0", "between 0 and 1"),
+        ("[fill]\ncover = 0.3\nspread = 'uniform 2:1'", "no spread rule"),
+        ("[fill]\ncover = 0.3\nspread = { along = 1.0 }", "across"),
+        ("[fill]\ncover = 0.3\n[vehicle]\naxles = [[0.0, '11.5 t']]", "not a force"),
+        ("[fill]\ncover = 0.3\n[vehicle]\nname = 'single axle'\nposition = 40.0", "outside the road"),
+        ("[fill]\ncover = 0.3\n[vehicle]\nname = 'CS454'", "no vehicle 'CS454'"),
+        ("[fill]\ncover = 0.3\n[vehicle]\naxles = [[0.0, -10.0]]", "must be positive"),
+        ("[vehicle]\nname = 'single axle'\nposition = 1.0", "no fill"),
+    ],
+)
+def test_bad_input_is_refused_in_words(table: str, words: str) -> None:
+    text = "[bridge]\nspan = 3.0\nrise = 0.75\nring = 0.215\nvoussoirs = 16\nblock = 'rigid'\n" + table
+    with pytest.raises(InputError) as caught:
+        concio.loads(text)
+    assert words in str(caught.value)
+    assert "Traceback" not in str(caught.value)
+
+
+def test_width_by_rule_is_reported_and_at_most_that_of_the_bridge() -> None:
+    narrow = with_fill(concio.bridge(span=3.0, rise=0.75, ring=0.215, voussoirs=16, block="rigid", width=9.0),
+                       Fill(cover=0.4, spread="CS 454", width="rule"))  # fmt: skip
+    assert narrow.body("v01").thickness == pytest.approx(1.8 + 1.5 + 0.4)
+    wide = with_fill(arch(), Fill(cover=0.4, spread="CS 454", width="rule"))
+    assert wide.body("v01").thickness == pytest.approx(2.0)
