@@ -30,7 +30,7 @@ from concio.model.model import Model
 from concio.model.stages import ControlPoint, Stage
 from concio.problem.solution import ProgressCallback
 from concio.solvers.methods import find
-from concio.solvers.path.event_path import follow
+from concio.solvers.path.apart import follow_parts
 from concio.solvers.path.proof import certify_between, obstacles_moved
 from concio.solvers.path.record import EventPath, Outcome
 from concio.solvers.path.state import LinearPath, PathState, at_rest, elastic_energy
@@ -169,7 +169,7 @@ def _walk(
         )
         return until_a_tie_breaks(assembly, path, found, *ends, solver=solver, exact=False)
     stop = breaking(assembly, *ends)
-    exact = follow(path, state, until=until, control=control, max_events=max_events, progress=progress, stop=stop)
+    exact = follow_parts(path, state, until=until, control=control, max_events=max_events, progress=progress, stop=stop)
     found = StepPath(exact.states, exact.events, exact.outcome, exact.direction)
     found = until_a_tie_breaks(assembly, path, found, *ends, solver=solver, exact=True)
     notes.extend(_finite_steps(stage, exact))

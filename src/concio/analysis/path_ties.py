@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 
 import numpy as np
 
 from concio.analysis.tie_forces import BROKEN, break_elongations
 from concio.contact.assembly import Assembly
 from concio.solvers.methods import find
+from concio.solvers.path.apart import between
 from concio.solvers.path.record import Event, Outcome
-from concio.solvers.path.state import LinearPath, PathState, energy_of_step
+from concio.solvers.path.state import LinearPath, PathState
 from concio.solvers.path.step_path import StepPath, follow_in_steps
 
 Array = np.ndarray
@@ -82,7 +82,7 @@ def until_a_tie_breaks(
     a, b = share(before), share(after)
     part = float(np.min(np.where(b >= 1 - BROKEN, (1 - a) / np.where(b > a, b - a, 1.0), np.inf)))
     finite = any(e.step == last and e.kind in ("jumps", "restarts") for e in found.events)
-    breaking = _between(path, before, after, part) if exact and not finite else None
+    breaking = between(path, before, after, part) if exact and not finite else None
     if breaking is None and not finite:
         parameter = before.parameter + part * (after.parameter - before.parameter)
         step = follow_in_steps(path, before, until=parameter, steps=1, solver=find(solver))
@@ -94,14 +94,3 @@ def until_a_tie_breaks(
     return StepPath(
         states, (*events, Event(at, at, tie, "breaks", 0, len(states) - 1)), Outcome.BROKEN, found.direction
     )
-
-
-def _between(path: LinearPath, before: PathState, after: PathState, part: float) -> PathState:
-    """Return the state on the straight line between two corners of an exact path."""
-    mixed = {
-        name: (1 - part) * getattr(before, name) + part * getattr(after, name)
-        for name in ("parameter", "displacement", "normal_force", "friction_force", "slip", "offset")
-    }
-    state = replace(after, **mixed)
-    work, dissipation = energy_of_step(path, before, state)
-    return replace(state, work=before.work + work, dissipation=before.dissipation + dissipation)

@@ -10,6 +10,7 @@ from concio.verdict.unseen import listed
 if TYPE_CHECKING:
     from concio.analysis.result import Result
 
+
 def parts_told(result: Result) -> tuple[str, ...]:
     """Return a sentence on the parts that decide the outcome of a structure in several parts that does not stand."""
     parts, status = result.solution.parts, result.status
