@@ -15,7 +15,7 @@ from fnmatch import fnmatchcase
 import numpy as np
 import scipy.sparse as sp
 
-from concio.analysis.limit import UNASKED_WORK, search_collapse
+from concio.analysis.limit import LARGEST_SEARCH, UNASKED_WORK
 from concio.analysis.seismic.macro_blocks import Mechanics, mechanics_of
 from concio.arguments import closest
 from concio.contact.assembly import Assembly
@@ -35,6 +35,10 @@ LARGEST = 2.0
 
 FEW = 6
 """Programmes from one start where a mechanism is to be met, not settled."""
+
+
+BED = 0.5
+"""Joints whose normal is more upright than this press under the weight of what stands on them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,7 +198,7 @@ class Mechanisms:
         self.stands.add(moving)
 
     def _found(self, columns: Array, rows: Array, problem: ContactProblem, *, quick: bool) -> Found:
-        whole, push = self.whole, self.push[columns]
+        push = self.push[columns]
         bound = associated_limit(problem, push)
         if bound.mechanism is None or not np.isfinite(bound.multiplier):
             return self._locked(columns, rows, problem, bound)
@@ -202,13 +206,24 @@ class Mechanisms:
         mechanics = mechanics_of(self.assembly, velocity, forces)
         if not mechanics.slides:
             return Found(bound, bound.multiplier, "no sliding", velocity, forces, mechanics)
-        if quick:
-            state = _quickly(problem, push, bound)
-        else:
-            state, _ = search_collapse(problem, push, work=WORK_OF_ALL if whole.dim == 2 else UNASKED_WORK)
+        state = self._state(problem, push, bound, rows, quick=quick)
         if state is None:
             return Found(bound, bound.multiplier, "associated", velocity, forces, mechanics)
         return self._of_state(columns, rows, bound, state)
+
+    def _state(
+        self, problem: ContactProblem, push: Array, bound: LimitLoad, rows: Array, *, quick: bool
+    ) -> CollapseState | None:
+        """Return the least collapse state met from several starts; None where none is."""
+        if problem.pairs > LARGEST_SEARCH:
+            return None
+        beds = np.abs(self.assembly.pairs.normal[rows][:, -1]) > BED
+        found = _quickly(problem, push, bound, beds)
+        if not quick:
+            work = WORK_OF_ALL if problem.dim == 2 else UNASKED_WORK
+            starts = None if problem.dim == 2 else 1
+            found.append(find_collapse_state(problem, push, starts=starts, work=work, bound=bound).state)
+        return min((s for s in found if s is not None), key=lambda s: s.multiplier, default=None)
 
     def _of_state(self, columns: Array, rows: Array, bound: LimitLoad, state: CollapseState) -> Found:
         velocity, forces = self._spread(columns, rows, state.velocity, state.normal_force)
@@ -240,12 +255,21 @@ class Mechanisms:
         return self.assembly.supported.T @ every, forces
 
 
-def _quickly(problem: ContactProblem, push: Array, bound: LimitLoad) -> CollapseState | None:
-    """Return the least collapse state met with few programmes from two starts; None where none is."""
+def _quickly(problem: ContactProblem, push: Array, bound: LimitLoad, beds: Array) -> list[CollapseState | None]:
+    """Return collapse states met with few programmes, from forces that hold up the weight alone.
+
+    Once as they are, and once without those of upright joints, ``beds`` (m,) being the others: courses of dry blocks
+    press on each other, not sideways, and what only the friction of upright joints holds is met from there. In the
+    plane also from the forces of the associated limit.
+    """
     dead = statically_admissible(problem)
-    starts = [bound, replace(bound, normal_force=dead.normal_force)] if dead.exists else [bound]
-    found = [find_collapse_state(problem, push, starts=1, iterations=FEW, bound=b).state for b in starts]
-    return min((s for s in found if s is not None), key=lambda s: s.multiplier, default=None)
+    starts = [dead.normal_force, np.where(beds, dead.normal_force, 0.0)] if dead.exists else []
+    if problem.dim == 2 or not starts:
+        starts.append(bound.normal_force)
+    return [
+        find_collapse_state(problem, push, starts=1, iterations=FEW, bound=replace(bound, normal_force=forces)).state
+        for forces in starts
+    ]
 
 
 def _held(problem: ContactProblem, moving: Sequence[int] | None) -> tuple[Array, Array, ContactProblem]:

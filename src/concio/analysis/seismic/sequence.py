@@ -56,6 +56,9 @@ LOCATED, SHARP = 60, 1e-9
 LOST = 1e-3
 """Share of the size of the mechanism by which a step may leave contacts wrong after it was corrected."""
 
+OVERLAP, DEEP, ROUNDS = 1e-10, 0.1, 4
+"""Overlaps above this share of the size are put back, and end a step where they are above that share of it; rounds."""
+
 
 @dataclass(frozen=True, eq=False)
 class State:
@@ -185,12 +188,30 @@ class Sequence:
                      history.after(longer))  # fmt: skip
 
     def step(self, last: State, length: float) -> Placed | None:
-        """Return the configuration after the control point has moved by about ``length``; None if it cannot be."""
-        L, d = self.size, last.q.centre.shape[1]
-        q = last.q.moved(last.velocity, length)
+        """Return the configuration after the control point has moved by about ``length``; None if it cannot be.
+
+        Contacts that press are put back where they have come apart, and so are others that have come to overlap: those
+        that only touch, without a force, would keep what each step leaves of overlap, and add to it.
+        """
+        L = self.size
         crushing = np.isfinite(self.contacts.laws.cap)
-        presses = np.flatnonzero((last.normal_force > AT_BOUND * last.normal_force.max(initial=0.0)) & ~crushing)
-        stuck = np.flatnonzero(last.stays)
+        kept = (last.normal_force > AT_BOUND * last.normal_force.max(initial=0.0)) & ~crushing
+        moved = last.q.moved(last.velocity, length)
+        for _ in range(ROUNDS):
+            q = self._put_back(moved, kept, last)
+            gap = stated(self.contacts, q, L).gap
+            overlaps = (gap < -OVERLAP * L) & ~crushing & ~kept
+            sunk = np.minimum(last.contacts.gap, 0.0) - gap  # in this step
+            if not overlaps.any() or float(sunk[overlaps].max()) > DEEP * length:
+                break
+            kept = kept | overlaps
+        off = max(float(np.abs(gap[kept]).max(initial=0.0)), float(-gap[~crushing].min(initial=0.0)))
+        return q if off <= LOST * length and np.isfinite(q.centre).all() else None
+
+    def _put_back(self, q: Placed, kept: Array, last: State) -> Placed:
+        """Return a configuration near ``q`` in which ``kept`` (m,) contacts touch and what sticks has not slid."""
+        L, d = self.size, q.centre.shape[1]
+        presses, stuck = np.flatnonzero(kept), np.flatnonzero(last.stays)
         rows = (stuck[:, None] * (d - 1) + np.arange(d - 1)).ravel()
         before = np.inf
         for _ in range(8):
@@ -207,10 +228,7 @@ class Sequence:
             moved = change.reshape(-1, motions(d)).copy()
             moved[:, d:] /= L
             q = q.moved(moved, 1.0)
-        now = stated(self.contacts, q, L)
-        off = float(np.abs(now.gap[presses]).max(initial=0.0))
-        off = max(off, float(-now.gap[~crushing].min(initial=0.0)))
-        return q if off <= LOST * length and np.isfinite(q.centre).all() else None
+        return q
 
     def room(self, state: State) -> float:
         """Return how far the control point can move before an open contact closes [m]."""

@@ -22,6 +22,11 @@ ROOM = 1e-9
 """Friction, over the total load, that a pair that slips may have beside that of its direction: the direction is known
 to rounding only, and no forces exactly along it may be in balance. Well below what counts as checked."""
 
+NONE = -1e4
+"""Multiplier, in units of the programme, below which a bound tells that no forces go with a motion: bounds of states
+that exist end at their multipliers, of the order of one; where there are none they fall below this in a few iterations,
+while the programme would look for forces twice as long as where it finds them."""
+
 
 class Asked(Protocol):
     """What a motion asks of the pairs."""
@@ -84,7 +89,7 @@ def forces_in_space(problem: ContactProblem, motion: Asked, live: Array) -> tupl
     )  # fmt: skip
     if not less.pairs:
         return None
-    found = ConeStatics(less, problem.f if problem.f.any() else live).largest(-live)
+    found = ConeStatics(less, problem.f if problem.f.any() else live).largest(-live, NONE)
     if not (np.isfinite(found.multiplier) and found.residual <= CHECKED):
         return None
     t_n[stays] += np.where(known[stays], 0.0, found.t[:, 0])

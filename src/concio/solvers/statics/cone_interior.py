@@ -59,6 +59,8 @@ class ConeAnswer:
     primal, dual, gap : float
         Largest residual of balance, of Cv = G'z and g'v = 1, and the relative duality gap.
     iterations : int
+    bound : float
+        Multiplier beyond which the motion, once admissible, lets none be; falls without end where no forces exist.
     """
 
     t: Array
@@ -68,6 +70,7 @@ class ConeAnswer:
     dual: float
     gap: float
     iterations: int
+    bound: float = np.inf
 
 
 def maximise(
@@ -110,10 +113,12 @@ def maximise(
             if not np.isfinite(worst):
                 break
             since = 0 if worst < 0.9 * least else since + 1
+            bound = p.multiplier + gap - float(r_p @ p.v)
+            now = ConeAnswer(p.t, p.multiplier, p.v, primal, dual, relative, iteration, bound)
             if worst < least:
-                least, best = worst, ConeAnswer(p.t, p.multiplier, p.v, primal, dual, relative, iteration)
-            if stop is not None and stop(ConeAnswer(p.t, p.multiplier, p.v, primal, dual, relative, iteration)):
-                return ConeAnswer(p.t, p.multiplier, p.v, primal, dual, relative, iteration)
+                least, best = worst, now
+            if stop is not None and stop(now):
+                return now
             if worst < TARGET or since > PATIENCE or iteration == MOST:
                 break
             step = Step.at(programme, p, g, r_p, r_d, r_g)

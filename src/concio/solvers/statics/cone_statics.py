@@ -70,7 +70,7 @@ class Bounds:
     Parameters
     ----------
     multiplier : float
-        That of the forces; inf where it seems to grow without end.
+        That of the forces; inf where it seems to grow without end, -inf where there seem to be none.
     t : (m, d) array
         Forces, normal first [kN].
     residual : float
@@ -186,14 +186,24 @@ class ConeStatics:
             real, residual = (nearer, left) if left < residual else (real, residual)
         return Balance(real, residual, self.velocity(v), multiplier)
 
-    def largest(self, live: Array) -> Bounds:
-        """Search the largest multiplier of the live load (N,) beside the load of the problem."""
+    def largest(self, live: Array, least: float = -np.inf) -> Bounds:
+        """Search the largest multiplier of the live load (N,) beside the load of the problem.
+
+        Parameters
+        ----------
+        live : (N,) array
+        least : float
+            In units of the programme. A motion that excludes all multipliers from below this on ends the search without
+            an answer, -inf: where no forces exist, the bound of the motions falls without end.
+        """
         it = self.programme
         e, g = self.offset(self.problem.f), self.project(live)
         size = float(np.abs(g).max(initial=0.0))
-        answer = maximise(it, e, g / size, stop=lambda a: a.multiplier > ENDLESS)
+        answer = maximise(it, e, g / size, stop=lambda a: a.multiplier > ENDLESS or a.bound < least)
         if answer.multiplier > ENDLESS:
             return Bounds(np.inf, self.real(answer.t), np.inf, self.velocity(answer.v))
+        if answer.bound < least:
+            return Bounds(-np.inf, self.real(answer.t), np.inf, self.velocity(answer.v))
         multiplier = answer.multiplier / size
         load = self.problem.f + multiplier * live
         t = self.real(answer.t)
