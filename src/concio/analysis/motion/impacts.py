@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from concio.analysis.motion.certified import Returned
 from concio.analysis.motion.joint_step import JointStep
 from concio.analysis.motion.scheme import Scheme
 from concio.problem.tolerances import CERTIFIED
@@ -63,22 +64,22 @@ class Impact:
     begun: Array
     imposed: Array
 
-    def answer(self, found: StepSolution) -> StepSolution:
-        """Return the answer of the step, given that with the compliance of joints."""
-        found = self._hard(self.problem, found)
+    def answer(self, found: StepSolution) -> tuple[StepSolution, Returned]:
+        """Return the answer of the step, given that with the compliance of joints, and what its law was."""
+        found, taken = self._hard(self.problem, found)
         if not self.scheme.restitution or found.residual > CERTIFIED or not self._gives(found):
-            return found
-        best, low, high = self._returning(0.0, found), 0.0, 1.0
+            return found, Returned(1.0, taken)
+        (best, taken), low, high = self._returning(0.0, found), 0.0, 1.0
         for _ in range(HALVINGS):
             share = 0.5 * (low + high)
-            trial = self._returning(share, best)
+            trial, back = self._returning(share, best)
             if trial.residual > CERTIFIED or self._gives(trial):
                 high = share
             else:
-                low, best = share, trial
-        return best
+                low, best, taken = share, trial, back
+        return best, Returned(low, taken)
 
-    def _returning(self, share: float, near: StepSolution) -> StepSolution:
+    def _returning(self, share: float, near: StepSolution) -> tuple[StepSolution, Array]:
         """Return the answer with a share of the restitution."""
         gap = self.problem.gap.copy()
         struck = np.flatnonzero(self.joint.struck)
@@ -94,8 +95,8 @@ class Impact:
         works = (found.t[:m] * moved)[self.joint.struck]
         return float(works.sum()) > NO_GAIN * float(np.abs(works).sum())
 
-    def _hard(self, problem: StepProblem, found: StepSolution) -> StepSolution:
-        """Return the answer of a problem without the compliance lent to hard joints."""
+    def _hard(self, problem: StepProblem, found: StepSolution) -> tuple[StepSolution, Array]:
+        """Return the answer of a problem without the compliance lent to joints, and the forces it counts from."""
         joint, m = self.joint, len(self.joint.gap)
         lent_n, lent_t = problem.a_n.copy(), problem.a_t.copy()
         lent_n[m:] = lent_t[m:] = 0.0
@@ -103,7 +104,7 @@ class Impact:
             lent_n[:m][joint.springs.normal] = 0.0
             lent_t[:m][joint.springs.shear] = 0.0
         enough = RETURNED * float(np.abs(joint.y0[joint.struck, 0]).max())
-        before = np.zeros_like(found.t)
+        before = counted = np.zeros_like(found.t)
         for _ in range(MOST_RETURNED):
             grown = np.abs(found.t - before)
             left = max(float((lent_n * grown[:, 0]).max()), float((lent_t * grown[:, 1]).max()))
@@ -115,5 +116,5 @@ class Impact:
             again = self.solver.solve(p, found.states, found.x, found.t)
             if again.residual > CERTIFIED:
                 break
-            found = again
-        return found
+            found, counted = again, before
+        return found, counted

@@ -11,6 +11,9 @@ from concio.errors import InputError
 
 Array = np.ndarray
 
+RETURN = 0.2
+"""Share of the distance by which a held point has drifted off that is taken back in a step."""
+
 
 @dataclass(frozen=True)
 class Scheme:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from concio.analysis.motion.certified import Certificate
 from concio.analysis.motion.joint_memory import after_equilibrium
 from concio.analysis.motion.joint_step import JointAnswer
 from concio.analysis.motion.pairs import relative
@@ -115,6 +116,7 @@ class Statics(SmallDisplacements):
         super().__init__(reference, scheme, factors, live, control, sag, sign)
         self.solver = StepSolver(engine)
         self._unsolved = 0
+        self.certificate = Certificate(reference, scheme, self.maker)
 
     def work_displacement(self, before: MotionState, found: Balanced) -> float:
         """Return the mean displacement on which the load worked between two equilibria [m]."""
@@ -159,7 +161,7 @@ class Statics(SmallDisplacements):
             if float(np.abs(moved).max()) > FAR * self.width + abs(target or 0.0):
                 break
         assert found is not None
-        answer = self._judged(here, memory, slid, multiplier, found, moved, iteration)
+        answer = self._judged(state, here, memory, slid, multiplier, found, moved, iteration)
         if target is not None and abs(target - done) > REACHED * (abs(target) + STILL * self.width):
             return replace(answer, found=False)  # an equilibrium, but at another displacement
         return answer
@@ -206,6 +208,7 @@ class Statics(SmallDisplacements):
 
     def _judged(
         self,
+        before: MotionState,
         state: MotionState,
         begun: Memory,
         slid: Array,
@@ -218,15 +221,15 @@ class Statics(SmallDisplacements):
         look = self._looked(state, begun, slid, multiplier)
         m = len(look.memory.key)
         if len(found.t) == sum(len(part.columns) for part in look.parts) and m == len(begun.key):
-            p = replace(self.problem(look, multiplier, None), b=self.acting(look, multiplier))
             k = len(found.t) - 2 * len(self.maker.ties)
-            t = found.t.copy()
-            t[k + len(self.maker.ties) :] = 0.0  # ties at rest do not swing
-            residual, _ = p.residual(np.zeros(self.frames.n), t)
+            residual = self.certificate.equilibrium(
+                before, state, look.memory, slid, found.t[: k + len(self.maker.ties)],  # ties at rest do not swing
+                self.acting(look, multiplier), self.factors_at(multiplier), self._bare, 1e-3 * self.width,
+            )  # fmt: skip
             answer = JointAnswer(look.data.shift, found.t[:m], found.states.normal[:m], found.states.sign[:m])
             memory = after_equilibrium(self.maker.joints, look.memory, look.joint, look.data, answer)
             own = slice(k, k + len(self.maker.ties))
-            tied = settled_ties(self.maker.ties, state.ties, look.parts[2], t[own, 0], found.states.normal[own])
+            tied = settled_ties(self.maker.ties, state.ties, look.parts[2], found.t[own, 0], found.states.normal[own])
         else:
             residual, memory, tied = np.inf, look.memory, state.ties
         placed = replace(state, memory=memory, ties=tied)

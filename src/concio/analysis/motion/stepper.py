@@ -19,13 +19,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
+from concio.analysis.motion.certified import Certificate, Returned, measures
 from concio.analysis.motion.frames import Frames
 from concio.analysis.motion.impacts import Impact
 from concio.analysis.motion.joint_memory import after_step
 from concio.analysis.motion.joint_step import JointAnswer, PairData
 from concio.analysis.motion.meetings import first_meeting, time_until
 from concio.analysis.motion.pairs import PairMaker, assembled, relative
-from concio.analysis.motion.scheme import Drive, Scheme
+from concio.analysis.motion.scheme import RETURN, Drive, Scheme
 from concio.analysis.motion.state import Memory, MotionState, TieMemory
 from concio.analysis.motion.sunk import moved_apart
 from concio.analysis.motion.tie_bars import TieStep
@@ -33,15 +34,13 @@ from concio.contact.moving.attachments import Ties
 from concio.contact.moving.edges import as_complex, as_vectors
 from concio.contact.moving.reference import Reference
 from concio.contact.moving.rows import Rows
+from concio.problem.tolerances import CERTIFIED
 from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.stepping.matrix import StepMatrix
 from concio.solvers.stepping.problem import StepSolution
 from concio.solvers.stepping.solver import StepSolver
 
 Array = np.ndarray
-
-RETURN = 0.2
-"""Share of the distance by which a held point has drifted off that is taken back in a step."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,9 +89,9 @@ class Stepper:
         disc = reference.disc
         self.frames = Frames(reference, scheme)
         self.maker = PairMaker(reference, scheme)
+        self.certificate = Certificate(reference, scheme, self.maker)
         self.solver = StepSolver(engine)
         self.fixed = np.flatnonzero(disc.shape_of == -2)
-        self.total_mass = float(reference.body_mass.sum())
         self._movable = np.full(disc.unknowns, np.inf)
         for b in np.setdiff1d(reference.rigid, self.maker.held.points.body).tolist():
             own = slice(*disc.offsets[b : b + 2])
@@ -145,7 +144,7 @@ class Stepper:
         b = f.mass * x0 / h + loads + ground
         if f.elastic:
             b += f.internal(state, h, rate, strain, spin, x0)
-        force, speed = self._measures(loads + ground, x0, h)
+        force, speed = measures(self.reference, loads + ground, x0, h)
         maker = self.maker
         memory, rows, layout_is_new = maker.contacts(state.memory, middle, turn, velocity, spin, strain)
         if layout_is_new:
@@ -165,8 +164,9 @@ class Stepper:
         t0 = np.zeros((count, 2))
         t0[:m] = memory.force
         found = self.solver.solve(problem, states, x0, t0)
+        returned = Returned()
         if joint.impact:
-            found = Impact(self.solver, problem, joint, self.scheme, x0, rows.imposed).answer(found)
+            found, returned = Impact(self.solver, problem, joint, self.scheme, x0, rows.imposed).answer(found)
         theta = self.scheme.theta
         x = theta * found.x + (1 - theta) * x0
         y = relative(rows.columns, rows.values, x) + rows.imposed
@@ -194,6 +194,7 @@ class Stepper:
         if maker.joints.any_stiffness:
             works["overlap"] += float(memory_before.stored.sum()) - float(state.memory.stored.sum())
         new = self._moved(state, found.x, x, apart, turn, strain, h, velocity, memory, tied)
+        found = self._certified(found, state, new, memory_before, h, drive, returned)
         hard = rows.valid & ~joint.springy
         depth = float(np.maximum(-end[hard & data.active], 0.0).max(initial=0.0))
         hit = hard & ~(memory_before.force[:, 0] > 0) & (joint.gap > 0.5 * h * joint.y0[:, 0] - maker.joints.sag)
@@ -204,17 +205,20 @@ class Stepper:
         left = time_until(end, parting[:, 0], nearing)
         return new, StepReport(found, m, works, depth, struck, rows.normal, meets, left)
 
+    def _certified(
+        self, found: StepSolution, state: MotionState, new: MotionState, memory: Memory, h: float, drive: Drive,
+        returned: Returned,
+    ) -> StepSolution:  # fmt: skip
+        """Return the solution of a step with the residual of its original equations, where that is the larger one."""
+        if found.residual > CERTIFIED:
+            return found
+        certificate = self.certificate.step(state, new, memory, found.t, h, drive, returned, self.matrix(h))
+        return replace(found, residual=max(found.residual, certificate))
+
     def _give(self, rows: Rows, h: float) -> Array:
         """Return the velocity that a unit normal force gives each pair of free bodies in a step (m,) [m/s/kN]."""
         flexible: Array = h * (rows.values[:, 0] ** 2 * self._inverse_mass[rows.columns]).sum(axis=1)
         return flexible
-
-    def _measures(self, acting: Array, x0: Array, h: float) -> tuple[float, float]:
-        """Return the force and the velocity by which residuals are measured: loads, and what they do in a step."""
-        force = float(np.abs(acting).sum())
-        if not force:
-            force = float(np.abs(self.frames.mass * x0).sum()) / h or 1.0
-        return force, h * force / self.total_mass
 
     def _held(self, state: MotionState, turn: Array, h: float, drive: Drive) -> PairData:
         """Return the pairs of supports."""
