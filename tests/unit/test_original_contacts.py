@@ -227,7 +227,8 @@ def test_a_sign_in_the_rows_of_ties_is_refused(monkeypatch):
 
 def test_a_sign_in_the_rows_of_supports_is_refused(monkeypatch):
     """A block held at its side, in a motion and in equilibrium."""
-    model = replace(standing(), supports=(concio.Support("pin", "block", edge=((0.2, 0.0), (0.2, 1.2)), directions="x"),))
+    side = ((0.2, 0.0), (0.2, 1.2))
+    model = replace(standing(), supports=(concio.Support("side", "block", edge=side, directions="x"),))
     push = concio.Load("point", (0.4, 0.0), bodies=("block",), at=(-0.2, 1.0), group="live")
     model = replace(model, loads=(*model.loads, push))
 

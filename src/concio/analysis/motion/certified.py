@@ -280,9 +280,9 @@ class Certificate:
             return no_pairs(), np.zeros(0)
         span = self._place(ties.b, centre, rotation, strain) - self._place(ties.a, centre, rotation, strain)
         length = np.hypot(*span.T)
-        way = span / np.where(length > 0, length, 1.0)[:, None]
+        way = (ties.sign / np.where(length > 0, length, 1.0))[:, None] * span  # soil presses
         values = np.concatenate([_rows(ties.a, way, rotation), -_rows(ties.b, way, rotation)], axis=1)
-        gap = ties.length - length - ties.prestress / ties.stiffness + state.ties.plastic
+        gap = ties.sign * (ties.length - length) - ties.prestress / ties.stiffness + state.ties.plastic
         zero = np.zeros(k)
         return PairData(
             ties.columns, np.stack([values, np.zeros_like(values)], axis=1), np.column_stack([gap, zero]),
