@@ -57,6 +57,8 @@ class Scaled:
         Initial gap with the share of the shift, and minus the slip origin, over U.
     cone : Cone
         Shifted: without tension.
+    shift : (m,) array
+        By how much normal forces are shifted [kN]: t_n + shift are the forces here; the tensile strength of each pair.
     dilatancy : (m,) array
         tan(psi); zero where a pair cannot carry friction.
     compliance : (m, d) array
@@ -79,6 +81,7 @@ class Scaled:
     f: Array
     x: Array
     cone: Cone
+    shift: Array
     dilatancy: Array
     compliance: Array
     inertia: sp.csr_array
@@ -224,12 +227,21 @@ class Scaled:
 
     def restore(self, u: Array, t: Array) -> tuple[Array, Array, Array]:
         """Return u (N,) [m], t_n (m,) and t_t (m, d-1) [kN] of the original problem."""
-        return u * self.length, t[:, 0] * self.force - self.problem.laws.tension, t[:, 1:] * self.force
+        return u * self.length, t[:, 0] * self.force - self.shift, t[:, 1:] * self.force
 
     def bring(self, u: Array, t_n: Array, t_t: Array) -> tuple[Array, Array]:
         """Return u (N,) and t (m, d), scaled, of displacements [m] and forces [kN] of the original problem."""
-        t = np.column_stack([t_n + self.problem.laws.tension, t_t.reshape(self.pairs, -1)]) / self.force
+        t = np.column_stack([t_n + self.shift, t_t.reshape(self.pairs, -1)]) / self.force
         return u / self.length, t
+
+    @property
+    def unstressed(self) -> Array:
+        """Forces (m, d) of pairs that carry nothing: of forces that are left open those nearest to these are taken."""
+        return np.column_stack([self.shift / self.force, np.zeros((self.pairs, self.dim - 1))])
+
+    def unshifted(self) -> Scaled:
+        """Return the same in forces that are not shifted: strengths far above the loads cost no digits then."""
+        return replace(self, **_in_units(self.problem, self.C, self.force, self.length, np.zeros(self.pairs)))
 
     @cached_property
     def start(self) -> Array:
@@ -237,7 +249,7 @@ class Scaled:
         springs = 1.0 / (_softness(self.problem) + self.compliance)
         held = self.x if not self.problem.f.any() else np.minimum(self.x, 0.0)
         t = -springs * (held + self.along(self.glued))
-        t[:, 0] += self.problem.laws.tension / self.force
+        t += self.unstressed
         return self.cone.project(t)
 
 
@@ -343,17 +355,21 @@ def _same(a: sp.csr_array, b: sp.csr_array) -> bool:
     return all(np.array_equal(getattr(a, part), getattr(b, part)) for part in ("data", "indices", "indptr"))
 
 
-def _in_units(problem: ContactProblem, C: sp.csr_array, force: float, length: float) -> dict[str, Any]:
-    """Return loads, gaps and laws of :class:`Scaled` for given units."""
+def _in_units(
+    problem: ContactProblem, C: sp.csr_array, force: float, length: float, shift: Array | None = None
+) -> dict[str, Any]:
+    """Return loads, gaps, laws of :class:`Scaled` for given units, shifted by the tensile strength or by ``shift``."""
     law, m, d = problem.laws, problem.pairs, problem.dim
+    by = law.tension if shift is None else shift
     compliance = compliances(problem) * (force / length)
-    shift = np.column_stack([law.tension / force, np.zeros((m, d - 1))])
-    cone = law.cone.shifted.in_units(force)
+    moved = np.column_stack([by / force, np.zeros((m, d - 1))])
+    cone = (law.cone.shifted if shift is None else law.cone).in_units(force)
     cone = replace(cone, friction=np.where(cone.friction > SMOOTH, cone.friction, 0.0))
     return {
-        "f": problem.f / force - C.T @ shift.ravel(),
-        "x": np.column_stack([problem.gap, -problem.slip_origin]) / length - compliance * shift,
+        "f": problem.f / force - C.T @ moved.ravel(),
+        "x": np.column_stack([problem.gap, -problem.slip_origin]) / length - compliance * moved,
         "cone": cone,
+        "shift": by,
         "dilatancy": np.where(cone.rough, law.dilatancy, 0.0),
         "compliance": compliance,
     }

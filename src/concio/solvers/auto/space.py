@@ -1,12 +1,14 @@
 """Method ``auto`` in space: a table of strategies, tried in a fixed order until one decides.
 
-1. interior point with round cones and exact finish, from the usual start and from one further out;
-2. a cone programme: either a mechanism, rechecked, proves that there is no equilibrium, or there are statically
+1. where joints carry tension: all pairs stick, which is one linear problem, and those whose strength that exceeds are
+   let go by Newton's method;
+2. interior point with round cones and exact finish, from the usual start and from one further out;
+3. a cone programme: either a mechanism, rechecked, proves that there is no equilibrium, or there are statically
    admissible forces; where no body has to move under them (rigid blocks), they are the answer;
-3. interior point from the other starts;
-4. the best point that the starts met, where its certificate holds although Newton's method did not end;
-5. release, single steps: the structure is let go, and ever longer steps from rest show where it goes;
-6. release: it is followed in slow motion, from rest and from the state in which associated flow jams; it comes to rest,
+4. interior point from the other starts;
+5. the best point that the starts met, where its certificate holds although Newton's method did not end;
+6. release, single steps: the structure is let go, and ever longer steps from rest show where it goes;
+7. release: it is followed in slow motion, from rest and from the state in which associated flow jams; it comes to rest,
    which is an equilibrium, or settles into a motion without end, which is the answer.
 
 What was tried is the solution's trace. Words are those of the plane (:mod:`concio.solvers.auto.strategies`). Pivoting
@@ -24,7 +26,7 @@ from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Departure, ProgressCallback, Solution
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.algebra.sparse_factor import Engine
-from concio.solvers.auto.strategies import Strategy, first_answer, moves_away, statics, where_it_ends
+from concio.solvers.auto.strategies import Strategy, first_answer, moves_away, statics, sticking, where_it_ends
 from concio.solvers.interior.cone_run import ConeRun, starts_for
 from concio.solvers.interior.engine import at_rest
 from concio.solvers.motion.cone_release import associated_state, at_once, release
@@ -63,6 +65,7 @@ def released_jammed(run: ConeRun) -> Solution | None:
 
 
 STRATEGIES: tuple[Strategy, ...] = (
+    Strategy("all pairs stick", sticking),
     Strategy("interior-point", usual_starts),
     Strategy("mechanism", statics),
     Strategy("interior-point, other starts", other_starts),

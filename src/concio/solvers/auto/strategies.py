@@ -12,6 +12,7 @@ import numpy as np
 from concio.problem.contact_problem import Array
 from concio.problem.solution import Departure, Mechanism, Solution, Status, failed, judge
 from concio.solvers.auto.friction_neighbours import from_neighbours
+from concio.solvers.interior.bonded import applies, from_sticking
 from concio.solvers.interior.cone_run import ConeRun
 from concio.solvers.interior.engine import STARTS, Cancelled, Run
 from concio.solvers.motion.release import release
@@ -62,6 +63,20 @@ def where_it_ends(run: Run | ConeRun, follow: Callable[[Array], Solution | None]
     except Cancelled:
         return run.solution(None, Status.CANCELLED)
     return answer or run.solution(None, Status.UNDECIDED, method="release")
+
+
+def sticking(run: Run) -> Solution | None:
+    """Begin where all pairs of bonded joints stick; let go of those whose strength that exceeds."""
+    if not applies(run.scaled):
+        return None
+    near = from_sticking(run.scaled)
+    if near is None:
+        run.trace.append("all pairs stick: no answer near")
+        return None
+    plain, found = near
+    run.trace.append(f"all pairs stick: {found.solves} linear solves, residual {found.error:.1e}")
+    answer = judge(run.scaled.problem, *plain.restore(found.u, found.t), method="active-set")
+    return merged(run, answer, "active-set") if answer.solved else None
 
 
 def usual_starts(run: Run) -> Solution | None:

@@ -245,8 +245,7 @@ class Run:
         if self.judged is not None and self.judged[0] is point and self.judged[1].solved:
             return replace(self.judged[1], method=method, **work)
         if point is None:
-            shift = s.problem.laws.tension / s.force
-            u, t = np.zeros(len(s.f)), np.column_stack([shift, np.zeros((s.pairs, s.dim - 1))])
+            u, t = np.zeros(len(s.f)), s.unstressed
         else:
             u, t = point.u, point.t
         small = float(np.abs(u).max(initial=0.0)) < AT_REST

@@ -60,7 +60,7 @@ def states_of(s: Scaled, u: Array, t: Array) -> PairStates:
     slips = s.rough & (size > s.cone.strength(mapped[:, 0])) & (size > 0)
     direction = np.where(slips[:, None], -w[:, 1:] / np.where(slips, size, 1.0)[:, None], 0.0)
     crushed = s.cone.capped & (mapped[:, 0] >= s.cone.cap)
-    opened = ~J.any(axis=(1, 2)) & (mapped[:, 0] <= 0.0)
+    opened = ~J.any(axis=(1, 2)) & (mapped[:, 0] <= -s.cone.tension)
     normal = np.where(crushed, Normal.CRUSHED, np.where(opened, Normal.OPEN, Normal.CLOSED))
     return PairStates(normal.astype(np.int8), direction * ~opened[:, None])
 
@@ -88,6 +88,7 @@ def finish(
     rounds: int = 20,
     patience: int = STALE,
     least: bool = True,
+    delta: float = DELTA,
 ) -> Finished:
     """Turn a point close to a solution into the solution, if Newton's method converges.
 
@@ -104,6 +105,8 @@ def finish(
         How many of them in a row may bring no smaller residual.
     least : bool
         Whether forces that are not unique are the least of all; otherwise those near to the point.
+    delta : float
+        Compliance added to pairs of mean area in the factorised matrix, scaled units.
     """
     error, laws = natural_residual(s, u, t)
     best, stale, solves = (u, t, error, laws), 0, 0
@@ -111,7 +114,7 @@ def finish(
         if k >= rounds and not best[2] <= EXACT:
             break
         force, length = sizes(u, t)
-        moved = _newton(s, u, t, rho * force / length)
+        moved = _newton(s, u, t, rho * force / length, delta)
         if moved is None:
             break
         u, t = moved
@@ -127,12 +130,41 @@ def finish(
     return least_forces(s, found) if least and error <= EXACT else found
 
 
-def _newton(s: Scaled, u: Array, t: Array, rho: float) -> tuple[Array, Array] | None:
+def stuck(s: Scaled, delta: float) -> tuple[Array, Array] | None:
+    """Return the point (u, t) at which every pair sticks, whatever its strength; forces left open are the least.
+
+    Parameters
+    ----------
+    s : Scaled
+        In forces that are not shifted, so that those of least norm are the least.
+    delta : float
+        Compliance added to pairs of mean area in the factorised matrix, scaled units.
+    """
+    u, t = np.zeros_like(s.f), np.zeros_like(s.x)
+    w, J = _trial(s, u, t, 1.0), np.zeros((s.pairs, s.dim, s.dim))
+    J[:] = np.eye(s.dim)
+    J[~s.rough, 1:, :] = 0.0
+    return _step(s, (u, t), (w, J), 1.0, delta)
+
+
+def _newton(s: Scaled, u: Array, t: Array, rho: float, delta: float) -> tuple[Array, Array] | None:
     """Return the point after one Newton step; None where the matrix cannot be factorised."""
     w = _trial(s, u, t, rho)
     mapped, J = s.cone.project(w, s.dilatancy), _derivative(s, w)
+    moved = _step(s, (u, t), (mapped, J), rho, delta)
+    if moved is not None:
+        given = ~J.any(axis=(1, 2))
+        moved[1][given] = mapped[given]  # open: exactly nothing, or the tensile strength
+    return moved
+
+
+def _step(
+    s: Scaled, at: tuple[Array, Array], law: tuple[Array, Array], rho: float, delta: float
+) -> tuple[Array, Array] | None:
+    """Solve the linear equations of a point, its mapped forces (m, d) and their derivative (m, d, d)."""
+    (u, t), (mapped, J) = at, law
     eye = np.eye(s.dim)
-    soft = s.compliance + (DELTA / s.share)[:, None]
+    soft = s.compliance + (delta / s.share)[:, None]
     H = eye - J * (1.0 - rho * s.compliance)[:, None, :]
     B = rho * J
     try:
@@ -157,6 +189,4 @@ def _newton(s: Scaled, u: Array, t: Array, rho: float) -> tuple[Array, Array] | 
         least, kept = worst, (du, dt)
         if worst < 1e-15:
             break
-    u, t = u + kept[0], t + kept[1]
-    t[~J.any(axis=(1, 2))] = 0.0  # open: exactly nothing
-    return u, t
+    return u + kept[0], t + kept[1]

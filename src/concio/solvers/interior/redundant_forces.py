@@ -3,16 +3,18 @@ r"""Forces that equilibrium and the joint laws leave open: the least of them, th
 Where pairs are redundant (a node or an edge in which several blocks meet) an exact answer has forces of which a part
 does no work at all: with displacements u, and so every K u, given, what is left to choose is
 
-.. math:: \min \tfrac12 \sum_k |t_k|^2 / A_k, \qquad C^T t = C^T t^*, \quad t_k \in S_k(u) ,
+.. math:: \min \tfrac12 \sum_k |t_k - t^0_k|^2 / A_k, \qquad C^T t = C^T t^*, \quad t_k \in S_k(u) ,
 
-with t* the forces found, A the tributary areas, and S_k(u) the forces that Coulomb's law allows at these displacements:
-none where the pair is open, those of full friction against the slip where it slips, its whole cone where it does not
-move. This is strictly convex, so that there is one answer, which depends on nothing but the structure.
+with t* the forces found, t0 those of pairs that carry nothing (zero, or the shift that tensile strength brings, so that
+a strength which is not reached changes no force), A the tributary areas, and S_k(u) the forces that Coulomb's law
+allows at these displacements: none where the pair is open, those of full friction against the slip where it slips, its
+whole cone where it does not move. This is strictly convex, so that there is one answer, which depends on nothing but
+the structure.
 
 It concerns few pairs. One that meets an unknown which no other pair meets has its force by equilibrium; taking such
 pairs away, again and again, leaves the *core* of those that are entangled. For the core the dual is solved,
 
-.. math:: t_k = P_k(-A_k\, C_k v), \qquad C^T (t(v) - t^*) = 0 ,
+.. math:: t_k = P_k(t^0_k - A_k\, C_k v), \qquad C^T (t(v) - t^*) = 0 ,
 
 P the projection onto S_k: the equations of a concave function with a continuous gradient, by Newton's method with a
 line search. Where it does not converge the forces stay as they were found.
@@ -73,7 +75,7 @@ def least_forces(s: Scaled, found: Finished) -> Finished:
     rows = (core[:, None] * s.dim + np.arange(s.dim)).ravel()
     C = sp.csr_array(s.C[rows])
     touched = np.unique(C.indices)
-    t = _least(sp.csr_array(C[:, touched]), sets, s.share[core], found.t[core], force)
+    t = _least(sp.csr_array(C[:, touched]), sets, s.share[core], found.t[core], s.unstressed[core], force)
     if t is None:
         return found
     every = found.t.copy()
@@ -86,7 +88,7 @@ def least_forces(s: Scaled, found: Finished) -> Finished:
 
 @dataclass(frozen=True, eq=False)
 class _Sets:
-    """Forces (c, d) that pairs may have: their cones, or rays along (1, -mu d) from (0, -c d) where they slip."""
+    """Forces (c, d) that pairs may have: their cones, or where they slip rays along (1, -mu d) from tension -T on."""
 
     cone: Cone
     slips: Array
@@ -103,11 +105,13 @@ class _Sets:
         t[~self.rough, 1:] = 0.0
         J[~self.rough, 1:] = J[~self.rough, :, 1:] = 0.0
         ray = self.ray
-        start = np.column_stack([np.zeros(len(w)), -self.cone.cohesion[:, None] * self.direction])
+        tension = self.cone.tension
+        start = np.column_stack([-tension, -self.cone.spare[:, None] * self.direction])
         square = (ray * ray).sum(axis=1)
         along = ((w - start) * ray).sum(axis=1) / square
-        t[self.slips] = (start + np.clip(along, 0.0, self.cone.cap)[:, None] * ray)[self.slips]
-        inside = (along > 0) & (along < self.cone.cap)
+        most = self.cone.cap + tension
+        t[self.slips] = (start + np.clip(along, 0.0, most)[:, None] * ray)[self.slips]
+        inside = (along > 0) & (along < most)
         J[self.slips] = (ray[:, :, None] * ray[:, None, :] * (inside / square)[:, None, None])[self.slips]
         return t, J
 
@@ -151,15 +155,17 @@ def _entangled(s: Scaled, chosen: Array, slips: Array, direction: Array) -> Arra
     return np.flatnonzero(left)
 
 
-def _least(C: sp.csr_array, sets: _Sets, share: Array, given: Array, force: float) -> Array | None:
-    """Return the least forces (c, d) with the resultants C't of those given; None where Newton's method fails."""
+def _least(
+    C: sp.csr_array, sets: _Sets, share: Array, given: Array, middle: Array, force: float
+) -> Array | None:
+    """Return the forces (c, d) nearest to ``middle`` with the resultants C't of those given; None where it fails."""
     c, d = given.shape
     wanted = C.T @ given.ravel()
 
     def at(v: Array) -> tuple[Array, Array, Array, float]:
         strain = (C @ v).reshape(c, d)
-        t, J = sets.project(-share[:, None] * strain)
-        value = float((t * t / (2 * share[:, None]) + strain * (t - given)).sum())
+        t, J = sets.project(middle - share[:, None] * strain)
+        value = float(((t - middle) ** 2 / (2 * share[:, None]) + strain * (t - given)).sum())
         return t, J, C.T @ t.ravel() - wanted, value
 
     v = np.zeros(C.shape[1])

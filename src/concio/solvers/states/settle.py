@@ -179,10 +179,11 @@ class _Run:
     def least_norm(self, found: Finished) -> Finished:
         """Return the answer with the least-norm forces among those of its states, if these obey the joint laws.
 
-        Refinement from zero forces, on the factor of these very states, ends at the least norm; the displacements are
-        the same. The springs of loose unknowns are anchored anew at the answer, which takes their last influence out.
+        Refinement from pairs that carry nothing, on the factor of these very states, ends at the least norm; the
+        displacements are the same. The springs of loose unknowns are anchored anew at the answer, which takes their
+        last influence out.
         """
-        return self._from(found, np.zeros_like(found.t), own=True) or self.near(found)
+        return self._from(found, self.s.unstressed, own=True) or self.near(found)
 
     def near(self, found: Finished) -> Finished:
         """Return the answer refined once more from its own forces, springs anchored at it, where that can help."""
