@@ -129,10 +129,75 @@ def test_a_tie_that_a_moving_support_stretches_breaks_in_time(seed, method):
     found = run_path(model, stages, method=method)
     (load,) = found.group_loads()
     assert found.certified
-    assert load.end * times == pytest.approx(1.0, rel=1e-3)  # hard joints were lent compliance
-    assert found.result().ties.tension[0] == pytest.approx(k * far, rel=1e-5)
-    assert found.verdict.outcome is Outcome.INCOMPLETE
+    (breaks,) = [e for e in found.events if e.kind == "breaks"]
+    assert breaks.parameter * times == pytest.approx(1.0, rel=1e-3)  # hard joints were lent compliance
+    assert found.result(breaks.step).ties.tension[0] == pytest.approx(k * far, rel=1e-5)
     assert [name for name, _ in found.broken_ties] == ["rod"]
+    assert load.end == 1.0, "friction holds the block without it, and the path goes on"
+    assert found.result().ties.tension[0] == 0.0
+    assert [name for name, _ in found.result().broken_ties] == ["rod"]
+    assert found.verdict.outcome is Outcome.HOLDS
+    assert "breaks on the way" in found.sentence
+
+
+@pytest.mark.parametrize("method", ["events", "steps"])
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_path_goes_on_with_the_ties_that_are_left(seed, method):
+    """The second tie takes over what the first one carried: its stretch is what is left over its stiffness."""
+    rng = np.random.default_rng(seed)
+    model, friction, k, far = drawn(rng)
+    times = float(rng.uniform(2.0, 8.0))
+    second = replace(model.ties[0], name="second", stiffness=times * k, break_elongation=None)
+    load = friction + float(rng.uniform(1.3, 3.0)) * (1 + times) * k * far
+    found = run_path(replace(model, ties=(model.ties[0], second)), [DEAD, Stage("pull", {"live": load})], method=method)
+    assert found.complete
+    assert found.certified
+    assert found.energy_error <= 1e-6
+    (breaks,) = [e for e in found.events if e.kind == "breaks"]
+    at = found.result(breaks.step)
+    assert breaks.parameter * load == pytest.approx(friction + (1 + times) * k * far, rel=1e-6)
+    assert at.ties.elongation[0] == pytest.approx(far, rel=1e-6)
+    end = found.result()
+    assert end.ties.tension[0] == 0.0
+    assert end.ties.elongation[1] == pytest.approx((load - friction) / (times * k), rel=1e-5)
+    assert end.certificate.certified
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_under_the_motion_of_a_point_the_load_falls_and_the_path_goes_on(seed):
+    """Where the tie lets go the point stays: friction is all that is left."""
+    rng = np.random.default_rng(seed)
+    model, friction, k, far = drawn(rng)
+    most = friction + k * far
+    point = concio.ControlPoint("b", (0.5, 0.002))
+    found = run_path(model, [DEAD, Stage("pull", {"live": 3.0 * most}, control=point, until=3.0 * far)])
+    _, load = found.load()
+    moved, _ = found.curve(point, 1)
+    assert load.max() == pytest.approx(most, rel=1e-6)
+    assert load[-1] == pytest.approx(friction, rel=1e-6)
+    assert moved[-1] == pytest.approx(3.0 * far, rel=1e-6)
+    k_break = int(np.argmax(load))
+    assert moved[k_break + 1] == pytest.approx(moved[k_break], rel=1e-6), "the point stays as the tie lets go"
+    assert (np.diff(moved) >= -1e-9 * far).all()
+    assert found.certified
+    assert found.energy_error <= 1e-6
+    assert found.verdict.outcome is Outcome.INCOMPLETE, "the load was not reached"
+
+
+def test_ties_break_one_after_the_other():
+    """Each takes over what the last one carried, and none can: all break at one load, and nothing is left."""
+    model, friction, k, far = drawn(np.random.default_rng(3))
+    ties = tuple(replace(model.ties[0], name=f"t{i}", break_elongation=(1 + 0.1 * i) * far) for i in range(3))
+    most = friction + 3 * k * far
+    found = run_path(replace(model, ties=ties), [DEAD, Stage("pull", {"live": 2.0 * most})])
+    assert [name for name, _ in found.broken_ties] == ["t0"], "what follows is no equilibrium nearby"
+    assert found.group_loads()[0].end == pytest.approx(most, rel=1e-6)
+    strong = replace(ties[2], stiffness=9 * k, break_elongation=None)
+    load = friction + 30 * k * far
+    held = run_path(replace(model, ties=(*ties[:2], strong)), [DEAD, Stage("pull", {"live": load})])
+    assert [name for name, _ in held.broken_ties] == ["t0", "t1"]
+    assert held.complete
+    assert held.result().ties.elongation[2] == pytest.approx(30 / 9 * far, rel=1e-4)
 
 
 def test_a_tie_that_yields_is_said_to_yield():

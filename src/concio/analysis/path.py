@@ -20,8 +20,9 @@ import numpy as np
 
 from concio.analysis.engine import by_its_engine
 from concio.analysis.lent_compliance import SHEAR_TO_NORMAL, lent_assembly
+from concio.analysis.path_breaks import marked, released, without_gone
 from concio.analysis.path_result import NamedEvent, PathResult, PathStep, control_functional, named_event
-from concio.analysis.path_ties import breaking, until_a_tie_breaks
+from concio.analysis.path_ties import breaking, tie_name, until_a_tie_breaks
 from concio.arguments import closest, strict
 from concio.contact.assembly import PRESTRESS, Assembly
 from concio.contact.factors import load_factor
@@ -116,7 +117,7 @@ def run_path(
         path = _linear(assembly, factors, target)
         start = then = assembly.problem(factors)
         state = _at_rest(path) if state is None else replace(state, parameter=0.0)
-        found = _walk(
+        found = _past_breaks(
             assembly, path, state, stage, (factors, target), method, solver, max_events, brittle, progress, notes
         )
         first = len(steps)
@@ -142,6 +143,36 @@ def run_path(
     )  # fmt: skip
 
 
+def _past_breaks(
+    assembly: Assembly, path: LinearPath, state: PathState, stage: Stage,
+    ends: tuple[Mapping[str, float], Mapping[str, float]], method: str, solver: str, max_events: int, brittle: bool,
+    progress: ProgressCallback | None, notes: list[str],
+) -> StepPath:  # fmt: skip
+    """Follow one stage, and go on without each tie that breaks as far as there is an equilibrium without it."""
+    control = None if stage.control is None else control_functional(assembly, stage.control)[0]
+    until = None if control is None else float(control @ state.displacement) + stage.until
+    whole: StepPath | None = None
+    while True:
+        left = without_gone(path, state, assembly.ties)
+        found = _walk(
+            assembly, left, state, stage, ends, method, solver, max_events, brittle, progress, notes, (control, until)
+        )
+        whole = found if whole is None else whole.followed_by(found)
+        if found.outcome is not Outcome.BROKEN:
+            return whole
+        last = marked(assembly, whole.states[-1], whole.events[-1].pair)
+        whole = replace(whole, states=(*whole.states[:-1], last))
+        after = released(without_gone(path, last, assembly.ties), last, control, find(solver))
+        if after is None:
+            return whole
+        name = tie_name(assembly, whole.events[-1].pair)
+        fell = "" if control is None else f", where the load falls to {after.parameter:.6g} of the stage's"
+        told = f"stage '{stage.name}': tie '{name}' breaks at {last.parameter:.6g}{fell}"
+        notes.append(f"{told}; the path goes on without it")
+        whole = replace(whole, states=(*whole.states, after))
+        state = after
+
+
 def _walk(
     assembly: Assembly,
     path: LinearPath,
@@ -154,12 +185,13 @@ def _walk(
     brittle: bool,
     progress: ProgressCallback | None,
     notes: list[str],
+    controlled: tuple[Array | None, float | None],
 ) -> StepPath:
-    """Follow one stage, by events and where there are too many on in steps; ``ends`` are its load factors."""
-    control, until = None, 1.0
-    if stage.control is not None:
-        control, _ = control_functional(assembly, stage.control)
-        until = float(control @ state.displacement) + stage.until
+    """Follow one stage, by events and where there are too many on in steps; ``ends`` are its load factors.
+
+    ``controlled`` is the functional that is controlled, with the value to reach; None for the load.
+    """
+    control, until = controlled[0], 1.0 if controlled[1] is None else controlled[1]
     if method == "steps":
         if control is not None:
             msg = f"stage '{stage.name}' is controlled by a displacement, which steps cannot follow"
@@ -181,8 +213,7 @@ def _walk(
     )
     rest = follow_in_steps(path, exact.end, until=until, steps=stage.steps, solver=find(solver), progress=progress)
     rest = until_a_tie_breaks(assembly, path, rest, *ends, solver=solver, exact=False)
-    moved = tuple(replace(e, step=e.step + len(exact.states) - 1) for e in rest.events)
-    return StepPath(exact.states + rest.states[1:], exact.events + moved, rest.outcome, rest.direction)
+    return replace(found, states=exact.states).followed_by(rest)
 
 
 def _finite_steps(stage: Stage, exact: EventPath) -> list[str]:

@@ -166,13 +166,18 @@ class PathResult(Shown):
 
     @property
     def broken_ties(self) -> tuple[tuple[str, float], ...]:
-        """The tie that breaks where the path ends, with how far it is stretched [m]; empty where none does."""
-        if self.outcomes[-1] is not Outcome.BROKEN:
-            return ()
-        last, own = self.steps[-1], self.assembly.ties.tolist()
-        far = self.assembly.elongations(last.state.displacement, last.factors)
-        k = own.index(self.events[-1].pair)
-        return ((self.assembly.model.ties[k].name, float(far[k])),)
+        """The ties that break on the path, in order, with how far each is stretched there [m]."""
+        return self._broken_before(len(self.steps))
+
+    def _broken_before(self, step: int) -> tuple[tuple[str, float], ...]:
+        """Return the ties that break in steps before one, with how far each is stretched there [m]."""
+        own, found = self.assembly.ties.tolist(), []
+        for event in self.events:
+            if event.kind == "breaks" and event.pair in own and event.step < step:
+                at, k = self.steps[event.step], own.index(event.pair)
+                far = self.assembly.elongations(at.state.displacement, at.factors)
+                found.append((self.assembly.model.ties[k].name, float(far[k])))
+        return tuple(found)
 
     @property
     def never_applied(self) -> tuple[str, ...]:
@@ -258,7 +263,8 @@ class PathResult(Shown):
         status = Status.SOLVED if chosen.certificate.certified else Status.GAVE_UP
         moved = path_kinematics(LinearPath(problem, np.zeros(problem.unknowns)), state)
         solution = replace(judged, kinematics=moved, certificate=chosen.certificate, status=status)
-        return Result(self.assembly, dict(chosen.factors), solution, {"total": 0.0})
+        gone = self._broken_before(range(len(self.steps))[step])
+        return Result(self.assembly, dict(chosen.factors), solution, {"total": 0.0}, broken_ties=gone)
 
 
 def control_functional(assembly: Assembly, point: ControlPoint) -> tuple[Array, Callable[[Mapping[str, float]], float]]:

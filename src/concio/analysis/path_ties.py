@@ -1,4 +1,4 @@
-"""Ties that break on a load path: it is followed to the state in which the first of them does."""
+"""Ties that break on a load path: the state in which the first of them does."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from concio.analysis.tie_forces import BROKEN, break_elongations
 from concio.contact.assembly import Assembly
+from concio.problem.solution import Solver
 from concio.solvers.methods import find
 from concio.solvers.path.apart import between
 from concio.solvers.path.record import Event, Outcome
@@ -15,6 +16,12 @@ from concio.solvers.path.state import LinearPath, PathState
 from concio.solvers.path.step_path import StepPath, follow_in_steps
 
 Array = np.ndarray
+
+LOCATED = 1e-8
+"""Share of its elongation at break within which a tie breaks, on a path in steps."""
+
+TRIES = 60
+"""Load steps at most to find that."""
 
 
 def breaking(
@@ -37,7 +44,12 @@ def shares(assembly: Assembly, state: PathState, start: Mapping[str, float], end
     """Return how far each tie (k,) is stretched, as a share of the elongation at which it breaks."""
     factors = {g: start[g] + state.parameter * (end[g] - start[g]) for g in start}
     found: Array = assembly.elongations(state.displacement, factors) / break_elongations(assembly)
-    return found
+    return found if state.broken is None else np.where(state.broken[assembly.ties], 0.0, found)
+
+
+def tie_name(assembly: Assembly, pair: int) -> str:
+    """Return the name of the tie that a pair stands for."""
+    return assembly.model.ties[int(np.flatnonzero(assembly.ties == pair)[0])].name
 
 
 def until_a_tie_breaks(
@@ -77,20 +89,43 @@ def until_a_tie_breaks(
     last = over[0]
     kept, events = found.states[:last], tuple(e for e in found.events if e.step < last)
     if not last:  # it begins with a tie that has broken
-        return StepPath(found.states[:1], (), Outcome.BROKEN, found.direction)
+        at, tie = found.states[0].parameter, int(assembly.ties[int(np.argmax(share(found.states[0])))])
+        return StepPath(found.states[:1], (Event(at, at, tie, "breaks", 0, 0),), Outcome.BROKEN, found.direction)
     before, after = found.states[last - 1 : last + 1]
     a, b = share(before), share(after)
     part = float(np.min(np.where(b >= 1 - BROKEN, (1 - a) / np.where(b > a, b - a, 1.0), np.inf)))
     finite = any(e.step == last and e.kind in ("jumps", "restarts") for e in found.events)
     breaking = between(path, before, after, part) if exact and not finite else None
     if breaking is None and not finite:
-        parameter = before.parameter + part * (after.parameter - before.parameter)
-        step = follow_in_steps(path, before, until=parameter, steps=1, solver=find(solver))
-        if step.outcome is Outcome.REACHED and (share(step.states[-1]) <= 1 + 1e-6).all():
-            breaking = step.states[-1]
+        breaking = _located(path, before, after, share, find(solver))
     states = (*kept, breaking) if breaking is not None else kept
     tie = int(assembly.ties[int(np.argmax(share(states[-1])))])
     at = states[-1].parameter
     return StepPath(
         states, (*events, Event(at, at, tie, "breaks", 0, len(states) - 1)), Outcome.BROKEN, found.direction
     )
+
+
+def _located(
+    path: LinearPath, before: PathState, after: PathState, share: Callable[[PathState], Array], solver: Solver
+) -> PathState | None:
+    """Return the state between two, by load steps from the first, in which a tie reaches where it breaks; or None.
+
+    Forces are no straight lines within a step: the load is looked for by bisection where secants do not close in.
+    """
+    low, high, best = before.parameter, after.parameter, None
+    a, b = float(share(before).max()), float(share(after).max())
+    for k in range(TRIES):
+        part = (1 - a) / (b - a) if k % 3 < 2 and b > a else 0.5
+        parameter = low + min(max(part, 0.01), 0.99) * (high - low)
+        step = follow_in_steps(path, before, until=parameter, steps=1, solver=solver)
+        if step.outcome is not Outcome.REACHED:
+            return best
+        most = float(share(step.states[-1]).max())
+        if most <= 1 + LOCATED:
+            best, low, a = step.states[-1], parameter, most
+            if most >= 1 - LOCATED:
+                return best
+        else:
+            high, b = parameter, most
+    return best

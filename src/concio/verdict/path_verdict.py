@@ -30,6 +30,7 @@ HEADLINES: dict[Outcome, str] = {
 """The answer in a few words."""
 
 HISTORY = "with Coulomb friction the order of the stages counts: another history may end elsewhere"
+SUDDEN = "a tie that breaks lets its force go at once: what that does to masses is not followed"
 QUASI_STATIC = "masses are not accelerated: what a sudden load, a fall or an impact does is not followed"
 
 
@@ -140,6 +141,8 @@ def _answer(found: PathResult, outcome: Outcome) -> str:
     parts += [_short(found, k) for k in found.short]
     if outcome is Outcome.HOLDS and (never := _idle(found)):
         parts.append(f"Never applied: {', '.join(never)}.")
+    gone = _broken(found)[:-1] if found.outcomes[-1] is Ended.BROKEN else _broken(found)
+    parts += [f"{_capital(line)}." for line in gone]
     parts += [f"{_capital(line)}." for line in joints_not_made(found.assembly.detection)]
     return " ".join(filter(None, parts))
 
@@ -163,17 +166,19 @@ def _ending(found: PathResult, outcome: Outcome) -> str:
         return f"Collapses in stage '{stage}': it carries no more than {most}{light}."
     if found.outcomes[-1] is Ended.LOST:
         return f"Lost in stage '{stage}': at least {most} is carried, and what follows is not known."
-    broken = "".join(f" {_capital(line)}." for line in _broken(found))
+    broken = "".join(f" {_capital(line)}." for line in _broken(found)[-1:])
     return f"Stopped in stage '{stage}', which was carried up to {most}.{broken}"
 
 
 def _broken(found: PathResult) -> tuple[str, ...]:
-    """Return a sentence on each tie that breaks where the path ends."""
-    units = found.assembly.model.report
+    """Return a sentence on each tie that breaks: those that the path goes on without, and the one where it ends."""
+    units, ties = found.assembly.model.report, found.broken_ties
+    last = len(ties) - 1 if found.outcomes[-1] is Ended.BROKEN else len(ties)
+    ends = "there, stretched by {}; without it no equilibrium was found nearby"
+    on = "on the way, stretched by {}; the path goes on without it"
     return tuple(
-        f"tie '{name}' breaks there, stretched by {units.text('motion', far, 4)}; what the structure does without it "
-        "was not followed"
-        for name, far in found.broken_ties
+        f"tie '{name}' breaks {(ends if k == last else on).format(units.text('motion', far, 4))}"
+        for k, (name, far) in enumerate(ties)
     )
 
 
@@ -233,6 +238,8 @@ def _limits(found: PathResult) -> tuple[str, ...]:
             ):
                 lines.append(f"stage '{found.stages[k].name}': {_beyond(load)}")
     lines += story(found)
+    if found.broken_ties:
+        lines.append(SUDDEN)
     if bool((found.assembly.laws.friction > 0).any()):
         lines.append(HISTORY)
     return (*lines, QUASI_STATIC)
@@ -274,8 +281,9 @@ def _next_steps(found: PathResult, outcome: Outcome) -> tuple[str, ...]:
             "Ask without a control point whether the load itself is reached: the path then ends where it is not.",
             "'concio limit' gives a bound that needs no path.",
         )
-    if found.broken_ties:
+    if found.outcomes[-1] is Ended.BROKEN:
         return (
+            "Put the load on under the motion of a point ('--point', '--until'): the load may fall as the tie breaks.",
             "Delete the tie from the model and follow the path again: what remains has to carry the loads alone.",
             "'concio push' follows the motion past the break.",
         )

@@ -52,9 +52,10 @@ def follow_parts(
         See :func:`concio.solvers.path.event_path.follow`; ``max_events`` is that of each part. A control that belongs
         to several parts makes them one.
     """
-    parts = parts_of(path.problem)
+    parts = [part for part in parts_of(path.problem) if part.unknowns.size]
     leader = _leader(parts, control)
-    if len(parts) == 1 or (control is not None and leader is None):
+    alone = len(parts) == 1 and parts[0].pairs.size == path.problem.pairs
+    if alone or (control is not None and leader is None):
         return follow(
             path, start, until=until, control=control, max_events=max_events, progress=progress, stop=stop
         )

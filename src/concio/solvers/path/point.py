@@ -186,6 +186,7 @@ class PathPoint:
             states=PairStates.plane(e.contact.copy(), e.sliding),
             slip=slip[:, None] * length,
             offset=offset * length,
+            broken=self.state.broken,
         )
         work, dissipation = energy_of_step(self.path, self.state, after)
         after = replace(after, work=self.state.work + work, dissipation=self.state.dissipation + dissipation)

@@ -24,7 +24,7 @@ class Outcome(Enum):
         "The path was lost: no certified state was found beyond this point, and that there is none was not shown. "
         "The structure carries at least this much."
     )
-    BROKEN = "A tie has broken: what the structure does without it was not followed."
+    BROKEN = "A tie has broken, and no equilibrium without it was found nearby."
     TOO_MANY = "There were more events than allowed."
     CANCELLED = "Stopped on request."
 

@@ -16,6 +16,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import scipy.sparse as sp
 
 from concio.errors import InputError
 from concio.problem.certificate import Certificate, Kinematics, certify
@@ -27,6 +28,9 @@ from concio.representation import short_repr
 
 OPEN, CLOSED, CRUSHED = int(Normal.OPEN), int(Normal.CLOSED), int(Normal.CRUSHED)
 """Normal states of a pair: at its tensile strength and free to open; in contact; at its cap."""
+
+AWAY = 1.0
+"""Gap of a tie that is gone, which nothing changes [m]."""
 
 STICK = 0
 """Sign of the slip of a plane pair that does not slip; +1 and -1 slip in that direction."""
@@ -115,7 +119,8 @@ class PathState:
     work, dissipation : float
         Work of loads and obstacles, and energy dissipated, since the path began [kN m].
     broken : (m,) boolean array, optional
-        Pairs that have lost their tensile strength and cohesion; None where none can.
+        Pairs that have lost their tensile strength and cohesion, and ties that are gone, from this state on; None where
+        there are none.
     """
 
     parameter: float
@@ -198,12 +203,21 @@ def energy_of_step(path: LinearPath, before: PathState, after: PathState) -> tup
 
 
 def weakened(problem: ContactProblem, broken: Array | None) -> ContactProblem:
-    """Return the problem without the tensile strength and the cohesion of broken pairs (m,)."""
+    """Return the problem without the tensile strength and the cohesion of broken pairs (m,).
+
+    What has neither and is broken is a tie: it is gone, a pair that no motion closes.
+    """
     if broken is None or not broken.any():
         return problem
     law = problem.laws
+    gone = broken & (law.tension == 0) & (law.cohesion == 0)
     tension, cohesion = np.where(broken, 0.0, law.tension), np.where(broken, 0.0, law.cohesion)
-    return replace(problem, laws=replace(law, tension=tension, cohesion=cohesion))
+    found = replace(problem, laws=replace(law, tension=tension, cohesion=cohesion))
+    if not gone.any():
+        return found
+    C_n = sp.csr_array(sp.diags_array((~gone).astype(float)) @ problem.C_n)
+    C_n.eliminate_zeros()
+    return replace(found, C_n=C_n, gap=np.where(gone, AWAY, problem.gap))
 
 
 def exceeded(path: LinearPath, state: PathState) -> Array:

@@ -61,6 +61,11 @@ class StepPath:
     outcome: Outcome
     direction: Array
 
+    def followed_by(self, rest: StepPath) -> StepPath:
+        """Return this path with one that begins in its last state."""
+        moved = tuple(replace(e, step=e.step + len(self.states) - 1) for e in rest.events)
+        return StepPath(self.states + rest.states[1:], self.events + moved, rest.outcome, rest.direction)
+
 
 def follow_in_steps(
     path: LinearPath,
