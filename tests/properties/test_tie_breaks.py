@@ -184,6 +184,19 @@ def test_under_the_motion_of_a_point_the_load_falls_and_the_path_goes_on(seed):
     assert found.verdict.outcome is Outcome.INCOMPLETE, "the load was not reached"
 
 
+@pytest.mark.parametrize("power", range(-1, 8))
+def test_a_soft_tie_beside_hard_joints_is_followed_corner_by_corner(power):
+    """All that holds the sliding block is the tie, much softer than the compliance lent to the joints: no restarts."""
+    model, friction, _, _ = drawn(np.random.default_rng(0))
+    k = 10.0**power
+    loose = replace(model, ties=(replace(model.ties[0], stiffness=k, break_elongation=None),))
+    found = run_path(loose, [DEAD, Stage("pull", {"live": 5.0 * friction})], max_events=300)
+    assert found.complete
+    assert found.certified
+    assert not [e for e in found.events if e.kind in ("restarts", "jumps")]
+    assert found.result().ties.elongation[0] == pytest.approx(4.0 * friction / k, rel=1e-3)
+
+
 def test_ties_break_one_after_the_other():
     """Each takes over what the last one carried, and none can: all break at one load, and nothing is left."""
     model, friction, k, far = drawn(np.random.default_rng(3))

@@ -11,6 +11,9 @@ from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array
 from concio.solvers.path.state import LinearPath
 
+APART = 1e4
+"""Ratio of compliances above which the unit of length lies between them."""
+
 
 @dataclass(frozen=True, eq=False)
 class ScaledData:
@@ -58,19 +61,28 @@ class ScaledPath:
 
     @classmethod
     def of(cls, path: LinearPath) -> ScaledPath:
-        """Choose the units: a typical nodal or joint force, and the displacement it causes."""
+        """Choose the units: a typical nodal or joint force, and the displacement it causes.
+
+        Where joints are much softer than what is typical, such as a tie beside joints of rigid blocks that were lent a
+        compliance, the unit lies between both. Else the stiffness of the tie, which may be all that holds the
+        structure as it slides, would be less than what is lent to the factors, and would pass for none.
+        """
         problem = path.problem
         loads = np.abs(np.concatenate([problem.f, path.load_rate]))
         force = float(loads[loads > 0].mean()) if loads.any() else 1.0
         diagonal = problem.K.diagonal()
         compliance = problem.laws.normal_compliance
+        soft = compliance[compliance > 0]
         if (diagonal > 0).any():
-            length = force / float(np.median(diagonal[diagonal > 0]))
-        elif (compliance > 0).any():
-            length = force * float(np.median(compliance[compliance > 0]))
+            typical = 1.0 / float(np.median(diagonal[diagonal > 0]))
+        elif soft.size:
+            typical = float(np.median(soft))
         else:
-            length = 1.0
-        return cls(path, force, length)
+            return cls(path, force, 1.0)
+        softest = float(soft.max(initial=0.0))
+        if softest > APART * typical:
+            typical = float(np.sqrt(typical * softest))
+        return cls(path, force, force * typical)
 
     @cached_property
     def data(self) -> ScaledData:
