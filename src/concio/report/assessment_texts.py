@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 PART = {
     "above": r"above z = (\S+) m(?: of (.*))?",
     "beyond": r"beyond (\S+) m along the push(?: of (.*))?",
+    "past": r"past (\S+) m across the push(?: of (.*))?",
+    "short_of": r"short of (\S+) m across the push(?: of (.*))?",
     "alone": r"('.*') and what it touches",
 }
 """Names of parts of a structure, as :class:`concio.analysis.seismic.parts.Part` gives them."""

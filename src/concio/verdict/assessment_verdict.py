@@ -191,8 +191,11 @@ class _Words:
         named = len(found.arguments.get("mechanisms") or {}) * ways
         followed = len(found.mechanisms) + len(found.others)
         limits = [*joints_not_made(found.assembly.detection)]
+        places = {kind: found.places.get(kind, (0, 0))[0] for kind in ("levels", "openings", "returns", "changes")}
         limits.append(self.say("sought", sought=found.sought, named=named, parts=found.sought - named - ways,
-                               followed=followed))  # fmt: skip
+                               followed=followed, **places))  # fmt: skip
+        limits += [self.say("left_out", sought=a, there=b, what=self.say(f"what_{kind}"))
+                   for kind, (a, b) in found.places.items() if a < b]  # fmt: skip
         worst = found.worst
         own = worst is not None and worst.name in (found.arguments.get("mechanisms") or {})
         if worst is not None and worst.found.moving is not None and not own:

@@ -34,8 +34,15 @@ EN = {
     "proof_associated": "alpha_0 of '{name}' is an upper bound only: the associated limit, with a duality gap of "
     "{gap}; no collapse state of Coulomb friction was found.",
     "sought": "searches made: {sought}, of which {named} of named mechanisms and {parts} in other parts of the "
-    "structure (above every level at which blocks meet, beyond lines of openings and returns); followed: "
-    "{followed}; the others begin to move only at accelerations beyond those of these",
+    "structure: above levels at which blocks meet ({levels}), beside lines of openings ({openings}), at faces of "
+    "returns and cross walls ({returns}), beyond other lines at which it changes ({changes}); followed: {followed}; "
+    "the others begin to move only at accelerations beyond those of these",
+    "left_out": "sought at {sought} of {there} {what}: the structure is too large for all; name parts of it to seek "
+    "more",
+    "what_levels": "levels",
+    "what_openings": "lines of openings",
+    "what_returns": "faces of returns",
+    "what_changes": "other lines",
     "part": "the weakest of all is one in which only some blocks move, {bodies}; the search among all motions ended "
     "at a larger multiplier",
     "brittle": "tie '{tie}' breaks before it yields: it counts with the {force} kN it has then, not with its yield "
@@ -54,7 +61,7 @@ EN = {
     "open_curve": "'{name}', push {way}, at {levels}: its curve does not tell ({reason})",
     "open_bound": "whether '{name}', push {way}, begins to move below {alpha}, which is an upper bound only",
     "open_tie": "tie '{tie}', which has no yield force: it was taken to pull with up to {force} kN",
-    "open_unseen": "whether {names} {verb} held: the loads there are less than {share} of those of the structure "
+    "open_unseen": "whether anything holds {names}: the loads there are less than {share} of those of the structure "
     "around, which is as far as residuals tell",
     "open_locked": "'{name}', push {way}: with joints that open as they slide it is locked, with Coulomb friction "
     "that is no answer, and no collapse state was found",
@@ -98,8 +105,15 @@ IT = {
     "proof_associated": "alpha_0 di «{name}» è solo un limite superiore: quello associato, con uno scarto di "
     "dualità di {gap}; non è stato trovato alcuno stato di collasso con attrito di Coulomb.",
     "sought": "ricerche fatte: {sought}, di cui {named} di meccanismi con nome e {parts} in altre parti della "
-    "struttura (sopra ogni quota in cui i blocchi si incontrano, oltre le linee di aperture e muri di spina); "
-    "{followed} meccanismi sono stati seguiti, gli altri si muovono solo ad accelerazioni oltre le loro",
+    "struttura: sopra le quote in cui i blocchi si incontrano ({levels}), accanto alle linee delle aperture "
+    "({openings}), alle facce di ritorni e muri di spina ({returns}), oltre altre linee in cui la struttura cambia "
+    "({changes}); {followed} meccanismi sono stati seguiti, gli altri si muovono solo ad accelerazioni oltre le loro",
+    "left_out": "cercato in {sought} di {there} {what}: la struttura è troppo grande per tutte; per cercare altrove "
+    "nominarne le parti",
+    "what_levels": "quote",
+    "what_openings": "linee di aperture",
+    "what_returns": "facce di ritorni",
+    "what_changes": "altre linee",
     "part": "il più debole di tutti è uno in cui si muovono solo alcuni blocchi, {bodies}; la ricerca fra tutti i "
     "moti finiva a un moltiplicatore maggiore",
     "brittle": "la catena «{tie}» si rompe prima di snervarsi: conta per i {force} kN che ha allora, non per lo "

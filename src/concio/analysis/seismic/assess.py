@@ -154,7 +154,7 @@ def assess(
     return Assessment(
         model, site, wanted, found.shown, found.locked, knowledge, factor, reason, curve,
         _notes(site, wanted, knowledge, factor, reason), arguments, others=found.others, sought=found.sought,
-        parts=found.parts, bounds=found.bounds, acting=acting, assembly=searches[0].assembly,
+        parts=found.parts, places=found.places, bounds=found.bounds, acting=acting, assembly=searches[0].assembly,
     )  # fmt: skip
 
 

@@ -54,6 +54,9 @@ class Assessment(Shown):
         Searches made, over all pushes.
     parts : tuple of str
         Parts that were searched unasked.
+    places : mapping of str to (int, int)
+        For "levels", "openings" (lines of them), "returns" (faces of them) and "changes" (other lines): how many were
+        sought at, and how many there are, over all pushes.
     bounds : mapping of str to LimitLoad
         For each push the associated limit over all motions: no multiplier of a collapse lies above it.
     acting : tuple of Acting
@@ -76,6 +79,7 @@ class Assessment(Shown):
     others: tuple[LocalMechanism, ...]
     sought: int
     parts: tuple[str, ...]
+    places: Mapping[str, tuple[int, int]]
     bounds: Mapping[str, LimitLoad]
     acting: tuple[Acting, ...]
     assembly: Assembly
@@ -159,6 +163,7 @@ class Assessment(Shown):
             ],
             "sought": self.sought,
             "parts": list(self.parts),
+            "sought_at": {kind: {"sought": a, "there": b} for kind, (a, b) in self.places.items()},
             "followed_beside": [m.summary() for m in self.others],
             "upper_bounds": {way: _number(bound.upper) for way, bound in self.bounds.items()},
             "attention": list(self.verdict.attention),

@@ -3,19 +3,25 @@
 The weakest mechanism of all is sought among all motions. Where joints slide, that search ends at one of several
 collapse states, and another may be weaker; and a mechanism with a larger multiplier may be worse off in its checks, as
 it starts higher or has less way to go. So mechanisms are sought in parts as well, while all other bodies are held:
-above every level at which courses meet, storeys, lintels and sills among them, and beyond the lines in plan or
-elevation at which the structure changes: a facade without its returns, a pier beside an opening. Where a model holds
-several structures that touch only what is fixed, each is searched for itself, so that none hides another.
+above every level at which courses meet, storeys, lintels and sills among them; beside every line of an opening and
+every face of a return or cross wall (:mod:`concio.analysis.seismic.layout`), on either side where it is a line across
+the push; beyond other lines along the push at which the structure changes. Where a model holds several structures that
+touch only what is fixed, each is searched for itself, so that none hides another. How many of each kind there are and
+how many were sought is told.
 """
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
+from concio.analysis.seismic.layout import leaves_of, openings_of, returns_of, spans_along
 from concio.contact.assembly import Assembly
 from concio.model.model import Model
 
@@ -24,8 +30,8 @@ Array = np.ndarray
 CHANGE = 0.02
 """A level or line at which the area of the bodies changes by more than this share is one of openings or returns."""
 
-MOST_LEVELS, MOST_LINES = 24, 4
-"""Levels, and lines, at most."""
+MOST_LEVELS, MOST_LINES, MOST_CHANGES = 24, 16, 4
+"""Levels, lines of openings and returns, and other lines, at most."""
 
 PAIRS = {2: 12_000, 3: 4_500}
 """Contact pairs times levels at most, but for :data:`LEAST` levels: in space a programme takes up to seconds."""
@@ -39,9 +45,10 @@ class Part:
 
     Parameters
     ----------
-    kind : {"above", "beyond", "alone"}
+    kind : {"above", "beyond", "past", "short of", "alone"}
+        "beyond" a line along the push; "past" and "short of" one across it.
     at : float
-        The level z, or the coordinate of the line along the push [m]; ``nan`` of a structure alone.
+        The level z, or the coordinate of the line along the push, or across it [m]; ``nan`` of a structure alone.
     bodies : tuple of int
     of : str
         Its first body where the model holds several structures.
@@ -58,11 +65,28 @@ class Part:
         whose = f" of '{self.of}'" if self.of else ""
         if self.kind == "alone":
             return f"'{self.of}' and what it touches"
-        where = f"above z = {self.at:.4g} m" if self.kind == "above" else f"beyond {self.at:.4g} m along the push"
-        return where + whose
+        if self.kind == "above":
+            return f"above z = {self.at:.4g} m{whose}"
+        return f"{self.kind} {self.at:.4g} m {'along' if self.kind == 'beyond' else 'across'} the push{whose}"
 
 
-def parts_of(assembly: Assembly, along: Array) -> tuple[Part, ...]:
+@dataclass(frozen=True)
+class Parts:
+    """Parts of a structure under a push, and how many places of each kind they stand for.
+
+    Parameters
+    ----------
+    parts : tuple of Part
+    sought, there : mapping of str to int
+        For "levels", "openings", "returns" and "changes" the levels or lines that were sought at, and those there are.
+    """
+
+    parts: tuple[Part, ...]
+    sought: Mapping[str, int]
+    there: Mapping[str, int]
+
+
+def parts_of(assembly: Assembly, along: Array) -> Parts:
     """Return the parts of a structure under a push.
 
     Parameters
@@ -77,17 +101,72 @@ def parts_of(assembly: Assembly, along: Array) -> tuple[Part, ...]:
     up[-1] = 1.0
     groups = _structures(assembly, free)
     most = max(min(MOST_LEVELS, PAIRS[model.dim] // max(len(pairs), 1)), LEAST)
-    levels = max(most // len(groups), 1)
+    each = max(most // len(groups), 1)
     found: dict[tuple[int, ...], Part] = {tuple(free.tolist()): Part("above", -np.inf, tuple(free.tolist()))}
+    sought, there = Counter[str](), Counter[str]()
+
+    def cut(group: tuple[int, ...], kind: str, axis: Array, at: float, of: str) -> None:
+        sign = -1.0 if kind == "short of" else 1.0
+        bodies = tuple(i for i in group if sign * (float(np.asarray(model.bodies[i].centroid) @ axis) - at) > 0)
+        if bodies:
+            found.setdefault(bodies, Part(kind, at, bodies, of))
+
     for group in groups[:most]:
         of = model.bodies[group[0]].name if len(groups) > 1 else ""
         found.setdefault(group, Part("alone", np.nan, group, of))
-        for kind, axis, count in (("above", up, levels), ("beyond", along, MOST_LINES)):
-            for at in _lines(model, list(group), axis, count, changes_only=kind == "beyond"):
-                bodies = tuple(i for i in group if float(np.asarray(model.bodies[i].centroid) @ axis) > at)
-                if bodies:
-                    found.setdefault(bodies, Part(kind, at, bodies, of))
-    return tuple(found.values())[1:]
+        levels = _lines(model, list(group), up, len(pairs) + MOST_LEVELS, changes_only=False)
+        kept = _lines(model, list(group), up, each, changes_only=False)
+        lines = _lines_of(model, group, along)
+        chosen = [lines[k] for k in _spread(list(range(len(lines))), MOST_LINES)]
+        changes = _lines(model, list(group), along, MOST_CHANGES, changes_only=True)
+        for at in kept:
+            cut(group, "above", up, at, of)
+        for line in chosen:
+            for kind in ("past", "short of") if line.across else ("beyond",):
+                cut(group, kind, line.axis, line.at, of)
+        for at in changes:
+            cut(group, "beyond", along, at, of)
+        sought.update({"levels": len(kept), "changes": len(changes), **Counter(line.kind for line in chosen)})
+        there.update({"levels": len(levels), "changes": len(changes), **Counter(line.kind for line in lines)})
+    return Parts(tuple(found.values())[1:], sought, there)
+
+
+@dataclass(frozen=True, eq=False)
+class _Line:
+    """A line of an opening or a return: its kind, axis, coordinate [m], and whether it lies across the push."""
+
+    kind: str
+    axis: Array
+    at: float
+    across: bool
+
+
+def _lines_of(model: Model, group: tuple[int, ...], along: Array) -> list[_Line]:
+    """Return the lines of all openings, returns and cross walls of a structure, those of one place once."""
+    if model.dim == 2:
+        return _once([_Line("openings", along, at, False) for o in openings_of(model, group, along) for at in o.sides])
+    across = np.array([-along[1], along[0], 0.0])
+    across = across * (1.0 if across[np.argmax(np.abs(across))] > 0 else -1.0)
+    cross = returns_of(model, group, along, across)
+    lines = [_Line("returns", across, at, True) for face in cross for at in face]
+    for leaf in leaves_of(model, group, along, across):
+        lines += [_Line("openings", across, at, True) for o in openings_of(model, leaf, across) for at in o.sides]
+    place = spans_along(model, group, across).mean(axis=1)
+    for low, high in cross:
+        wall = [i for i, m in zip(group, place, strict=True) if low <= m <= high]
+        lines += [_Line("openings", along, at, False) for o in openings_of(model, wall, along) for at in o.sides]
+    ends = spans_along(model, group, across)
+    first, last = float(ends.min()), float(ends.max())
+    near = 1e-4 * model.size
+    return _once([x for x in lines if not x.across or first + near < x.at < last - near])
+
+
+def _once(lines: list[_Line]) -> list[_Line]:
+    """Return lines of which none has the axis and place of another."""
+    found: dict[tuple[bool, float], _Line] = {}
+    for line in lines:
+        found.setdefault((line.across, round(line.at, 6)), line)
+    return list(found.values())
 
 
 def _structures(assembly: Assembly, free: Array) -> list[tuple[int, ...]]:
@@ -121,7 +200,7 @@ def _lines(model: Model, free: list[int], axis: Array, most: int, *, changes_onl
     return sorted({*kept, *_spread([v for v in levels if v not in kept], most - len(kept))})
 
 
-def _spread(values: list[float], most: int) -> list[float]:
+def _spread(values: list[Any], most: int) -> list[Any]:
     """Return at most ``most`` of some values, evenly chosen."""
     if len(values) <= most:
         return values

@@ -63,6 +63,9 @@ class Searched:
         Searches made.
     parts : tuple of str
         Names of the parts that were searched.
+    places : mapping of str to (int, int)
+        For "levels", "openings" (lines of them), "returns" (faces of them) and "changes": how many were sought at, and
+        how many there are, over all pushes.
     bounds : mapping of str to LimitLoad
         For each way of pushing the associated limit over all motions.
     """
@@ -72,6 +75,7 @@ class Searched:
     locked: tuple[NoMechanism, ...]
     sought: int
     parts: tuple[str, ...]
+    places: Mapping[str, tuple[int, int]]
     bounds: Mapping[str, LimitLoad]
 
 
@@ -121,7 +125,8 @@ def search_all(
     SolverError
         The callback asked to stop.
     """
-    parts = [parts_of(s.assembly, s.along) for s in searches]
+    cuts = [parts_of(s.assembly, s.along) for s in searches]
+    parts = [c.parts for c in cuts]
     teller = _Teller(progress, sum(2 * (1 + len(named)) + len(p) for p in parts))
     shown: list[LocalMechanism] = []
     locked: list[NoMechanism] = []
@@ -140,7 +145,10 @@ def search_all(
     ranked = sorted([*shown, *deciding], key=lambda m: (m.zeta, m.least, m.multiplier))
     names = tuple(dict.fromkeys(p.name for own in parts for p in own))
     sought = sum(1 + len(named) + len(own) for own in parts)
-    return Searched(tuple(ranked), others, tuple(locked), sought, names, bounds)
+    kinds = dict.fromkeys(kind for c in cuts for kind in c.there)
+    places = {kind: (sum(c.sought.get(kind, 0) for c in cuts), sum(c.there.get(kind, 0) for c in cuts))
+              for kind in kinds}  # fmt: skip
+    return Searched(tuple(ranked), others, tuple(locked), sought, names, places, bounds)
 
 
 def _of_push(
