@@ -166,6 +166,20 @@ def test_a_footing_that_twists_is_designed_with_an_even_pressure_whatever_its_po
         assert "is not counted" in "\n".join(found.verdict.limits)
 
 
+@pytest.mark.parametrize("points", ["corners", 4, 6, 8, 12][: sample(2, 5)])
+def test_the_headline_of_a_twisted_footing_lies_within_a_thousandth_of_even_pressure(points: str | int) -> None:
+    """It went 1.503, 1.547, 1.503 with the grid, steps being a hundredth of a bound of 2.83; both ends are told now."""
+    found = concio.limit(footing(points), search=False)
+    assert found.spread is not None
+    assert found.design == found.spread.carried
+    assert EVEN * (1 - 1e-3) < found.spread.carried < EVEN * (1 + 2e-5)
+    assert EVEN * (1 - 2e-5) < found.spread.not_reached < found.spread.carried * (1 + 2e-3)
+    assert f"{found.spread.not_reached:.6g} was tried and not reached" in found.verdict.sentence
+    summary = found.summary()
+    assert summary["coulomb_spread_steps_carry"] == found.spread.carried
+    assert summary["coulomb_spread_steps_fail"] == found.spread.not_reached
+
+
 def test_a_block_that_slides_or_tips_twists_no_joint() -> None:
     assembly = concio.assemble(footing("corners"))
     reach = assembly.disc.reach[1]

@@ -29,7 +29,7 @@ from concio.analysis.friction_margin import FrictionMargin
 from concio.analysis.lent_compliance import lent_assembly
 from concio.analysis.limit_result import LimitResult
 from concio.analysis.limit_ties import whole_up_to
-from concio.analysis.limit_torsion import spread_steps, twisted_joints
+from concio.analysis.limit_torsion import SPREAD, spread_steps, twisted_joints
 from concio.analysis.load_steps import by_scale, in_one_step, load_steps
 from concio.analysis.margin_of import MarginOf
 from concio.analysis.tie_forces import without_breakable
@@ -199,11 +199,13 @@ def limit_stages(
             tell("the least load not reached, in one step")
             found = replace(found, steps=in_one_step(dead, load, found.steps, progress=progress))
         yield "in one step", found
-    found = replace(found, twisting=twisted_joints(assembly, _motions(found)))
-    if found.twisting and found.steps is not None and found.steps.multipliers and bound > 0:
+    found = replace(found, twisting=len(cornered := twisted_joints(assembly, _motions(found))))
+    joints = cornered or twisted_joints(assembly, _motions(found), SPREAD)
+    if joints and found.steps is not None and found.steps.multipliers and 0 < bound < np.inf:
         tell("load steps with pressure spread over the joints")
         most = UNASKED_IN_SPACE if steps is None else LARGEST_SEARCH
-        found = replace(found, spread=spread_steps(assembly, groups, bound, most, progress=progress))
+        spread = spread_steps(assembly, groups, bound, most, joints, stated=not cornered, progress=progress)
+        found = replace(found, spread=spread)
         yield "spread", found
     if exact:
         tell("Coulomb path")

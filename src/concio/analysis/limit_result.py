@@ -160,7 +160,7 @@ class LimitResult(Shown):
         if self.endless:
             shown = [np.inf]
         if self.spread is not None and self.spread.steps.multipliers:
-            shown.append(self.spread.steps.carried)
+            shown = [*(shown if self.spread.points else []), self.spread.carried]
         if not np.isnan(self.ties_whole):
             shown.append(self.ties_whole)
         elif self.path is None and self.untied is not None:  # nobody knows how far they are stretched
@@ -240,7 +240,8 @@ class LimitResult(Shown):
             "grows_without_end": self.endless,
             "ties_whole_up_to": _finite(self.ties_whole),
             "joints_that_twist": self.twisting,
-            "coulomb_spread_steps_carry": None if self.spread is None else _finite(self.spread.steps.carried),
+            "coulomb_spread_steps_carry": None if self.spread is None else _finite(self.spread.carried),
+            "coulomb_spread_steps_fail": None if self.spread is None else _finite(self.spread.not_reached),
             "coulomb_path_multiplier": self.coulomb if self.collapse_shown else None,
             "coulomb_path_carries": None if self.path is None else self.path.peak,
             "coulomb_steps_carry": None if self.steps is None else _finite(self.steps.carried),

@@ -97,6 +97,7 @@ def load_steps(
     live: Array,
     bound: float,
     *,
+    finest: float = 1.0,
     progress: ProgressCallback | None = None,
     found: Callable[[float], None] | None = None,
 ) -> LoadSteps:
@@ -110,6 +111,8 @@ def load_steps(
     bound : float
         Associated multiplier, positive: no step goes beyond it. Where it is ``inf`` steps grow fourfold, up to
         :data:`FAR` times the dead load.
+    finest : float
+        Share of the usual least step that is tried as well.
     progress : callable, optional
     found : callable, optional
         Called with every multiplier that is shown to be carried.
@@ -123,7 +126,7 @@ def load_steps(
     locked = not np.isfinite(bound)
     unit = _unit(dead, live) if locked else bound
     size = FIRST * unit
-    while size > (smallest := _smallest(reached[-1], failed if locked and failed == failed else unit)):
+    while size > (smallest := finest * _smallest(reached[-1], failed if locked and failed == failed else unit)):
         trial = reached[-1] + size
         if trial >= bound * (1 - 1e-9):  # at the bound itself every state is about to move
             failed = float(np.nanmin([failed, bound]))

@@ -167,16 +167,22 @@ def _why(found: LimitResult) -> str:
     """Return what makes the number to design with."""
     low, carried = found.design, found.coulomb if found.collapse_shown else found.carried
     state = found.collapse_state
-    spread = found.spread is not None and found.spread.steps.multipliers and found.spread.steps.carried <= low
-    if spread and not (math.isfinite(carried) and carried <= low * (1 + SAME)):
+    spread = found.spread is not None and found.spread.steps.multipliers and found.spread.carried <= low
+    if spread and not (math.isfinite(carried) and low * (1 - SAME) <= carried <= low * (1 + SAME)):
         assert found.spread is not None
-        n = found.spread.points
+        n, too = found.spread.points, f"{100 * found.spread.error:.2g} %"
+        if not n:
+            return (
+                f"certified load steps carry {found.spread.steps.carried:.6g}, less {too} by which the contact points "
+                f"of joints that twist resist torsion better than an even pressure{_spread_next(found)}"
+            )
         return (
             f"certified load steps carry it with the pressure of each joint spread over {n} x {n} points; at the "
             f"corners "
             f"of the joints alone, {counted(found.twisting, 'joint')} of which "
             f"{_verb(found.twisting, 'twists', 'twist')}, they "
-            f"would seem to carry {carried:.6g}"
+            f"would seem to carry {carried:.6g} ({too} are taken off, by which these points resist torsion too well"
+            f"{_spread_next(found)})"
         )
     if state is not None and found.state_counts and state.multiplier <= low:
         if math.isclose(carried, low, rel_tol=SAME):
@@ -195,6 +201,13 @@ def _why(found: LimitResult) -> str:
     if found.collapse_shown:
         return "as the load grows it is carried up to there, and there it collapses"
     return f"certified Coulomb states carry it as the load grows from rest{_next(found)}"
+
+
+def _spread_next(found: LimitResult) -> str:
+    """Return the least multiplier that steps with spread pressure did not reach."""
+    assert found.spread is not None
+    above = found.spread.not_reached
+    return "" if math.isnan(above) else f"; {above:.6g} was tried and not reached"
 
 
 def _next(found: LimitResult) -> str:

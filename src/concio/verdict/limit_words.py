@@ -190,10 +190,13 @@ def spread_lines(found: LimitResult) -> list[str]:
     if found.spread is None:
         return []
     n, steps = found.spread.points, found.spread.steps
+    above = "" if math.isnan(steps.failed) else f", {found.spread.not_reached:.6g} not reached"
     said = (
-        f"carried up to {steps.carried:.6g}" if steps.multipliers else "none: the dead load came to no "
+        f"carried up to {found.spread.carried:.6g}{above}" if steps.multipliers else "none: the dead load came to no "
         "certified state"
     )
+    if not n:
+        return [f"  pressure spread      {said}, in finer steps, less what joints that twist resist too well"]
     return [
         f"  pressure spread      {said}, with {n} x {n} points in each joint: some twist, for which corners are "
         f"too strong"
