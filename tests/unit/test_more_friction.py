@@ -86,11 +86,11 @@ def test_a_search_that_ends_early_without_forces_agrees_with_one_that_does_not(s
     dead = assembly.problem({"live": 0.0})
     live = assembly.problem({"live": 1.0}).f - dead.f
     pulled = dead.with_loads(-dead.f)
-    down = np.array(dead.f)
-    for problem, push in ((dead, live), (pulled, 1e-9 * live), (dead, down), (pulled, -down)):
+    down, sideways = np.array(dead.f), live * np.array([1.0, 1.0, 0.0, 1.0, 1.0, 1.0])
+    for problem, push in ((dead, live), (pulled, live), (pulled, sideways), (dead, down), (pulled, -down)):
         whole, early = ConeStatics(problem).largest(push), ConeStatics(problem).largest(push, -1e4)
         if early.multiplier == -np.inf:
             assert whole.residual > 1e-9
         else:
             assert early.multiplier == whole.multiplier
-    assert ConeStatics(pulled).largest(1e-9 * live, -1e4).multiplier == -np.inf
+    assert ConeStatics(pulled).largest(sideways, -1e4).multiplier == -np.inf  # pulled up from a floor without tension
