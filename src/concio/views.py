@@ -20,6 +20,7 @@ VIEWS: dict[str, dict[str, str]] = {
         "ContinuumComparison": "concio.plot.continuum_accessor:ContinuumPlots",
         "BlockHalving": "concio.plot.continuum_accessor:HalvingPlots",
         "StudyResult": "concio.plot.study_figures:StudyPlots",
+        "Diagnosis": "concio.plot.diagnosis_accessor:DiagnosisPlots",
     },
     "tables": {"Result": "concio.post.tables_of:tables_of"},
     "notebook": {
@@ -28,6 +29,7 @@ VIEWS: dict[str, dict[str, str]] = {
     },
     "report": {
         "Assessment": "concio.report.assessment_page:write_assessment_report",
+        "Diagnosis": "concio.report.diagnosis_page:write_diagnosis_report",
         "StudyResult": "concio.report.study_page:write_study_report",
     },
 }

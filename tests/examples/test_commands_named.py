@@ -25,7 +25,8 @@ OPEN = {"assess": (0, 3, 4), "limit": (0, 4), "shake": (0, 4)}
 """Commands whose answer is one of several: an assessment may be not verified, or name what it could not check; a motion
 that is asked for until a stated time may still go on there."""
 QUICK_EXAMPLES = {
-    "blocks_from_a_table.toml", "buttress.toml", "eccentric_column.toml", "gate_from_a_drawing.toml", "flat_arch.toml",
+    "blocks_from_a_table.toml", "buttress.toml", "cracked_arch.toml", "eccentric_column.toml",
+    "gate_from_a_drawing.toml", "flat_arch.toml",
     "leaning_stones_with_tie.toml", "pushed_too_hard.toml", "spreading_arch.toml", "semicircular_arch.toml",
 }  # fmt: skip
 QUICK_TEMPLATES = {"column", "blocks"}

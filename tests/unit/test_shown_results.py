@@ -15,6 +15,7 @@ import pytest
 import concio
 from concio.studies.compare import compare
 from concio.verdict.verdict import Outcome, Verdict
+from models import box, model_of, weight
 from motion_models import G, standing
 from pillars import pillar, point, sideways
 from seismic_walls import overturning, site
@@ -56,6 +57,13 @@ def two_runs() -> object:
     return concio.study(pushed(), [friction], ["stands"], size=2)
 
 
+def tilted_ground() -> object:
+    level = [concio.Measurement(f"{x}", "level", 1e-4, -x / 100, body="a", at=(x, 1.0)) for x in (0.1, 0.2, 0.3)]
+    stone, ground = {"kind": "rigid", "material": "stone"}, box("ground", 0, 1, -1, 0, kind="fixed")
+    turns = concio.Candidate("ground turns", body="ground", rotation=1.0, about=(0.0, 0.0))
+    return concio.diagnose(model_of(ground, box("a", 0, 1, 0, 1, **stone), loads=(weight(),)), level, [turns])
+
+
 STAGES = [concio.Stage("dead", {"dead": 1.0}), concio.Stage("push", {"live": 1.0})]
 MAKE: dict[str, Callable[[], Any]] = {
     "Result": lambda: concio.solve(pushed()),
@@ -75,6 +83,7 @@ MAKE: dict[str, Callable[[], Any]] = {
     "ComparisonTable": two_methods,
     "Assessment": lambda: concio.assess(overturning(), site=site()),
     "StudyResult": two_runs,
+    "Diagnosis": tilted_ground,
 }
 """A result of every class that has a verdict."""
 

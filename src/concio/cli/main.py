@@ -13,6 +13,7 @@ from concio.cli import (
     check,
     compare,
     continuum,
+    diagnose,
     export,
     limit,
     memory,
@@ -72,6 +73,7 @@ app.command("shake")(shake.shake)
 app.command("cell")(cell.cell)
 app.command("continuum")(continuum.continuum)
 app.command("assess")(assess.assess)
+app.command("diagnose")(diagnose.diagnose)
 app.command("prove")(prove.prove)
 app.command("verify")(verify.verify)
 app.command("compare")(compare.compare)

@@ -42,7 +42,7 @@ def progress_bar(*, shown: bool) -> Iterator[ProgressCallback | None]:
         def move(state: Progress) -> None:
             nonlocal first, best
             text = f"{state.method}: iteration {state.iteration}"
-            if state.method in ("dynamics", "push", "assessment"):  # what is left to do, not a residual
+            if state.method in ("dynamics", "push", "assessment", "diagnose"):  # what is left to do, not a residual
                 best = max(best, 1.0 - state.residual)
                 text = state.method
             elif math.isfinite(state.residual) and state.residual > 0:

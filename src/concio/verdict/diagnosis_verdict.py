@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from scipy.special import gammainccinv
 
 from concio.display import number
 from concio.problem.tolerances import CERTIFIED
-from concio.verdict.attention import attention, joints_not_made
+from concio.verdict.attention import attention_of, joints_not_made
 from concio.verdict.diagnosis_words import WORDS
 from concio.verdict.question import Question, question_of
 from concio.verdict.verdict import Outcome, Verdict
@@ -26,6 +27,8 @@ PLACES = 3
 """Places named as the next to be measured."""
 COARSE = 1.0
 """Change of a reading, in errors, from which on finer steps are asked for."""
+FAR = 50.0
+"""Times the misfit allowed beyond which a choice was left after one state (:data:`concio.analysis.cracks.fit.FAR`)."""
 NOTABLE = 0.5
 """Change of a reading, in errors, from which on the order of motions is worth a word."""
 
@@ -79,7 +82,7 @@ class _Words:
             meaning=self.words["meaning"],
             limits=self.limits(),
             unchecked=self.unchecked(),
-            attention=(*attention(found.assembly), *self.noticed()),
+            attention=(*attention_of(found.model, found.assembly.detection), *self.noticed()),
             next_steps=self.next_steps(status),
         )
 
@@ -110,7 +113,9 @@ class _Words:
             confidence=f"{100 * found.confidence:g}",
         )  # fmt: skip
         factors = None if found.best is None else found.best.prediction.factors
-        return question_of(asked, found.assembly, factors or found.forward.moved.base)
+        question = question_of(asked, found.assembly, factors or found.forward.moved.base)
+        own = {g for g, c in zip(found.forward.moved.groups, found.candidates, strict=True) if c.body}
+        return replace(question, acting=tuple(a for a in question.acting if a.group not in own))
 
     def headline(self, status: str) -> str:
         """Return the answer in a few words."""
@@ -268,6 +273,8 @@ class _Words:
         looked = max((len(t.chosen) for t in found.trials), default=0)
         if looked < len(found.candidates):
             told.append(self.say("sparse", size=looked))
+        if found.left:
+            told.append(self.say("left", count=found.left, far=f"{FAR:g}"))
         for unseen in found.unseen:
             parts = [
                 self.say("unseen_part", name=n, motion=self.quantity(self.kind(n), s))

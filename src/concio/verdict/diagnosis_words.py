@@ -61,6 +61,7 @@ EN = {
     "orders": "where its motions come one after the other instead of together, a reading changes by {change} errors",
     "together": "the motions are taken to have grown together, after all loads: another history may crack it otherwise",
     "sparse": "causes of more than {size} motions were not looked at",
+    "left": "{count} choices of motions were left after one state, which missed by over {far} times what is allowed",
     "rivals": "a simpler cause would explain all but '{name}': {cause}. {mistake}",
     "small": "displacements are taken to be small in the settlement paths from which the causes are found",
     "unchecked_lost": "{count} choices of motions, which could not be followed to any fit",
@@ -130,6 +131,7 @@ IT = {
     "together": "si assume che i movimenti siano cresciuti insieme, dopo tutti i carichi: un'altra storia può "
     "fessurare diversamente",
     "sparse": "cause con più di {size} movimenti non sono state considerate",
+    "left": "{count} scelte di movimenti sono state lasciate dopo uno stato, lontano oltre {far} volte il consentito",
     "rivals": "una causa più semplice spiegherebbe tutto tranne '{name}': {cause}. {mistake}",
     "small": "nei percorsi di cedimento da cui si trovano le cause gli spostamenti sono considerati piccoli",
     "unchecked_lost": "{count} scelte di movimenti, che non si sono potute seguire",

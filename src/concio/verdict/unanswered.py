@@ -32,6 +32,7 @@ ASKED = {
     "strength": "the strength of a periodic cell",
     "strain_path": "a path of strains and stresses of a periodic cell",
     "compare_with_continuum": "a wall block by block beside its homogenised continuum",
+    "diagnose": "which motions explain what was measured",
     "assess": "an assessment of local mechanisms under an earthquake",
     "prove": "a proof in fractions",
 }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,7 +21,10 @@ from concio.contact.assembly import Assembly
 from concio.model.model import Model
 from concio.verdict.diagnosis_verdict import diagnosis_verdict
 from concio.verdict.verdict import Verdict
-from concio.views import Shown
+from concio.views import Shown, view
+
+if TYPE_CHECKING:
+    from concio.plot.diagnosis_accessor import DiagnosisPlots
 
 Array = np.ndarray
 
@@ -103,10 +106,21 @@ class Diagnosis(Shown):
         """Choices of which no motion was reached."""
         return tuple(t for t in self.trials if t.fit is None)
 
+    @property
+    def left(self) -> int:
+        """Number of choices that were left after one state, far from the measurements."""
+        return sum(t.fit is not None and t.fit.left for t in self.trials)
+
     @cached_property
     def verdict(self) -> Verdict:
         """The answer with its question."""
         return diagnosis_verdict(self)
+
+    @property
+    def plot(self) -> DiagnosisPlots:
+        """Figures by name: ``found.plot.cracks()``; matplotlib is loaded here."""
+        plots: DiagnosisPlots = view(self, "plot")
+        return plots
 
     def summary(self) -> dict[str, Any]:
         """Return the numbers of ``--json``: plain types, kN, m and rad."""

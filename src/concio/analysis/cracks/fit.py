@@ -11,7 +11,7 @@ C. G. Broyden, "A class of methods for solving nonlinear simultaneous equations"
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -25,8 +25,8 @@ MOST_STEPS = 12
 """Predictions along one descent, those for derivatives not counted."""
 FLAT = 0.02
 """Decrease of the misfit below which a descent ends."""
-FAR = 25.0
-"""A linear model that expects a misfit this many times the one allowed is not followed further."""
+FAR = 50.0
+"""Choices are left after one state where it and the linear model miss by this many times what is allowed."""
 DIFFERENCE = 0.1
 """Step of a difference over the size of a motion."""
 
@@ -50,6 +50,8 @@ class Fit:
         Measurements that count.
     fresh : bool
         Whether the derivatives were computed from differences at the end.
+    left : bool
+        Whether it is no best fit: the first state was so far from the measurements that it was followed no further.
     """
 
     chosen: tuple[int, ...]
@@ -59,6 +61,7 @@ class Fit:
     slope: Array
     kept: Array
     fresh: bool = False
+    left: bool = False
 
     @property
     def misfit(self) -> float:
@@ -114,7 +117,10 @@ class Fitter:
         return None
 
     def starts(self, chosen: Sequence[int], kept: Array) -> list[tuple[float, Array, Array]]:
-        """Return (misfit expected, motions (c,), slopes (n, c)) of each pattern of signs, the best first."""
+        """Return (misfit expected, motions (c,), slopes (n, c)) of each pattern of signs, the best first.
+
+        The misfit is that of the linear model without the one measurement that spoils it most.
+        """
         rest = self.residual(self.forward.predict(np.zeros(len(self.scale))))
         found = []
         for signs in product((1.0, -1.0), repeat=len(chosen)):
@@ -125,8 +131,7 @@ class Fitter:
             low = [0.0 if s > 0 else self.low[c] for c, s in zip(chosen, signs, strict=True)]
             high = [self.high[c] if s > 0 else 0.0 for c, s in zip(chosen, signs, strict=True)]
             step = self._step(J[kept], rest[kept], np.array(low), np.array(high), self.scale[list(chosen)])
-            r = (rest + J @ step)[kept]
-            found.append((float(r @ r), step, J))
+            found.append((float(_without_each((rest + J @ step)[kept], J[kept]).min()), step, J))
         return sorted(found, key=lambda item: item[0])
 
     def fit(
@@ -150,13 +155,20 @@ class Fitter:
         kept = np.ones(len(self.value), dtype=bool) if kept is None else kept
         own = list(chosen)
         if begin is not None:
-            return self._descend(own, begin.motions[own], begin.slope, kept, allowed)
+            return self._descend(own, replace(begin, kept=kept), allowed)
         best: Fit | None = None
         for expected, start, J in self.starts(own, kept)[:starts]:
             if best is not None and (best.misfit <= allowed or expected > FAR * allowed):
                 break
-            found = self._descend(own, start, J, kept, allowed)
-            if found is not None and (best is None or found.misfit < best.misfit):
+            here = self._first(own, start, J, kept)
+            if here is None:
+                continue
+            found = here
+            if min(expected, float(without_each(here).min())) > FAR * allowed:
+                found = replace(here, left=True)
+            else:
+                found = self._descend(own, here, allowed)
+            if best is None or found.misfit < best.misfit:
                 best = found
         return best
 
@@ -187,11 +199,9 @@ class Fitter:
             columns.append(np.zeros(len(self.value)) if flat else (ends[0][1] - ends[1][1]) / (ends[0][0] - ends[1][0]))
         return np.column_stack(columns), states
 
-    def _descend(self, own: list[int], start: Array, J: Array, kept: Array, allowed: float) -> Fit | None:
-        """Return the end of a descent from one start."""
-        here = self._first(own, start, J, kept)
-        if here is None:
-            return None
+    def _descend(self, own: list[int], here: Fit, allowed: float) -> Fit:
+        """Return the end of a descent."""
+        kept = here.kept
         radius, steps, refreshed = np.inf, 0, False
         while steps < MOST_STEPS:
             s = here.motions[own]
@@ -202,7 +212,7 @@ class Fitter:
             gain = here.misfit - float(expected @ expected)
             stuck = gain < max(FLAT, 1e-3 * here.misfit)
             if stuck or radius < 1e-3:
-                if here.misfit <= allowed or refreshed:
+                if here.misfit <= allowed or refreshed or float(without_each(here).min()) > FAR * allowed:
                     break
                 here, refreshed, radius = self._refreshed(here), True, np.inf
                 continue
@@ -262,3 +272,20 @@ class Fitter:
             found = lsq_linear(damped, target, bounds=(low[wide] / scale[wide], high[wide] / scale[wide]))
             d[wide] = found.x * scale[wide]
         return d
+
+
+def without_each(fit: Fit) -> Array:
+    """Return the misfit (m,) that is left, to first order, without each of the m measurements that count.
+
+    It is chi2 - r^2 / (1 - h), with the leverage h of the measurement: the diagonal of J (J'J)^-1 J'.
+    """
+    return _without_each(fit.residual[fit.kept], fit.slope[fit.kept])
+
+
+def _without_each(r: Array, J: Array) -> Array:
+    lever = np.zeros(len(r))
+    if J.shape[1]:
+        basis, size, _ = np.linalg.svd(J, full_matrices=False)
+        lever = (basis[:, size > 1e-9 * max(float(size.max()), 1e-300)] ** 2).sum(1)
+    left: Array = np.maximum(float(r @ r) - r**2 / np.maximum(1.0 - lever, 1e-9), 0.0)
+    return left

@@ -133,6 +133,10 @@ class Measurement:
         """Kind of quantity for units: "motion" or "rotation"."""
         return "rotation" if self.kind in ANGLES else "motion"
 
+    def rounded(self, value: float) -> float:
+        """Return a reading rounded to a tenth of the power of ten of the error, as people are told it."""
+        return round(value, 1 - math.floor(math.log10(self.error)))
+
 
 @strict_class
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from itertools import combinations
 import numpy as np
 from scipy.special import gammainccinv
 
-from concio.analysis.cracks.fit import Fit, Fitter
+from concio.analysis.cracks.fit import Fit, Fitter, without_each
 from concio.problem.solution import Progress, ProgressCallback
 
 Array = np.ndarray
@@ -95,7 +95,7 @@ def search(
                 progress(Progress("diagnose", len(trials), 1.0 - i / len(choices), f"{size} motions"))
             fit = fitter.fit(chosen, allowed=limit) if size else _rest(fitter)
             trials.append(Trial(chosen, fit))
-            if fit is None:
+            if fit is None or fit.left:
                 continue
             if fit.misfit <= limit:
                 accepted.append(fit)
@@ -122,8 +122,7 @@ def without_one(fitter: Fitter, fit: Fit, confidence: float) -> list[Fit]:
     if n - 1 - size < 2:
         return []
     limit = allowed(n - 1 - size, confidence)
-    lever = leverage(fit)
-    loss = fit.misfit - fit.residual**2 / np.maximum(1.0 - lever, 1e-9)
+    loss = without_each(fit)
     found = []
     for i in np.argsort(loss)[:2].tolist():
         if loss[i] > HOPELESS * limit:
@@ -133,15 +132,6 @@ def without_one(fitter: Fitter, fit: Fit, confidence: float) -> list[Fit]:
         again = fitter.fit(fit.chosen, allowed=limit, kept=kept, starts=1) if size else _rest(fitter, kept)
         if again is not None and again.misfit <= limit and abs(float(again.residual[i])) > CLEAR:
             found.append(again)
-    return found
-
-
-def leverage(fit: Fit) -> Array:
-    """Return the leverage (n,) of the measurements: the diagonal of J (J'J)^-1 J'."""
-    if not fit.chosen:
-        return np.zeros(len(fit.residual))
-    q, _ = np.linalg.qr(fit.slope)
-    found: Array = (q**2).sum(1)
     return found
 
 

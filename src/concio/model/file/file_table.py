@@ -14,6 +14,7 @@ from concio.model.file.import_tables import DrawingTable, SolidsTable
 from concio.model.file.motion_table import Motion
 from concio.model.file.road_tables import FillTable, VehicleTable
 from concio.model.file.study_table import Study
+from concio.model.file.survey_table import SurveyEntry
 from concio.model.file.tables import (
     AnalysisTable,
     BlockTable,
@@ -71,6 +72,7 @@ def file_table() -> type[FileTable]:
     members["study"] = (Study, None)
     members["site"] = (SiteEntry, None)
     members["assessment"] = (AssessmentEntry, None)
+    members["survey"] = (SurveyEntry, None)
     members["parts"] = (GenericAlias(list, (part,)), Field(default_factory=list))
     members["motion"] = (Motion, None)
     return create_model("concio model", __base__=FileTable, __doc__=FileTable.__doc__, **members)
