@@ -24,7 +24,7 @@ from concio.problem.certificate import certify
 from concio.problem.solution import Solution, Status
 from concio.solvers.auto.chain import STRATEGIES
 from concio.solvers.methods import find
-from concio.solvers.motion.departure import verify_departure
+from concio.solvers.relaxation.unbounded_motion import verify_motion
 from concio.solvers.statics.limit import associated_limit
 from concio.solvers.statics.mechanism import verify_mechanism
 
@@ -111,7 +111,7 @@ def proven(problem: concio.problem.contact_problem.ContactProblem, solution: Sol
         return again.violation <= 1e-9 and again.power > 0
     if solution.status is Status.COLLAPSES and solution.departure is not None:
         d = solution.departure
-        return verify_departure(problem, d.acceleration, d.displacement, d.normal_force, d.friction_force).certified
+        return verify_motion(problem, d.acceleration, d.displacement, d.normal_force, d.friction_force).certified
     return solution.status is Status.NO_COULOMB_STATE  # its exclusions were recomputed as they were made
 
 

@@ -3,10 +3,10 @@
     python benchmarks/release_trials.py [--panels 0:322 404:234] [--units 0.8 1 1.1 1.3] [--failures 12 30]
                                         [--first 0.01 0.03]
 
-Panels are named SEED:NUMBER of ``benchmarks/corpus.py``. Slow motion alone (``concio.solvers.motion.release``) is asked
-where each ends, when the units of force and length are multiplied by the same factor, which changes nothing but
-rounding and where iterations begin; ``--failures`` is how many steps may fail, ``--first`` the resistance of the first
-step. CPU seconds. A panel takes some minutes.
+Panels are named SEED:NUMBER of ``benchmarks/corpus.py``. Slow motion alone (``concio.solvers.relaxation.slow_motion``)
+is asked where each ends, when the units of force and length are multiplied by the same factor, which changes nothing
+but rounding and where iterations begin; ``--failures`` is how many steps may fail, ``--first`` the resistance of the
+first step. CPU seconds. A panel takes some minutes.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from concio.analysis.lent_compliance import lend
 from concio.problem.contact_problem import ContactProblem
 from concio.solvers.algebra.scaled import Scaled, _in_units, scale
 from concio.solvers.interior.engine import Run
-from concio.solvers.motion import release
+from concio.solvers.relaxation import slow_motion
 
 
 def in_units(problem: ContactProblem, factor: float) -> Scaled:
@@ -37,8 +37,8 @@ def trial(problem: ContactProblem, factor: float, failures: int, first: float) -
     """Return how slow motion ends, in words, and its CPU seconds."""
     run = Run(in_units(problem, factor))
     begin = time.process_time()
-    with patch.object(release, "FAILURES", failures), patch.object(release, "FIRST", first):
-        release.release(run)
+    with patch.dict(slow_motion.FAILURES, {2: failures}), patch.dict(slow_motion.FIRST, {2: first}):
+        slow_motion.relax(run)
     return run.trace[-1].removeprefix("release: "), time.process_time() - begin
 
 

@@ -24,8 +24,8 @@ ORDER = (
     "model/solids", "model/file",
     "fem", "problem", "contact", "contact/moving",
     "solvers/algebra", "solvers/lcp", "solvers/states", "solvers/statics", "solvers/interior", "solvers/pivoting",
-    "solvers/forms", "solvers/iterative", "solvers/exhaustive", "solvers/motion", "solvers/stepping", "solvers/auto",
-    "solvers/path", "solvers", "proof", "verdict", "analysis", "analysis/motion", "analysis/cells",
+    "solvers/forms", "solvers/iterative", "solvers/exhaustive", "solvers/relaxation", "solvers/stepping",
+    "solvers/auto", "solvers/path", "solvers", "proof", "verdict", "analysis", "analysis/motion", "analysis/cells",
     "analysis/continuum", "analysis/seismic", "analysis/cracks", "post", "plot", "report", "io", "studies", "cli",
     "__main__",
 )  # fmt: skip

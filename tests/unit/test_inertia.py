@@ -18,7 +18,7 @@ from concio.kinematics.rigid import rigid_operator
 from concio.problem.solution import Departure
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.interior.cone_run import ConeRun
-from concio.solvers.motion.cone_release import at_once
+from concio.solvers.relaxation.single_steps import at_once
 from concio.units import GRAVITY
 from samples import sample
 from solids import box, frame_block, l_block, tetrahedron, turned

@@ -18,8 +18,9 @@ from concio.solvers.interior.cone_run import STARTS, ConeRun, starts_for
 from concio.solvers.interior.newton_finish import states_of
 from concio.solvers.interior.redundant_forces import least_forces
 from concio.solvers.methods import find
-from concio.solvers.motion import cone_release
-from concio.solvers.motion.cone_release import at_once, release
+from concio.solvers.relaxation import step as one_step
+from concio.solvers.relaxation.single_steps import at_once
+from concio.solvers.relaxation.slow_motion import relax
 from concio.solvers.states.reading import Finished, natural_residual
 from concio.solvers.statics.limit import associated_limit
 from space_problems import barrel, dome, wall
@@ -160,9 +161,9 @@ def test_a_dome_close_to_its_limit_moves_away() -> None:
 def test_letting_go_ends_after_the_work_that_is_allowed(monkeypatch) -> None:
     built = wall(4, 6, **STIFF)
     limit = associated_limit(built.problem, built.live).multiplier
-    monkeypatch.setattr(cone_release, "MOST_WORK", 1)
-    monkeypatch.setattr(cone_release, "LEAST_WORK", 1)
-    for follow, said in ((at_once, "single steps down to a resistance of 1e-02, no end"), (release, "1 steps of slow")):
+    monkeypatch.setattr(one_step, "MOST_WORK", 1)
+    monkeypatch.setattr(one_step, "LEAST_WORK", 1)
+    for follow, said in ((at_once, "single steps down to a resistance of 1e-02, no end"), (relax, "1 steps of slow")):
         run = ConeRun(scale(built.at(0.995 * limit)))
         assert follow(run) is None
         assert said in run.trace[-1]

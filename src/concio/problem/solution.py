@@ -86,7 +86,7 @@ class Mechanism:
 class Departure:
     """A motion that starts from rest and never ends: constant acceleration and constant forces that obey every law.
 
-    See :mod:`concio.solvers.motion.departure` for the equations.
+    See :mod:`concio.solvers.relaxation.unbounded_motion` for the equations.
 
     Parameters
     ----------

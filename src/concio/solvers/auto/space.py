@@ -29,7 +29,8 @@ from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.auto.strategies import Strategy, first_answer, moves_away, statics, sticking, where_it_ends
 from concio.solvers.interior.cone_run import ConeRun, starts_for
 from concio.solvers.interior.engine import at_rest
-from concio.solvers.motion.cone_release import associated_state, at_once, release
+from concio.solvers.relaxation.single_steps import at_once
+from concio.solvers.relaxation.slow_motion import relax
 from concio.solvers.states.reading import Finished
 
 
@@ -61,7 +62,7 @@ def released_at_rest(run: ConeRun) -> Solution | None:
 
 def released_jammed(run: ConeRun) -> Solution | None:
     """Let the structure go from the state in which associated flow holds it."""
-    return _released(run, associated_state(run))
+    return _released(run, run.associated_state())
 
 
 STRATEGIES: tuple[Strategy, ...] = (
@@ -117,7 +118,7 @@ def _from(run: ConeRun, first: int, last: int | None) -> Solution | None:
 
 
 def _released(run: ConeRun, u: Array) -> Solution | None:
-    return _judged(run, release(run, u))
+    return _judged(run, relax(run, u))
 
 
 def _judged(run: ConeRun, ended: Finished | Departure | None) -> Solution | None:

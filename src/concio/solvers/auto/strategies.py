@@ -15,7 +15,7 @@ from concio.solvers.auto.friction_neighbours import from_neighbours
 from concio.solvers.interior.bonded import applies, from_sticking
 from concio.solvers.interior.cone_run import ConeRun
 from concio.solvers.interior.engine import STARTS, Cancelled, Run
-from concio.solvers.motion.release import release
+from concio.solvers.relaxation.slow_motion import relax
 from concio.solvers.statics.existence import statically_admissible
 
 
@@ -121,7 +121,7 @@ def let_go_at_rest(run: Run) -> Solution | None:
 
 def released(run: Run, u: Array | None) -> Solution | None:
     """Follow the slow motion from displacements (N,), scaled; return where it ends, None where no end is found."""
-    ended = release(run, u)
+    ended = relax(run, u)
     if isinstance(ended, Departure):
         return moves_away(run, ended)
     return None if ended is None else run.solution(ended)

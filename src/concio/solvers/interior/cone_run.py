@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -120,6 +122,17 @@ class ConeRun(Run):
             return self.settle(self.scaled.glued, np.zeros((0, self.scaled.problem.dim)))
         z = self.cones.start(start.force, start.length)
         return self.approach(z, f"interior point from {start}", start.share)
+
+    def attempts(self, further: Iterable[Any] = ()) -> Iterator[Finished | None]:
+        """Return what the interior point finds from each start in turn, and from further ones."""
+        return (self.from_start(start) for start in (*starts_for(self.scaled), *further))
+
+    def associated_state(self) -> Array:
+        """Return the displacements (N,), scaled, at which associated flow holds the structure, or nearly so."""
+        z = self.cones.start(STARTS[0].force, STARTS[0].length)
+        outcome = self.cones.run(z, theta=1.0, target=1e-6, watch=self.watch("associated flow"))
+        self.iterations += outcome.iterations
+        return z.u
 
     def approach(self, z: ConePoint, stage: str, share: float) -> Finished | None:
         """Iterate to ever smaller targets, trying the exact finish at each, until it succeeds or nothing moves."""

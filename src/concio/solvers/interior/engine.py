@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import cached_property
 from typing import Any, ClassVar
@@ -159,9 +160,7 @@ class Run:
 
     def tell(self, stage: str) -> None:
         """Call back with the last residual; raise :class:`Cancelled` where the callback asks to stop."""
-        if self.progress is not None and self.progress(
-            Progress(NAME, len(self.history), self.history[-1], stage)
-        ):
+        if self.progress is not None and self.progress(Progress(NAME, len(self.history), self.history[-1], stage)):
             raise Cancelled
 
     def watch(self, stage: str) -> Any:
@@ -178,6 +177,10 @@ class Run:
         """Iterate from the standard start of a size; return the exact answer or None."""
         z = self.engine.start(start)
         return self.close_in(z, f"interior point from {start:g}", 0.0, most)
+
+    def attempts(self, further: Iterable[Any] = ()) -> Iterator[Finished | None]:
+        """Return what the interior point finds from each start in turn, and from further ones."""
+        return (self.plain(start) for start in (*STARTS, *further))
 
     def close_in(self, z: Iterate, stage: str, theta: float = 0.0, most: int = 80) -> Finished | None:
         """Iterate to ever smaller targets, trying the exact finish at each, until it succeeds or nothing moves."""

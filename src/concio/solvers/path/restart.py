@@ -10,8 +10,8 @@ rest again). Then the path goes on from there: the one-step problem, slip measur
 
 Where no increment has a certified answer the path is at its end, and why is told: a mechanism proves that the load
 beyond has no equilibrium; or the structure, let go under slightly more load, moves away without end
-(:mod:`concio.solvers.motion.release`); or it can move at the very load, friction being what it is; or none of these is
-shown.
+(:mod:`concio.solvers.relaxation.slow_motion`); or it can move at the very load, friction being what it is; or none of
+these is shown.
 """
 
 from __future__ import annotations

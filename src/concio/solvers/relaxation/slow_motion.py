@@ -1,0 +1,122 @@
+r"""Viscous relaxation: let the structure go and see where it ends, at rest in a Coulomb state or moving without end.
+
+Where no method finds a Coulomb state, this one follows what the structure would do in a medium that resists its motion
+in proportion to the masses M, by implicit steps
+
+.. math:: (K + e M)\, u_{k+1} = f + e M u_k + C^T t_{k+1}, \qquad \text{joint laws at } u_{k+1},
+
+each of them a contact problem of its own (:mod:`concio.solvers.relaxation.step`). K + e M holds every body, so that a
+step has a solution whatever the friction, and small steps (large e) have it close by. Steps grow while they succeed.
+What stands still is an equilibrium, made exact with the states it has; what becomes a steady motion is a
+:class:`concio.problem.solution.Departure`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from concio.problem.contact_problem import Array
+from concio.problem.solution import Departure
+from concio.solvers.interior.engine import Run
+from concio.solvers.relaxation.step import allowed_factorisations, pivot_to_rest, rest_near, solve_step
+from concio.solvers.relaxation.unbounded_motion import unbounded_motion
+from concio.solvers.states.reading import Finished, natural_residual
+
+FIRST = {2: 3e-2, 3: 1e-2}
+"""Resistance e of the first step by dimension, scaled units."""
+
+GROWTH = 10.0
+"""Largest factor by which steps grow after two that succeeded; where a step fails, the factor becomes its root."""
+
+LEAST = 1e-9
+"""Least resistance e."""
+
+MOST = {2: 120, 3: 80}
+"""Largest number of steps tried, by dimension."""
+
+FAILURES = {2: 30, 3: 12}
+"""Largest number of steps that may fail, by dimension."""
+
+CHANGES = 0.1
+"""Largest relative change of the motion from one step to the next at which it is asked whether it ends."""
+
+SLOW = 1e-3
+"""Natural-map residual without resistance from which on plane problems try a crossover to rest by pivoting, and again
+at each hundredth."""
+
+ENDS = {Finished: "comes to rest", Departure: "moves away", type(None): "no end found"}
+"""Words of the trace."""
+
+
+def relax(run: Run, u: Array | None = None) -> Finished | Departure | None:
+    """Follow the slow motion from ``u`` (N,), scaled, or from rest; return where it ends, or None.
+
+    Parameters
+    ----------
+    run : Run
+        Keeps count and trace.
+    u : (N,) array, optional
+        Displacements at the beginning.
+    """
+    s = run.scaled
+    u = np.zeros(len(s.f)) if u is None else u
+    pace, failures, taken, close = Pace(FIRST[s.dim]), 0, 0, SLOW
+    here: Finished | None = None
+    ended: Finished | Departure | None = None
+    allowed = s.factor.made + allowed_factorisations(s)
+    before, velocity = pace.e, np.zeros_like(u)
+    while taken + failures < MOST[s.dim] and failures < FAILURES[s.dim] and s.factor.made < allowed:
+        e = pace.e
+        moved = solve_step(run, s.step_from(u, e), here, before / e)
+        if moved is None:
+            failures += 1
+            pace.failed()
+            continue
+        u = u + moved.u
+        here, taken, before = moved, taken + 1, e
+        new = replace(moved, u=u)
+        ended = rest_near(run, new)
+        velocity, last = e * moved.u, velocity
+        if ended is None and (taken == 1 or hardly_changed(velocity, last)):
+            ended = unbounded_motion(s, new, velocity)
+        if ended is None and s.dim == 2:
+            error, _ = natural_residual(s, u, new.t)
+            if error < close:
+                close, ended = 0.01 * error, pivot_to_rest(run, new)
+        if ended is not None:
+            break
+        pace.succeeded()
+    run.trace.append(f"release: {taken} steps of slow motion, {failures} failed, {ENDS[type(ended)]}")
+    return ended
+
+
+def hardly_changed(velocity: Array, last: Array) -> bool:
+    """Tell whether the motion (N,) has become so steady that it is asked whether it ever ends."""
+    return float(np.abs(velocity - last).max(initial=0.0)) < CHANGES * float(np.abs(velocity).max(initial=0.0))
+
+
+@dataclass
+class Pace:
+    """How long the next step is: longer after two that succeeded, shorter after one that failed.
+
+    Parameters
+    ----------
+    e : float
+        Its resistance.
+    """
+
+    e: float
+    growth: float = GROWTH
+    good: int = 0
+
+    def succeeded(self) -> None:
+        """Note a step that was solved."""
+        self.good += 1
+        if self.good >= 2:
+            self.e, self.growth = max(self.e / self.growth, LEAST), min(self.growth * 1.2, GROWTH)
+
+    def failed(self) -> None:
+        """Note a step that was not."""
+        self.e, self.growth, self.good = self.growth * self.e, max(np.sqrt(self.growth), 1.5), 0
