@@ -7,8 +7,9 @@
    admissible forces; where no body has to move under them (rigid blocks), they are the answer;
 4. interior point from the other starts;
 5. the best point that the starts met, where its certificate holds although Newton's method did not end;
-6. release, single steps: the structure is let go, and ever longer steps from rest show where it goes;
-7. release: it is followed in slow motion, from rest and from the state in which associated flow jams; it comes to rest,
+6. free motion: the bodies move away under their loads as if nothing touched them;
+7. release, single steps: the structure is let go, and ever longer steps from rest show where it goes;
+8. release: it is followed in slow motion, from rest and from the state in which associated flow jams; it comes to rest,
    which is an equilibrium, or settles into a motion without end, which is the answer.
 
 What was tried is the solution's trace. Words are those of the plane (:mod:`concio.solvers.auto.strategies`). Pivoting
@@ -29,6 +30,7 @@ from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.auto.strategies import Strategy, first_answer, moves_away, statics, sticking, where_it_ends
 from concio.solvers.interior.cone_run import ConeRun, starts_for
 from concio.solvers.interior.engine import at_rest
+from concio.solvers.relaxation.free_motion import free_motion
 from concio.solvers.relaxation.single_steps import at_once
 from concio.solvers.relaxation.slow_motion import relax
 from concio.solvers.states.reading import Finished
@@ -48,6 +50,11 @@ def best_point_met(run: ConeRun) -> Solution | None:
     """Take the best point the starts met where it is certified: no motion is followed for digits nobody asks for."""
     met = None if run.best is None else run.solution(run.best, method="interior-point")
     return met if met is not None and met.solved else None
+
+
+def moving_freely(run: ConeRun) -> Solution | None:
+    """Look whether the structure moves away as if nothing touched it."""
+    return _judged(run, free_motion(run.scaled.problem))
 
 
 def released_in_single_steps(run: ConeRun) -> Solution | None:
@@ -71,6 +78,7 @@ STRATEGIES: tuple[Strategy, ...] = (
     Strategy("mechanism", statics),
     Strategy("interior-point, other starts", other_starts),
     Strategy("best point met", best_point_met),
+    Strategy("free motion", moving_freely),
     Strategy("release, single steps", released_in_single_steps),
     Strategy("release", released_at_rest),
     Strategy("release, jammed", released_jammed),
