@@ -89,6 +89,8 @@ class _Words:
     def outcome(self) -> tuple[Outcome, str]:
         """Return the outcome and its word."""
         found = self.found
+        if found.refinement > COARSE:
+            return Outcome.INCOMPLETE if found.causes else Outcome.UNDECIDED, "too_coarse"
         if len(found.causes) > 1:
             return Outcome.UNDECIDED, "several_causes"
         if found.causes and found.doubts:
@@ -125,6 +127,7 @@ class _Words:
         keys = {
             "one_cause": "headline_one", "no_motion": "headline_rest", "several_causes": "headline_several",
             "not_determined": "headline_loose", "not_all_followed": "headline_partly",
+            "too_coarse": "headline_coarse",
             "measurement_in_doubt": "headline_doubt", "not_followed": "headline_lost", "no_cause": "headline_none",
         }  # fmt: skip
         names = ", ".join(dict.fromkeys(f"'{d.measurement}'" for d in found.doubts))
@@ -133,7 +136,7 @@ class _Words:
     def answer(self, status: str) -> str:
         """Return which causes explain the measurements."""
         found = self.found
-        if status == "several_causes":
+        if found.causes and len(found.causes) + len(found.doubts) > 1:
             causes = [self.cause(c) for c in found.causes]
             told = self.one(found.causes[0])
             if len(causes) > 1:

@@ -13,6 +13,7 @@ EN = {
     "headline_none": "None of the possible motions explains the measurements",
     "headline_doubt": "One measurement contradicts all others: {names}",
     "headline_loose": "One cause explains the measurements, which do not tell how far it went: {cause}",
+    "headline_coarse": "The steps of the settlement paths are too coarse for these errors",
     "headline_lost": "No cause was found, and not every choice of motions could be computed",
     "headline_partly": "One cause explains the measurements, and not every choice of motions could be computed: "
     "{cause}",
@@ -83,6 +84,7 @@ IT = {
     "headline_none": "Nessuno dei movimenti possibili spiega le misure",
     "headline_doubt": "Una misura contraddice tutte le altre: {names}",
     "headline_loose": "Una sola causa spiega le misure, che non ne danno l'entità: {cause}",
+    "headline_coarse": "I passi dei percorsi di cedimento sono troppo grandi per questi errori",
     "headline_lost": "Nessuna causa trovata, e non tutte le scelte di movimenti sono state calcolate",
     "headline_partly": "Una causa spiega le misure, e non tutte le scelte di movimenti sono state calcolate: {cause}",
     "one": "Le misure sono spiegate da {cause}. Scarto {misfit} con {freedom} gradi di libertà, ammesso {allowed}.",
