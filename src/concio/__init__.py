@@ -13,6 +13,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from concio.analysis.bridges.assess_bridge import assess_bridge
+    from concio.analysis.bridges.bridge_result import BridgeResult
     from concio.analysis.cells.moduli import homogenise
     from concio.analysis.cells.path import strain_path
     from concio.analysis.cells.strength import strength
@@ -79,6 +81,8 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOMES = {
+    "concio.analysis.bridges.assess_bridge": ("assess_bridge",),
+    "concio.analysis.bridges.bridge_result": ("BridgeResult",),
     "concio.analysis.cells.moduli": ("homogenise",),
     "concio.analysis.cells.path": ("strain_path",),
     "concio.analysis.cells.strength": ("strength",),
@@ -156,6 +160,7 @@ __all__ = [
     "Assessment",
     "Axle",
     "Body",
+    "BridgeResult",
     "Candidate",
     "ConcioError",
     "ControlPoint",
@@ -198,6 +203,7 @@ __all__ = [
     "arch_on_piers",
     "assemble",
     "assess",
+    "assess_bridge",
     "barrel",
     "bridge",
     "buttress",

@@ -134,3 +134,45 @@ def test_what_turns_with_a_support_is_named_where_commands_differ(tmp_path: Path
     peak = asked("push", path, "--until", "40 mm")["peak"]["multiplier"]
     by_hand = math.tan(math.atan2(0.2, 0.8) - math.radians(5.0))
     assert peak == pytest.approx(by_hand, rel=2e-3)
+
+
+BRIDGE = """
+[bridge]
+span = 3.0
+rise = 0.75
+ring = 0.215
+voussoirs = 12
+width = 2.0
+block = "rigid"
+unit_weight = 22.0
+friction = 0.6
+[fill]
+cover = 0.3
+passive = 1.0
+[vehicle]
+axles = [[0.0, {axle}]]
+position = 0.7
+"""
+CROSSINGS = {"light axle": (100.0, HOLDS), "heavy axle": (220.0, FAILS)}
+"""Axle loads beside the 185 kN that an independent linear programme of the same kind gives at this position."""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", CROSSINGS)
+def test_a_vehicle_on_a_bridge_gets_one_answer_from_every_command(name: str, tmp_path: Path) -> None:
+    axle, right = CROSSINGS[name]
+    path = tmp_path / "bridge.toml"
+    path.write_text(BRIDGE.format(axle=axle))
+    step = ("--step", "0.5 m", "--fine", "0.2 m", "--worst", "1", "--no-sensitivity")
+    found = {
+        "run": asked("run", path), "bridge": asked("bridge", path, *step, "--checked", "4"),
+        "path": asked("path", path, "--stage", "dead=1,fill=1", "--stage", "live=1"),
+    }  # fmt: skip
+    assert found["run"]["verdict"]["outcome"] == right
+    assert found["bridge"]["verdict"]["outcome"] == right
+    assert found["path"]["verdict"]["outcome"] in ((right,) if right == HOLDS else (FAILS, "incomplete", "undecided"))
+    assert answer_of_limit(asked("limit", path, "--no-path", "--steps", "--no-friction")) == right
+    odd = set(json.loads(run("check", path, "--json")[1])["attention"])
+    for command, told in found.items():
+        assert odd <= set(told["verdict"]["attention"]), command
+        assert {a["group"] for a in told["verdict"]["question"]["acting"]} == {"dead", "fill", "live"}

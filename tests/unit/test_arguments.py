@@ -20,8 +20,8 @@ from models import box, on_ground, weight
 PASSES_ON = {"variable"}
 """Further keywords are the parameters of a distribution, which knows its own."""
 BUILT_BY_CONCIO = {
-    "Assembly", "Assessment", "DynamicsResult", "Outcome", "PathResult", "PushResult", "Result", "Status",
-    "StudyResult", "Verdict",
+    "Assembly", "Assessment", "BridgeResult", "Diagnosis", "DynamicsResult", "Outcome", "PathResult", "PushResult",
+    "Result", "Status", "StudyResult", "Verdict",
 }  # fmt: skip
 CALLED = sorted(
     name

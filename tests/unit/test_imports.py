@@ -26,8 +26,8 @@ ORDER = (
     "solvers/algebra", "solvers/lcp", "solvers/states", "solvers/statics", "solvers/interior", "solvers/pivoting",
     "solvers/forms", "solvers/iterative", "solvers/exhaustive", "solvers/relaxation", "solvers/stepping",
     "solvers/auto", "solvers/path", "solvers", "proof", "verdict", "analysis", "analysis/motion", "analysis/cells",
-    "analysis/continuum", "analysis/seismic", "analysis/cracks", "post", "plot", "report", "io", "studies", "cli",
-    "__main__",
+    "analysis/continuum", "analysis/seismic", "analysis/bridges", "analysis/cracks", "post", "plot", "report", "io",
+    "studies", "cli", "__main__",
 )  # fmt: skip
 """Rooms in the order in which things flow: each imports from itself and from those before it."""
 MODULES = sorted(ROOT.rglob("*.py"))

@@ -39,7 +39,7 @@ class GroupLoad:
     def applied(self) -> bool:
         """Whether the factor asked for was reached or passed."""
         left = (self.asked - self.most) / (self.asked - self.begin)
-        return left <= APPLIED
+        return bool(left <= APPLIED)
 
     @property
     def away(self) -> bool:

@@ -9,6 +9,7 @@ import typer
 
 from concio.cli import (
     assess,
+    bridge,
     cell,
     check,
     compare,
@@ -74,6 +75,7 @@ app.command("cell")(cell.cell)
 app.command("continuum")(continuum.continuum)
 app.command("assess")(assess.assess)
 app.command("diagnose")(diagnose.diagnose)
+app.command("bridge")(bridge.bridge)
 app.command("prove")(prove.prove)
 app.command("verify")(verify.verify)
 app.command("compare")(compare.compare)

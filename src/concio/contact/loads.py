@@ -101,3 +101,12 @@ def _point(disc: Discretisation, load: Load, chosen: list[int], f: Array) -> Non
         return
     dofs, rows = disc.point_operator(chosen[0], np.array(load.at, dtype=float))
     np.add.at(f, dofs, rows.T @ np.array(load.value, dtype=float))
+
+
+def place_forces(disc: Discretisation, body: Array, at: Array, force: Array) -> Array:
+    """Return the nodal forces (N,) of forces (k, d) [kN] at points (k, d) of bodies (k,) that can move."""
+    f = np.zeros(disc.unknowns)
+    for b, point, vector in zip(body.tolist(), at, force, strict=True):
+        dofs, rows = disc.point_operator(b, point)
+        np.add.at(f, dofs, rows.T @ vector)
+    return f

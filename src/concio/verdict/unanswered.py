@@ -33,6 +33,7 @@ ASKED = {
     "strain_path": "a path of strains and stresses of a periodic cell",
     "compare_with_continuum": "a wall block by block beside its homogenised continuum",
     "diagnose": "which motions explain what was measured",
+    "assess_bridge": "the load factor of a vehicle at every position on a bridge",
     "assess": "an assessment of local mechanisms under an earthquake",
     "prove": "a proof in fractions",
 }

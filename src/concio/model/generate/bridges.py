@@ -6,7 +6,7 @@ equal lengths along it. Fill, road and vehicles are put on afterwards: :func:`co
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any, Literal, Unpack
@@ -20,7 +20,7 @@ from concio.model.generate.bridge_barrel import Barrel, RingPlan, barrel_between
 from concio.model.generate.masonry import Piece, assemble, numbered, rectangle
 from concio.model.generate.profiles import profile_of
 from concio.model.materials import JointLaw
-from concio.model.model import JointRule, Model
+from concio.model.model import Body, JointRule, Model
 from concio.units import quantity
 
 Array = np.ndarray
@@ -152,9 +152,42 @@ def bridge(
             pieces.append(Piece(f"backing{i}", _backing(left, right, back), layer="backing"))
     title = f"{shape} arch bridge, {len(spans)} span{'s' * (len(spans) > 1)} of " + ", ".join(f"{s:g}" for s in spans)
     record: dict[str, object] = {"kind": "bridge", "shape": shape, "spans": [float(s) for s in spans],
-                                 "starts": [float(x) for x in starts]}  # fmt: skip
+                                 "starts": [float(x) for x in starts], "rings": 1}  # fmt: skip
+    if intrados is None:
+        rings = _lengths(where, "ring", ring, most=MOST_RINGS)
+        foot = rings if springing_ring is None else _lengths(where, "springing_ring", springing_ring, len(rings))
+        numbers = [voussoirs] * len(rings) if isinstance(voussoirs, int) else list(voussoirs)
+        record["rings"] = len(rings)
+        record["arguments"] = {
+            "span": [float(s) for s in spans], "rise": rises if rise is not None else None,
+            "ring": rings, "springing_ring": foot, "voussoirs": numbers, "shape": shape, "staggered": staggered,
+            "headers": headers, "pier_width": widths or None, "pier_height": high, "pier_courses": pier_courses,
+            "abutment": behind[0] if abutment is not None else None, "backing": back, "chords": sides,
+        }  # fmt: skip
     model = assemble(options, pieces, obstacles, title=f"{title} m", generator=record)
     return _with_ring_joints(model, ring_friction, options.law)
+
+
+def rebuilt(model: Model, factor: float) -> tuple[Body, ...]:
+    """Return the bodies of a bridge with its rings thicker by a factor, otherwise as they are.
+
+    Raises
+    ------
+    InputError
+        The model was not made by :func:`bridge` from a span and a ring.
+    """
+    given = model.generator.get("arguments")
+    if not isinstance(given, Mapping):
+        msg = "the model does not know how its bridge was made"
+        raise InputError(msg, hint="make it by [bridge] with span and ring")
+    arguments: dict[str, Any] = {key: value for key, value in given.items() if value is not None}
+    for key in ("ring", "springing_ring"):
+        arguments[key] = [factor * v for v in arguments[key]]
+    new = {body.name: body for body in bridge(**arguments).outlines}
+    if set(new) != {b.name for b in model.bodies}:
+        msg = "bodies were added to the bridge or taken away since it was made"
+        raise InputError(msg, hint="only a bridge as it was made can be made anew")
+    return tuple(replace(b, outline=new[b.name].outline) for b in model.outlines)
 
 
 def _lengths(where: str, name: str, given: Any, number: int | None = None, most: int = 100) -> list[float]:

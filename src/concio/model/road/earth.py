@@ -63,7 +63,7 @@ def with_fill(model: Model, fill: Fill) -> Model:
 
 
 @strict
-def with_vehicle(model: Model, vehicle: Vehicle) -> Model:
+def with_vehicle(model: Model, vehicle: Vehicle, *, whole: bool = True) -> Model:
     """Return a model with fill under a vehicle: loads of its group on the masonry, where its position is given.
 
     Parameters
@@ -71,6 +71,8 @@ def with_vehicle(model: Model, vehicle: Vehicle) -> Model:
     model : Model
         With fill; a vehicle that it has already is taken away with its loads.
     vehicle : Vehicle
+    whole : bool
+        Whether all of its axles have to stand on the road; else those beyond it are left out.
 
     Raises
     ------
@@ -88,7 +90,7 @@ def with_vehicle(model: Model, vehicle: Vehicle) -> Model:
     bare = replace(model, vehicle=vehicle)
     if vehicle.position is None:
         return bare
-    found = spread_under(bare, vehicle.position)
+    found = spread_under(bare, vehicle.position, whole=whole)
     return replace(bare, loads=(*model.loads, *point_loads(bare, found, vehicle.group)))
 
 
@@ -98,6 +100,14 @@ def without_vehicle(model: Model) -> Model:
         return model
     group = model.vehicle.group
     return replace(model, vehicle=None, loads=tuple(load for load in model.loads if load.group != group))
+
+
+def without_fill(model: Model) -> Model:
+    """Return a model without its fill, the loads of that and its soil elements."""
+    if model.fill is None:
+        return model
+    loads = tuple(load for load in model.loads if load.group != model.fill.group)
+    return replace(model, fill=None, loads=loads, ties=tuple(t for t in model.ties if t.kind != "soil"))
 
 
 def without_pressure(model: Model) -> Model:

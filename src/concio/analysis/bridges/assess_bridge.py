@@ -1,0 +1,190 @@
+"""How much of a vehicle a masonry arch bridge carries: every position, the worst, and what the answer rests on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from concio.analysis.bridges.bridge_result import Bracket, BridgeResult, Coulomb
+from concio.analysis.bridges.mexe import mexe_of
+from concio.analysis.bridges.service import service_state
+from concio.analysis.bridges.sweep import APART, FINE, Standing, Sweep, grid, least, search
+from concio.analysis.bridges.variants import changes, parts
+from concio.analysis.engine import by_its_engine
+from concio.analysis.lent_compliance import lend
+from concio.analysis.limit import limit
+from concio.arguments import strict
+from concio.errors import InputError, NoEquilibriumError, SolverError
+from concio.model.model import Model
+from concio.model.road.earth import with_vehicle, without_pressure
+from concio.model.road.vehicles import find_vehicle
+from concio.problem.solution import Progress, ProgressCallback, Status
+from concio.solvers.methods import find
+from concio.solvers.statics.existence import find_mechanism
+from concio.verdict.bridge_verdict import ASKED, DEAD_NOT_STANDING
+from concio.verdict.not_standing import not_standing
+
+Array = np.ndarray
+
+CHECKED = 40
+"""Positions at which Coulomb states are found, unless more or fewer are asked for."""
+
+
+@strict
+@by_its_engine
+def assess_bridge(
+    model: Model,
+    *,
+    required: float = 1.0,
+    step: float | None = None,
+    fine: float = FINE,
+    worst: int = 3,
+    checked: int = CHECKED,
+    sensitivity: bool = True,
+    others: Sequence[str] = (),
+    settled: Mapping[str, float] | None = None,
+    span_rise: float | None = None,
+    progress: ProgressCallback | None = None,
+) -> BridgeResult:
+    """Find the load factor of a vehicle at every position on a bridge, and the worst.
+
+    Parameters
+    ----------
+    model : Model
+        Plane, with fill and a vehicle (:func:`concio.with_fill`, :func:`concio.with_vehicle`).
+    required : float
+        Load factor that is asked for at every position.
+    step : float, optional
+        Distance of positions of the first grid [m]; by default a fortieth of the shortest span.
+    fine : float
+        Distance to which the worst positions are refined [m].
+    worst : int
+        At how many worst positions the bracket of associated bound and Coulomb load steps is found.
+    checked : int
+        At how many positions a Coulomb state under ``required`` times the vehicle is found; 0 leaves that out, and the
+        answer open.
+    sensitivity : bool
+        Whether ring, fill, friction and strength are varied, at the worst position.
+    others : sequence of str
+        Further vehicles of the library, each with its own worst position.
+    settled : mapping of str to float, optional
+        Downward settlement of fixed bodies by name, for a second working state [m].
+    span_rise : float, optional
+        Span/rise factor for the comparison with MEXE where the arch is flat.
+    progress : callable, optional
+
+    Raises
+    ------
+    InputError
+        The model has no fill or no vehicle; a number is out of its range.
+    NoEquilibriumError
+        The bridge does not stand without the vehicle.
+    SolverError
+        The vehicle reaches no masonry, or the callback asked to stop.
+
+    Examples
+    --------
+    >>> import concio
+    >>> bare = concio.bridge(span=3.0, rise=0.75, ring=0.215, voussoirs=16, block="rigid", width=2.0)
+    >>> filled = concio.with_fill(bare, concio.Fill(cover=0.3, friction_angle=30.0, mobilised=0.3))
+    >>> loaded = concio.with_vehicle(filled, concio.find_vehicle("single axle"))
+    >>> found = concio.assess_bridge(loaded, step=0.5, fine=0.1, checked=3, sensitivity=False)
+    >>> bool(found.worst.multiplier > 0)
+    True
+    """
+    if not 0 < required < np.inf:
+        msg = f"required = {required:g} must be positive"
+        raise InputError(msg, hint="the load factor that is asked for, 1 for the vehicle as it is")
+    if model.dim != 2:
+        msg = "bridges are assessed in the plane; the model is in space"
+        raise InputError(msg, hint="give the plane model of a strip")
+    sweep = Sweep(model)
+    _refuse_what_does_not_stand(sweep)
+    standings = search(sweep, step=step, fine=fine, worst=worst, progress=progress)
+    low, high = sweep.reach()
+    few = least(standings, max(worst, 1), APART * (high - low))
+    if not few:
+        msg = "no position of the vehicle has a load factor: nothing bounds its load anywhere"
+        raise SolverError(msg, hint="does the vehicle stand on masonry that can move?")
+    loaded = [_placed(model, s) for s in few]
+    brackets = []
+    for s, one in zip(few[:worst], loaded, strict=False):
+        _tell(progress, "bracket", f"x = {s.position:.3g} m")
+        brackets.append(Bracket(s, limit(one, one.vehicle.group, path=False, steps=True, search=False)))  # type: ignore[union-attr]
+    place = few[0].position, few[0].direction
+    _tell(progress, "bridge", "without the pressure of the soil")
+    soil = any(t.kind == "soil" for t in model.ties)
+    return BridgeResult(
+        model=loaded[0],
+        required=required,
+        standings=standings,
+        brackets=tuple(brackets),
+        coulomb=_coulomb(sweep, required, checked, step, few, progress),
+        parts=parts(model, *place),
+        without_soil=_worst_of(without_pressure(model), step, fine) if soil else few[0],
+        changes=changes(model, *place) if sensitivity else (),
+        others={name: _worst_of(with_vehicle(model, replace(find_vehicle(name), direction="both")), step, fine)
+                for name in others},
+        service=service_state(loaded[0]),
+        settled=service_state(loaded[0], settled) if settled else None,
+        settlements=dict(settled or {}),
+        mexe=mexe_of(model, span_rise=span_rise),
+        fine=fine,
+    )  # fmt: skip
+
+
+def _tell(progress: ProgressCallback | None, stage: str, words: str) -> None:
+    if progress is not None and progress(Progress(stage, 0, float("nan"), words)):
+        msg = "stopped on request"
+        raise SolverError(msg)
+
+
+def _refuse_what_does_not_stand(sweep: Sweep) -> None:
+    if find_mechanism(sweep.dead) is None:
+        return
+    told = not_standing(sweep.assembly, ASKED, DEAD_NOT_STANDING)
+    raise NoEquilibriumError(DEAD_NOT_STANDING, hint="look at it with 'concio run' and no vehicle", verdict=told)
+
+
+def _placed(model: Model, standing: Standing) -> Model:
+    assert model.vehicle is not None
+    way: Literal["left", "right"] = "left" if standing.direction == "left" else "right"
+    return with_vehicle(model, replace(model.vehicle, position=standing.position, direction=way), whole=False)
+
+
+def _worst_of(model: Model, step: float | None, fine: float) -> Standing | None:
+    """Return the standing of the least multiplier of a model of its own; None where it does not stand or has none."""
+    sweep = Sweep(model)
+    if find_mechanism(sweep.dead) is not None:
+        return None
+    found = least(search(sweep, step=step, fine=fine, worst=1), 1, 0.0)
+    return found[0] if found else None
+
+
+def _coulomb(
+    sweep: Sweep, required: float, count: int, step: float | None, few: Sequence[Standing],
+    progress: ProgressCallback | None,
+) -> tuple[Coulomb, ...]:  # fmt: skip
+    """Return Coulomb states under ``required`` times the vehicle at some positions, the worst among them."""
+    if count <= 0:
+        return ()
+    places = [(s.position, s.direction) for s in few]
+    every = [p for p in grid(sweep, step) if sweep.at(*p) is not None]
+    picked = np.unique(np.linspace(0, len(every) - 1, min(count, len(every))).astype(int))
+    places += [every[k] for k in picked if every[k] not in places]
+    lent = lend(sweep.assembly).problem()
+    solver = find("auto")
+    found = []
+    for k, (x, way) in enumerate(places):
+        if progress is not None:
+            progress(Progress("Coulomb states", k, float("nan"), f"{way}, x = {x:.3g} m"))
+        live, _, _ = sweep.load(x, way)
+        standing = sweep.at(x, way)
+        if standing is not None and standing.limit.checked and standing.limit.upper < required:
+            found.append(Coulomb(x, way, Status.NO_EQUILIBRIUM))
+            continue
+        found.append(Coulomb(x, way, solver(lent.with_loads(lent.f + required * live)).status))
+    return tuple(sorted(found, key=lambda c: (c.direction, c.position)))

@@ -1,0 +1,224 @@
+"""A vehicle on a bridge, position by position: the limit load of each, and a search for the worst.
+
+The dead load is assembled once; each position gives a vector of loads, and one linear programme
+(:mod:`concio.solvers.statics.limit`) the associated multiplier with forces and a mechanism that prove it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from concio.contact.assembly import Assembly, assemble
+from concio.contact.loads import place_forces
+from concio.errors import InputError
+from concio.model.crossing import STRETCH
+from concio.model.model import Model
+from concio.model.road.earth import ground_of, spread_under, without_vehicle
+from concio.model.road.surface import Road, Surface
+from concio.problem.contact_problem import ContactProblem
+from concio.problem.solution import Progress, ProgressCallback
+from concio.representation import short_repr
+from concio.solvers.statics.limit import LimitLoad, associated_limit
+
+Array = np.ndarray
+
+COARSE = 40
+"""Positions of the first grid in the shortest span."""
+FINE = 0.01
+"""Distance between positions to which the worst is refined [m]."""
+MOST = 4_000
+"""Largest number of positions."""
+APART = 0.05
+"""Worst positions are told apart where they are further from each other than this share of the road."""
+
+
+@short_repr
+@dataclass(frozen=True, eq=False)
+class Standing:
+    """A vehicle at one position.
+
+    Parameters
+    ----------
+    position : float
+        x of its reference point [m].
+    direction : {"right", "left"}
+        Of travel.
+    limit : LimitLoad
+        Associated multiplier of its load, with its proofs.
+    on_masonry : float
+        Load that reaches blocks that can move [kN].
+    elsewhere : float
+        Load that reaches fixed blocks [kN]; what stands beyond the road is in neither.
+    """
+
+    position: float
+    direction: str
+    limit: LimitLoad
+    on_masonry: float
+    elsewhere: float
+
+    @property
+    def multiplier(self) -> float:
+        """The associated multiplier: ``inf`` where nothing bounds the load."""
+        return self.limit.multiplier
+
+
+@dataclass(eq=False)
+class Sweep:
+    """Limit loads of a vehicle at any position of a model with fill.
+
+    Parameters
+    ----------
+    model : Model
+        With fill and a vehicle; loads that the vehicle has on the model are left out.
+    """
+
+    model: Model
+    bare: Model = field(init=False)
+    assembly: Assembly = field(init=False)
+    dead: ContactProblem = field(init=False)
+    ground: tuple[Surface, Road] = field(init=False)
+    known: dict[tuple[float, str], Standing | None] = field(init=False, default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.model.vehicle is None:
+            msg = "the model has no vehicle"
+            raise InputError(msg, hint="add [vehicle] with name = 'single axle' or axles = [[0.0, 100.0]]")
+        self.bare = without_vehicle(self.model)
+        self.ground = ground_of(self.model)
+        self.assembly = assemble(self.bare)
+        self.dead = self.assembly.problem()
+
+    def load(self, position: float, direction: str) -> tuple[Array, float, float]:
+        """Return the load (N,) of the vehicle at a position, what reaches the masonry, and what does not [kN]."""
+        found = spread_under(self.model, position, direction, self.ground, whole=False)
+        body = self.ground[0].body[found.piece]
+        free = np.array([self.bare.bodies[b].kind != "fixed" for b in body.tolist()], dtype=bool)
+        forces = np.column_stack([np.zeros(int(free.sum())), -found.force[free]])
+        f = place_forces(self.assembly.disc, body[free], found.at[free], forces)
+        whole, own = float(found.force.sum()), float(found.force[free].sum())
+        return np.asarray(self.assembly.supported.T.T @ f), own, whole - own
+
+    def at(self, position: float, direction: str = "right") -> Standing | None:
+        """Return the limit load at a position; None where nothing of the vehicle reaches the masonry."""
+        key = (round(float(position), 9), direction)
+        if key not in self.known:
+            live, own, rest = self.load(*key)
+            self.known[key] = Standing(*key, associated_limit(self.dead, live), own, rest) if own > 0 else None
+        return self.known[key]
+
+    def reach(self, direction: str = "right") -> tuple[float, float]:
+        """Return between which positions an axle, or a stretch, is above blocks that can move [m]."""
+        assert self.model.vehicle is not None
+        surface = self.ground[0]
+        free = np.array([self.bare.bodies[b].kind != "fixed" for b in surface.body.tolist()], dtype=bool)
+        low, high = surface.start[free, 0].min(), surface.end[free, 0].max()
+        sign = -1.0 if direction == "left" else 1.0
+        axles = [a for a in self.model.vehicle.axles if a.length is None or a.length < STRETCH]
+        ends = [sign * a.at for a in axles]
+        if not ends:
+            ends = [sign * (a.at + s * 0.5 * (a.length or 0.0)) for a in self.model.vehicle.axles for s in (-1, 1)]
+        return float(low - max(ends)), float(high - min(ends))
+
+    @property
+    def directions(self) -> tuple[str, ...]:
+        """Directions of travel that are looked at: one where the vehicle is the same both ways."""
+        vehicle = self.model.vehicle
+        assert vehicle is not None
+        if vehicle.direction != "both":
+            return (vehicle.direction,)
+        there, back = (sorted(vehicle.footprints(0.0, way)) for way in ("right", "left"))
+        return ("right",) if np.allclose(there, back) else ("right", "left")
+
+    def step(self) -> float:
+        """Return the distance of positions of the first grid [m]."""
+        low, high = self.reach()
+        spans = [s for s in _lengths(self.model.generator.get("spans")) if s > 0]
+        wanted = min([*spans, high - low]) / COARSE
+        return max(wanted, (high - low) / MOST)
+
+
+def _lengths(given: object) -> list[float]:
+    return [float(v) for v in given] if isinstance(given, Sequence) and not isinstance(given, str) else []
+
+
+def grid(sweep: Sweep, step: float | None = None) -> list[tuple[float, str]]:
+    """Return the positions of the first grid, with the direction of each.
+
+    Raises
+    ------
+    InputError
+        The distance is not positive, or there would be too many.
+    """
+    width = sweep.step() if step is None else step
+    found = []
+    for way in sweep.directions:
+        low, high = sweep.reach(way)
+        if not width > 0 or (high - low) / width > MOST:
+            msg = f"a step of {width:g} m is no distance of positions on a bridge of {high - low:.4g} m"
+            raise InputError(msg, hint=f"at most {MOST:,} positions")
+        count = max(2, int(np.ceil((high - low) / width)) + 1)
+        found += [(float(x), way) for x in np.linspace(low, high, count)]
+    return found
+
+
+def search(
+    sweep: Sweep, *, step: float | None = None, fine: float = FINE, worst: int = 3,
+    progress: ProgressCallback | None = None,
+) -> tuple[Standing, ...]:
+    """Return limit loads on a grid of positions that is refined about its least multipliers, from left to right.
+
+    Parameters
+    ----------
+    sweep : Sweep
+    step : float, optional
+        Distance of positions of the first grid [m].
+    fine : float
+        Distance to which least multipliers are refined [m].
+    worst : int
+        How many of them, each the least in its neighbourhood.
+    progress : callable, optional
+    """
+    places = grid(sweep, step)
+    for k, (x, way) in enumerate(places):
+        if progress is not None:
+            progress(Progress("positions", k, float("nan"), f"{way}, x = {x:.3g} m"))
+        sweep.at(x, way)
+    for way in sweep.directions:
+        own = [x for x, w in places if w == way]
+        apart = own[1] - own[0]
+        for standing in least(_known(sweep, way), worst, APART * (own[-1] - own[0])):
+            _refine(sweep, standing, apart, fine)
+    return tuple(s for way in sweep.directions for s in _known(sweep, way))
+
+
+def least(standings: Sequence[Standing], count: int, apart: float) -> list[Standing]:
+    """Return the standings of least multiplier, each further than ``apart`` [m] from those before it."""
+    found: list[Standing] = []
+    for s in sorted((s for s in standings if np.isfinite(s.multiplier)), key=_order):
+        if all(s.direction != o.direction or abs(s.position - o.position) > apart for o in found):
+            found.append(s)
+        if len(found) == count:
+            break
+    return found
+
+
+def _order(standing: Standing) -> tuple[float, str, float]:
+    """Return what standings are sorted by: of mirror images, whose multipliers differ by rounding, the left one."""
+    return float(f"{standing.multiplier:.6g}"), "lr".replace(standing.direction[0], ""), standing.position
+
+
+def _known(sweep: Sweep, way: str) -> list[Standing]:
+    found = [s for (_, w), s in sweep.known.items() if w == way and s is not None]
+    return sorted(found, key=lambda s: s.position)
+
+
+def _refine(sweep: Sweep, best: Standing, apart: float, fine: float) -> None:
+    """Look to both sides of a standing, at half the distance each time, and go where the multiplier is less."""
+    while apart > fine:
+        apart *= 0.5
+        beside = [sweep.at(best.position + side * apart, best.direction) for side in (-1, 1)]
+        best = min([best, *(s for s in beside if s is not None)], key=lambda s: s.multiplier)

@@ -1,0 +1,89 @@
+"""``concio bridge FILE``: a vehicle on a masonry arch bridge, position by position."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import typer
+
+from concio.cli.outcome import guarded, print_json, say
+from concio.cli.output import check_directory, replaced_directory
+from concio.cli.progress import progress_bar
+from concio.cli.run import EngineOf, File, Json, UnitsOf, loaded
+
+
+@guarded
+def bridge(
+    file: File,
+    required: Annotated[float, typer.Option("--required", help="Load factor that is asked for.")] = 1.0,
+    step: Annotated[
+        str | None, typer.Option("--step", help="Distance of positions: '0.2 m'; by default a 40th of a span.")
+    ] = None,
+    fine: Annotated[str, typer.Option("--fine", help="Distance to which the worst position is refined.")] = "10 mm",
+    worst: Annotated[int, typer.Option("--worst", help="Worst positions that get a Coulomb bracket.")] = 3,
+    checked: Annotated[
+        int, typer.Option("--checked", help="Positions at which a Coulomb state is found; 0 leaves the answer open.")
+    ] = 40,
+    vehicle: Annotated[
+        list[str] | None, typer.Option("--vehicle", "-v", help="Another vehicle of the library (repeatable).")
+    ] = None,
+    settle: Annotated[
+        list[str] | None, typer.Option("--settle", help="A fixed block that settles: 'pier1 ground=10 mm'.")
+    ] = None,
+    sensitivity: Annotated[
+        bool, typer.Option("--sensitivity/--no-sensitivity", help="Vary ring, fill, friction and strength.")
+    ] = True,
+    mexe_factor: Annotated[
+        float | None, typer.Option("--mexe-factor", help="Span/rise factor of MEXE for flat arches.")
+    ] = None,
+    language: Annotated[Literal["en", "it"], typer.Option("--language", help="Of the report.")] = "en",
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for report, curve and figures.")] = None,
+    engine: EngineOf = None,
+    units: UnitsOf = None,
+    json: Json = False,
+) -> int:
+    """Find the load factor of a vehicle at every position on a bridge, the worst position, and what it rests on.
+
+    Example: concio bridge bridge.toml --out result
+    """
+    import concio
+    from concio.units import quantity
+    from concio.verdict.bridge_verdict import bridge_lines
+
+    if out is not None:
+        check_directory(out)
+    model = loaded(file, units, engine)
+    options: dict[str, Any] = {"required": required, "worst": worst, "checked": checked, "sensitivity": sensitivity}
+    options |= {"step": None if step is None else quantity(step, "length", where="--step")}
+    options |= {"fine": quantity(fine, "length", where="--fine"), "others": tuple(vehicle or ())}
+    options |= {"settled": dict(_settlement(text) for text in settle or ()), "span_rise": mexe_factor}
+    with progress_bar(shown=not json) as progress:
+        found = concio.assess_bridge(model, progress=progress, **options)
+    told = {"status": found.verdict.status, **found.summary()}
+    written: list[str] = []
+    if out is not None:
+        from concio.cli.bridge_files import write_bridge
+
+        with replaced_directory(out) as fresh:
+            written = write_bridge(found, told, fresh, language)
+    if json:
+        print_json(told)
+    else:
+        for line in bridge_lines(found):
+            say(line)
+        if written:
+            say(f"  written      {out}: {', '.join(written)}")
+    return found.verdict.exit_code
+
+
+def _settlement(text: str) -> tuple[str, float]:
+    """Return the name of a fixed block and how far it settles [m]."""
+    from concio.errors import InputError
+    from concio.units import quantity
+
+    name, sign, far = text.rpartition("=")
+    if not sign:
+        msg = f"--settle {text!r} names no distance"
+        raise InputError(msg, hint="write 'pier1 ground=10 mm'")
+    return name.strip(), quantity(far.strip(), "length", where="--settle")

@@ -1,0 +1,230 @@
+"""The verdict of a bridge: whether a vehicle is carried wherever it stands, and what the answer rests on."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from concio.display import number
+from concio.problem.solution import PROVEN_FAILURES, Status
+from concio.verdict.attention import attention, joints_not_made
+from concio.verdict.bridge_words import WIDTHS, Language, say
+from concio.verdict.crushing import crushing
+from concio.verdict.question import Question, question_of
+from concio.verdict.verdict import Outcome, Verdict
+
+if TYPE_CHECKING:
+    from concio.analysis.bridges.bridge_result import BridgeResult
+
+ASKED = "the load factor of a vehicle at every position on a bridge"
+DEAD_NOT_STANDING = "the bridge does not stand without the vehicle: a mechanism proves it"
+"""What the exception says where no forces balance the loads that are not the vehicle's."""
+
+
+def bridge_verdict(found: BridgeResult, language: Language = "en") -> Verdict:
+    """Return the verdict of a vehicle on a bridge.
+
+    Parameters
+    ----------
+    found : BridgeResult
+    language : {"en", "it"}
+        Of its sentences; what every command says of a model is English.
+    """
+    outcome = _outcome(found)
+    head = {Outcome.HOLDS: "head_holds", Outcome.FAILS: "head_fails"}.get(outcome, "head_open")
+    return Verdict(
+        outcome=outcome,
+        status={Outcome.HOLDS: "solved", Outcome.FAILS: "no_equilibrium"}.get(outcome, outcome.value),
+        question=bridge_question(found, language),
+        headline=say(language, head),
+        answer=_answer(found, outcome, language),
+        proof=_proof(found, language),
+        meaning=say(language, "meaning"),
+        limits=_limits(found, language),
+        unchecked=_unchecked(found, language),
+        attention=(*_rests(found, outcome, language), *attention(found.assembly)),
+    )
+
+
+def bridge_question(found: BridgeResult, language: Language = "en") -> Question:
+    """Return what was asked, with what acts."""
+    units, vehicle = found.model.report, found.vehicle
+    asked = say(
+        language, "asked", required=number(found.required, 4), vehicle=vehicle.name,
+        axle=units.text("force", vehicle.heaviest.load * vehicle.dynamic * vehicle.factor, 4),
+        total=units.text("force", vehicle.total, 4),
+    )  # fmt: skip
+    reached = found.design if math.isfinite(found.design) else math.nan
+    return question_of(asked, found.assembly, multiplied={vehicle.group: reached},
+                       wanted={vehicle.group: found.required})  # fmt: skip
+
+
+def bridge_lines(found: BridgeResult) -> list[str]:
+    """Return what was found, as a command prints it."""
+    units, verdict = found.model.report, found.verdict
+    vehicle, worst = found.vehicle, found.worst
+    lines = [found.model.title or "bridge without a title", verdict.sentence, *verdict.lines(units, most=8)]
+    lines.append(f"  proof        {verdict.proof}")
+    axle, asked = units.text("force", found.permissible_axle, 4), number(found.required, 4)
+    lines.append(f"  permissible  a heaviest axle of {axle} for the load factor {asked}")
+    for b in found.brackets:
+        s = b.standing
+        lines.append(
+            f"  bracket      x = {units.text('length', s.position, 4)}, to the {s.direction}: "
+            f"{number(b.limit.design, 5)} carried, {number(s.multiplier, 5)} not exceeded"
+        )
+    told = ", ".join(f"{name} {number(v, 4)}" for name, v in found.parts.items())
+    lines.append(f"  built up     bound at the worst position: {told}")
+    for name, other in found.others.items():
+        what = "does not stand" if other is None else (
+            f"bound {number(other.multiplier, 4)} times, worst at x = {units.text('length', other.position, 4)}"
+        )  # fmt: skip
+        lines.append(f"  vehicle      {name}: {what}")
+    for c in found.changes:
+        lines.append(
+            f"  sensitivity  {c.name} {number(c.low, 4)} to {number(c.high, 4)} {c.unit if c.unit != '-' else ''}: "
+            f"bound {number(c.at_low, 4)} to {number(c.at_high, 4)}".replace("  bound", " bound")
+        )
+    lines.append(f"  working      {_service(found)}")
+    if found.settled is not None:
+        moved = ", ".join(f"{n} {units.text('motion', d, 4)}" for n, d in found.settlements.items())
+        lines.append(f"  settled      by {moved}: {_service(found, settled=True)}")
+    if found.mexe is not None:
+        axle = "does not apply" if math.isnan(found.mexe.axle) else units.text("force", found.mexe.axle, 4) + " an axle"
+        lines.append(f"  MEXE         {axle}, for comparison only: {'; '.join(found.mexe.limits)}")
+    source = f"; {vehicle.source}" if vehicle.source else ""
+    assumed = f"; assumed: {vehicle.assumed}" if vehicle.assumed else ""
+    lines.append(f"  vehicle      {vehicle.name}, {len(found.standings)} positions{source}{assumed}")
+    lines.append(f"  in short     {verdict.headline} Worst at x = {units.text('length', worst.position, 4)}")
+    return lines
+
+
+def _service(found: BridgeResult, *, settled: bool = False) -> str:
+    """Return the working state in words."""
+    state = found.settled if settled else found.service
+    assert state is not None
+    units = found.model.report
+    if state.status is not Status.SOLVED:
+        return str(state.status.value)
+    told = [f"{state.open_joints} joints open, {state.slipping} slip"]
+    if _crush(found):
+        told.append(f"{state.crushed} contact points crush")
+    told.append(f"pressure up to {units.text('stress', state.largest_pressure, 4)}")
+    told.append(
+        "no deflection: blocks and joints are rigid" if math.isnan(state.deflection)
+        else f"the vehicle adds {units.text('motion', state.deflection, 4)} of deflection"
+    )  # fmt: skip
+    return ", ".join(told)
+
+
+def _outcome(found: BridgeResult) -> Outcome:
+    if found.refuted or any(_refutes(found, s.limit.upper, checked=s.limit.checked) for s in found.standings):
+        return Outcome.FAILS
+    if not found.coulomb:
+        return Outcome.INCOMPLETE
+    if found.open or not found.worst.limit.checked:
+        return Outcome.UNDECIDED
+    return Outcome.HOLDS
+
+
+def _crush(found: BridgeResult) -> bool:
+    """Return whether any joint has a compressive strength."""
+    joints = found.assembly.pairs.interface >= 0
+    return bool(np.isfinite(found.assembly.laws.cap[joints]).any())
+
+
+def _refutes(found: BridgeResult, upper: float, *, checked: bool) -> bool:
+    return checked and upper < found.required * (1 - 1e-9)
+
+
+def _answer(found: BridgeResult, outcome: Outcome, language: Language) -> str:
+    """Return whether it is carried, the worst position, and what is left without the pressure of the soil."""
+    units, worst, vehicle = found.model.report, found.worst, found.vehicle
+    required = number(found.required, 4)
+    every = len(found.standings)
+    if outcome is Outcome.FAILS:
+        low = _refutes(found, worst.limit.upper, checked=worst.limit.checked)
+        at = worst if low else found.refuted[0]
+        upper = number(worst.limit.upper, 5)
+        told = [say(language, "fails" if low else "fails_coulomb", required=required, upper=upper,
+                    x=units.text("length", at.position, 4), way=say(language, at.direction))]  # fmt: skip
+    elif outcome is Outcome.HOLDS:
+        told = [say(language, "holds", required=required, count=len(found.coulomb))]
+    elif found.coulomb:
+        told = [say(language, "open", required=required, count=len(found.open), all=len(found.coulomb))]
+    else:
+        told = [say(language, "unasked", required=required, all=every)]
+    heaviest = vehicle.heaviest.load * vehicle.dynamic * vehicle.factor
+    known = {
+        "x": units.text("length", worst.position, 4), "way": say(language, worst.direction),
+        "bound": number(worst.multiplier, 5), "bound_axle": units.text("force", worst.multiplier * heaviest, 4),
+    }  # fmt: skip
+    if math.isnan(found.design):
+        told.append(say(language, "worst_unknown", **known))
+    else:
+        design, axle = number(found.design, 5), units.text("force", found.axle, 4)
+        told.append(say(language, "worst", design=design, axle=axle, **known))
+    if found.without_soil is None:
+        told.append(say(language, "no_soil_none"))
+    elif any(t.kind == "soil" for t in found.model.ties):
+        less = found.without_soil
+        told.append(say(language, "no_soil", multiplier=number(less.multiplier, 5),
+                        x=units.text("length", less.position, 4)))  # fmt: skip
+    return " ".join(told)
+
+
+def _rests(found: BridgeResult, outcome: Outcome, language: Language) -> tuple[str, ...]:
+    """Return in a sentence that the answer would be another one without the pressure of the soil."""
+    if outcome is Outcome.FAILS:
+        return ()
+    if found.without_soil is None:
+        return (say(language, "rests_none"),)
+    less = found.without_soil.multiplier
+    if less >= found.required:
+        return ()
+    return (say(language, "rests", multiplier=number(less, 5), required=number(found.required, 4)),)
+
+
+def _proof(found: BridgeResult, language: Language) -> str:
+    limit = found.worst.limit
+    violation = limit.mechanism.violation if limit.mechanism else math.nan
+    certified = sum(c.status is Status.SOLVED for c in found.coulomb)
+    return say(language, "proof", residual=f"{limit.residual:.0e}", violation=f"{violation:.0e}",
+               gap=f"{limit.gap:.0e}", count=certified)  # fmt: skip
+
+
+def _limits(found: BridgeResult, language: Language) -> tuple[str, ...]:
+    units = found.model.report
+    width, by = found.width
+    by = WIDTHS.get(by, by) if language == "it" else by
+    x = sorted({round(s.position, 6) for s in found.standings if s.direction == found.worst.direction})
+    apart = max(np.diff(x), default=0.0)
+    told = [
+        say(language, "shares", soil=number(100 * max(found.owed_to_soil, 0.0), 3),
+            spread=number(100 * max(found.owed_to_spread, 0.0), 3)),
+        say(language, "width", width=units.text("length", width, 4), by=by),
+        say(language, "grid", step=units.text("length", float(apart), 3), fine=units.text("length", found.fine, 3)),
+        say(language, "brackets", count=len(found.brackets)),
+    ]  # fmt: skip
+    worst = found.worst
+    beside = found.vehicle.total - worst.on_masonry
+    if beside > 1e-6 * found.vehicle.total:
+        told.append(say(language, "elsewhere", load=units.text("force", beside, 4)))
+    return (*told, say(language, "plane"), say(language, "several"), *joints_not_made(found.assembly.detection),
+            *crushing(found.assembly))  # fmt: skip
+
+
+def _unchecked(found: BridgeResult, language: Language) -> tuple[str, ...]:
+    told = [] if found.coulomb else [say(language, "unchecked_coulomb")]
+    if not _crush(found):
+        told.append(say(language, "unchecked_crushing"))
+    told.append(say(language, "unchecked_long"))
+    one_way = {s.direction for s in found.standings}
+    there, back = (sorted(found.vehicle.footprints(0.0, way)) for way in ("right", "left"))
+    if len(one_way) == 1 and not np.allclose(there, back):
+        told.append(say(language, "unchecked_both"))
+    if found.service.status is not Status.SOLVED and found.service.status not in PROVEN_FAILURES:
+        told.append(say(language, "unchecked_state", status=found.service.status.name.lower()))
+    return tuple(told)

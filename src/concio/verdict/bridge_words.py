@@ -1,0 +1,119 @@
+"""Sentences of the verdict of a bridge, in English and Italian."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Literal
+
+Language = Literal["en", "it"]
+
+ENGLISH: Mapping[str, str] = {
+    "asked": "{required} times the vehicle '{vehicle}' (heaviest axle {axle}, {total} in all) at every position on "
+    "the bridge, while all other loads act once",
+    "head_holds": "The vehicle is carried at every position that was looked at.",
+    "head_fails": "The vehicle is not carried.",
+    "head_open": "Whether the vehicle is carried is open.",
+    "fails": "{required} times the vehicle is not carried at x = {x}, travelling to the {way}: nothing is in "
+    "equilibrium beyond {upper} times.",
+    "fails_coulomb": "{required} times the vehicle is not carried at x = {x}, travelling to the {way}: put on in one "
+    "step with Coulomb friction, the structure moves away.",
+    "holds": "{required} times the vehicle is carried at each of {count} positions: a certified Coulomb state "
+    "was found "
+    "at each.",
+    "open": "Whether {required} times the vehicle is carried was not shown at {count} of {all} positions.",
+    "unasked": "No mechanism refutes {required} times the vehicle at any of {all} positions; what Coulomb friction "
+    "carries was not asked for.",
+    "worst": "Worst is x = {x}, travelling to the {way}: Coulomb friction carries {design} times it there, a heaviest "
+    "axle of {axle}, and nothing is in equilibrium beyond {bound} times ({bound_axle}).",
+    "worst_unknown": "Worst is x = {x}, travelling to the {way}: nothing is in equilibrium beyond {bound} times it "
+    "there ({bound_axle}); what Coulomb friction carries of that was not found.",
+    "no_soil": "Without the pressure of the soil the bound is {multiplier} times, at x = {x}.",
+    "no_soil_none": "Without the pressure of the soil the bridge does not stand even without a vehicle.",
+    "rests": "the answer rests on the pressure of the soil: without it nothing is in equilibrium beyond {multiplier} "
+    "times the vehicle, less than the {required} asked for",
+    "rests_none": "the answer rests on the pressure of the soil: without it the bridge does not stand",
+    "shares": "of the bound at the worst position {soil} % is owed to the pressure of the soil and {spread} % to the "
+    "spread of the load through the fill",
+    "width": "a strip of {width} carries the vehicle: {by}",
+    "grid": "positions are {step} apart, at the worst {fine}; between them nothing was looked at",
+    "several": "Coulomb friction has no unique answer: other states may exist, and settlements or earlier loads may "
+    "lead to them",
+    "plane": "the model is plane: skew, torsion, spandrel walls and the way in which load spreads across the "
+    "bridge are "
+    "in the width alone",
+    "brackets": "what Coulomb friction carries at most was sought at {count} positions only",
+    "unchecked_coulomb": "Coulomb friction at the other positions (asked for at none)",
+    "unchecked_crushing": "crushing: the joints have no compressive strength",
+    "unchecked_long": "the abutments and the ground: fixed blocks carry whatever reaches them",
+    "unchecked_both": "the vehicle in the other direction",
+    "unchecked_state": "the working state: {status}",
+    "proof": "bound at the worst position: forces in balance to {residual}, a mechanism without overlap to "
+    "{violation}, "
+    "their multipliers {gap} apart; {count} Coulomb states, each certified by the equations of the model",
+    "meaning": "A load factor multiplies the vehicle where it stands. The associated bound lies above what Coulomb "
+    "friction carries, and is never what to design with.",
+    "elsewhere": "at the worst position {load} of the vehicle reaches fixed blocks or stands beyond the bridge",
+    "right": "right", "left": "left",
+}  # fmt: skip
+ITALIAN: Mapping[str, str] = {
+    "asked": "{required} volte il veicolo '{vehicle}' (asse più pesante {axle}, {total} in tutto) in ogni "
+    "posizione sul "
+    "ponte, con tutti gli altri carichi applicati una volta",
+    "head_holds": "Il veicolo è portato in ogni posizione esaminata.",
+    "head_fails": "Il veicolo non è portato.",
+    "head_open": "Resta aperto se il veicolo sia portato.",
+    "fails": "{required} volte il veicolo non è portato in x = {x}, con marcia verso {way}: oltre {upper} volte "
+    "nulla è "
+    "in equilibrio.",
+    "fails_coulomb": "{required} volte il veicolo non è portato in x = {x}, con marcia verso {way}: applicato "
+    "in un solo "
+    "passo con attrito di Coulomb, la struttura si muove.",
+    "holds": "{required} volte il veicolo è portato in ciascuna di {count} posizioni: in ciascuna è stato trovato uno "
+    "stato di Coulomb certificato.",
+    "open": "Che {required} volte il veicolo sia portato non è stato mostrato in {count} posizioni su {all}.",
+    "unasked": "Nessun meccanismo esclude {required} volte il veicolo in alcuna di {all} posizioni; quanto porta "
+    "l'attrito di Coulomb non è stato chiesto.",
+    "worst": "La posizione peggiore è x = {x}, con marcia verso {way}: l'attrito di Coulomb vi porta {design} volte il "
+    "veicolo, un asse più pesante di {axle}, e oltre {bound} volte ({bound_axle}) nulla è in equilibrio.",
+    "worst_unknown": "La posizione peggiore è x = {x}, con marcia verso {way}: oltre {bound} volte il veicolo "
+    "({bound_axle}) nulla vi è in equilibrio; quanto ne porti l'attrito di Coulomb non è stato trovato.",
+    "no_soil": "Senza la spinta del terreno il limite è {multiplier} volte, in x = {x}.",
+    "no_soil_none": "Senza la spinta del terreno il ponte non sta in piedi neppure senza veicolo.",
+    "rests": "la risposta poggia sulla spinta del terreno: senza di essa nulla è in equilibrio oltre "
+    "{multiplier} volte "
+    "il veicolo, meno delle {required} chieste",
+    "rests_none": "la risposta poggia sulla spinta del terreno: senza di essa il ponte non sta in piedi",
+    "shares": "del limite nella posizione peggiore il {soil} % è dovuto alla spinta del terreno e il {spread} % alla "
+    "diffusione del carico nel riempimento",
+    "width": "il veicolo è portato da una striscia di {width}: {by}",
+    "grid": "le posizioni distano {step}, nella zona peggiore {fine}; tra l'una e l'altra nulla è stato esaminato",
+    "several": "l'attrito di Coulomb non dà una risposta unica: possono esistere altri stati, ai quali portano "
+    "cedimenti "
+    "o carichi precedenti",
+    "plane": "il modello è piano: obliquità, torsione, timpani e diffusione trasversale del carico entrano solo nella "
+    "larghezza",
+    "brackets": "quanto porta al massimo l'attrito di Coulomb è stato cercato solo in {count} posizioni",
+    "unchecked_coulomb": "l'attrito di Coulomb nelle altre posizioni (non chiesto in alcuna)",
+    "unchecked_crushing": "lo schiacciamento: i giunti non hanno resistenza a compressione",
+    "unchecked_long": "le spalle e il terreno: i blocchi fissi portano qualunque carico li raggiunga",
+    "unchecked_both": "il veicolo nell'altra direzione",
+    "unchecked_state": "lo stato di esercizio: {status}",
+    "proof": "limite nella posizione peggiore: forze in equilibrio a meno di {residual}, un meccanismo senza "
+    "compenetrazioni a meno di {violation}, moltiplicatori distanti {gap}; {count} stati di Coulomb, ciascuno "
+    "certificato dalle equazioni del modello",
+    "meaning": "Il fattore di carico moltiplica il veicolo dove si trova. Il limite associato sta sopra quanto porta "
+    "l'attrito di Coulomb e non è mai il valore di progetto.",
+    "elsewhere": "nella posizione peggiore {load} del veicolo raggiungono blocchi fissi o stanno oltre il ponte",
+    "right": "destra", "left": "sinistra",
+}  # fmt: skip
+TEXTS: Mapping[str, Mapping[str, str]] = {"en": ENGLISH, "it": ITALIAN}
+WIDTHS = {
+    "the whole width of the bodies": "tutta la larghezza del modello",
+    "as given": "come assegnata",
+}
+"""How widths are found, in Italian."""
+
+
+def say(language: Language, key: str, **values: object) -> str:
+    """Return a sentence of the verdict."""
+    return TEXTS[language][key].format(**values)

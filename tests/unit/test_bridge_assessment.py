@@ -1,0 +1,219 @@
+"""A vehicle on a bridge: the search over positions, what the answer is owed to, the verdict and the command."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import concio
+from commands import run
+from concio.analysis.bridges.mexe import mexe
+from concio.analysis.bridges.sweep import Sweep, search
+from concio.analysis.bridges.variants import parts
+from concio.analysis.limit import dead_and_live
+from concio.model.crossing import Axle, Fill, Vehicle
+from concio.model.road.earth import ground_of, with_fill, with_vehicle, without_pressure
+from concio.solvers.statics.limit import associated_limit
+from concio.verdict.bridge_verdict import bridge_verdict
+from concio.verdict.bridge_words import TEXTS
+
+FILL = Fill(cover=0.3, unit_weight=20.0, passive=1.0)
+
+
+def small(fill: Fill = FILL, load: float = 10.0, **more: object) -> concio.Model:
+    """Return a small bridge of rigid voussoirs under one axle that may stand anywhere."""
+    options: dict[str, object] = {"span": 3.0, "rise": 0.75, "ring": 0.215, "voussoirs": 12, "width": 2.0}
+    options |= {"block": "rigid", "unit_weight": 22.0, "friction": 0.6}
+    model = with_fill(concio.bridge(**(options | more)), fill)  # type: ignore[arg-type]
+    return with_vehicle(model, Vehicle("one axle", (Axle(0.0, load),)))
+
+
+def placed(model: concio.Model, x: float) -> concio.Model:
+    """Return it with the vehicle at x."""
+    assert model.vehicle is not None
+    return with_vehicle(model, replace(model.vehicle, position=x))
+
+
+def test_a_position_of_the_sweep_is_the_limit_load_of_the_model_with_the_vehicle_there() -> None:
+    model = small()
+    sweep = Sweep(model)
+    for x in (0.4, 0.9, 2.2):
+        dead, live = dead_and_live(concio.assemble(placed(model, x)), "live")
+        found = sweep.at(x)
+        assert found is not None
+        assert found.multiplier == pytest.approx(associated_limit(dead, live).multiplier, rel=1e-9)
+
+
+def test_the_search_finds_the_least_of_a_fine_grid_and_is_symmetrical() -> None:
+    sweep = Sweep(small())
+    found = search(sweep, step=0.15, fine=0.01)
+    best = min(s.multiplier for s in found)
+    assert best <= min(s.multiplier for x in np.arange(0.3, 2.7, 0.05) if (s := sweep.at(float(x)))) * (1 + 1e-3)
+    left, right = sweep.at(0.7), sweep.at(3.0 - 0.7)
+    assert left is not None
+    assert right is not None
+    assert left.multiplier == pytest.approx(right.multiplier, rel=1e-6)
+
+
+def test_what_does_not_reach_the_masonry_is_told() -> None:
+    model = small()
+    low, _ = Sweep(model).reach()
+    found = Sweep(model).at(low)
+    assert found is not None
+    assert found.on_masonry + found.elsewhere == pytest.approx(10.0)
+    assert found.elsewhere > 0
+    assert Sweep(model).at(float(ground_of(model)[1].line[0, 0])) is None
+
+
+def test_the_bound_is_built_up_from_ring_weight_spread_and_pressure() -> None:
+    model = small()
+    found = parts(model, 0.75, "right")
+    values = list(found.values())
+    assert values == sorted(values)
+    alone = Sweep(without_pressure(model)).at(0.75)
+    assert alone is not None
+    assert values[2] == pytest.approx(alone.multiplier)
+
+
+def test_a_vehicle_travels_both_ways() -> None:
+    model = small()
+    uneven = Vehicle("uneven", (Axle(0.0, 10.0), Axle(1.0, 3.0)), direction="both")
+    sweep = Sweep(with_vehicle(model, uneven))
+    assert sweep.directions == ("right", "left")
+    there, back = sweep.at(0.7, "right"), sweep.at(3.0 - 0.7, "left")
+    assert there is not None
+    assert back is not None
+    assert there.multiplier == pytest.approx(back.multiplier, rel=1e-6)
+    assert Sweep(small()).directions == ("right",)
+
+
+@pytest.fixture(scope="module")
+def assessed() -> concio.BridgeResult:
+    """Return an assessment of the small bridge."""
+    return concio.assess_bridge(small(), step=0.3, fine=0.05, worst=1, checked=5, sensitivity=True)
+
+
+def test_coulomb_states_are_at_or_below_the_associated_bound(assessed: concio.BridgeResult) -> None:
+    assert assessed.design <= assessed.worst.multiplier * (1 + 1e-9)
+    assert assessed.verdict.holds
+    assert assessed.permissible_axle == pytest.approx(10.0 * assessed.design)
+
+
+def test_the_verdict_names_vehicle_kilonewtons_and_what_it_rests_on(assessed: concio.BridgeResult) -> None:
+    verdict = assessed.verdict
+    assert "one axle" in verdict.question.asked
+    assert "10 kN" in verdict.question.asked
+    acting = {a.group: a for a in verdict.question.acting}
+    assert acting["live"].role == "multiplied"
+    assert acting["live"].asked == 1.0
+    assert set(acting) == {"dead", "fill", "live"}
+    assert any("owed to the pressure of the soil" in line for line in verdict.limits)
+    assert any("crushing" in line for line in verdict.unchecked)
+
+
+def test_an_answer_that_rests_on_the_soil_says_so() -> None:
+    """Between the bound with and without the pressure of the soil the answer is another one, and is told to be."""
+    found = concio.assess_bridge(small(), step=0.3, fine=0.05, worst=1, checked=0, sensitivity=False)
+    assert found.without_soil is not None
+    between = 0.5 * (found.worst.multiplier + found.without_soil.multiplier)
+    rests = [bridge_verdict(replace(found, required=r)).attention for r in (between, 0.5)]
+    assert any("rests on the pressure of the soil" in line for line in rests[0])
+    assert not any("rests on the pressure of the soil" in line for line in rests[1])
+
+
+def test_more_than_the_bound_fails_and_no_coulomb_states_leave_it_open() -> None:
+    found = concio.assess_bridge(small(), step=0.3, fine=0.05, worst=1, checked=0, sensitivity=False)
+    assert found.verdict.outcome is concio.Outcome.INCOMPLETE
+    top = found.worst.multiplier * 1.01
+    failed = replace(found, required=top).verdict
+    assert failed.outcome is concio.Outcome.FAILS
+    assert failed.exit_code == 3
+
+
+def test_sensitivities_go_the_right_way(assessed: concio.BridgeResult) -> None:
+    found = {c.name: c for c in assessed.changes}
+    assert found["ring"].at_low < assessed.worst.multiplier < found["ring"].at_high
+    assert found["cover"].at_low < found["cover"].at_high
+    assert found["passive"].at_low < found["passive"].at_high
+    assert found["friction 'joint'"].at_low <= found["friction 'joint'"].at_high * (1 + 1e-9)
+
+
+def test_both_languages_say_the_same_things() -> None:
+    assert set(TEXTS["en"]) == set(TEXTS["it"])
+    import string
+
+    for key, text in TEXTS["en"].items():
+        names = [{n for _, n, _, _ in string.Formatter().parse(t) if n} for t in (text, TEXTS["it"][key])]
+        assert names[0] == names[1], key
+
+
+def test_mexe_is_the_formula_within_its_limits_and_says_where_it_does_not_apply() -> None:
+    found = mexe(6.0, 1.5, 1.1, 0.45, 0.4)
+    assert found.axle == pytest.approx(740 * 0.85**2 / 6**1.3 * 9.81)
+    assert np.isnan(mexe(6.0, 1.2, 0.9, 0.45, 0.4).axle)
+    assert mexe(6.0, 1.2, 0.9, 0.45, 0.4, span_rise=0.8).axle == pytest.approx(0.8 * found.axle)
+    assert mexe(2.0, 1.0, 0.75, 1.0, 0.7).provisional == pytest.approx(70 * 9.81)
+    assert np.isnan(mexe(30.0, 10.0, 7.5, 0.8, 0.4).axle)
+
+
+def written(tmp_path: Path, more: str = "") -> Path:
+    path = tmp_path / "bridge.toml"
+    path.write_text(
+        "[bridge]\nspan = 3.0\nrise = 0.75\nring = 0.215\nvoussoirs = 12\nwidth = 2.0\nblock = 'rigid'\n"
+        f"[fill]\ncover = 0.3\npassive = 1.0\n[vehicle]\naxles = [[0.0, 100.0]]\n{more}"
+    )
+    return path
+
+
+def test_the_command_prints_one_object_and_leaves_with_the_verdict(tmp_path: Path) -> None:
+    path = written(tmp_path)
+    options = ("--step", "0.5 m", "--fine", "0.1 m", "--worst", "1", "--checked", "3", "--no-sensitivity")
+    code, out, err = run("bridge", path, *options, "--json")
+    told = json.loads(out)
+    assert code == told["verdict"]["exit_code"] == 0, err
+    assert told["worst"]["position"] == pytest.approx(0.7, abs=0.3)
+    assert told["load_factor"]["design"] <= told["load_factor"]["associated"]
+    code, out, _ = run("bridge", path, *options, "--required", "50")
+    assert code == 3
+    assert "not carried" in out
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "words"),
+    [
+        ("", ("--settle", "left abutment"), "names no distance"),
+        ("", ("--settle", "north pier=10 mm"), "no fixed body"),
+        ("", ("--required", "0"), "must be positive"),
+        ("", ("--step", "0 m"), "no distance of positions"),
+        ("", ("--vehicle", "tank"), "no vehicle 'tank'"),
+    ],
+)
+def test_bad_options_are_refused_in_words(text: str, options: tuple[str, ...], words: str, tmp_path: Path) -> None:
+    code, _, err = run("bridge", written(tmp_path, text), "--step", "0.8 m", "--fine", "0.4 m", "--checked", "0",
+                       "--no-sensitivity", *options)  # fmt: skip
+    assert code == 2
+    assert words in err
+    assert "Traceback" not in err
+
+
+def test_a_model_without_fill_or_vehicle_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "bare.toml"
+    path.write_text("[bridge]\nspan = 3.0\nrise = 0.75\nring = 0.215\nvoussoirs = 12\nblock = 'rigid'\n")
+    code, _, err = run("bridge", path)
+    assert code == 2
+    assert "no vehicle" in err
+
+
+def test_the_same_fill_acts_in_one_step_in_a_path_and_in_a_push() -> None:
+    """Soil presses in all of them: with it each carries what the ring alone does not."""
+    model = placed(small(load=165.0), 0.7)
+    alone = without_pressure(model)
+    assert concio.solve(model).verdict.holds
+    assert not concio.solve(alone, on_failure="return").verdict.holds
+    stages = [concio.Stage("fill", {"dead": 1.0, "fill": 1.0}), concio.Stage("axle", {"live": 1.0})]
+    assert concio.run_path(model, stages).verdict.holds
+    assert not concio.run_path(alone, stages).verdict.holds
