@@ -3,8 +3,9 @@
 A step is first tried from a state nearby: in the plane the last one, in space that to which the last two lead in
 proportion (:func:`extrapolated`).
 
-The step is halved where the solver finds no certified answer or where more than ``CHANGES`` of the pairs change state,
-and doubled again after an easy step, never beyond the one asked for.
+Each step is solved part by part, in units of its own. It is halved where the solver finds no certified answer or where
+more than ``CHANGES`` of the pairs of a connected part change state, and doubled again after an easy step, never beyond
+the one asked for.
 
 Brittle joints lose tensile strength and cohesion in the step after the one that uses either up. So that a loss is not
 put off with the load growing meanwhile, the step after it is repeated at the same load until nothing more breaks.
@@ -17,8 +18,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from concio.problem.contact_problem import Array
-from concio.problem.solution import Progress, ProgressCallback, Solution, Solver, Status
+from concio.problem.apart import own, solve_apart
+from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.parts import Part, connected_parts
+from concio.problem.solution import Progress, ProgressCallback, Solution, Solver, Status, judge
 from concio.solvers.path import near_forces
 from concio.solvers.path.record import Event, Outcome
 from concio.solvers.path.state import (
@@ -98,7 +101,8 @@ def follow_in_steps(
     states, events = [start], list[Event]()
     whole = (until - start.parameter) / steps
     size, outcome = whole, Outcome.REACHED
-    breaking, nearby = False, near_forces.Nearby()
+    breaking, nearby = False, dict[bytes, near_forces.Nearby]()
+    of_pair = connected_parts(path.problem).of_pair
     while breaking or abs(until - states[-1].parameter) > 1e-12 * max(1.0, abs(until)):
         before = states[-1]
         left = until - before.parameter
@@ -121,7 +125,7 @@ def follow_in_steps(
         if (
             refine
             and len(states) > 1
-            and changed.size > max(1.0, CHANGES * path.problem.pairs)
+            and _many(changed, of_pair)
             and not (smallest or breaking)
         ):
             size *= 0.5
@@ -146,7 +150,7 @@ def _step(
     states: list[PathState],
     parameter: float,
     solver: Solver,
-    nearby: near_forces.Nearby,
+    nearby: dict[bytes, near_forces.Nearby],
     *,
     near_only: bool,
 ) -> Solution:
@@ -156,6 +160,34 @@ def _step(
     """
     problem, last = step_problem(path, states[-1], parameter), _point(states[-1])
     begin = last if problem.dim == 2 else extrapolated(states, parameter)
+
+    def solve(part: Part) -> Solution:
+        kept = nearby.setdefault(part.pairs.tobytes(), near_forces.Nearby())
+        here, there = _own(part, last), _own(part, begin)
+        return _near(part.problem, here, there, solver, kept, near_only=near_only)
+
+    return solve_apart(problem, solve)
+
+
+def _own(part: Part, whole: near_forces.State) -> near_forces.State:
+    """Return displacements and forces of one part."""
+    u, t_n, t_t = own(part, *whole)
+    return u, t_n, t_t
+
+
+def _near(
+    problem: ContactProblem,
+    last: near_forces.State,
+    begin: near_forces.State,
+    solver: Solver,
+    nearby: near_forces.Nearby,
+    *,
+    near_only: bool,
+) -> Solution:
+    """Solve the step of one connected part."""
+    if not problem.unknowns:  # ties that are gone, and whatever lies between fixed bodies
+        nothing = judge(problem, *(np.zeros_like(part) for part in last), method=near_forces.NAME)
+        return nothing if nothing.solved else solver(problem)
     if not near_forces.needed(problem):
         return nearby.solve(problem, begin) or solver(problem)
     solution = near_forces.solve_near(problem, *last, nearby=nearby, begin=begin)
@@ -187,6 +219,12 @@ def extrapolated(states: Sequence[PathState], parameter: float) -> near_forces.S
     share = (parameter - states[-1].parameter) / change
     u, t_n, t_t = (b + share * (b - a) for a, b in zip(_point(states[-2]), last, strict=True))
     return u, t_n, t_t
+
+
+def _many(changed: Array, of_pair: Array) -> bool:
+    """Tell whether too many pairs of some connected part change state; ``of_pair`` (m,) is the part of each pair."""
+    pairs = np.bincount(of_pair)
+    return bool((np.bincount(of_pair[changed], minlength=pairs.size) > np.maximum(1.0, CHANGES * pairs)).any())
 
 
 def _proportional(path: LinearPath, before: PathState) -> bool:
