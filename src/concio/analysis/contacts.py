@@ -106,7 +106,8 @@ class JointResultants:
     length : (j,) array
         [m].
     N, V : (j,) arrays
-        Normal force (compression positive) and shear force along t [kN].
+        Normal force (compression positive) and shear force along t, signed [kN]. :attr:`shear_vector`,
+        :attr:`shear_size`, :attr:`force` and :attr:`point` mean the same in :class:`.SpaceResultants`.
     eccentricity : (j,) array
         Distance of the resultant from the middle along t [m]; nan where N is zero.
     open_share : (j,) array
@@ -126,6 +127,38 @@ class JointResultants:
     eccentricity: Array
     open_share: Array
     slipping: Array
+
+    @property
+    def shear_vector(self) -> Array:
+        """Shear force V t on side b (j, 2) [kN]."""
+        shear: Array = self.V[:, None] * self.tangent
+        return shear
+
+    @property
+    def shear_size(self) -> Array:
+        """Size of the shear force (j,) [kN]."""
+        return np.asarray(np.abs(self.V))
+
+    @property
+    def force(self) -> Array:
+        """Resultant N n + V t on side b (j, 2) [kN]."""
+        force: Array = self.N[:, None] * self.normal + self.shear_vector
+        return force
+
+    @property
+    def point(self) -> Array:
+        """Where the resultant meets the joint (j, 2), the middle where N is zero [m]."""
+        point: Array = self.middle + np.nan_to_num(self.eccentricity)[:, None] * self.tangent
+        return point
+
+
+UNLOADED = 1e-12
+"""Share of the largest normal force below which that of a joint is zero: it has no centre of pressure."""
+
+
+def loaded(N: Array) -> Array:
+    """Return which joints carry a normal force, (j,) booleans."""
+    return np.asarray(np.abs(N) > UNLOADED * float(np.abs(N).max(initial=0.0)))
 
 
 def joint_resultants(contacts: Contacts) -> JointResultants:
@@ -155,8 +188,7 @@ def joint_resultants(contacts: Contacts) -> JointResultants:
     arm = np.zeros(len(pairs))
     arm[inside] = along[inside] - centre[index]
     moment = total(contacts.normal_force * arm)
-    scale = float(np.abs(N).max(initial=0.0))
-    loaded = np.abs(N) > 1e-12 * scale
+    carries = loaded(N)
     touching, slips = ~contacts.states.open, contacts.states.slips
     return JointResultants(
         body_a=pairs.body_a[first],
@@ -167,7 +199,7 @@ def joint_resultants(contacts: Contacts) -> JointResultants:
         length=length,
         N=N,
         V=V,
-        eccentricity=np.where(loaded, moment / np.where(loaded, N, 1.0), np.nan),
+        eccentricity=np.where(carries, moment / np.where(carries, N, 1.0), np.nan),
         open_share=total(pairs.length * ~touching) / safe,
         slipping=(total((touching & ~slips).astype(float)) == 0) & (total(touching.astype(float)) > 0),
     )

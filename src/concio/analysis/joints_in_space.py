@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from concio.analysis.contacts import Contacts
+from concio.analysis.contacts import Contacts, loaded
 from concio.kinematics.frames import cross
 from concio.model.interfaces.patch import Patch
 from concio.problem.pair_state import PairState
@@ -64,6 +64,16 @@ class SpaceResultants:
         twist: Array = (self.M * self.normal).sum(1)
         return twist
 
+    @property
+    def shear_vector(self) -> Array:
+        """Shear force V on side b (j, 3) [kN], as in :class:`.JointResultants`."""
+        return self.V
+
+    @property
+    def shear_size(self) -> Array:
+        """Size of the shear force (j,) [kN]."""
+        return np.asarray(np.linalg.norm(self.V, axis=1))
+
 
 def joint_resultants_in_space(contacts: Contacts, patches: Sequence[Patch]) -> SpaceResultants:
     """Return the resultants of all interfaces of a structure in space."""
@@ -83,10 +93,11 @@ def joint_resultants_in_space(contacts: Contacts, patches: Sequence[Patch]) -> S
     total = summed(force)
     moment = summed(cross(pairs.point[own] - middle[of], force))
     N = (total * normal).sum(1)
-    safe = np.where(N == 0, 1.0, N)
+    carries = loaded(N)
+    safe = np.where(carries, N, 1.0)
     # the normal forces alone place the resultant in the plane of the joint
     pressed = summed(contacts.normal_force[own, None] * (pairs.point[own] - middle[of]))
-    point = middle + np.where((N != 0)[:, None], pressed / safe[:, None], 0.0)
+    point = middle + np.where(carries[:, None], pressed / safe[:, None], 0.0)
     area = summed(pairs.area[own])
     closed, slips = ~contacts.states.open[own], contacts.states.slips[own]
     opened = summed(pairs.area[own] * (contacts.state[own] == PairState.OPEN))

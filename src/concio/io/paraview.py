@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
 Array = np.ndarray
 
+VECTORS = {"friction_force": "friction_vector", "shear": "shear_stress_vector", "slip": "slip_vector"}
+"""Names of vectors in the axes of the model, by that of their components along tangents."""
+
 
 def bodies_grid(result: Result) -> Grid:
     """Return all bodies as elements; rigid and fixed ones are one polygon each. In space see :func:`volume_grid`.
@@ -93,8 +96,12 @@ def outline_cells(rings: Sequence[Array]) -> Array:
 def contacts_grid(result: Result) -> Grid:
     """Return the contact pairs as points with all their numbers.
 
-    Point data: ``state`` (0 open, 1 stick, 2 slip, 3 crushed), ``normal_force``, ``friction_force`` and ``force`` on
-    side b [kN], ``pressure``, ``shear`` [kN/m2], ``gap``, ``slip``, ``normal``, ``body_a``, ``body_b``, ``interface``.
+    Point data: ``state`` (0 open, 1 stick, 2 slip, 3 crushed), ``normal_force`` and the vector ``force`` on side b
+    [kN], ``pressure`` [kN/m2], ``gap`` [m], ``normal``, ``area`` [m2], ``body_a``, ``body_b``, ``interface``.
+    Of friction on side b [kN], shear stress [kN/m2] and slip [m] the vectors ``friction_vector``,
+    ``shear_stress_vector``, ``slip_vector`` in the axes of the model, and the components along tangents:
+    in the plane ``friction_force``, ``shear``, ``slip`` along ``tangent``; in space
+    ``friction_force_1`` along ``tangent_1``, ``friction_force_2`` along ``tangent_2``, and so on.
     Without a solution the geometry alone.
     """
     pairs = result.assembly.pairs
@@ -103,6 +110,8 @@ def contacts_grid(result: Result) -> Grid:
         "normal": pairs.normal, "area": pairs.area, "interface": pairs.interface.astype(np.int32),
         "body_a": pairs.body_a.astype(np.int32), "body_b": pairs.body_b.astype(np.int32),
     }  # fmt: skip
+    tails = [""] if pairs.tangents.shape[1] == 1 else ["_1", "_2"]
+    data |= {f"tangent{tail}": pairs.tangents[:, k] for k, tail in enumerate(tails)}
     if result.solved:
         c = result.contacts
         data |= {
@@ -110,7 +119,8 @@ def contacts_grid(result: Result) -> Grid:
             "pressure": c.pressure, "gap": c.gap,
         }  # fmt: skip
         for name, along in (("friction_force", c.friction_force), ("shear", c.shear), ("slip", c.slip)):
-            data[name] = along[:, 0] if along.shape[1] == 1 else along
+            data |= {f"{name}{tail}": along[:, k] for k, tail in enumerate(tails)}
+            data[VECTORS[name]] = np.einsum("mt,mtd->md", along, pairs.tangents)
     return Grid(pairs.point, np.arange(m), np.arange(1, m + 1), np.full(m, VERTEX), data)
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 
 from concio.post.motion import body_motions
-from concio.post.tables import Table, Tables, vectors
+from concio.post.tables import Array, Table, Tables, vectors
 
 
 class SpaceTables(Tables):
@@ -32,19 +34,30 @@ class SpaceTables(Tables):
     def joints(self) -> Table:
         """Return one row an interface: its bodies, resultants on side b, what is open or slips.
 
-        ``shear_force`` is the size of the shear, with components ``shear_x`` and so on; in the plane it has a sign.
+        Columns that the plane has, too, mean the same there (:meth:`.Tables.joints`). A shear force in space has no
+        sign: ``shear_force``, which was its size, is deprecated and not among the columns; it is ``shear_size``.
         """
         j = self.result.joints_in_space
-        return {
+        return _Joints({
             **self.names(j.body_a, j.body_b),
             **vectors("", j.middle),
             **vectors("n_", j.normal),
             "area": j.area,
             "normal_force": j.N,
-            "shear_force": np.linalg.norm(j.V, axis=1),
-            **vectors("shear_", j.V),
+            **self.acting(j),
             **vectors("moment_", j.M),
             "torsion": j.torsion,
             "open_share": j.open_share,
             "slipping": j.slipping,
-        }
+        })  # fmt: skip
+
+
+class _Joints(dict[str, Array]):
+    """A table of joints that still answers to the name that the size of the shear force had."""
+
+    def __missing__(self, name: str) -> Array:
+        if name != "shear_force":
+            raise KeyError(name)
+        message = "'shear_force' has a sign in the plane and has none in space: use 'shear_size', the size, in both"
+        warnings.warn(message, DeprecationWarning, stacklevel=2)
+        return self["shear_size"]

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from concio.analysis.contacts import STATE_NAMES
+from concio.analysis.contacts import STATE_NAMES, JointResultants
+from concio.analysis.joints_in_space import SpaceResultants
 from concio.representation import short_repr
 
 if TYPE_CHECKING:
@@ -19,7 +20,8 @@ Table = dict[str, Array]
 UNITS: dict[str, str] = {
     **dict.fromkeys(("x", "y", "u_x", "u_y", "length", "gap", "slip", "eccentricity", "thickness", "elongation"), "m"),
     **dict.fromkeys(("n_x", "n_y", "open_share", "friction_used"), "-"),
-    **dict.fromkeys(("normal_force", "friction_force", "shear_force", "force_x", "force_y", "tension"), "kN"),
+    **dict.fromkeys(("normal_force", "friction_force", "shear_force", "shear_size"), "kN"),
+    **dict.fromkeys(("force_x", "force_y", "tension"), "kN"),
     **dict.fromkeys(("s_x", "s_y", "t_xy", "s_1", "s_2", "pressure", "shear"), "kN/m2"),
     **dict.fromkeys(("stress_xx", "stress_yy", "stress_xy", "h"), "kN/m2"),
     **dict.fromkeys(("work", "stored", "dissipated"), "kN m"),
@@ -32,6 +34,8 @@ UNITS: dict[str, str] = {
     **dict.fromkeys(("rotation_x", "rotation_y", "rotation_z"), "rad"),
     "n_z": "-",
     "volume": "m3",
+    **dict.fromkeys(("at_x", "at_y", "at_z"), "m"),
+    **dict.fromkeys((f"t{i}_{axis}" for i in ("", 1, 2) for axis in "xyz"), "-"),
 }
 UNITS |= {f"{name}_{i}": UNITS[name] for name in ("friction_force", "shear", "slip") for i in (1, 2)}
 """Unit of each column that has one; stresses are tension positive, pressure and normal forces compression positive."""
@@ -40,7 +44,8 @@ KINDS: dict[str, str] = {
     **dict.fromkeys(("x", "y", "length", "eccentricity", "thickness"), "length"),
     **dict.fromkeys(("u_x", "u_y", "gap", "slip", "elongation"), "motion"),
     **dict.fromkeys(("n_x", "n_y", "open_share", "friction_used"), "number"),
-    **dict.fromkeys(("normal_force", "friction_force", "shear_force", "force_x", "force_y", "tension"), "force"),
+    **dict.fromkeys(("normal_force", "friction_force", "shear_force", "shear_size"), "force"),
+    **dict.fromkeys(("force_x", "force_y", "tension"), "force"),
     **dict.fromkeys(("s_x", "s_y", "t_xy", "s_1", "s_2", "pressure", "shear"), "stress"),
     **dict.fromkeys(("angle", "rotation"), "rotation"),
     "area": "area",
@@ -50,7 +55,11 @@ KINDS: dict[str, str] = {
     **dict.fromkeys(("s_z", "t_yz", "t_zx", "s_3"), "stress"),
     **dict.fromkeys(("rotation_x", "rotation_y", "rotation_z"), "rotation"),
     "n_z": "number",
+    **dict.fromkeys(("at_x", "at_y", "at_z"), "length"),
+    **dict.fromkeys(("moment_x", "moment_y", "moment_z", "torsion"), "moment"),
+    **dict.fromkeys((f"t{i}_{axis}" for i in ("", 1, 2) for axis in "xyz"), "number"),
 }
+KINDS |= {f"{name}_{i}": KINDS[name] for name in ("friction_force", "shear", "slip") for i in (1, 2)}
 """Kind of quantity in each column, as :class:`concio.Units` tells it."""
 
 
@@ -89,22 +98,34 @@ class Tables:
         }
 
     def joints(self) -> Table:
-        """Return one row an interface: its bodies, resultants on side b, where they act, what is open or slips."""
+        """Return one row an interface: its bodies, resultants on side b, where they act, what is open or slips.
+
+        Columns of the plane and of space that have one name mean the same: ``shear_x`` and so on are the components of
+        the shear force, ``shear_size`` its size, ``at_x`` and so on where the resultant meets the joint. In the plane
+        ``shear_force`` is the component along the tangent ``t_x, t_y``, with its sign, and ``eccentricity`` the
+        distance of ``at`` from the middle along it.
+        """
         j = self.result.joints
         return {
             **self.names(j.body_a, j.body_b),
             **vectors("", j.middle),
             **vectors("n_", j.normal),
+            **vectors("t_", j.tangent),
             "length": j.length,
             "normal_force": j.N,
             "shear_force": j.V,
+            **self.acting(j),
             "eccentricity": j.eccentricity,
             "open_share": j.open_share,
             "slipping": j.slipping,
         }
 
     def contacts(self) -> Table:
-        """Return one row a contact pair: place, frame, law, state, forces, tractions, gap and slip."""
+        """Return one row a contact pair: place, frame, law, state, forces, tractions, gap and slip.
+
+        Friction, shear stress and slip are components along tangents: along ``t_x, t_y`` in the plane; in space those
+        that end in ``_1`` along ``t1_x, t1_y, t1_z``, those that end in ``_2`` along ``t2_x, t2_y, t2_z``.
+        """
         c = self.result.contacts
         p = c.pairs
         laws = np.array([*p.law_names, "tie"])
@@ -114,6 +135,7 @@ class Tables:
             "law": laws[p.law],
             **vectors("", p.point),
             **vectors("n_", p.normal),
+            **frames(p.tangents),
             "area": p.area,
             "state": np.where(p.interface >= 0, np.array(STATE_NAMES)[c.state], self._tie_states()),
             "normal_force": c.normal_force,
@@ -160,6 +182,10 @@ class Tables:
             **ties,
         }
 
+    def acting(self, j: JointResultants | SpaceResultants) -> Table:
+        """Return the columns of the shear force and of where the resultant acts, one meaning in plane and space."""
+        return {**vectors("shear_", j.shear_vector), "shear_size": j.shear_size, **vectors("at_", j.point)}
+
     def names(self, a: Array, b: Array) -> Table:
         """Return the columns with the names of the bodies ``a`` and ``b`` (n,)."""
         names = np.array([*(body.name for body in self.result.model.bodies), ""])  # -1: the free end of a tie
@@ -171,6 +197,13 @@ def components(name: str, values: Array) -> Table:
     if values.shape[1] == 1:
         return {name: values[:, 0]}
     return {f"{name}_{i + 1}": values[:, i] for i in range(values.shape[1])}
+
+
+def frames(tangents: Array) -> Table:
+    """Return the columns of the tangents (m, d-1, d) along which components are: one in the plane, two in space."""
+    if tangents.shape[1] == 1:
+        return vectors("t_", tangents[:, 0])
+    return {**vectors("t1_", tangents[:, 0]), **vectors("t2_", tangents[:, 1])}
 
 
 def vectors(head: str, values: Array) -> Table:

@@ -21,8 +21,8 @@ Array = np.ndarray
 
 HEADINGS: dict[str, str] = {
     "body": "block", "body_a": "between", "body_b": "and", "u_x": "move x", "u_y": "move y", "s_1": "largest stress",
-    "s_2": "smallest stress", "normal_force": "normal force", "shear_force": "shear force", "open_share": "open",
-    "force_x": "force x", "force_y": "force y",
+    "s_2": "smallest stress", "normal_force": "normal force", "shear_force": "shear force", "shear_size": "shear force",
+    "open_share": "open", "force_x": "force x", "force_y": "force y",
 }  # fmt: skip
 """Headings of columns where their names are not words."""
 

@@ -197,7 +197,7 @@ def _tables(result: Result) -> str:
         return space_tables_html(result, ROWS)
     tables, units = result.tables, result.model.report
     joints, bodies, reactions = tables.joints(), tables.bodies(), tables.reactions()
-    force = np.hypot(joints["normal_force"], joints["shear_force"])
+    force = np.hypot(joints["normal_force"], joints["shear_size"])
     strongest = np.argsort(-force, kind="stable")
     text = f"<h2>Reactions</h2>{table_html(reactions, ('support', 'force_x', 'force_y'), units=units)}"
     text += "<p class=note>Forces on the structure.</p>" + ties_html(result)
@@ -206,7 +206,9 @@ def _tables(result: Result) -> str:
     )  # fmt: skip
     text += "<h2>Joints</h2>" + _note(len(force), "the largest forces")
     text += table_html(joints, columns, rows=strongest[:ROWS], units=units)
-    text += "<p class=note>Normal force: compression positive. Eccentricity: from the middle of the joint.</p>"
+    text += "<p class=note>Normal force: compression positive. Shear force, on the second block, and eccentricity, "
+    text += "from the middle of the joint, are positive along its tangent: the normal from the first block to the "
+    text += "second, turned left.</p>"
     moved = np.hypot(bodies["u_x"], bodies["u_y"])
     free = np.flatnonzero(bodies["kind"] != "fixed")
     order = free[np.argsort(np.nan_to_num(bodies["s_2"][free]), kind="stable")] if len(free) > ROWS else free

@@ -18,8 +18,8 @@ def space_tables_html(result: Result, rows: int) -> str:
     joints, bodies, reactions = tables.joints(), tables.bodies(), tables.reactions()
     text = f"<h2>Reactions</h2>{table_html(reactions, ('support', 'force_x', 'force_y', 'force_z'), units=units)}"
     text += "<p class=note>Forces on the structure.</p>" + ties_html(result)
-    strongest = np.argsort(-np.hypot(joints["normal_force"], joints["shear_force"]), kind="stable")
-    columns: tuple[str, ...] = ("body_a", "body_b", "area", "normal_force", "shear_force", "torsion", "open_share")
+    strongest = np.argsort(-np.hypot(joints["normal_force"], joints["shear_size"]), kind="stable")
+    columns: tuple[str, ...] = ("body_a", "body_b", "area", "normal_force", "shear_size", "torsion", "open_share")
     text += "<h2>Joints</h2>" + _note(len(strongest), rows, "the largest forces")
     text += table_html(joints, columns, rows=strongest[:rows], units=units)
     text += "<p class=note>Normal force: compression positive. Torsion: moment about the normal.</p>"
