@@ -25,7 +25,7 @@ from wall_family import wall_model
 
 import concio
 from concio.solvers.algebra.sparse_factor import OrderedFactor
-from concio.solvers.interior.cone_run import ConeRun
+from concio.solvers.interior.run import Run
 from concio.solvers.path import near_forces, step_path
 from concio.solvers.path.near_forces import Nearby
 
@@ -158,12 +158,12 @@ def tries() -> None:
 
 def beginnings(only: str) -> None:
     """Print the factorisations of paths in space by where Newton's method begins and how long it goes on."""
-    settle, extrapolated = ConeRun.settle, step_path.extrapolated
+    settle, extrapolated = Run.settle, step_path.extrapolated
 
     def from_the_last(states: Any, parameter: float) -> near_forces.State:
         return extrapolated(states[-1:], parameter)
 
-    def six_steps(self: ConeRun, *args: Any, patience: int | None = None) -> Any:
+    def six_steps(self: Run, *args: Any, patience: int | None = None) -> Any:
         return settle(self, *args) if patience is None else settle(self, *args, 6)
 
     print("| path | from the last state, six steps | while the residual falls ", end="")
@@ -173,7 +173,7 @@ def beginnings(only: str) -> None:
         if model.dim == 3 and only in name:
             found = []
             for begin, go in product((from_the_last, extrapolated), (six_steps, settle)):
-                with mock.patch.object(step_path, "extrapolated", begin), mock.patch.object(ConeRun, "settle", go):
+                with mock.patch.object(step_path, "extrapolated", begin), mock.patch.object(Run, "settle", go):
                     found.append(followed(model, stages)[1])
             print(f"| {name} | " + " | ".join(map(str, found)) + " |", flush=True)
 

@@ -22,7 +22,7 @@ from corpus import FAMILIES, draw
 from concio.analysis.lent_compliance import lend
 from concio.problem.contact_problem import ContactProblem
 from concio.solvers.algebra.scaled import Scaled, _in_units, scale
-from concio.solvers.interior.engine import Run
+from concio.solvers.interior.run import Run
 from concio.solvers.relaxation import slow_motion
 
 

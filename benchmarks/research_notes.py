@@ -24,7 +24,7 @@ from concio.analysis.lent_compliance import lend
 from concio.contact.assembly import detect
 from concio.io.result_file import load_result, save_result
 from concio.solvers.algebra.scaled import scale
-from concio.solvers.interior.engine import Run
+from concio.solvers.interior.run import Run, Start
 from concio.solvers.methods import find
 
 
@@ -105,7 +105,7 @@ def start_far_outside() -> None:
         cells = []
         for start in (1.0, 10.0, 100.0):
             run = Run(scale(problem))
-            found = run.plain(start)
+            found = run.from_start(Start(start, start))
             cells.append(f"{start:g}: " + ("none" if found is None else f"{run.iterations} iterations"))
         print(f"{name}: " + "; ".join(cells), flush=True)
 

@@ -20,7 +20,7 @@ from concio.io import load_result, save_result
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Departure
 from concio.solvers.algebra.scaled import Scaled, scale
-from concio.solvers.interior.engine import Run
+from concio.solvers.interior.run import Run
 from concio.solvers.methods import find
 from concio.solvers.relaxation import step as one_step
 from concio.solvers.relaxation.slow_motion import MOST, relax

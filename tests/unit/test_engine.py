@@ -14,9 +14,10 @@ from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Status
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.auto.friction_neighbours import from_neighbours
-from concio.solvers.interior.engine import Cancelled, Run
-from concio.solvers.interior.interior_point import InteriorPoint
-from concio.solvers.interior.newton_equations import Newton
+from concio.solvers.interior.iteration import InteriorPoint
+from concio.solvers.interior.newton import NewtonStep
+from concio.solvers.interior.point import Residuals
+from concio.solvers.interior.run import Cancelled, Run, Start
 from concio.solvers.methods import find
 from concio.solvers.states.settle import Settler
 from concio.solvers.statics.existence import find_mechanism
@@ -175,7 +176,7 @@ def _arch(friction: float, courses: int = 3, blocks: int = 6) -> ContactProblem:
 def test_exact_finish_forgets_where_it_began(begin):
     """An arch is hardly stiffer than the springs that hold weightless pieces: they must not pull in the end."""
     run = Run(scale(_arch(1.0)))
-    found = run.plain(10.0)
+    found = run.from_start(Start(10.0, 10.0))
     start = {"rest": 0.0 * found.u, "the other way": -3.0 * found.u, "far off": found.u + 1e4}[begin]
     again = Settler(run.scaled).settle(run.scaled, start, found.t, found.states)
     assert again.error <= 1e-11
@@ -186,7 +187,7 @@ def test_exact_finish_forgets_where_it_began(begin):
 def test_neighbours_in_friction_lead_to_the_same_state(friction, courses, blocks):
     problem = _arch(friction, courses, blocks)
     plain = Run(scale(problem))
-    straight = plain.solution(plain.plain(10.0))
+    straight = plain.solution(plain.from_start(Start(10.0, 10.0)))
     carried = from_neighbours(Run(scale(problem)))
     assert carried.solved
     assert carried.certificate.worst <= 1e-10
@@ -247,10 +248,18 @@ def test_a_full_step_of_newton_satisfies_all_linear_equations():
     )  # fmt: skip
     iteration = InteriorPoint(scale(replace(problem, laws=laws)))
     z = iteration.start()
-    spread = np.random.default_rng(3).uniform(0.5, 2.0, (2, 4, m))
-    z = replace(z, slack=z.slack * spread[0], dual=z.dual * spread[1])
-    rest = iteration.residuals(z, 0.0)
-    assert rest.size(1.0, 1.0) > 1.0
-    newton = Newton(iteration.problem, z, rest, iteration.dilatancy(0.0), iteration.used)
-    there = z.moved(newton.direction(-z.products()), 1.0)
-    assert iteration.residuals(there, 0.0).size(1.0, 1.0) < 1e-6
+    s, dilatancy = iteration.problem, iteration.dilatancy(0.0)
+    spread = np.random.default_rng(3).uniform(0.5, 1.2, (4, m))
+    z = replace(z, t=z.t * spread[0][:, None], y_n=z.y_n * spread[1], eta=z.eta * spread[2][:, None], p=z.p * spread[3])
+    rest = Residuals.of(s, z, dilatancy)
+    assert rest.worst > 0.1
+    newton = NewtonStep.at(s, z, rest, dilatancy)
+    assert newton is not None
+    step = newton.direction(newton.products.scaled(-1.0))
+    assert step is not None
+    assert Residuals.of(s, z.moved(step, 1.0), dilatancy).worst < 1e-6
+    # and the products change as asked, to first order: by minus what they are
+    np.testing.assert_allclose(z.t[:, 0] * step.y_n + z.y_n * step.t[:, 0], -z.t[:, 0] * z.y_n, rtol=1e-9)
+    for side in (0, 1):
+        b, e, db, de = (x[:, side] for x in (rest.beta, z.eta, step.beta, step.eta))
+        np.testing.assert_allclose(b * de + e * db, -b * e, rtol=1e-9)

@@ -17,7 +17,7 @@ from concio.fem.elements import FAMILIES, SOLID_FAMILIES
 from concio.kinematics.rigid import rigid_operator
 from concio.problem.solution import Departure
 from concio.solvers.algebra.scaled import scale
-from concio.solvers.interior.cone_run import ConeRun
+from concio.solvers.interior.run import Run
 from concio.solvers.relaxation.single_steps import at_once
 from concio.units import GRAVITY
 from samples import sample
@@ -187,7 +187,7 @@ def test_a_block_lifted_off_centre_turns_as_euler_says(kind: str, at: tuple[floa
     law = {"joint": JointLaw(0.5)}
     model = Model((ground, own), {"block": material}, law, loads=loads, element="H8", mesh_size=1.0)
     assembly = concio.assemble(model)
-    motion = at_once(ConeRun(scale(assembly.problem())))
+    motion = at_once(Run(scale(assembly.problem())))
     assert isinstance(motion, Departure)
     assert motion.certified
     tensor = RHO * (np.trace(S) * np.eye(3) - S)

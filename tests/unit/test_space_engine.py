@@ -13,10 +13,12 @@ from concio.kinematics.rigid import rotation_matrix
 from concio.problem.solution import Departure, Status
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.auto.space import best_point_met
-from concio.solvers.interior.cone_iteration import ConeIteration, NewtonStep
-from concio.solvers.interior.cone_run import STARTS, ConeRun, starts_for
+from concio.solvers.interior.iteration import InteriorPoint
+from concio.solvers.interior.newton import NewtonStep, Products
 from concio.solvers.interior.newton_finish import states_of
+from concio.solvers.interior.point import Residuals
 from concio.solvers.interior.redundant_forces import least_forces
+from concio.solvers.interior.run import STARTS, Run, starts_for
 from concio.solvers.methods import find
 from concio.solvers.relaxation import step as one_step
 from concio.solvers.relaxation.single_steps import at_once
@@ -141,10 +143,10 @@ def test_single_long_steps_from_rest_show_the_motion_that_never_ends() -> None:
     """Between the Coulomb and the associated limit they move away; under half the load they come to rest."""
     built = wall(6, 6, kn=1e3)
     limit = associated_limit(built.problem, built.live).multiplier
-    moves = at_once(ConeRun(scale(built.at(0.995 * limit))))
+    moves = at_once(Run(scale(built.at(0.995 * limit))))
     assert isinstance(moves, Departure)
     assert moves.certified
-    rests = at_once(ConeRun(scale(built.at(0.5 * limit))))
+    rests = at_once(Run(scale(built.at(0.5 * limit))))
     assert isinstance(rests, Finished)
 
 
@@ -153,7 +155,7 @@ def test_a_dome_close_to_its_limit_moves_away() -> None:
     """Only the further starts and the small steps from the longest one solved show the motion."""
     built = dome(6, 16, kn=1e3)
     limit = associated_limit(built.problem, built.live).multiplier
-    moves = at_once(ConeRun(scale(built.at(0.99 * limit))))
+    moves = at_once(Run(scale(built.at(0.99 * limit))))
     assert isinstance(moves, Departure)
     assert moves.certified
 
@@ -164,7 +166,7 @@ def test_letting_go_ends_after_the_work_that_is_allowed(monkeypatch) -> None:
     monkeypatch.setattr(one_step, "MOST_WORK", 1)
     monkeypatch.setattr(one_step, "LEAST_WORK", 1)
     for follow, said in ((at_once, "single steps down to a resistance of 1e-02, no end"), (relax, "1 steps of slow")):
-        run = ConeRun(scale(built.at(0.995 * limit)))
+        run = Run(scale(built.at(0.995 * limit)))
         assert follow(run) is None
         assert said in run.trace[-1]
 
@@ -179,17 +181,15 @@ def test_stiff_joints_start_from_nearby_and_hard_ones_from_far() -> None:
 def test_newton_direction_solves_the_linearised_equations() -> None:
     """What the elimination returns is checked against the equations before any is eliminated."""
     s = scale(dome(3, 8, **STIFF).at(0.1))
-    it = ConeIteration(s)
-    z = it.start(10.0, 100.0)
-    it.run(z, most=3, target=0.0)
+    it = InteriorPoint(s)
+    z, _ = it.run(it.start(10.0, 100.0), most=3, target=0.0)
     for theta in (0.0, 1.0):
         dilatancy = it.dilatancy(theta)
-        beta, room = it.strength(z), it.room(z)
-        residuals = it.residuals(z, dilatancy)
-        newton = NewtonStep.at(it, z, beta, room, residuals, dilatancy)
+        residuals = Residuals.of(s, z, dilatancy)
+        newton = NewtonStep.at(s, z, residuals, dilatancy, 1e-13)
         assert newton is not None
         rc_n = 0.3 - z.t[:, 0] * z.y_n
-        d = newton.direction(rc_n, np.zeros_like(beta), np.zeros_like(rc_n), 1e-13)
+        d = newton.direction(Products(rc_n, np.zeros_like(z.t), None if newton.products.q is None else 0.0 * rc_n))
         assert d is not None
         size = max(float(np.abs(d.u).max()), 1.0)
         assert np.abs(s.elastic(d.u) - s.pull(d.t) + residuals.u).max() < 1e-8
@@ -232,7 +232,7 @@ def test_collapse_of_a_model_in_space() -> None:
 
 def test_the_best_point_met_is_an_answer_only_where_it_is_certified() -> None:
     """Newton's method left it at 1e-11, which the certificate grants; at 1e-3 it does not."""
-    run = ConeRun(scale(wall(3, 3, **STIFF).at(0.2)))
+    run = Run(scale(wall(3, 3, **STIFF).at(0.2)))
     assert best_point_met(run) is None
     found = run.from_start(STARTS[2])
     assert found is not None
@@ -247,16 +247,16 @@ def test_a_direction_meets_both_of_its_equations(build, monkeypatch: pytest.Monk
     missed = []
     solve = NewtonStep.solve
 
-    def watched(self: NewtonStep, r: np.ndarray, b: np.ndarray, enough: float):
-        found = solve(self, r, b, enough)
+    def watched(self: NewtonStep, r: np.ndarray, b: np.ndarray):
+        found = solve(self, r, b)
         assert found is not None
-        (du, dt), s = found, self.iteration.s
+        (du, dt), s = found, self.s
         balance = r - s.K @ du + s.C.T @ dt.ravel()
         opening = b - (s.C @ du).reshape(dt.shape) - np.einsum("mij,mj->mi", self.H, dt)
-        missed.append(max(np.abs(balance).max(), np.abs(opening[s.rough]).max() / self.residuals.length) / enough)
+        missed.append(max(np.abs(balance).max(), np.abs(opening[s.rough]).max() / self.residuals.length) / self.enough)
         return found
 
     monkeypatch.setattr(NewtonStep, "solve", watched)
-    ConeRun(scale(build())).from_start(STARTS[0])
+    Run(scale(build())).from_start(STARTS[0])
     assert len(missed) > 5
     assert max(missed) < 1.5

@@ -23,7 +23,7 @@ from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution, Status
 from concio.problem.tolerances import CERTIFIED
 from concio.representation import short_repr
-from concio.solvers.interior import cone_run, engine
+from concio.solvers.interior import engine, space
 from concio.solvers.methods import find
 from concio.solvers.path.near_forces import needed, solve_near
 from concio.solvers.path.ray import homogeneous, solve_from_rest
@@ -235,10 +235,10 @@ def in_one_step(
 def _step(problem: ContactProblem, state: PathState, progress: ProgressCallback | None) -> Solution:
     near = (state.displacement, state.normal_force, state.friction_force)
     if problem.dim == 3 and not needed(problem):
-        return cone_run.solve(problem, progress=progress, starts=CONE_STARTS, near=near)
+        return space.solve(problem, progress=progress, starts=CONE_STARTS, near=near)
     solution = solve_near(problem, *near, starts=START, progress=progress)
     if solution.solved or solution.status is Status.CANCELLED or not needed(problem):
         return solution
     if problem.dim == 3:
-        return cone_run.solve(problem, progress=progress, starts=CONE_STARTS, near=near)
+        return space.solve(problem, progress=progress, starts=CONE_STARTS, near=near)
     return engine.solve(problem, homotopy=False, starts=START, progress=progress)

@@ -143,7 +143,7 @@ METHODS: dict[str, Method] = {
     method.name: method
     for method in (
         _method("auto", "auto.chain", "auto.space"),
-        _method("interior-point", "interior.engine", "interior.cone_run"),
+        _method("interior-point", "interior.engine", "interior.space"),
         _method("lemke", "forms.lemke", None, without=["cap"]),
         _method("sparse-lemke", "pivoting.sparse_lemke", None),
         _method("exhaustive", "exhaustive.search", None, without=["cohesion", "tension", "dilatancy", "cap"]),

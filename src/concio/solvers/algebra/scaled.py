@@ -104,6 +104,16 @@ class Scaled:
         """Pairs that can carry friction at all, (m,) booleans."""
         return self.cone.rough
 
+    @cached_property
+    def any_smooth(self) -> bool:
+        """Whether any pair cannot carry friction."""
+        return not bool(self.rough.all())
+
+    @cached_property
+    def any_capped(self) -> bool:
+        """Whether any pair crushes."""
+        return bool(self.cone.capped.any())
+
     @property
     def share(self) -> Array:
         """Tributary area of each pair over the mean, kept between 0.05 and 20 (m,)."""

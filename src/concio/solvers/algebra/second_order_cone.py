@@ -2,7 +2,7 @@ r"""Algebra of second-order cones :math:`Q = \{x : x_0 \ge |x_t|\}` for many sma
 
 Jordan product, determinant, quadratic representation, and the scaling of Nesterov and Todd: the symmetric map P(w) with
 P(w) eta = beta that takes a pair of inner points to each other. In the plane Q is a product of two half-lines and all
-of this is division of numbers.
+of this is division of numbers (:mod:`concio.solvers.algebra.half_lines`).
 
 Reference: Alizadeh and Goldfarb, Second-order cone programming, Math. Programming 95 (2003), 3-51.
 """
@@ -10,6 +10,7 @@ Reference: Alizadeh and Goldfarb, Second-order cone programming, Math. Programmi
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -18,8 +19,11 @@ from concio.problem.contact_problem import Array
 
 def times(A: Array, x: Array) -> Array:
     """Return the products of matrices (m, d, d) and vectors (m, d)."""
-    product: Array = np.einsum("kij,kj->ki", A, x)  # half the time of a product of stacks
-    return product
+    if x.shape[1] != 2:
+        return np.asarray(np.einsum("kij,kj->ki", A, x))  # half the time of a product of stacks
+    result = A[:, :, 0] * x[:, :1]
+    result += A[:, :, 1] * x[:, 1:]
+    return np.asarray(result)
 
 
 def product(a: Array, b: Array) -> Array:
@@ -41,6 +45,30 @@ def determinant(a: Array) -> Array:
     r = tangential_norm(a)
     inside: Array = (a[:, 0] - r) * (a[:, 0] + r)
     return inside
+
+
+def clipped(a: Array, least: float, most: float) -> Array:
+    """Return a with its eigenvalues a_0 - |a_t| and a_0 + |a_t| brought between two bounds."""
+    r = tangential_norm(a)
+    low, high = np.clip(a[:, 0] - r, least, most), np.clip(a[:, 0] + r, least, most)
+    result = np.empty_like(a)
+    result[:, 0] = 0.5 * (low + high)
+    result[:, 1:] = (0.5 * (high - low) / np.where(r > 0, r, 1.0))[:, None] * a[:, 1:]
+    return result
+
+
+def inverses(H: Array) -> Array:
+    """Return the inverses of matrices (m, d, d); raises LinAlgError where there is none."""
+    if H.shape[1] != 2:
+        return np.asarray(np.linalg.inv(H))
+    determinants = H[:, 0, 0] * H[:, 1, 1] - H[:, 0, 1] * H[:, 1, 0]
+    if not determinants.all():
+        msg = "a matrix is singular"
+        raise np.linalg.LinAlgError(msg)
+    D = np.empty_like(H)
+    D[:, 0, 0], D[:, 1, 1] = H[:, 1, 1] / determinants, H[:, 0, 0] / determinants
+    D[:, 0, 1], D[:, 1, 0] = -H[:, 0, 1] / determinants, -H[:, 1, 0] / determinants
+    return D
 
 
 def divide(a: Array, r: Array) -> Array:
@@ -86,6 +114,7 @@ class Scaling:
 
     Parameters
     ----------
+    beta, eta : (m, d) arrays
     W, inverse : (m, d, d) arrays
     M : (m, d, d) array
         d eta = q - M d beta in Newton's equations.
@@ -93,6 +122,8 @@ class Scaling:
         lambda, the common image of both.
     """
 
+    beta: Array
+    eta: Array
     W: Array
     inverse: Array
     M: Array
@@ -112,7 +143,43 @@ class Scaling:
         h /= np.sqrt(2.0 * h[:, :1])
         size = np.sqrt(of_beta / of_eta)[:, None, None]
         W, inverse = quadratic(h) * size, quadratic(mirrored(h)) / size
-        return cls(W, inverse, quadratic(mirrored(w)) / size**2, times(W, eta))
+        return cls(beta, eta, W, inverse, quadratic(mirrored(w)) / size**2, times(W, eta))
+
+    @staticmethod
+    def coordinates(x: Array) -> Array:
+        """Return the coordinates of vectors (m, d) in which the cone is easiest: their own."""
+        return x
+
+    vector = coordinates
+
+    @staticmethod
+    def shifted(x: Array, by: float) -> Array:
+        """Return x plus a multiple of the identity (1, 0)."""
+        moved = x.copy()
+        moved[:, 0] += by
+        return moved
+
+    @staticmethod
+    def clipped(x: Array, least: float, most: float) -> Array:
+        """Return x with its eigenvalues brought between two bounds."""
+        return clipped(x, least, most)
+
+    def along(self, d_beta: Array) -> Array:
+        """Return M d beta."""
+        return times(self.M, d_beta)
+
+    def reach(self, d_beta: Array, d_eta: Array) -> float:
+        """Return the smallest step at which beta or eta leaves its cone; inf where none does."""
+        return min(reach(self.beta, d_beta), reach(self.eta, d_eta))
+
+    @cached_property
+    def square(self) -> Array:
+        """Lambda o lambda (m, d)."""
+        return product(self.point, self.point)
+
+    def second(self, d_eta: Array, d_beta: Array) -> Array:
+        """Return (W d eta) o (W^-1 d beta), what the products of a full step are missed by."""
+        return product(times(self.W, d_eta), times(self.inverse, d_beta))
 
     def corrector(self, r: Array) -> Array:
         """Return q of d eta = q - M d beta for lambda o (W d eta + W^-1 d beta) = r."""

@@ -28,7 +28,7 @@ from concio.solvers.auto.strategies import (
     usual_starts,
     where_it_ends,
 )
-from concio.solvers.interior.engine import Run, at_rest
+from concio.solvers.interior.run import Run, at_rest
 from concio.solvers.pivoting import sparse_lemke
 
 STRATEGIES: tuple[Strategy, ...] = (

@@ -15,14 +15,14 @@ from __future__ import annotations
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution, Status, pair_states
 from concio.solvers.algebra.scaled import scale
-from concio.solvers.interior.engine import Cancelled, Run
+from concio.solvers.interior.run import Cancelled, Run, Start
 from concio.solvers.pivoting import sparse_lemke
 
 FACTORS = (0.98, 1.02, 0.95, 1.05)
 """Multiples of the friction coefficients that are tried, in this order."""
 
-STARTS = (10.0, 100.0)
-"""Sizes of the starting points tried for each neighbour."""
+STARTS = (Start(10.0, 10.0), Start(100.0, 100.0))
+"""Starts tried for each neighbour."""
 
 HALVINGS = 6
 """Times the way back to the structure's own friction may be halved."""
@@ -59,7 +59,7 @@ def from_neighbours(run: Run, progress: ProgressCallback | None = None) -> Solut
         near = Run(scale(problem.with_friction(factor), engine), progress)
         found = None
         for start in STARTS:
-            found = found or near.plain(start)
+            found = found or near.from_start(start)
         run.iterations += near.iterations
         run.history.extend(near.history)
         if found is None:

@@ -28,46 +28,45 @@ from concio.problem.solution import Departure, ProgressCallback, Solution
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.auto.strategies import Strategy, first_answer, moves_away, statics, sticking, where_it_ends
-from concio.solvers.interior.cone_run import ConeRun, starts_for
-from concio.solvers.interior.engine import at_rest
+from concio.solvers.interior.run import Run, at_rest, starts_for
 from concio.solvers.relaxation.free_motion import free_motion
 from concio.solvers.relaxation.single_steps import at_once
 from concio.solvers.relaxation.slow_motion import relax
 from concio.solvers.states.reading import Finished
 
 
-def usual_starts(run: ConeRun) -> Solution | None:
+def usual_starts(run: Run) -> Solution | None:
     """Interior point from the first two starts."""
     return _from(run, 0, 2)
 
 
-def other_starts(run: ConeRun) -> Solution | None:
+def other_starts(run: Run) -> Solution | None:
     """Interior point from the starts that are left."""
     return _from(run, 2, None)
 
 
-def best_point_met(run: ConeRun) -> Solution | None:
+def best_point_met(run: Run) -> Solution | None:
     """Take the best point the starts met where it is certified: no motion is followed for digits nobody asks for."""
     met = None if run.best is None else run.solution(run.best, method="interior-point")
     return met if met is not None and met.solved else None
 
 
-def moving_freely(run: ConeRun) -> Solution | None:
+def moving_freely(run: Run) -> Solution | None:
     """Look whether the structure moves away as if nothing touched it."""
     return _judged(run, free_motion(run.scaled.problem))
 
 
-def released_in_single_steps(run: ConeRun) -> Solution | None:
+def released_in_single_steps(run: Run) -> Solution | None:
     """Let the structure go, and look at what single long steps from rest show."""
     return _judged(run, at_once(run))
 
 
-def released_at_rest(run: ConeRun) -> Solution | None:
+def released_at_rest(run: Run) -> Solution | None:
     """Let the structure go, undeformed."""
     return _released(run, np.zeros(len(run.scaled.f)))
 
 
-def released_jammed(run: ConeRun) -> Solution | None:
+def released_jammed(run: Run) -> Solution | None:
     """Let the structure go from the state in which associated flow holds it."""
     return _released(run, run.associated_state())
 
@@ -108,16 +107,16 @@ def solve(
     rest = at_rest(problem)
     if rest is not None:
         return rest
-    return first_answer(ConeRun(scale(problem, engine), progress), STRATEGIES)
+    return first_answer(Run(scale(problem, engine), progress), STRATEGIES)
 
 
 def let_go(problem: ContactProblem, u: Array, progress: ProgressCallback | None = None) -> Solution:
     """Follow the slow motion from displacements u (N,) [m]: rest, COLLAPSES or UNDECIDED, as in the plane."""
-    run = ConeRun(scale(problem), progress)
+    run = Run(scale(problem), progress)
     return where_it_ends(run, partial(_released, run), u)
 
 
-def _from(run: ConeRun, first: int, last: int | None) -> Solution | None:
+def _from(run: Run, first: int, last: int | None) -> Solution | None:
     for start in starts_for(run.scaled)[first:last]:
         found = run.from_start(start)
         if found is not None:
@@ -125,11 +124,11 @@ def _from(run: ConeRun, first: int, last: int | None) -> Solution | None:
     return None
 
 
-def _released(run: ConeRun, u: Array) -> Solution | None:
+def _released(run: Run, u: Array) -> Solution | None:
     return _judged(run, relax(run, u))
 
 
-def _judged(run: ConeRun, ended: Finished | Departure | None) -> Solution | None:
+def _judged(run: Run, ended: Finished | Departure | None) -> Solution | None:
     if isinstance(ended, Departure):
         return moves_away(run, ended)
     return None if ended is None else run.solution(ended)

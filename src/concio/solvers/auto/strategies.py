@@ -13,8 +13,7 @@ from concio.problem.contact_problem import Array
 from concio.problem.solution import Departure, Mechanism, Solution, Status, failed, judge
 from concio.solvers.auto.friction_neighbours import from_neighbours
 from concio.solvers.interior.bonded import applies, from_sticking
-from concio.solvers.interior.cone_run import ConeRun
-from concio.solvers.interior.engine import STARTS, Cancelled, Run
+from concio.solvers.interior.run import Cancelled, Run, starts_for
 from concio.solvers.relaxation.slow_motion import relax
 from concio.solvers.statics.existence import statically_admissible
 
@@ -28,7 +27,7 @@ class Strategy:
     name : str
         What ``info["strategy"]`` says of an answer of its.
     decide : callable
-        Takes the run (a :class:`.Run` in the plane, a :class:`.ConeRun` in space), returns an answer or None; raises
+        Takes the :class:`.Run`, returns an answer or None; raises
         :class:`.Cancelled` where the callback asks to stop.
     """
 
@@ -36,7 +35,7 @@ class Strategy:
     decide: Callable[[Any], Solution | None]
 
 
-def first_answer(run: Run | ConeRun, table: Sequence[Strategy]) -> Solution:
+def first_answer(run: Run, table: Sequence[Strategy]) -> Solution:
     """Return what the first strategy of a table that decides says; UNDECIDED where none does.
 
     ``info["strategy"]`` names it, ``info["cost"]`` those tried, each with its processor time [s].
@@ -56,7 +55,7 @@ def first_answer(run: Run | ConeRun, table: Sequence[Strategy]) -> Solution:
     return replace(undecided, info={**undecided.info, "strategy": name, "cost": tuple(cost)})
 
 
-def where_it_ends(run: Run | ConeRun, follow: Callable[[Array], Solution | None], u: Array) -> Solution:
+def where_it_ends(run: Run, follow: Callable[[Array], Solution | None], u: Array) -> Solution:
     """Return how slow motion from displacements u (N,) [m] ends: at rest, without end (COLLAPSES), or UNDECIDED."""
     try:
         answer = follow(u / run.scaled.length)
@@ -81,8 +80,8 @@ def sticking(run: Run) -> Solution | None:
 
 def usual_starts(run: Run) -> Solution | None:
     """Interior point from the usual start and from one ten times further out."""
-    for start in STARTS[:2]:
-        found = run.plain(start)
+    for start in starts_for(run.scaled)[:2]:
+        found = run.from_start(start)
         if found is not None:
             return run.solution(found)
     return None

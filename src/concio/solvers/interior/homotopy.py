@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from concio.solvers.interior.interior_point import InteriorPoint
-from concio.solvers.interior.iterate import Iterate
+from concio.solvers.interior.iteration import InteriorPoint
+from concio.solvers.interior.point import Point
 
 LEVEL = 1e-2
 """Mean product at which the walk stays, scaled units."""
@@ -40,7 +40,7 @@ def walk(
     engine: InteriorPoint,
     *,
     watch: Callable[[int, float], bool | None] | None = None,
-) -> tuple[Iterate, Walk]:
+) -> tuple[Point, Walk]:
     """Follow the path from theta = 1 to 0.
 
     Parameters

@@ -28,7 +28,8 @@ from concio.problem.certificate import certify
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution, judge
 from concio.solvers.algebra.scaled import Scaled, scale, typical_stiffness
-from concio.solvers.interior import cone_run, engine, newton_finish
+from concio.solvers.interior import engine, newton_finish, space
+from concio.solvers.interior.run import AT_REST, SIZES, WEIGHTS, Run
 from concio.solvers.states.reading import read_states
 from concio.solvers.states.settle import Settler
 
@@ -121,12 +122,11 @@ class Nearby:
             return None
         s = self.scaled(problem, which)
         made, point = s.factor.made, s.bring(*begin)
+        run = Run(s)
         if problem.dim == 2:
-            run: engine.Run = engine.Run(s)
-            found = run.finish(*point, flips=FLIPS)
+            found = run.settle(*point, flips=FLIPS)
         else:
-            run = cone_run.ConeRun(s)
-            found = run.settle(*point, cone_run.WEIGHTS[:1], patience=PATIENCE)
+            found = run.newton(*point, WEIGHTS[:1], patience=PATIENCE)
         if found is None:
             return None
         return replace(run.solution(found, method=NAME), factorisations=s.factor.made - made)
@@ -138,7 +138,7 @@ def solve_near(
     t_n: Array,
     t_t: Array,
     *,
-    starts: tuple[float, ...] = engine.STARTS,
+    starts: tuple[float, ...] = SIZES,
     nearby: Nearby | None = None,
     begin: State | None = None,
     progress: ProgressCallback | None = None,
@@ -170,7 +170,7 @@ def solve_near(
     def solve(step: ContactProblem, which: str) -> Solution:
         found = None if nearby is None else nearby.solve(step, begin, which)
         if not plane:
-            return found or cone_run.solve(step, progress=progress)
+            return found or space.solve(step, progress=progress)
         return found or engine.solve(step, homotopy=False, starts=starts, progress=progress)
 
     if not needed(problem):
@@ -186,7 +186,7 @@ def solve_near(
         found = Settler(s).settle(s, v, p, read_states(s.renewed(soft), v, p), least=False)
     else:
         found = newton_finish.finish(s, v, p, least=False)
-    still = float(np.abs(found.u).max(initial=0.0)) < engine.AT_REST
+    still = float(np.abs(found.u).max(initial=0.0)) < AT_REST
     v, p_n, p_t = s.restore(found.u, found.t)
     rest = np.zeros_like(v)
     if still and certify(problem, rest, p_n, p_t).certified:

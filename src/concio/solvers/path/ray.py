@@ -17,7 +17,8 @@ from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution, Status
 from concio.solvers.auto import chain as auto
 from concio.solvers.auto import space
-from concio.solvers.interior import cone_run, engine
+from concio.solvers.interior import engine
+from concio.solvers.interior import space as round_cones
 from concio.solvers.path.state import LinearPath, PathState, state_of
 
 SMALL = 1000
@@ -57,7 +58,7 @@ def solve_from_rest(problem: ContactProblem, progress: ProgressCallback | None) 
     if problem.dim == 2:
         solution = engine.solve(problem, homotopy=False, progress=progress)
     else:
-        solution = cone_run.solve(problem, progress=progress)
+        solution = round_cones.solve(problem, progress=progress)
     if solution.solved or problem.pairs > SMALL or solution.status is Status.CANCELLED:
         return solution
     if problem.dim == 2:

@@ -14,7 +14,7 @@ import numpy as np
 
 from concio.problem.solution import Departure
 from concio.solvers.algebra.scaled import Scaled
-from concio.solvers.interior.cone_run import ConeRun, Start
+from concio.solvers.interior.run import Run, Start
 from concio.solvers.relaxation.slow_motion import ENDS, GROWTH, hardly_changed
 from concio.solvers.relaxation.step import allowed_factorisations, rest_near, solve_afresh, solve_near
 from concio.solvers.relaxation.unbounded_motion import unbounded_motion
@@ -33,12 +33,12 @@ LONGEST = 1e-11
 """Least resistance of a single step."""
 
 
-def at_once(run: ConeRun) -> Finished | Departure | None:
+def at_once(run: Run) -> Finished | Departure | None:
     """Make single steps from rest, ever longer; return the rest or the motion without end that one shows, or None.
 
     Parameters
     ----------
-    run : ConeRun
+    run : Run
         Keeps count and trace.
     """
     s = run.scaled
@@ -84,7 +84,7 @@ class _Single:
             return None
         return solve_near(step, self.last, (self.before / e, 1.0))
 
-    def reached(self, run: ConeRun, e: float, now: Finished | None) -> bool:
+    def reached(self, run: Run, e: float, now: Finished | None) -> bool:
         """Look at a step solved with resistance e; once the motion changes little it is asked whether it ever ends."""
         if now is None:
             return False

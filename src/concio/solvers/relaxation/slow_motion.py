@@ -19,7 +19,7 @@ import numpy as np
 
 from concio.problem.contact_problem import Array
 from concio.problem.solution import Departure
-from concio.solvers.interior.engine import Run
+from concio.solvers.interior.run import Run
 from concio.solvers.relaxation.step import allowed_factorisations, pivot_to_rest, rest_near, solve_step
 from concio.solvers.relaxation.unbounded_motion import unbounded_motion
 from concio.solvers.states.reading import Finished, natural_residual

@@ -11,8 +11,8 @@ from concio.problem.pair_state import PairStates
 from concio.problem.solution import ProgressCallback, Status
 from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
-from concio.solvers.interior.engine import Cancelled, Run
 from concio.solvers.interior.newton_finish import finish
+from concio.solvers.interior.run import Cancelled, Run
 from concio.solvers.pivoting import sparse_lemke
 from concio.solvers.states.reading import Finished, natural_residual, read_states
 from concio.solvers.states.settle import Settler

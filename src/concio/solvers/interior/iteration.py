@@ -1,20 +1,24 @@
-r"""Primal-dual interior point on the plane Coulomb problem itself, non-monotone as it is.
+r"""Primal-dual interior point on the Coulomb problem, non-monotone as it is, in the plane and in space.
 
-Unknowns are u, the shifted normal forces t_n, friction forces t_t, gaps y_n, the slacks s+ = c + mu t_n + t_t and
-s- = c + mu t_n - t_t, and the slip parts y+ and y-, all of equations (5), (16), (18):
+With the shifted forces of a pair, :math:`t_n \ge 0` and :math:`\beta = (c + \mu t_n, t_t)`, and with its gap and
+:math:`\eta = (\sigma, y_t)`, sigma a bound on the size of slip,
 
 .. math::
 
-    K u - f - C_n^T t_n - C_t^T t_t &= 0, &
-    y_n &= x_n + C_n u + a_n t_n - \bar d\,(y^+ + y^-) + p, \\
-    y^+ - y^- &= C_t u - s + a_t t_t, &
-    t_n y_n &= s^+ y^+ = s^- y^- = q\,p = \tau \to 0, \qquad q = N - t_n .
+    K u - f - C^T t &= 0, & y_n &= x_n + C_n u + a_n t_n - \bar d\,\sigma + p, &
+    y_t &= C_t u - s + a_t t_t, \\
+    t_n y_n &= \tau, & \beta \circ \eta &= 2\tau e, & q\,p &= \tau, \quad q = N - t_n,
 
-Each iteration solves Newton's equations (:mod:`concio.solvers.interior.newton_equations`). Steps follow Mehrotra's
-predictor and corrector, then up to :data:`CORRECTORS` of Gondzio's centrality correctors, each of which costs one
-back-substitution and stays only if it lengthens the step. The dilatancy used is :math:`\bar d = d + \theta(\mu - d)`:
-theta = 0 is the problem itself, theta = 1 associated flow, which is convex; :mod:`concio.solvers.interior.homotopy`
-walks from one to the other.
+beta and eta inside the second-order cone, o the Jordan product of :mod:`concio.solvers.algebra.second_order_cone`. In
+the limit tau = 0, sigma = |y_t| and t_t = -(c + mu t_n) y_t / |y_t|, or y_t = 0. In the plane the cone is a product of
+two half-lines: with :math:`s^\pm = c + \mu t_n \pm t_t` and :math:`y^+ + y^- = \sigma`, :math:`y^+ - y^- = y_t` it
+reads :math:`s^+ y^+ = s^- y^- = \tau`.
+
+Each iteration solves Newton's equations (:mod:`concio.solvers.interior.newton`). Steps follow Mehrotra's predictor and
+corrector, then in the plane up to two of Gondzio's centrality correctors, each of which costs one back-substitution and
+stays only if it lengthens the step. The dilatancy used is :math:`\bar d = d + \theta(\mu - d)`: theta = 0 is the
+problem itself, theta = 1 associated flow, which is convex; :mod:`concio.solvers.interior.homotopy` walks from one to
+the other.
 
 What the iteration returns is a point close to a solution, or nothing; the exact finish makes it exact.
 
@@ -35,18 +39,21 @@ import numpy as np
 
 from concio.problem.contact_problem import Array
 from concio.solvers.algebra.scaled import Scaled
-from concio.solvers.algebra.sparse_factor import SingularMatrixError
-from concio.solvers.interior.iterate import Iterate, Residuals
-from concio.solvers.interior.newton_equations import Newton
+from concio.solvers.interior.newton import Direction, NewtonStep
+from concio.solvers.interior.point import CONE, Point, Residuals
 
 START = 10.0
-"""Size of slacks and multipliers at the start, in scaled units."""
+"""Size of forces, gaps and slips at the start, in scaled units."""
 
-BOUNDARY = 0.99
+SHARE = 0.99
 """Share of the step to the boundary that is taken."""
 
-CORRECTORS = 2
-"""Largest number of centrality correctors of an iteration."""
+CORRECTORS = {2: 2, 3: 0}
+"""Largest number of centrality correctors of an iteration, by dimension. In space they take some structures away that
+are solved without (decision 0113)."""
+
+DAMPED = {2: True, 3: False}
+"""Whether the corrector counts the second order of the step that the predictor can go, or that of a full one."""
 
 FURTHER, GAIN = 0.1, 0.1
 """A corrector aims at a step longer by ``FURTHER`` and stays if it gains this share of that."""
@@ -68,7 +75,7 @@ class Outcome:
         Residual and complementarity below the target.
     iterations : int
     residual : float
-        Largest residual or product, forces relative to the largest force and lengths to the largest displacement.
+        Largest of the residuals and the mean product, relative: the least met where it did not converge.
     why : str
         Why it ended: "converged", or what :class:`Stopping` says.
     """
@@ -129,49 +136,29 @@ class InteriorPoint:
     Parameters
     ----------
     scaled : Scaled
-    correctors : int
-        Largest number of centrality correctors of an iteration.
+    correctors : int, optional
+        Largest number of centrality correctors of an iteration; default :data:`CORRECTORS`.
     """
 
-    def __init__(self, scaled: Scaled, correctors: int = CORRECTORS) -> None:
-        self.problem, self.correctors = scaled, correctors
+    def __init__(self, scaled: Scaled, correctors: int | None = None) -> None:
+        self.problem = scaled
+        self.correctors = CORRECTORS[scaled.dim] if correctors is None else correctors
         rough, capped = scaled.rough, scaled.cone.capped
-        self.used = np.array([np.ones(scaled.pairs, dtype=bool), rough, rough, capped]).astype(float)
-        """One where a product of a pair is there, else zero, (4, m)."""
-        self.cap = np.where(capped, scaled.cone.cap, 0.0)
+        self.count = max(scaled.pairs + 2 * int(rough.sum()) + int(capped.sum()), 1)
 
-    def start(self, size: float = START) -> Iterate:
-        """Return the point from which the plain iteration starts: every slack and multiplier ``size``.
+    def start(self, force: float = START, length: float = START) -> Point:
+        """Return a point far outside: every force ``force``, every gap and part of slip ``length``, no friction.
 
-        Starting far outside (forces and gaps ten times the typical ones) halves the iterations near collapse.
+        Starting far outside (forces and gaps ten times the typical ones) halves the iterations near collapse. In the
+        plane slip has two parts; and where both sizes are the same the first system is factorised already.
         """
-        s, cone = self.problem, self.problem.cone
-        one = np.full(s.pairs, size)
-        t_n = np.where(cone.capped, np.minimum(size, 0.5 * cone.cap), size)
-        slack = np.where(s.rough, cone.strength(t_n), size)
-        q = np.where(cone.capped, cone.cap - t_n, size)
-        return Iterate(np.zeros(len(s.f)), 0 * one, np.array([t_n, slack, slack, q]), np.array([one] * 4))
-
-    def gap(self, z: Iterate) -> float:
-        """Return the mean complementarity product."""
-        return float((z.products() * self.used).sum() / max(float(self.used.sum()), 1.0))
-
-    def residuals(self, z: Iterate, theta: float) -> Residuals:
-        """Return what the linear equations leave at a point."""
-        s, (_, rough, _, capped) = self.problem, self.used
-        t = z.t
-        y = s.position(z.u, t)
-        t_n, s_p, s_m, q = z.slack
-        y_n, y_p, y_m, p = z.dual
-        strength = s.cone.linear_strength(t_n)
-        return Residuals(
-            u=s.imbalance(z.u, t),
-            n=y[:, 0] - self.dilatancy(theta) * (y_p + y_m) - y_n + capped * p,
-            t=rough * (y[:, 1] - y_p + y_m),
-            p=rough * (strength + z.t_t - s_p),
-            m=rough * (strength - z.t_t - s_m),
-            q=capped * (self.cap - t_n - q),
-        )
+        s = self.problem
+        t, eta = np.zeros_like(s.x), np.zeros_like(s.x)
+        t[:, 0] = np.where(s.cone.capped, np.minimum(force, 0.5 * s.cone.cap), force)
+        eta[:, 0] = 2.0 * length if s.dim == 2 else length
+        eta = CONE[s.dim].coordinates(eta)
+        one = np.full(s.pairs, length)
+        return Point(np.zeros(len(s.f)), t, one, eta, one.copy())
 
     def dilatancy(self, theta: float) -> Array:
         """Return the dilatancy (m,) of the homotopy at ``theta``."""
@@ -180,38 +167,42 @@ class InteriorPoint:
 
     def run(
         self,
-        z: Iterate,
+        z: Point,
         *,
         theta: float = 0.0,
         target: float = 1e-9,
-        most: int = 80,
+        most: int = 100,
+        share: float = SHARE,
         level: float = 0.0,
         watch: Callable[[int, float], bool | None] | None = None,
-        ready: Callable[[Iterate, float], bool] | None = None,
-    ) -> tuple[Iterate, Outcome]:
+        ready: Callable[[Point, float], bool] | None = None,
+    ) -> tuple[Point, Outcome]:
         """Iterate from ``z``; return the point reached, or the best met where it does not converge.
 
         Parameters
         ----------
-        z : Iterate
+        z : Point
         theta : float
             Share of associated flow.
         target : float
             Relative residual and mean product to reach.
         most : int
             Largest number of iterations.
+        share : float
+            Share of the step to the boundary that is taken.
         level : float
-            Stop already at this mean product and residual (a point on the central path, for the homotopy).
+            Stop already at this mean product with small residuals (a point on the central path, for the homotopy).
         watch : callable, optional
             Called with (iteration, max of residual and product); true stops.
         ready : callable, optional
             Called with (point, max of residual and product); true stops before the target, as :data:`EARLY`.
         """
-        stopping = Stopping(most)
+        stopping, dilatancy = Stopping(most), self.dilatancy(theta)
         step, iteration, kept, why = 1.0, 0, z, ""
         while True:
-            rest, gap = self.residuals(z, theta), self.gap(z)
-            residual, typical = rest.size(*z.size()), z.typical_product()
+            residuals = Residuals.of(self.problem, z, dilatancy)
+            gap, typical = residuals.total / self.count, residuals.typical
+            residual = residuals.worst
             merit = max(residual, gap / typical)
             if not np.isfinite(merit):
                 why = "numbers ran over"
@@ -219,7 +210,7 @@ class InteriorPoint:
             if stopping.improved(merit):
                 kept = z
             if merit < target or (level and gap < level and residual < 1e-6):
-                return z, Outcome(True, iteration, residual, "converged")
+                return z, Outcome(True, iteration, merit, "converged")
             if watch is not None and watch(iteration, merit):
                 why = "asked to"
                 break
@@ -228,37 +219,42 @@ class InteriorPoint:
             why = stopping.reason(iteration, merit, step)
             if why:
                 break
-            try:
-                newton = Newton(self.problem, z, rest, self.dilatancy(theta), self.used)
-            except SingularMatrixError:
+            newton = NewtonStep.at(self.problem, z, residuals, dilatancy, 1e-3 * min(merit, 1e-6))
+            floor = max(0.3 * level, 0.03 * target * typical)
+            found = None if newton is None else self._direction(newton, floor, share)
+            if found is None:
                 why = "no direction"
                 break
-            floor = max(0.3 * level, 0.03 * target * typical)
-            d, step = self._direction(newton, z, gap, floor)
-            z = z.moved(d, step)
+            direction, step = found
+            z = z.moved(direction, step)
             iteration += 1
         return kept, Outcome(False, iteration, stopping.best, why)
 
-    def _direction(self, newton: Newton, z: Iterate, gap: float, floor: float) -> tuple[Iterate, float]:
+    def _direction(self, newton: NewtonStep, floor: float, share: float) -> tuple[Direction, float] | None:
         """Return direction and step: predictor, corrector, centrality correctors; ``floor`` is the least target."""
-        products = z.products()
-        d = newton.direction(-products)
-        step = z.longest(d)
-        predicted = self.gap(z.moved(d, step))
-        centring = min(1.0, max((predicted / gap) ** 3, 1e-4)) if step > 0.05 else 0.5
+        products = newton.products
+        gap = products.total(newton.s) / self.count
+        d = newton.direction(products.scaled(-1.0))
+        if d is None:
+            return None
+        step = newton.longest(d)
+        second = newton.second(d)
+        after = gap + (step * (d.change.total(newton.s)) + step**2 * second.total(newton.s)) / self.count
+        centring = min(1.0, max((after / gap) ** 3, 1e-4)) if step > 0.05 else 0.5
         tau = max(centring * gap, floor)
-        change = tau - products - step * d.products()
+        change = products.towards(tau).plus(second, -step if DAMPED[newton.s.dim] else -1.0)
         d = newton.direction(change)
-        step = z.longest(d, BOUNDARY)
+        if d is None:
+            return None
+        step = newton.longest(d, share)
         for _ in range(self.correctors):
             if step > 1.0 - FURTHER:
                 break
-            there = z.moved(d, min(1.0, step + FURTHER)).products()
-            pull = np.clip(there, tau / OUTLIER, tau * OUTLIER) - there
-            trial = change + self.used * np.maximum(pull, -OUTLIER * tau)
-            other = newton.direction(trial)
-            longer = z.longest(other, BOUNDARY)
-            if longer < step + GAIN * FURTHER:
+            further = min(1.0, step + FURTHER)
+            there = products.plus(d.change, further).plus(newton.second(d), further**2)
+            other = newton.direction(d.change.plus(there.outliers(tau, OUTLIER)))
+            longer = 0.0 if other is None else newton.longest(other, share)
+            if other is None or longer < step + GAIN * FURTHER:
                 break
-            d, step, change = other, longer, trial
+            d, step = other, longer
         return d, step
