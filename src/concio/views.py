@@ -21,6 +21,7 @@ VIEWS: dict[str, dict[str, str]] = {
         "BlockHalving": "concio.plot.continuum_accessor:HalvingPlots",
         "StudyResult": "concio.plot.study_figures:StudyPlots",
         "Diagnosis": "concio.plot.diagnosis_accessor:DiagnosisPlots",
+        "BridgeResult": "concio.plot.bridge_accessor:BridgePlots",
     },
     "tables": {"Result": "concio.post.tables_of:tables_of"},
     "notebook": {
@@ -31,6 +32,7 @@ VIEWS: dict[str, dict[str, str]] = {
         "Assessment": "concio.report.assessment_page:write_assessment_report",
         "Diagnosis": "concio.report.diagnosis_page:write_diagnosis_report",
         "StudyResult": "concio.report.study_page:write_study_report",
+        "BridgeResult": "concio.report.bridge_page:write_bridge_report",
     },
 }
 """What makes a view of an object of a class: ``VIEWS[view][class]`` is "module:name", called with the object."""

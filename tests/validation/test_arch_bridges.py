@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from validation_cases import arch_bridges
+from validation_cases.row import check
 
 import concio
 from concio.analysis.limit import dead_and_live
@@ -141,3 +143,17 @@ def test_without_passive_pressure_the_fill_is_dead_load_alone() -> None:
     x = 0.25 * 6.55
     none, little = (under_an_axle(prestwood(40), x, f, 0.30) for f in fill)
     assert little == pytest.approx(none, rel=1e-7)
+
+
+@pytest.mark.long
+def test_rows() -> None:
+    check(arch_bridges.rows())
+
+
+@pytest.mark.long
+def test_the_worst_position_of_prestwood_is_found_to_ten_millimetres() -> None:
+    """Beside a grid of 5 mm around it."""
+    share, least = arch_bridges.worst_of_prestwood()
+    sweep = arch_bridges.prestwood(1.0)
+    around = [arch_bridges.load(sweep, share * 6.55 + d) for d in np.arange(-0.05, 0.051, 0.005)]
+    assert least <= min(around) * (1 + 2e-5)

@@ -10,7 +10,7 @@ import numpy as np
 from concio.display import number
 from concio.problem.solution import PROVEN_FAILURES, Status
 from concio.verdict.attention import attention, joints_not_made
-from concio.verdict.bridge_words import WIDTHS, Language, say
+from concio.verdict.bridge_words import WIDTHS, Language, Words
 from concio.verdict.crushing import crushing
 from concio.verdict.question import Question, question_of
 from concio.verdict.verdict import Outcome, Verdict
@@ -32,29 +32,29 @@ def bridge_verdict(found: BridgeResult, language: Language = "en") -> Verdict:
     language : {"en", "it"}
         Of its sentences; what every command says of a model is English.
     """
-    outcome = _outcome(found)
+    outcome, w = _outcome(found), Words(language, found.model.report)
     head = {Outcome.HOLDS: "head_holds", Outcome.FAILS: "head_fails"}.get(outcome, "head_open")
     return Verdict(
         outcome=outcome,
         status={Outcome.HOLDS: "solved", Outcome.FAILS: "no_equilibrium"}.get(outcome, outcome.value),
         question=bridge_question(found, language),
-        headline=say(language, head),
-        answer=_answer(found, outcome, language),
-        proof=_proof(found, language),
-        meaning=say(language, "meaning"),
-        limits=_limits(found, language),
-        unchecked=_unchecked(found, language),
-        attention=(*_rests(found, outcome, language), *attention(found.assembly)),
+        headline=w.say(head),
+        answer=_answer(found, outcome, w),
+        proof=_proof(found, w),
+        meaning=w.say("meaning"),
+        limits=_limits(found, w),
+        unchecked=_unchecked(found, w),
+        attention=(*_rests(found, outcome, w), *attention(found.assembly)),
     )
 
 
 def bridge_question(found: BridgeResult, language: Language = "en") -> Question:
     """Return what was asked, with what acts."""
-    units, vehicle = found.model.report, found.vehicle
-    asked = say(
-        language, "asked", required=number(found.required, 4), vehicle=vehicle.name,
-        axle=units.text("force", vehicle.heaviest.load * vehicle.dynamic * vehicle.factor, 4),
-        total=units.text("force", vehicle.total, 4),
+    w, vehicle = Words(language, found.model.report), found.vehicle
+    asked = w.say(
+        "asked", required=w.n(found.required), vehicle=vehicle.name,
+        axle=w.unit("force", vehicle.heaviest.load * vehicle.dynamic * vehicle.factor),
+        total=w.unit("force", vehicle.total),
     )  # fmt: skip
     reached = found.design if math.isfinite(found.design) else math.nan
     return question_of(asked, found.assembly, multiplied={vehicle.group: reached},
@@ -111,7 +111,10 @@ def _service(found: BridgeResult, *, settled: bool = False) -> str:
     told = [f"{state.open_joints} joints open, {state.slipping} slip"]
     if _crush(found):
         told.append(f"{state.crushed} contact points crush")
-    told.append(f"pressure up to {units.text('stress', state.largest_pressure, 4)}")
+    told.append(
+        "a joint pressed at its edge alone" if math.isinf(state.largest_pressure)
+        else f"pressure up to {units.text('stress', state.largest_pressure, 4)}"
+    )  # fmt: skip
     told.append(
         "no deflection: blocks and joints are rigid" if math.isnan(state.deflection)
         else f"the vehicle adds {units.text('motion', state.deflection, 4)} of deflection"
@@ -139,92 +142,91 @@ def _refutes(found: BridgeResult, upper: float, *, checked: bool) -> bool:
     return checked and upper < found.required * (1 - 1e-9)
 
 
-def _answer(found: BridgeResult, outcome: Outcome, language: Language) -> str:
+def _answer(found: BridgeResult, outcome: Outcome, w: Words) -> str:
     """Return whether it is carried, the worst position, and what is left without the pressure of the soil."""
-    units, worst, vehicle = found.model.report, found.worst, found.vehicle
-    required = number(found.required, 4)
+    worst, vehicle = found.worst, found.vehicle
+    required = w.n(found.required, 4)
     every = len(found.standings)
     if outcome is Outcome.FAILS:
         low = _refutes(found, worst.limit.upper, checked=worst.limit.checked)
         at = worst if low else found.refuted[0]
-        upper = number(worst.limit.upper, 5)
-        told = [say(language, "fails" if low else "fails_coulomb", required=required, upper=upper,
-                    x=units.text("length", at.position, 4), way=say(language, at.direction))]  # fmt: skip
+        upper = w.n(worst.limit.upper, 5)
+        told = [w.say("fails" if low else "fails_coulomb", required=required, upper=upper,
+                    x=w.unit("length", at.position, 4), way=w.say(at.direction))]  # fmt: skip
     elif outcome is Outcome.HOLDS:
-        told = [say(language, "holds", required=required, count=len(found.coulomb))]
+        told = [w.say("holds", required=required, count=len(found.coulomb))]
     elif found.coulomb:
-        told = [say(language, "open", required=required, count=len(found.open), all=len(found.coulomb))]
+        told = [w.say("open", required=required, count=len(found.open), all=len(found.coulomb))]
     else:
-        told = [say(language, "unasked", required=required, all=every)]
+        told = [w.say("unasked", required=required, all=every)]
     heaviest = vehicle.heaviest.load * vehicle.dynamic * vehicle.factor
     known = {
-        "x": units.text("length", worst.position, 4), "way": say(language, worst.direction),
-        "bound": number(worst.multiplier, 5), "bound_axle": units.text("force", worst.multiplier * heaviest, 4),
+        "x": w.unit("length", worst.position, 4), "way": w.say(worst.direction),
+        "bound": w.n(worst.multiplier, 5), "bound_axle": w.unit("force", worst.multiplier * heaviest, 4),
     }  # fmt: skip
     if math.isnan(found.design):
-        told.append(say(language, "worst_unknown", **known))
+        told.append(w.say("worst_unknown", **known))
     else:
-        design, axle = number(found.design, 5), units.text("force", found.axle, 4)
-        told.append(say(language, "worst", design=design, axle=axle, **known))
+        design, axle = w.n(found.design, 5), w.unit("force", found.axle, 4)
+        told.append(w.say("worst", design=design, axle=axle, **known))
     if found.without_soil is None:
-        told.append(say(language, "no_soil_none"))
+        told.append(w.say("no_soil_none"))
     elif any(t.kind == "soil" for t in found.model.ties):
         less = found.without_soil
-        told.append(say(language, "no_soil", multiplier=number(less.multiplier, 5),
-                        x=units.text("length", less.position, 4)))  # fmt: skip
+        told.append(w.say("no_soil", multiplier=w.n(less.multiplier, 5),
+                        x=w.unit("length", less.position, 4)))  # fmt: skip
     return " ".join(told)
 
 
-def _rests(found: BridgeResult, outcome: Outcome, language: Language) -> tuple[str, ...]:
+def _rests(found: BridgeResult, outcome: Outcome, w: Words) -> tuple[str, ...]:
     """Return in a sentence that the answer would be another one without the pressure of the soil."""
     if outcome is Outcome.FAILS:
         return ()
     if found.without_soil is None:
-        return (say(language, "rests_none"),)
+        return (w.say("rests_none"),)
     less = found.without_soil.multiplier
     if less >= found.required:
         return ()
-    return (say(language, "rests", multiplier=number(less, 5), required=number(found.required, 4)),)
+    return (w.say("rests", multiplier=w.n(less, 5), required=w.n(found.required, 4)),)
 
 
-def _proof(found: BridgeResult, language: Language) -> str:
+def _proof(found: BridgeResult, w: Words) -> str:
     limit = found.worst.limit
     violation = limit.mechanism.violation if limit.mechanism else math.nan
     certified = sum(c.status is Status.SOLVED for c in found.coulomb)
-    return say(language, "proof", residual=f"{limit.residual:.0e}", violation=f"{violation:.0e}",
+    return w.say("proof", residual=f"{limit.residual:.0e}", violation=f"{violation:.0e}",
                gap=f"{limit.gap:.0e}", count=certified)  # fmt: skip
 
 
-def _limits(found: BridgeResult, language: Language) -> tuple[str, ...]:
-    units = found.model.report
+def _limits(found: BridgeResult, w: Words) -> tuple[str, ...]:
     width, by = found.width
-    by = WIDTHS.get(by, by) if language == "it" else by
+    by = WIDTHS.get(by, by) if w.language == "it" else by
     x = sorted({round(s.position, 6) for s in found.standings if s.direction == found.worst.direction})
     apart = max(np.diff(x), default=0.0)
     told = [
-        say(language, "shares", soil=number(100 * max(found.owed_to_soil, 0.0), 3),
-            spread=number(100 * max(found.owed_to_spread, 0.0), 3)),
-        say(language, "width", width=units.text("length", width, 4), by=by),
-        say(language, "grid", step=units.text("length", float(apart), 3), fine=units.text("length", found.fine, 3)),
-        say(language, "brackets", count=len(found.brackets)),
+        w.say("shares", soil=w.n(100 * max(found.owed_to_soil, 0.0), 3),
+            spread=w.n(100 * max(found.owed_to_spread, 0.0), 3)),
+        w.say("width", width=w.unit("length", width, 4), by=by),
+        w.say("grid", step=w.unit("length", float(apart), 3), fine=w.unit("length", found.fine, 3)),
+        w.say("brackets", count=len(found.brackets)),
     ]  # fmt: skip
     worst = found.worst
     beside = found.vehicle.total - worst.on_masonry
     if beside > 1e-6 * found.vehicle.total:
-        told.append(say(language, "elsewhere", load=units.text("force", beside, 4)))
-    return (*told, say(language, "plane"), say(language, "several"), *joints_not_made(found.assembly.detection),
+        told.append(w.say("elsewhere", load=w.unit("force", beside, 4)))
+    return (*told, w.say("plane"), w.say("several"), *joints_not_made(found.assembly.detection),
             *crushing(found.assembly))  # fmt: skip
 
 
-def _unchecked(found: BridgeResult, language: Language) -> tuple[str, ...]:
-    told = [] if found.coulomb else [say(language, "unchecked_coulomb")]
+def _unchecked(found: BridgeResult, w: Words) -> tuple[str, ...]:
+    told = [] if found.coulomb else [w.say("unchecked_coulomb")]
     if not _crush(found):
-        told.append(say(language, "unchecked_crushing"))
-    told.append(say(language, "unchecked_long"))
+        told.append(w.say("unchecked_crushing"))
+    told.append(w.say("unchecked_long"))
     one_way = {s.direction for s in found.standings}
     there, back = (sorted(found.vehicle.footprints(0.0, way)) for way in ("right", "left"))
     if len(one_way) == 1 and not np.allclose(there, back):
-        told.append(say(language, "unchecked_both"))
+        told.append(w.say("unchecked_both"))
     if found.service.status is not Status.SOLVED and found.service.status not in PROVEN_FAILURES:
-        told.append(say(language, "unchecked_state", status=found.service.status.name.lower()))
+        told.append(w.say("unchecked_state", status=found.service.status.name.lower()))
     return tuple(told)

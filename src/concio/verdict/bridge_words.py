@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal
 
+from concio.display import Units, number
+
 Language = Literal["en", "it"]
 
 ENGLISH: Mapping[str, str] = {
@@ -114,6 +116,31 @@ WIDTHS = {
 """How widths are found, in Italian."""
 
 
-def say(language: Language, key: str, **values: object) -> str:
-    """Return a sentence of the verdict."""
-    return TEXTS[language][key].format(**values)
+class Words:
+    """Sentences and numbers of one language.
+
+    Parameters
+    ----------
+    language : {"en", "it"}
+    units : Units
+        In which quantities are told.
+    """
+
+    def __init__(self, language: Language, units: Units) -> None:
+        self.language, self.units = language, units
+
+    def say(self, key: str, **values: object) -> str:
+        """Return a sentence."""
+        return TEXTS[self.language][key].format(**values)
+
+    def local(self, text: str) -> str:
+        """Return a number in words as the language writes it."""
+        return text if self.language == "en" else text.replace(",", "\u2009").replace(".", ",")
+
+    def n(self, value: float, digits: int = 4) -> str:
+        """Return a number."""
+        return self.local(number(value, digits))
+
+    def unit(self, kind: str, value: float, digits: int = 4) -> str:
+        """Return a quantity with its unit."""
+        return self.local(self.units.text(kind, value, digits))

@@ -12,6 +12,7 @@ CASES: dict[str, str] = {
     "ferris_tin_loi": "Walls of Ferris and Tin-Loi",
     "semicircular_arch": "Least thickness of a semicircular arch",
     "flat_arch": "Flat arch with spreading abutments",
+    "arch_bridges": "Arch bridges with fill under an axle",
     "block_on_base": "Block that slides or topples",
     "stack_between_walls": "Wall friction in a stack between walls",
     "strip_on_base": "Elastic strip pulled along a base",

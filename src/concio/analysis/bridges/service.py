@@ -21,6 +21,10 @@ CLEAR = 1e-6
 """Openings and slips of rigid blocks below this are those of vanishing compliance, and are told as none [m]."""
 
 
+EDGE = 0.01
+"""A joint whose loaded part is shorter than this share of its length is pressed at its edge alone."""
+
+
 @short_repr
 @dataclass(frozen=True, eq=False)
 class ServiceState:
@@ -33,7 +37,8 @@ class ServiceState:
     open_joints, slipping, crushed : int
         Joints that are open over a part of their length, that slip, and pairs at their compressive strength.
     largest_pressure : float
-        Largest mean pressure on the loaded part of a joint, N / (2 (l/2 - |e|) b) [kN/m2].
+        Largest mean pressure on the loaded part of a joint, N / (2 (l/2 - |e|) b) [kN/m2]; ``inf`` where a joint is
+        pressed at its edge alone, which only joints with a strength can tell.
     deflection : float
         Largest downward displacement that the vehicle adds [m]; nan where blocks and joints are rigid.
     soil : float
@@ -74,8 +79,9 @@ def service_state(model: Model, settled: Mapping[str, float] | None = None) -> S
     e = np.where(loaded, np.abs(np.nan_to_num(joints.eccentricity)), 0.0)
     thickness = np.array([b.thickness for b in model.bodies])
     width = np.minimum(thickness[joints.body_a], thickness[joints.body_b])
-    strip = np.maximum(2 * (0.5 * joints.length - e), 1e-3 * joints.length) * width
-    pressure = np.where(loaded, joints.N / strip, 0.0)
+    strip = 2 * (0.5 * joints.length - e)
+    edge = strip < EDGE * joints.length
+    pressure = np.where(loaded, np.where(edge, np.inf, joints.N / np.where(edge, 1.0, strip * width)), 0.0)
     ties = found.ties
     soil = float(sum(ties.tension[k] for k, t in enumerate(model.ties) if t.kind == "soil"))
     states = found.contacts.states

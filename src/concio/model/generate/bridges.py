@@ -247,7 +247,7 @@ def _abutments(barrels: Sequence[Barrel], behind: Sequence[float], back: float) 
         line = barrel.extrados if side < 0 else barrel.extrados[::-1]
         upper = _up_to(line, max(back, float(joint[-1, 1])))
         far = upper[0, 0] + side * length
-        deep = joint[0, 1] - length
+        deep = joint[0, 1] - 0.4 * length
         outline = np.vstack([joint[:-1], upper, [[far, upper[-1, 1]], [far, deep], [joint[0, 0], deep]]])
         found.append(Piece(f"{word} abutment", outline, "abutment"))
     return found

@@ -1,0 +1,325 @@
+"""The report of a bridge: one HTML file that prints to a clean PDF, in English or Italian."""
+
+from __future__ import annotations
+
+import base64
+import io
+import math
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+import concio
+from concio.arguments import closest
+from concio.display import number
+from concio.errors import InputError
+from concio.model.crossing import STRETCH
+from concio.model.road.spread import spread_rule
+from concio.plot.bridge_figures import plot_changes, plot_curve, plot_standing
+from concio.plot.model_figure import plot_model
+from concio.problem.solution import Status
+from concio.report.html_parts import figure_html
+from concio.verdict.bridge_verdict import bridge_verdict
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from concio.analysis.bridges.bridge_result import BridgeResult
+    from concio.analysis.bridges.service import ServiceState
+    from concio.analysis.bridges.sweep import Standing
+
+MOST_FRAMES = 16
+"""Positions in the film."""
+SCRIPT = (
+    "document.querySelectorAll('.film').forEach(f=>{const s=f.querySelector('input'),i=f.querySelectorAll('img');"
+    "const d=()=>i.forEach((e,k)=>e.hidden=k!=s.value);s.addEventListener('input',d);d()})"
+)
+
+
+@cache
+def words_of(language: str) -> Mapping[str, str]:
+    """Return the words of a language.
+
+    Raises
+    ------
+    InputError
+        There is no such language.
+    """
+    table = tomllib.loads((files("concio.report") / "bridge_words.toml").read_text(encoding="utf-8"))
+    if language not in table:
+        msg = f"there is no report in the language '{language}'"
+        raise InputError(msg, hint=closest(language, tuple(table)))
+    found: Mapping[str, str] = table[language]
+    return found
+
+
+def write_bridge_report(found: BridgeResult, path: Path | str, *, language: Literal["en", "it"] = "en") -> Path:
+    """Write the report of a bridge and return its path.
+
+    Parameters
+    ----------
+    found : BridgeResult
+    path : Path or str
+    language : {"en", "it"}
+    """
+    path = Path(path)
+    path.write_text(BridgeReport(found, language).html(), encoding="utf-8")
+    return path
+
+
+class BridgeReport:
+    """Makes the report of a bridge.
+
+    Parameters
+    ----------
+    found : BridgeResult
+    language : {"en", "it"}
+    """
+
+    def __init__(self, found: BridgeResult, language: Literal["en", "it"]) -> None:
+        self.found, self.language = found, language
+        self.words, self.units = words_of(language), found.model.report
+        self.drawn = {key[2:]: text for key, text in self.words.items() if key.startswith("f_")}
+
+    def n(self, value: float, digits: int = 4) -> str:
+        """Return a number as the language writes it."""
+        if not math.isfinite(value):
+            return "\N{EN DASH}"
+        text = number(value, digits)
+        return text if self.language != "it" else text.replace(",", "\u2009").replace(".", ",")
+
+    def unit(self, kind: str, value: float) -> str:
+        """Return a quantity with its unit."""
+        if not math.isfinite(value):
+            return "\N{EN DASH}"
+        factor, symbol = self.units.factor(kind, value)
+        return f"{self.n(factor * value)} {symbol}".strip()
+
+    def say(self, key: str, **values: str) -> str:
+        """Return a text of the language."""
+        return self.words[key].format(**values)
+
+    def html(self) -> str:
+        """Return the page."""
+        style = "".join((files("concio.report") / name).read_text(encoding="utf-8")
+                        for name in ("report.css", "assessment.css"))  # fmt: skip
+        title = self.found.model.title or self.words["title"]
+        parts = [self.header(title), self.top(), self.summary(), self.model(), self.curve(), self.mechanism(),
+                 self.built(), self.sensitivity(), self.others(), self.service(), self.mexe(), self.film()]  # fmt: skip
+        return (
+            f'<!DOCTYPE html><html lang="{self.language}"><head><meta charset="utf-8">'
+            '<meta name="viewport" content="width=device-width, initial-scale=1">'
+            f'<title>{escape(title)} &middot; concio</title><link rel="icon" href="data:,">'
+            f"<style>{style}.film img{{width:100%}}.film input{{width:100%}}</style></head>"
+            f"<body class=assessment><main>{''.join(parts)}"
+            f"<footer>{escape(self.say('footer', version=concio.__version__))}</footer></main>"
+            f"<script>{SCRIPT}</script></body></html>\n"
+        )
+
+    def header(self, title: str) -> str:
+        """Return the head."""
+        kind = escape(self.words["title"])
+        return f'<header><p class="brand">concio</p><p class=kind>{kind}</p><h1>{escape(title)}</h1></header>'
+
+    def top(self) -> str:
+        """Return the verdict in the language of the report."""
+        told, w = bridge_verdict(self.found, self.language), self.words
+        facts: list[tuple[str, Sequence[str]]] = [
+            ("asked", (told.question.asked,)), ("acts", told.question.loads(self.units)), ("limits", told.limits),
+            ("not_checked", told.unchecked), ("attention", told.attention),
+        ]  # fmt: skip
+        rows = "".join(f"<tr><th>{escape(w[key])}</th><td>{'<br>'.join(escape(v) for v in lines)}</td></tr>"
+                       for key, lines in facts if lines)  # fmt: skip
+        return (
+            f'<section id=verdict><div class="verdict {told.tone}"><h2>{escape(told.headline)}</h2>'
+            f"<p>{escape(told.answer)}</p><p>{escape(told.meaning)}</p><p class=cert>{escape(told.proof)}</p></div>"
+            f"<table class=facts><tbody>{rows}</tbody></table></section>"
+        )
+
+    def summary(self) -> str:
+        """Return the numbers a client reads."""
+        f, worst = self.found, self.found.worst
+        width, by = f.width
+        by = self.words["width_full"] if by == "the whole width of the bodies" else by
+        rows = [
+            ("worst", f"{self.unit('length', worst.position)}, {self.words[worst.direction]}"),
+            ("design", self.n(f.design)), ("bound", self.n(worst.multiplier)), ("axle", self.unit("force", f.axle)),
+            ("permissible", self.unit("force", f.permissible_axle)),
+            ("no_soil", self.words["none"] if f.without_soil is None else self.n(f.without_soil.multiplier)),
+            ("soil_share", f"{self.n(100 * f.owed_to_soil, 3)} %"),
+            ("spread_share", f"{self.n(100 * f.owed_to_spread, 3)} %"),
+            ("width", f"{self.unit('length', width)} ({by})"),
+        ]  # fmt: skip
+        return self.section("summary", self.facts(rows))
+
+    def model(self) -> str:
+        """Return the bridge with its data and where they come from."""
+        model, vehicle, fill = self.found.model, self.found.vehicle, self.found.model.fill
+        assert fill is not None
+        axles = [
+            self.say("stretch" if a.length is not None and a.length >= STRETCH else "axle_at",
+                     load=self.unit("force", a.load), at=self.unit("length", a.at),
+                     length=self.unit("length", a.length or 0.0)) for a in vehicle.axles
+        ]  # fmt: skip
+        rule = spread_rule(fill.spread)
+        rows = [("vehicle", vehicle.name), ("axles", "; ".join(axles))]
+        rows += [(key, getattr(vehicle, key)) for key in ("source", "assumed") if getattr(vehicle, key)]
+        rows.append(("dynamic", f"{self.n(vehicle.dynamic)}, {self.n(vehicle.factor)}"))
+        if fill.cover is not None:
+            rows += [("cover", self.unit("length", fill.cover)), ("gradient", self.n(fill.gradient))]
+        else:
+            rows.append(("road", self.say("road_given", n=str(len(fill.road)))))
+        if fill.layers:
+            rows.append(("layers", "; ".join(
+                self.say("layer", name=x.name, depth=self.unit("length", x.depth),
+                         weight=f"{self.n(x.unit_weight)} kN/m3") for x in fill.layers)))  # fmt: skip
+        rows += [
+            ("fill_weight", f"{self.n(fill.unit_weight)} kN/m3"), ("passive", self.n(fill.passive_coefficient)),
+            ("pressure", self.words["pressure_" + fill.pressure.replace(" ", "_")]),
+            ("spread", f"{rule.name}: {rule.source}" if rule.source else rule.name),
+        ]  # fmt: skip
+        named = [(self.words[key], text) for key, text in rows]
+        for name, law in model.laws.items():
+            named.append((self.say("friction", name=name), self.n(law.friction)))
+            strength = law.compressive_strength
+            told = self.words["unlimited"] if strength is None else self.unit("stress", strength)
+            named.append((self.say("strength", name=name), told))
+        figure = self.figure(plot_model(model, names=False), "model", "model_figure")
+        return self.section("model", figure + self.table(("datum", "value"), named, texts=2))
+
+    def curve(self) -> str:
+        """Return the load factor over the position, and the worst positions."""
+        rows = [
+            (self.unit("length", b.standing.position), self.words[b.standing.direction], self.n(b.limit.design),
+             self.n(b.standing.multiplier), self.unit("force", b.standing.on_masonry)) for b in self.found.brackets
+        ]  # fmt: skip
+        table = self.table(("position", "direction", "carried", "not_exceeded", "on_masonry"), rows, texts=2)
+        return self.section("curve", self.figure(plot_curve(self.found, words=self.drawn), "curve", "curve_figure")
+                            + table)  # fmt: skip
+
+    def mechanism(self) -> str:
+        """Return the mechanism of the worst position."""
+        if self.found.worst.limit.mechanism is None:
+            return ""
+        axes = plot_standing(self.found, words=self.drawn)
+        return self.section("mechanism", self.figure(axes, "mechanism", "mechanism_figure"))
+
+    def built(self) -> str:
+        """Return what the bound is built up of."""
+        top = self.found.worst.multiplier
+        rows = [(self.words[name.replace(" ", "_")], self.n(v), f"{self.n(100 * v / top, 3)} %")
+                for name, v in self.found.parts.items()]  # fmt: skip
+        text = f"<p>{escape(self.words['built_text'])}</p>"
+        return self.section("built", text + self.table(("datum", "factor", "share"), rows))
+
+    def sensitivity(self) -> str:
+        """Return the sensitivities, as bars and as a table."""
+        if not self.found.changes:
+            return ""
+        rows = [
+            (f"{c.name}{'' if c.unit == '-' else f' [{c.unit}]'}", self.n(c.low), self.n(c.at_low), self.n(c.high),
+             self.n(c.at_high)) for c in self.found.changes
+        ]  # fmt: skip
+        bars = self.figure(plot_changes(self.found, words=self.drawn), "changes", "sensitivity_figure")
+        return self.section("sensitivity", bars + self.table(("datum", "less", "factor", "more", "factor"), rows))
+
+    def others(self) -> str:
+        """Return further vehicles, each with its worst position."""
+        rows = [(name, self.words["none"], "") if s is None else
+                (name, self.n(s.multiplier), self.unit("length", s.position))
+                for name, s in self.found.others.items()]  # fmt: skip
+        return self.section("others", self.table(("vehicle", "not_exceeded", "position"), rows)) if rows else ""
+
+    def service(self) -> str:
+        """Return the working states."""
+        states = [(self.words["as_built"], self.found.service)]
+        if self.found.settled is not None:
+            by = ", ".join(f"{n} {self.unit('motion', d)}" for n, d in self.found.settlements.items())
+            states.append((self.say("settled", by=by), self.found.settled))
+        columns = [self._state(state) for _, state in states]
+        head = [self.words["state"], *(title for title, _ in states)]
+        rows = [(self.words[key], *(c[key] for c in columns)) for key in columns[0]]
+        text = f"<p>{escape(self.words['service_text'])}</p>"
+        return self.section("service", text + self.titled(head, rows, texts=1))
+
+    def _state(self, state: ServiceState) -> dict[str, str]:
+        if state.status is not Status.SOLVED:
+            return dict.fromkeys(("open_joints", "slipping", "crushed", "largest_pressure", "deflection", "soil"),
+                                 state.status.name.lower())  # fmt: skip
+        rigid = math.isnan(state.deflection)
+        return {
+            "open_joints": str(state.open_joints), "slipping": str(state.slipping), "crushed": str(state.crushed),
+            "largest_pressure": self.words["edge"] if math.isinf(state.largest_pressure)
+            else self.unit("stress", state.largest_pressure),
+            "deflection": self.words["rigid"] if rigid else self.unit("motion", state.deflection),
+            "soil": self.unit("force", state.soil),
+        }  # fmt: skip
+
+    def mexe(self) -> str:
+        """Return the formula's answer with its limits."""
+        m = self.found.mexe
+        if m is None:
+            return ""
+        told = self.words["mexe_none"] if math.isnan(m.axle) else self.say(
+            "mexe_text", axle=self.unit("force", m.axle), provisional=self.unit("force", m.provisional),
+            profile=self.n(m.profile), factors=self.n(m.factors))  # fmt: skip
+        lines = "".join(f"<li>{escape(line)}</li>" for line in m.limits)
+        return self.section("mexe", f"<p>{escape(told)}</p><ul>{lines}</ul>")
+
+    def film(self) -> str:
+        """Return frames of the vehicle on its way, with a slider."""
+        way = self.found.worst.direction
+        least = self.found.worst.multiplier
+        own = [s for s in self.found.standings if s.direction == way and s.limit.mechanism is not None
+               and s.multiplier < 30 * least]  # fmt: skip
+        if len(own) < 2:
+            return ""
+        wanted = np.linspace(own[0].position, own[-1].position, MOST_FRAMES)
+        at = np.array([s.position for s in own])
+        picked = sorted({int(np.argmin(np.abs(at - x))) for x in wanted})
+        frames = "".join(f'<img alt="x = {own[k].position:.3g} m" src="{self._frame(own[k])}">' for k in picked)
+        text = escape(self.say("film_text", first=self.n(own[picked[0]].multiplier)))
+        slider = f'<input type="range" min="0" max="{len(picked) - 1}" value="0" aria-label="x">'
+        return self.section("film", f'<p>{text}</p><div class="film">{slider}{frames}</div>')
+
+    def _frame(self, standing: Standing) -> str:
+        axes = plot_standing(self.found, standing, words=self.drawn)
+        figure = axes.get_figure(root=True)
+        assert figure is not None
+        drawing = io.BytesIO()
+        figure.savefig(drawing, format="png", dpi=75)
+        return "data:image/png;base64," + base64.b64encode(drawing.getvalue()).decode("ascii")
+
+    def section(self, key: str, inside: str) -> str:
+        """Return a section with its heading."""
+        return f"<section id={key}><h2>{escape(self.words[key])}</h2>{inside}</section>"
+
+    def figure(self, axes: Axes, name: str, caption: str) -> str:
+        """Return a figure with its caption."""
+        text = escape(self.words[caption])
+        drawn = figure_html(axes, name, self.words[caption])
+        return drawn.replace("</figure>", f"<figcaption>{text}</figcaption></figure>")
+
+    def facts(self, rows: Iterable[tuple[str, str]]) -> str:
+        """Return a table of words and values."""
+        body = "".join(f"<tr><th>{escape(self.words[k])}</th><td>{escape(v)}</td></tr>" for k, v in rows)
+        return f"<table class=facts><tbody>{body}</tbody></table>"
+
+    def table(self, head: Sequence[str], rows: Iterable[Sequence[str]], *, texts: int = 1) -> str:
+        """Return a table whose headings are words of the language."""
+        return self.titled([self.words[h] for h in head], rows, texts=texts)
+
+    def titled(self, head: Sequence[str], rows: Iterable[Sequence[str]], *, texts: int = 1) -> str:
+        """Return a table; the first ``texts`` columns are words, the others numbers."""
+        top = "".join(f"<th{' class=n' * (i >= texts)}>{escape(h)}</th>" for i, h in enumerate(head))
+        body = "".join(
+            "<tr>" + "".join(f"<td{' class=n' * (i >= texts)}>{escape(v)}</td>" for i, v in enumerate(row)) + "</tr>"
+            for row in rows
+        )
+        return f"<table><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table>"

@@ -1,0 +1,75 @@
+"""The report of a bridge in both languages, its files, and figures."""
+
+from __future__ import annotations
+
+import csv
+import re
+import tomllib
+from html.parser import HTMLParser
+from importlib.resources import files
+from pathlib import Path
+
+import pytest
+from test_bridge_assessment import small, written
+
+import concio
+from commands import run
+from concio.report.bridge_page import BridgeReport
+
+
+@pytest.fixture(scope="module")
+def found() -> concio.BridgeResult:
+    """Return an assessment of a small bridge."""
+    return concio.assess_bridge(small(), step=0.5, fine=0.2, worst=1, checked=2, settled={"right abutment": 0.002})
+
+
+class Balanced(HTMLParser):
+    """Counts elements that were opened and not closed."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: object) -> None:
+        if tag not in ("meta", "link", "img", "input", "br"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+
+@pytest.mark.parametrize("language", ["en", "it"])
+def test_the_report_holds_the_verdict_and_every_section(language: str, found: concio.BridgeResult) -> None:
+    page = BridgeReport(found, language).html()  # type: ignore[arg-type]
+    parser = Balanced()
+    parser.feed(page)
+    assert not parser.open
+    for key in ("verdict", "summary", "model", "curve", "mechanism", "built", "sensitivity", "service", "film"):
+        assert f"<section id={key}>" in page
+    assert page.count("<img") >= 4 + 2
+    assert ("Not checked" in page) == (language == "en") or "not checked" in page
+    text = re.sub(r"data:[^\"]*", "", page)
+    assert ("owed to the pressure of the soil" in text) == (language == "en")
+    assert ("dovuto alla spinta del terreno" in text) == (language == "it")
+
+
+def test_both_languages_have_the_same_words() -> None:
+    table = tomllib.loads((files("concio.report") / "bridge_words.toml").read_text(encoding="utf-8"))
+    assert set(table["en"]) == set(table["it"])
+
+
+def test_a_support_that_settles_opens_joints(found: concio.BridgeResult) -> None:
+    assert found.settled is not None
+    assert found.settled.open_joints > found.service.open_joints
+
+
+def test_the_command_writes_report_curve_and_numbers(tmp_path: Path) -> None:
+    out = tmp_path / "result"
+    code, _, err = run("bridge", written(tmp_path), "--step", "0.8 m", "--fine", "0.4 m", "--checked", "2", "--worst",
+                       "1", "--no-sensitivity", "--out", out, "--language", "it")  # fmt: skip
+    assert code == 0, err
+    assert {"report.html", "summary.json", "curve.csv", "curve.png", "mechanism.png"} <= {p.name for p in out.iterdir()}
+    with (out / "curve.csv").open() as handle:
+        rows = list(csv.DictReader(handle))
+    assert len(rows) > 4
+    assert 'lang="it"' in (out / "report.html").read_text(encoding="utf-8")
