@@ -172,7 +172,7 @@ def test_stopping_keeps_what_was_computed():
     calls = []
     found = concio.push(standing(0.2, 1.0), progress=lambda p: calls.append(p) or len(calls) >= 4)
     assert found.ending is PushEnding.STOPPED
-    assert len(found) == 5
+    assert len(found) == 6  # the beginning, four points, and the peak between them
     assert found.multiplier[-1] > 0.19
 
 
@@ -211,13 +211,13 @@ def test_a_block_that_hangs_straight_on_a_stiff_tie_stretches_it():
 
 
 def test_steps_that_nothing_solves_end_a_push_in_words(monkeypatch):
-    """From the sixtieth problem on no answer moves anything: the curve until there is kept, and few more are tried."""
-    solve, asked = StepSolver.solve, []
+    """From some problem on no answer moves anything: the curve until there is kept, and few more are tried."""
+    first, solve, asked = 200, StepSolver.solve, []
 
     def fails(self, p, states, x, t):
         found = solve(self, p, states, x, t)
         asked.append(found)
-        return found if len(asked) < 60 else replace(found, x=np.zeros_like(found.x), residual=1e-6)
+        return found if len(asked) < first else replace(found, x=np.zeros_like(found.x), residual=1e-6)
 
     monkeypatch.setattr(StepSolver, "solve", fails)
     curve = concio.push(standing(0.2, 1.0))
@@ -226,7 +226,7 @@ def test_steps_that_nothing_solves_end_a_push_in_words(monkeypatch):
     assert len(curve) > 5
     theta = -curve.rotation_of("block")
     assert curve.multiplier[1:] == pytest.approx(np.tan(SLENDER - theta[1:]), abs=1e-8)
-    assert 60 < len(asked) < 200
+    assert first < len(asked) < first + 140
 
 
 @pytest.mark.parametrize(("cap", "most"), [(50.0, 0.1195), (200.0, 0.180)])

@@ -34,6 +34,11 @@ Array = np.ndarray
 BENT = 4.0
 """Error of a slip over rotation times displacement since the last equilibrium: what is known to second order."""
 
+PATH = 1e-2
+"""Error of a slip over what the centroids of the two bodies moved since then.
+
+Iterations sum it along the tangents that they pass: of bodies that turn together it is known to the third order."""
+
 ROUNDING = 1e-8
 """Error of a slip over the width of a body that is rounding of the iterations."""
 
@@ -135,10 +140,12 @@ class Certificate:
         if not carries.any():
             return 0.0
         disp = self._moved(slots, rows, before, state)
+        went = np.hypot(*(state.centre - before.centre).T)
+        far = np.maximum(went[slots.body_a], went[slots.body_b])
         along = (disp * left(rows.normal)).sum(axis=1)
         turn = np.abs(state.rotation - before.rotation)
         most = np.maximum(turn[slots.body_a], turn[slots.body_b])
-        bound = BENT * most * np.hypot(*disp.T) + ROUNDING * self.maker.width
+        bound = BENT * most * np.hypot(*disp.T) + PATH * far + ROUNDING * self.maker.width
         elastic = self.reference.disc.shape_of >= 0
         bends = elastic[slots.body_a] | elastic[slots.body_b]
         bound += np.where(bends, most**2 * self.maker.width, 0.0)  # nodes follow a rotation along its tangent

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Literal
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
 
 import numpy as np
 
 from concio.analysis.engine import by_its_engine
 from concio.analysis.motion.interruption import Interruption
 from concio.analysis.motion.joint_events import JointEvent, joint_events, tie_events
+from concio.analysis.motion.located import highest, meetings, ties_give_way, touching
 from concio.analysis.motion.moved_supports import begun
 from concio.analysis.motion.observer import Observer
 from concio.analysis.motion.push_asked import (
@@ -74,7 +75,10 @@ MOST_POINTS = 5000
 """Points of a curve at most."""
 
 LOCATED = 1e-9
-"""Steps over that asked for to which the yielding and breaking of ties is located."""
+"""Steps over that asked for to which the yielding and breaking of ties is located, and where bodies meet and part."""
+
+PEAK = 2e-7
+"""Share of the peak to which it is looked for between two points of the curve."""
 
 ENDS = 1e-9
 """Error of the last multiplier over the peak."""
@@ -214,6 +218,8 @@ class _Push:
     reactions: list[Array] = field(default_factory=list)
     events: list[JointEvent] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    met: set[frozenset[int]] = field(default_factory=set)
+    gave: bool = False
     interruption: Interruption = field(default_factory=Interruption)
 
     def __post_init__(self) -> None:
@@ -261,12 +267,15 @@ class _Push:
             failed = 0 if wanted >= self.step else failed
             if found.multiplier > LOCKED:
                 return PushEnding.LOCKED
-            gave = self._gives_way(here, found)
-            if gave:
-                found, wanted = self._where_ties_give_way(here, load, found, wanted)
+            gave = ties_give_way(here, found.state)
             if found.multiplier <= self.smallest < load and not gave:
                 return self._last(here, d, load, found, wanted)
+            pairs = self._meeting(here, found.state)
+            if gave or pairs:
+                found, wanted = self._where_it_changes(here, load, found, wanted, pairs)
+                gave = ties_give_way(here, found.state)
             self.keep(found, d + wanted)
+            self._sharpen(located=gave)
             if self.told(min(d / self.until, 1 - max(found.multiplier, 0.0) / max(self.multiplier[1:]))):
                 return PushEnding.STOPPED
             creeping = creeping + 1 if wanted < CREEPING * min(self.step, self.until - d) else 0
@@ -281,23 +290,69 @@ class _Push:
         ties, strain = self.statics.maker.ties, np.append(as_complex(state.strain), 0.0)
         return as_vectors(ties.a.positions(as_complex(state.centre), np.exp(1j * state.rotation), strain))
 
-    def _gives_way(self, before: MotionState, found: Balanced) -> bool:
-        """Return whether a tie begins to yield or breaks between two equilibria."""
-        old, new = before.ties, found.state.ties
-        return bool(((new.plastic > 0) & ~(old.plastic > 0)).any() or (new.broken & ~old.broken).any())
+    def _meeting(self, before: MotionState, after: MotionState) -> set[frozenset[int]]:
+        """Return the pairs of bodies that begin or cease to touch between two equilibria; each is located once."""
+        pairs = meetings(self.reference, before, after) - self.met
+        self.met |= pairs
+        return pairs
 
-    def _where_ties_give_way(
-        self, here: MotionState, load: float, found: Balanced, wanted: float
+    def _changes(self, before: MotionState, after: MotionState, pairs: set[frozenset[int]]) -> bool:
+        """Return whether a tie gives way between two equilibria, or one of some pairs begins or ceases to touch."""
+        old, new = touching(self.reference, before), touching(self.reference, after)
+        return ties_give_way(before, after) or any((pair in old) != (pair in new) for pair in pairs)
+
+    def _sharpen(self, *, located: bool) -> None:
+        """Look for the peak between the points beside the largest, once the curve falls behind it; keep it.
+
+        Parameters
+        ----------
+        located : bool
+            Whether the last point is one at which a tie gave way: what falls behind it is no top.
+        """
+        top = len(self.multiplier) - 2
+        gave, self.gave = self.gave, located
+        if top < 1 or gave or self.multiplier[top] <= max(*self.multiplier[:top], self.multiplier[-1], 0.0):
+            return
+        start, d, load = self.states[top - 1], self.displacement[top - 1], self.multiplier[top - 1]
+
+        def at(share: float) -> float:
+            trial = self.statics.balance(start, load, target=share)
+            fine = trial.found and not ties_give_way(start, trial.state)
+            return trial.multiplier if fine else -np.inf
+
+        known = [(x - d, f) for x, f in zip(self.displacement[top - 1 :], self.multiplier[top - 1 :], strict=True)]
+        best = highest(at, known, PEAK)
+        if best is None:
+            return
+        found = self.statics.balance(start, load, target=best)
+        if found.found and found.multiplier > self.multiplier[top]:
+            self._insert(found, d + best, top if d + best < self.displacement[top] else top + 1)
+
+    def _insert(self, found: Balanced, displacement: float, at: int) -> None:
+        """Put a point between others."""
+        rows = self.observer.rows(found.state)
+        reaction = self.observer.reactions(found.force, found.pairs, rows.normal)
+        kept: tuple[tuple[list[Any], Any], ...] = (
+            (self.displacement, displacement), (self.multiplier, found.multiplier), (self.residual, found.residual),
+            (self.states, found.state), (self.reactions, reaction),
+        )  # fmt: skip
+        for values, value in kept:
+            values.insert(at, value)
+        self.events = [replace(e, step=e.step + 1) if e.step >= at else e for e in self.events]
+
+    def _where_it_changes(
+        self, here: MotionState, load: float, found: Balanced, wanted: float, pairs: set[frozenset[int]]
     ) -> tuple[Balanced, float]:
-        """Return the first equilibrium at which a tie yields or breaks, and how far away it is [m].
+        """Return the first equilibrium at which a tie yields or breaks or bodies meet or part, and its distance [m].
 
-        A tie that breaks within a step would pull to its end, further than it can be stretched.
+        A tie that breaks within a step would pull to its end, further than it can be stretched; what meets within a
+        step would carry from its beginning.
         """
         low = 0.0
         while wanted - low > LOCATED * self.step:
             middle = 0.5 * (low + wanted)
             trial = self.statics.balance(here, load, target=middle)
-            if trial.found and self._gives_way(here, trial):
+            if trial.found and self._changes(here, trial.state, pairs):
                 found, wanted = trial, middle
             elif trial.found:
                 low = middle
@@ -325,14 +380,17 @@ class _Push:
                 high, below = middle, trial.multiplier
             best, at = trial, middle
         self.keep(best, d + at)
+        self._sharpen(located=False)
         return PushEnding.LOST
 
-    def _load_where_ties_give_way(self, here: MotionState, load: float, found: Balanced) -> Balanced:
-        """Return the first equilibrium under a growing load at which a tie yields or breaks."""
+    def _load_where_it_changes(
+        self, here: MotionState, load: float, found: Balanced, pairs: set[frozenset[int]]
+    ) -> Balanced:
+        """Return the first equilibrium under a growing load at which a tie gives way or bodies meet or part."""
         low = load
         while found.multiplier - low > LOCATED * self.step:
             trial = self.statics.balance(here, 0.5 * (low + found.multiplier))
-            if trial.found and self._gives_way(here, trial):
+            if trial.found and self._changes(here, trial.state, pairs):
                 found = trial
             elif trial.found:
                 low = trial.multiplier
@@ -355,8 +413,9 @@ class _Push:
                     return PushEnding.NO_LARGER_LOAD
                 continue
             assert followed is None
-            if self._gives_way(here, found):
-                found = self._load_where_ties_give_way(here, load, found)
+            pairs = self._meeting(here, found.state)
+            if pairs or ties_give_way(here, found.state):
+                found = self._load_where_it_changes(here, load, found, pairs)
             moved += self.statics.work_displacement(here, found)
             self.keep(found, moved)
             if found.multiplier > LOCKED:
