@@ -160,7 +160,7 @@ def main() -> None:
     print(f"{'all':18s}" + "".join(f"{total[n]:18d}" for n in names))
     print(f"\n{decided} of {count} decided ({100 * decided / count:.2f} %), {wrong} wrong, {seconds:.0f} s in all")
     print(f"\n{'strategy':30s}{'tried':>8s}{'decided':>9s}{'CPU s':>9s}   verdicts")
-    for name in dict.fromkeys((*(s.name for s in STRATEGIES), *decided_by)):
+    for name in dict.fromkeys((*(s.name for s in STRATEGIES if 2 in s.dimensions), *decided_by)):
         verdicts = decided_by.get(name, Counter())
         words = ", ".join(f"{n} {v.lower()}" for v, n in verdicts.most_common())
         print(f"{name:30s}{tried[name]:8d}{sum(verdicts.values()):9d}{spent_by[name]:9.1f}   {words}")

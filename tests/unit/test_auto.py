@@ -40,7 +40,7 @@ def test_each_strategy_decides_its_case(name):
     answer = find("auto")(problem())
     assert answer.status is verdict
     assert answer.info["strategy"] == name
-    order = [strategy.name for strategy in chain.STRATEGIES]
+    order = [strategy.name for strategy in chain.STRATEGIES if 2 in strategy.dimensions]
     assert [tried for tried, _ in answer.info["cost"]] == order[: order.index(name) + 1]
     assert all(seconds >= 0 for _, seconds in answer.info["cost"])
 

@@ -14,7 +14,7 @@ import concio
 from concio import Body, Elastic, JointLaw, Load, Model
 from concio.kinematics.rigid import rotation_matrix
 from concio.problem.contact_problem import ContactProblem
-from concio.solvers.auto import space
+from concio.solvers.auto import chain
 from samples import sample
 
 Array = np.ndarray
@@ -64,7 +64,7 @@ def stiff(problem: ContactProblem, stiffness: float) -> Array:
 @pytest.mark.parametrize("strength", [1e6, 1e8])
 def test_elastic_blocks_in_joints_far_stronger_than_their_loads_are_decided(strength: float) -> None:
     problem = concio.assemble(dome(strength)).problem()
-    found = space.solve(problem)
+    found = chain.solve(problem)
     assert found.info["strategy"] == "all pairs stick"
     assert found.certificate.worst < 1e-12
     assert distance(found.displacement, tied(problem)) < 1e-9
@@ -73,7 +73,7 @@ def test_elastic_blocks_in_joints_far_stronger_than_their_loads_are_decided(stre
 def test_stiff_joints_tend_to_hard_ones_late_where_couplings_nearly_say_the_same_twice() -> None:
     """At the crown three bodies meet whose meshes do not match: rows of C are nearly dependent, and bind late."""
     problem = concio.assemble(dome(1e6)).problem()
-    hard = space.solve(problem).displacement
+    hard = chain.solve(problem).displacement
     sizes = np.linalg.svd(problem.C.toarray(), compute_uv=False)
     assert ((sizes > 1e-10) & (sizes < 2e-3)).sum() == 18
     without = tied(problem, least=2e-3)
@@ -111,7 +111,7 @@ def wall(law: JointLaw, rng: np.random.Generator) -> Model:
 def test_random_bonded_walls_are_the_limit_of_stiff_joints(seed: int) -> None:
     rng = np.random.default_rng(seed)
     problem = pushed(concio.assemble(wall(bonded(1e5), rng)).problem(), rng.uniform(-0.5, 0.5, 2))
-    found = space.solve(problem)
+    found = chain.solve(problem)
     assert found.info["strategy"] == "all pairs stick"
     assert distance(found.displacement, tied(problem)) < 1e-9
     near, nearer = (distance(stiff(problem, k), found.displacement) for k in (1e13, 1e14))  # weak rows bind, too
@@ -124,9 +124,9 @@ def test_cracked_or_not_the_answer_is_that_of_the_interior_point(seed: int, monk
     rng = np.random.default_rng([7, seed])
     law = bonded(10.0 ** rng.uniform(0.3, 2.0), rng.uniform(0.5, 1.0))
     problem = pushed(concio.assemble(wall(law, rng)).problem(), rng.uniform(-0.5, 0.5, 2))
-    found = space.solve(problem)
-    monkeypatch.setattr(space, "STRATEGIES", space.STRATEGIES[1:])
-    other = space.solve(problem)
+    found = chain.solve(problem)
+    monkeypatch.setattr(chain, "STRATEGIES", chain.STRATEGIES[1:])
+    other = chain.solve(problem)
     assert other.info["strategy"] != "all pairs stick"
     assert found.status is other.status
     if found.solved:
@@ -187,6 +187,6 @@ def test_a_bonded_dome_may_be_turned() -> None:
     there, here = (concio.assemble(m).problem() for m in (dome(1e6), turned))
     axis = np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0)
     Q = rotation_matrix(np.radians(37.0) * axis)
-    still = space.solve(there)
-    moved = space.solve(here.with_loads((there.f.reshape(-1, 3) @ Q.T).ravel()))
+    still = chain.solve(there)
+    moved = chain.solve(here.with_loads((there.f.reshape(-1, 3) @ Q.T).ravel()))
     assert distance(moved.displacement.reshape(-1, 3), still.displacement.reshape(-1, 3) @ Q.T) < 1e-8

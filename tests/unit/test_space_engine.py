@@ -12,7 +12,7 @@ import concio
 from concio.kinematics.rigid import rotation_matrix
 from concio.problem.solution import Departure, Status
 from concio.solvers.algebra.scaled import scale
-from concio.solvers.auto.space import best_point_met
+from concio.solvers.auto.strategies import best_point_met
 from concio.solvers.interior.iteration import InteriorPoint
 from concio.solvers.interior.newton import NewtonStep, Products
 from concio.solvers.interior.newton_finish import states_of

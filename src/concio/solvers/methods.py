@@ -142,7 +142,7 @@ def _method(name: str, plane: str, space: str | None = "", *, without: Iterable[
 METHODS: dict[str, Method] = {
     method.name: method
     for method in (
-        _method("auto", "auto.chain", "auto.space"),
+        _method("auto", "auto.chain"),
         _method("interior-point", "interior.engine", "interior.space"),
         _method("lemke", "forms.lemke", None, without=["cap"]),
         _method("sparse-lemke", "pivoting.sparse_lemke", None),

@@ -7,35 +7,47 @@ the solution's trace.
 
 Every strategy of the table has a case that only it decides, solved through ``auto`` in the tests; what has none is not
 in it (decision 0095). Pivoting from nothing and the exhaustive search, which proves that no Coulomb state exists, are
-methods of their own.
+methods of their own; they know two ways of slipping only, and so does what carries the state of a neighbour in friction
+over.
 """
 
 from __future__ import annotations
 
-from functools import partial
-
 from concio.problem.contact_problem import Array, ContactProblem
-from concio.problem.solution import ProgressCallback, Solution
+from concio.problem.solution import ProgressCallback, Solution, Status
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.auto.strategies import (
     Strategy,
+    best_point_met,
     first_answer,
-    let_go_at_rest,
+    moving_freely,
     neighbours,
+    other_starts,
     released,
+    released_at_rest,
+    released_in_single_steps,
+    released_jammed,
     statics,
+    sticking,
     usual_starts,
-    where_it_ends,
 )
-from concio.solvers.interior.run import Run, at_rest
+from concio.solvers.interior.run import Cancelled, Run, at_rest
 from concio.solvers.pivoting import sparse_lemke
 
+PLANE, SPACE = (2,), (3,)
+
 STRATEGIES: tuple[Strategy, ...] = (
+    Strategy("all pairs stick", sticking, SPACE),
     Strategy("interior-point", usual_starts),
     Strategy("statics", statics),
-    Strategy("neighbours in friction", neighbours),
-    Strategy("release", let_go_at_rest),
+    Strategy("neighbours in friction", neighbours, PLANE),
+    Strategy("interior-point, other starts", other_starts, SPACE),
+    Strategy("best point met", best_point_met, SPACE),
+    Strategy("free motion", moving_freely, SPACE),
+    Strategy("release, single steps", released_in_single_steps, SPACE),
+    Strategy("release", released_at_rest),
+    Strategy("release, jammed", released_jammed, SPACE),
 )
 """What is tried, in this order; ``info["strategy"]`` is the name of the one that decided."""
 
@@ -61,7 +73,7 @@ def solve(
         ``info["strategy"]`` names the strategy that decided, ``info["cost"]`` those tried, each with its processor
         time [s].
     """
-    if not problem.pairs:
+    if not problem.pairs and problem.dim == 2:
         return sparse_lemke.solve(problem, progress=progress)  # linear, or a mechanism
     rest = at_rest(problem)
     if rest is not None:
@@ -80,4 +92,8 @@ def let_go(problem: ContactProblem, u: Array, progress: ProgressCallback | None 
     progress : callable, optional
     """
     run = Run(scale(problem), progress)
-    return where_it_ends(run, partial(released, run), u)
+    try:
+        answer = released(run, u / run.scaled.length)
+    except Cancelled:
+        return run.solution(None, Status.CANCELLED)
+    return answer or run.solution(None, Status.UNDECIDED, method="release")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -14,7 +13,10 @@ from concio.problem.solution import Departure, Mechanism, Solution, Status, fail
 from concio.solvers.auto.friction_neighbours import from_neighbours
 from concio.solvers.interior.bonded import applies, from_sticking
 from concio.solvers.interior.run import Cancelled, Run, starts_for
+from concio.solvers.relaxation.free_motion import free_motion
+from concio.solvers.relaxation.single_steps import at_once
 from concio.solvers.relaxation.slow_motion import relax
+from concio.solvers.states.reading import Finished
 from concio.solvers.statics.existence import statically_admissible
 
 
@@ -27,12 +29,14 @@ class Strategy:
     name : str
         What ``info["strategy"]`` says of an answer of its.
     decide : callable
-        Takes the :class:`.Run`, returns an answer or None; raises
-        :class:`.Cancelled` where the callback asks to stop.
+        Takes the :class:`.Run`, returns an answer or None; raises :class:`.Cancelled` where the callback asks to stop.
+    dimensions : tuple of int
+        Where it is tried.
     """
 
     name: str
-    decide: Callable[[Any], Solution | None]
+    decide: Callable[[Run], Solution | None]
+    dimensions: tuple[int, ...] = (2, 3)
 
 
 def first_answer(run: Run, table: Sequence[Strategy]) -> Solution:
@@ -42,7 +46,7 @@ def first_answer(run: Run, table: Sequence[Strategy]) -> Solution:
     """
     cost: list[tuple[str, float]] = []
     try:
-        for strategy in table:
+        for strategy in (row for row in table if run.scaled.dim in row.dimensions):
             begin = time.process_time()
             answer = strategy.decide(run)
             cost.append((strategy.name, time.process_time() - begin))
@@ -53,15 +57,6 @@ def first_answer(run: Run, table: Sequence[Strategy]) -> Solution:
     undecided = run.solution(None, Status.UNDECIDED, method="auto")
     name = "best point met" if undecided.solved else "none"  # certified, though no strategy took it for an answer
     return replace(undecided, info={**undecided.info, "strategy": name, "cost": tuple(cost)})
-
-
-def where_it_ends(run: Run, follow: Callable[[Array], Solution | None], u: Array) -> Solution:
-    """Return how slow motion from displacements u (N,) [m] ends: at rest, without end (COLLAPSES), or UNDECIDED."""
-    try:
-        answer = follow(u / run.scaled.length)
-    except Cancelled:
-        return run.solution(None, Status.CANCELLED)
-    return answer or run.solution(None, Status.UNDECIDED, method="release")
 
 
 def sticking(run: Run) -> Solution | None:
@@ -79,12 +74,19 @@ def sticking(run: Run) -> Solution | None:
 
 
 def usual_starts(run: Run) -> Solution | None:
-    """Interior point from the usual start and from one ten times further out."""
-    for start in starts_for(run.scaled)[:2]:
-        found = run.from_start(start)
-        if found is not None:
-            return run.solution(found)
-    return None
+    """Interior point from the first two starts."""
+    return _from(run, 0, 2)
+
+
+def other_starts(run: Run) -> Solution | None:
+    """Interior point from the starts that are left."""
+    return _from(run, 2, None)
+
+
+def best_point_met(run: Run) -> Solution | None:
+    """Take the best point the starts met where it is certified: no motion is followed for digits nobody asks for."""
+    met = None if run.best is None else run.solution(run.best, method="interior-point")
+    return met if met is not None and met.solved else None
 
 
 def neighbours(run: Run) -> Solution | None:
@@ -113,14 +115,40 @@ def statics(run: Run) -> Solution | None:
     return merged(run, failed(problem, Status.NO_EQUILIBRIUM, method="", mechanism=mechanism), "mechanism")
 
 
-def let_go_at_rest(run: Run) -> Solution | None:
+def moving_freely(run: Run) -> Solution | None:
+    """Look whether the structure moves away as if nothing touched it."""
+    return _ended(run, free_motion(run.scaled.problem))
+
+
+def released_in_single_steps(run: Run) -> Solution | None:
+    """Let the structure go, and look at what single long steps from rest show."""
+    return _ended(run, at_once(run))
+
+
+def released_at_rest(run: Run) -> Solution | None:
     """Let the structure go, undeformed: it comes to rest, or a motion without end is the answer."""
     return released(run, None)
 
 
+def released_jammed(run: Run) -> Solution | None:
+    """Let the structure go from the state in which associated flow holds it."""
+    return released(run, run.associated_state())
+
+
 def released(run: Run, u: Array | None) -> Solution | None:
     """Follow the slow motion from displacements (N,), scaled; return where it ends, None where no end is found."""
-    ended = relax(run, u)
+    return _ended(run, relax(run, u))
+
+
+def _from(run: Run, first: int, last: int | None) -> Solution | None:
+    for start in starts_for(run.scaled)[first:last]:
+        found = run.from_start(start)
+        if found is not None:
+            return run.solution(found)
+    return None
+
+
+def _ended(run: Run, ended: Finished | Departure | None) -> Solution | None:
     if isinstance(ended, Departure):
         return moves_away(run, ended)
     return None if ended is None else run.solution(ended)

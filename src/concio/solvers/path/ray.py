@@ -16,9 +16,7 @@ import numpy as np
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution, Status
 from concio.solvers.auto import chain as auto
-from concio.solvers.auto import space
-from concio.solvers.interior import engine
-from concio.solvers.interior import space as round_cones
+from concio.solvers.interior import engine, space
 from concio.solvers.path.state import LinearPath, PathState, state_of
 
 SMALL = 1000
@@ -58,12 +56,10 @@ def solve_from_rest(problem: ContactProblem, progress: ProgressCallback | None) 
     if problem.dim == 2:
         solution = engine.solve(problem, homotopy=False, progress=progress)
     else:
-        solution = round_cones.solve(problem, progress=progress)
+        solution = space.solve(problem, progress=progress)
     if solution.solved or problem.pairs > SMALL or solution.status is Status.CANCELLED:
         return solution
-    if problem.dim == 2:
-        return auto.solve(problem, progress=progress)
-    return space.solve(problem, progress=progress)
+    return auto.solve(problem, progress=progress)
 
 
 def restarted(state: PathState) -> PathState:
