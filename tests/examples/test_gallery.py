@@ -126,6 +126,13 @@ def check_facade_strip(found):
     assert found["alpha"] == pytest.approx(stable / push, abs=1e-9)
 
 
+def check_vehicle_on_a_bridge(found):
+    assert 0.15 < found["position"] < 0.25  # not the quarter point
+    assert found["design"] <= found["bound"] * (1 + 1e-9)
+    assert found["alone"] < 50 < 150 < found["bound"] < 161.8  # less than at the quarter point
+    assert 0.1 < found["soil"] < 0.4
+
+
 def check_facade_with_return(found):
     assert 0.125 < found["alpha"] < found["bound"]  # alone it would topple at thickness over height
     assert found["first"] == pytest.approx(found["alpha"])
@@ -149,6 +156,7 @@ LONG = {
     "04_settlement",  # quick: test_settle, test_path
     "15_panel_and_its_continuum",  # test_continuum
     "16_smaller_and_smaller_blocks",  # test_continuum, halving to the continuum's limit
+    "18_vehicle_on_a_bridge",  # test_bridge_assessment
     "17_facade_strip",  # test_assess, the same wall with ties
     "20_scatter_of_a_wall",  # test_study, and 21 here
     "24_overturning_spectrum",  # test_dynamics, test_rocking_block

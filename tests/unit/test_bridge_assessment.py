@@ -217,3 +217,15 @@ def test_the_same_fill_acts_in_one_step_in_a_path_and_in_a_push() -> None:
     stages = [concio.Stage("fill", {"dead": 1.0, "fill": 1.0}), concio.Stage("axle", {"live": 1.0})]
     assert concio.run_path(model, stages).verdict.holds
     assert not concio.run_path(alone, stages).verdict.holds
+
+
+def test_a_study_varies_ring_and_fill_with_the_bridge_as_its_model(tmp_path: Path) -> None:
+    variables = [
+        concio.variable("ring", "uniform", keys="bridge.ring", low=0.20, high=0.23),
+        concio.variable("k", "uniform", keys="fill.passive", low=0.0, high=1.5),
+    ]
+    found = concio.study(written(tmp_path), variables, ["bridge_load_factor", "bridge_axle"], "one-at-a-time")
+    factors = found.values("bridge_load_factor")
+    assert np.isfinite(factors).all()
+    assert np.ptp(factors) > 0
+    assert found.values("bridge_axle") == pytest.approx(100.0 * factors)

@@ -108,7 +108,7 @@ def test_lines_of_a_survey_make_a_ring() -> None:
     x = np.linspace(0.0, 3.0, 13)
     inner = [[float(a), float(0.75 - 0.75 * ((a - 1.5) / 1.5) ** 2)] for a in x]
     outer = [[float(1.5 + 1.1 * (a - 1.5)), b + 0.25] for a, b in inner]
-    model = made(intrados=inner, extrados=outer, voussoirs=12)
+    model = concio.bridge(intrados=inner, extrados=outer, voussoirs=12, block="rigid")
     assert len(model.free_bodies) == 12
     assert not concio.assemble(model).detection.near_misses
 
@@ -124,7 +124,9 @@ def test_lines_of_a_survey_make_a_ring() -> None:
         ({"rise": None}, "rise is missing"),
         ({"backing": 2.5}, "above the crown"),
         ({"ring": -0.2}, "must be positive"),
-        ({"intrados": [[0, 0], [1, 1], [2, 0]]}, "belong together"),
+        ({"intrados": [[0, 0], [1, 1], [2, 0]], "span": None, "rise": None, "ring": None}, "belong together"),
+        ({"intrados": [[0, 0], [1, 1], [2, 0]]}, "both given"),
+        ({"span": None}, "span.*is missing"),
         ({"shape": "pointed", "rise": 2.0}, "rises more than"),
         ({"shape": "three-centred", "rise": 3.5}, "rises between"),
         ({"width": 2.0, "thickness": 2.0}, "they are one"),

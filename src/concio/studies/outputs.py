@@ -18,6 +18,7 @@ from concio.problem.solution import PROVEN_FAILURES, Progress, Status
 from concio.solvers.algebra.sparse_factor import factorised_by
 
 if TYPE_CHECKING:
+    from concio.analysis.bridges.sweep import Standing
     from concio.analysis.limit import LimitResult
     from concio.analysis.margins import Margin
     from concio.analysis.result import Result
@@ -121,6 +122,20 @@ class Analyses:
 
         with factorised_by(self.model.engine):
             return smallest_friction(self.assembly.problem(dict(self.settings.factors))).factor
+
+    @cached_property
+    def bridge(self) -> Standing | None:
+        """The worst position of the vehicle of a bridge with its bound; None where nothing bounds its load."""
+        from concio.analysis.bridges.sweep import Sweep, least, search
+        from concio.solvers.statics.existence import find_mechanism
+
+        sweep = Sweep(self.model)
+        with factorised_by(self.model.engine):
+            if find_mechanism(sweep.dead) is not None:
+                msg = "the bridge does not stand without the vehicle"
+                raise NoEquilibriumError(msg)
+            found = least(search(sweep, worst=1, progress=self.progress), 1, 0.0)
+        return found[0] if found else None
 
     @property
     def acting(self) -> dict[str, dict[str, Any]]:
@@ -255,6 +270,20 @@ def _friction(a: Analyses) -> float:
     return a.friction_factor
 
 
+def _bridge_bound(a: Analyses) -> float:
+    return NAN if a.bridge is None else a.bridge.multiplier
+
+
+def _bridge_axle(a: Analyses) -> float:
+    vehicle = a.model.vehicle
+    assert vehicle is not None
+    return _bridge_bound(a) * vehicle.heaviest.load * vehicle.dynamic * vehicle.factor
+
+
+def _bridge_place(a: Analyses) -> float:
+    return NAN if a.bridge is None else a.bridge.position
+
+
 KNOWN: dict[str, Output] = {
     o.name: o
     for o in (
@@ -271,6 +300,10 @@ KNOWN: dict[str, Output] = {
                "low", multiplies=True),
         Output("friction_factor", "-", "lower bound of the common factor of friction with which the structure stands: "
                "with less no forces balance the loads", _friction, "high"),
+        Output("bridge_load_factor", "-", "upper bound of the load factor of a vehicle at its worst position on a "
+               "bridge", _bridge_bound, "low"),
+        Output("bridge_axle", "kN", "heaviest axle at that bound", _bridge_axle, "low"),
+        Output("bridge_worst_position", "m", "worst position of the vehicle", _bridge_place),
     )
 }  # fmt: skip
 """Outputs by name; beside them ``reaction.NAME.x`` and ``reaction.NAME.y`` of a fixed body or a support [kN]."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from concio.contact.assembly import Assembly, assemble
 from concio.contact.loads import place_forces
-from concio.errors import InputError
+from concio.errors import InputError, SolverError
 from concio.model.crossing import STRETCH
 from concio.model.model import Model
 from concio.model.road.earth import ground_of, spread_under, without_vehicle
@@ -184,8 +184,9 @@ def search(
     """
     places = grid(sweep, step)
     for k, (x, way) in enumerate(places):
-        if progress is not None:
-            progress(Progress("positions", k, float("nan"), f"{way}, x = {x:.3g} m"))
+        if progress is not None and progress(Progress("positions", k, float("nan"), f"{way}, x = {x:.3g} m")):
+            msg = "stopped on request"
+            raise SolverError(msg)
         sweep.at(x, way)
     for way in sweep.directions:
         own = [x for x, w in places if w == way]

@@ -76,7 +76,7 @@ class Sheet:
     entities: tuple[Entity, ...]
 
 
-def read_sheet(path: Path, unit: str | None, chord: float) -> Sheet:
+def read_sheet(path: Path, unit: str | None, chord: float, *, open_curves: bool = False) -> Sheet:
     """Return what stands in the model space of a DXF file, in metres.
 
     Parameters
@@ -86,6 +86,8 @@ def read_sheet(path: Path, unit: str | None, chord: float) -> Sheet:
         Unit of length of the drawing; None takes ``$INSUNITS``.
     chord : float
         Largest distance of a chord from the ellipse or spline it stands for [m].
+    open_curves : bool
+        Whether arcs and open ellipses and splines are read, which bound no block.
 
     Raises
     ------
@@ -109,7 +111,7 @@ def read_sheet(path: Path, unit: str | None, chord: float) -> Sheet:
         metres = _metres(document, str(path)) if given is None else given
         layers = [str(layer.dxf.name) for layer in document.layers]
         hidden = frozenset(str(x.dxf.name).upper() for x in document.layers if x.is_off() or x.is_frozen())
-        entities = tuple(_entities(document, metres, chord, str(path)))
+        entities = tuple(_entities(document, metres, chord, str(path), open_curves))
     except ezdxf.DXFError as error:
         raise _unreadable(error, path, hint) from None
     except InputError:
@@ -134,7 +136,7 @@ def _unreadable(error: Exception, path: Path, hint: str) -> InputError:
     return InputError(what, where=str(path), hint=hint)
 
 
-def _entities(document: Any, metres: float, chord: float, where: str) -> Iterator[Entity]:
+def _entities(document: Any, metres: float, chord: float, where: str, curves: bool) -> Iterator[Entity]:
     seen = 0
     for entity in document.modelspace():
         for part, handle, layer in _parts(entity, str(entity.dxf.get("handle", "?")), "0", 0):
@@ -142,7 +144,7 @@ def _entities(document: Any, metres: float, chord: float, where: str) -> Iterato
             if seen > LARGEST:
                 msg = f"the drawing holds more than {LARGEST:,} entities"
                 raise InputError(msg, where=where, hint="draw the structure in a file of its own")
-            yield part if isinstance(part, Entity) else _plain(part, handle, layer, metres, chord)
+            yield part if isinstance(part, Entity) else _plain(part, handle, layer, metres, chord, curves)
 
 
 def _parts(entity: Any, handle: str, outer: str, depth: int) -> Iterator[tuple[Any, str, str]]:
@@ -172,11 +174,12 @@ def _left(kind: str, layer: str, handle: str, fault: str = "") -> Entity:
     return Entity(kind, layer, handle, np.zeros((0, 2)), np.zeros(0), fault=fault)
 
 
-def _plain(entity: Any, handle: str, layer: str, metres: float, chord: float) -> Entity:
+def _plain(entity: Any, handle: str, layer: str, metres: float, chord: float, curves: bool) -> Entity:
     """Return one entity as plain values, in metres."""
     kind = str(entity.dxftype())
     try:
-        read = _read(entity, kind, chord / metres)
+        curve = _open_curve(entity, kind, chord / metres) if curves else None
+        read = curve or _read(entity, kind, chord / metres)
     except DAMAGED as error:
         return _left(kind, layer, handle, f"it cannot be read ({type(error).__name__})")
     if isinstance(read, str):
@@ -232,6 +235,19 @@ def _read(entity: Any, kind: str, chord: float) -> tuple[Array, Array, bool, boo
         flat = _flat(path.flattening(max(chord, FINEST * extent)))[:-1]
         return flat, np.zeros(len(flat)), True, True, ""
     return None
+
+
+def _open_curve(entity: Any, kind: str, chord: float) -> tuple[Array, Array, bool, bool, str] | None:
+    """Return an arc, or an open ellipse or spline, as :func:`_read` returns others; None where it is none."""
+    if kind not in ("ARC", "ELLIPSE", "SPLINE"):
+        return None
+    from ezdxf.path import make_path
+
+    path = make_path(entity)
+    if path.is_closed:
+        return None
+    flat = _flat(path.flattening(chord))
+    return flat, np.zeros(len(flat)), False, True, ""
 
 
 def _flat(vertices: Any) -> Array:

@@ -18,6 +18,7 @@ from concio.errors import InputError
 from concio.model.drawing.drawing import model_from_dxf
 from concio.model.file.block_table import read_blocks
 from concio.model.file.bodies import Materials, body_of, rigid_where_its_material_is
+from concio.model.file.bridge_drawing_table import drawn_barrel, with_drawn_road
 from concio.model.file.errors import placed
 from concio.model.file.file_table import FileTable
 from concio.model.file.parts import assembled_parts
@@ -75,7 +76,7 @@ def build(data: FileTable, folder: Path, where: str, read: Callable[[str], Model
         parts = _parts(data, bodies, start, materials, laws)
         model = replace(start, **parts) if start else Model(**parts)
     with placed(where):
-        model = crossed(model, data.fill, data.vehicle)
+        model = crossed(model, with_drawn_road(data.fill, data.bridge_drawing, folder), data.vehicle)
         _check_names(model)
         if data.extrusion is not None:
             with placed("[extrusion]", own="extrude"):
@@ -174,16 +175,19 @@ def _start(
     if parts:
         return assembled_parts(parts, lambda part, label: _generated(part, materials, laws), read, data.title,
                                ruled=data.rules is not None)  # fmt: skip
-    return _generated(data, materials, laws)
+    return _generated(data, materials, laws, drawn_barrel(data.bridge_drawing, getattr(data, "bridge", None), folder))
 
 
-def _generated(data: Any, materials: Materials, laws: Laws) -> Model | None:
-    """Return the model of the generator whose table is given, None where there is none."""
+def _generated(
+    data: Any, materials: Materials, laws: Laws, lines: Mapping[str, Any] | None = None
+) -> Model | None:
+    """Return the model of the generator whose table is given, None where there is none; ``lines`` are of a survey."""
     name = next((name for name in GENERATORS if getattr(data, name, None) is not None), None)
     if name is None:
         return None
     table = getattr(data, name)
     arguments = {key: _argument(getattr(table, key), name, key, materials, laws) for key in table.model_fields_set}
+    arguments |= lines or {}
     own = "wall" if name == "wall_of_courses" else name
     with placed(f"[{name}]", own=own):
         model = GENERATORS[name](**arguments)

@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import Field, StrictStr, create_model
 
 from concio.model.file.assessment_table import AssessmentEntry, SiteEntry
+from concio.model.file.bridge_drawing_table import BridgeDrawingTable
 from concio.model.file.generator_tables import generator_table
 from concio.model.file.import_tables import DrawingTable, SolidsTable
 from concio.model.file.motion_table import Motion
@@ -59,6 +60,7 @@ class FileTable(Table):
     stages: list[StageTable] = Field(default_factory=list)
     analysis: AnalysisTable = Field(default_factory=AnalysisTable)
     solver: SolverTable | None = None
+    bridge_drawing: BridgeDrawingTable | None = Field(None, description="lines of an existing bridge in a drawing")
     fill: FillTable | None = Field(None, description="fill and road of a bridge")
     vehicle: VehicleTable | None = Field(None, description="what crosses a bridge")
     record: dict[str, Any] = Field(default_factory=dict, description="how the model was made; not read by concio")

@@ -67,6 +67,9 @@ BY_NAME: Mapping[str, Any] = {
     "start": tuple[Length, Length],
     "end": tuple[Length, Length],
     "towards": tuple[Number, Number],
+    "intrados": list[tuple[Length, Length]],
+    "extrados": list[tuple[Length, Length]],
+    "ring_lines": list[list[tuple[Length, Length]]],
     "elements_per_block": tuple[StrictInt, StrictInt],
     "repeat": tuple[StrictInt, StrictInt],
 }

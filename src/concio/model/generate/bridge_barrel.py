@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -121,24 +122,40 @@ def barrel_of(where: str, profile: Profile, plan: RingPlan) -> Barrel:
     return Barrel(tuple(pieces), ends[0], ends[1], lines[-1])
 
 
-def barrel_between(
-    where: str, lines: tuple[list[list[float]], list[list[float]]], voussoirs: int, prefix: str
-) -> Barrel:
-    """Return one ring between an intrados and an extrados given as points, joints at equal shares of both lines."""
-    inner, outer = (polyline(f"{where}, {w}", line) for w, line in zip(("intrados", "extrados"), lines, strict=True))
+def barrel_between(where: str, lines: Sequence[Sequence[Sequence[float]]], voussoirs: int, prefix: str) -> Barrel:
+    """Return the rings between lines given as points, from the intrados outwards, joints at equal shares of each.
+
+    Raises
+    ------
+    InputError
+        A line is none, or two of them meet or cross.
+    """
+    drawn = [polyline(f"{where}, line {k}", line) for k, line in enumerate(lines, 1)]
     shares = np.arange(voussoirs + 1) / voussoirs
-    ends = [share_of_line(line, shares) for line in (inner, outer)]
+    joints = [share_of_line(line, shares) for line in drawn]
     pieces = []
-    for k in range(voussoirs):
-        sides = [_between(line, shares[k], shares[k + 1]) for line in (inner, outer)]
-        outline = np.vstack([sides[0], sides[1][::-1]])
-        pieces.append(Piece(prefix + numbered("v", k + 1, voussoirs), outline, layer="voussoir"))
-    thick = np.hypot(*(ends[1] - ends[0]).T)
-    if not (ends[1][1:-1, 1] > ends[0][1:-1, 1]).all() or not (thick > 0).all():
-        msg = "the extrados does not lie above the intrados"
-        raise InputError(msg, where=where, hint="give both from the left to the right springing")
-    left, right = (np.array([ends[0][k], ends[1][k]]) for k in (0, -1))
-    return Barrel(tuple(pieces), left, right, _between(outer, 0.0, 1.0))
+    for j, (low, high) in enumerate(pairwise(drawn)):
+        _check_apart(where, j + 1, joints[j], joints[j + 1])
+        for k in range(voussoirs):
+            sides = [_between(line, shares[k], shares[k + 1]) for line in (low, high)]
+            outline = np.vstack([sides[0], sides[1][::-1]])
+            ring = f"r{j + 1}-" if len(drawn) > 2 else ""
+            layer = f"ring {j + 1}" if ring else "voussoir"
+            pieces.append(Piece(prefix + ring + numbered("v", k + 1, voussoirs), outline, layer=layer))
+    left, right = (np.array([ends[k] for ends in joints]) for k in (0, -1))
+    return Barrel(tuple(pieces), left, right, _between(drawn[-1], 0.0, 1.0))
+
+
+def _check_apart(where: str, ring: int, low: Array, high: Array) -> None:
+    """Refuse two lines of a ring that meet or cross anywhere."""
+    thick = np.hypot(*(high - low).T)
+    along = np.roll(low, -1, axis=0) - low
+    along[-1] = along[-2]
+    outward = along[:, 0] * (high - low)[:, 1] - along[:, 1] * (high - low)[:, 0]
+    if not (outward > 0).all() or not (thick > 1e-6 * np.ptp(low[:, 0])).all():
+        k = int(np.argmin(outward))
+        msg = f"ring {ring} has no thickness at x = {low[k, 0]:.4g} m: its lines meet or cross there"
+        raise InputError(msg, where=where, hint="give the lines from the intrados outwards, each from left to right")
 
 
 def _between(line: Array, a: float, b: float) -> Array:

@@ -30,9 +30,9 @@ MOST_RINGS, MOST_SPANS = 12, 40
 @strict_with(Common.__annotations__)
 def bridge(
     *,
-    span: float | str | Sequence[float | str],
-    ring: float | str | Sequence[float | str],
     voussoirs: int | Sequence[int],
+    span: float | str | Sequence[float | str] | None = None,
+    ring: float | str | Sequence[float | str] | None = None,
     rise: float | str | Sequence[float | str] | None = None,
     shape: Literal["segmental", "semicircular", "elliptical", "three-centred", "parabolic", "pointed"] = "segmental",
     springing_ring: float | str | Sequence[float | str] | None = None,
@@ -41,6 +41,7 @@ def bridge(
     headers: int = 0,
     intrados: Sequence[Sequence[float]] | None = None,
     extrados: Sequence[Sequence[float]] | None = None,
+    ring_lines: Sequence[Sequence[Sequence[float]]] = (),
     pier_width: float | str | Sequence[float | str] | None = None,
     pier_height: float | str = 0.0,
     pier_courses: int = 1,
@@ -54,12 +55,12 @@ def bridge(
 
     Parameters
     ----------
+    voussoirs : int, or sequence
+        Of each ring.
     span : float or str, or sequence
         Clear span of each arch at its springings, from the left [m].
     ring : float or str, or sequence
         Thickness of the ring; several are rings from the intrados outwards [m].
-    voussoirs : int, or sequence
-        Of each ring.
     rise : float or str, or sequence
         Rise of the intrados of each span [m]; a semicircular arch needs none.
     shape : {"segmental", "semicircular", "elliptical", "three-centred", "parabolic", "pointed"}
@@ -72,8 +73,9 @@ def bridge(
     headers : int
         Every so many voussoirs one runs through all rings; 0 is none.
     intrados, extrados : sequences of points, optional
-        Lines of one span in place of shape, rise and the thickness of the ring, from the left to the right springing
-        [m]; ``span`` and ``ring`` are then measured from them.
+        Lines of one span in place of span, rise and ring, from the left to the right springing [m].
+    ring_lines : sequence of lines
+        Between them, where there are several rings, from the intrados outwards [m].
     pier_width : float or str, or sequence
         Of each pier between two spans, at the springings [m].
     pier_height : float or str
@@ -118,9 +120,16 @@ def bridge(
     options = checked(where, common)
     high, back = not_negative(where, "pier_height", pier_height), not_negative(where, "backing", backing)
     if intrados is not None or extrados is not None:
-        barrels = [_drawn(where, intrados, extrados, voussoirs)]
+        for key, value in (("span", span), ("rise", rise), ("ring", ring)):
+            if value is not None:
+                msg = f"{key} and the lines of the barrel are both given"
+                raise InputError(msg, where=where, hint=f"the lines are what is built: leave {key} out")
+        barrels = [_drawn(where, intrados, extrados, ring_lines, voussoirs)]
         spans = [float(np.ptp(np.array([barrels[0].left[0, 0], barrels[0].right[0, 0]])))]
     else:
+        if span is None or ring is None:
+            msg = f"'{'span' if span is None else 'ring'}' is missing"
+            raise InputError(msg, where=where, hint="give span, rise and ring, or intrados and extrados as lines")
         spans = _lengths(where, "span", span, most=MOST_SPANS)
         several = not isinstance(ring, int | float | str) and len(ring) > 1
         sides = count(where, "chords", (1 if several else 2) if chords is None else chords, 1, 64)
@@ -216,13 +225,14 @@ def _plan(
     )
 
 
-def _drawn(where: str, intrados: Any, extrados: Any, voussoirs: Any) -> Barrel:
+def _drawn(where: str, intrados: Any, extrados: Any, between: Any, voussoirs: Any) -> Barrel:
     if intrados is None or extrados is None:
         msg = "intrados and extrados belong together, and one of them is missing"
         raise InputError(msg, where=where)
-    lines = tuple([[quantity(v, "length", where=where) for v in p] for p in line] for line in (intrados, extrados))
-    number = voussoirs if isinstance(voussoirs, int) else len(list(voussoirs))
-    return barrel_between(where, (lines[0], lines[1]), count(where, "voussoirs", number, 3), "")
+    lines = [[[quantity(v, "length", where=where) for v in p] for p in line]
+             for line in (intrados, *between, extrados)]  # fmt: skip
+    number = voussoirs if isinstance(voussoirs, int) else next(iter(voussoirs))
+    return barrel_between(where, lines, count(where, "voussoirs", number, 3), "")
 
 
 def _check_backing(where: str, barrels: Sequence[Barrel], back: float) -> None:

@@ -1,0 +1,60 @@
+"""Table ``[bridge_drawing]`` of a model file: the lines of an existing bridge, drawn in a DXF file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from pydantic import Field, StrictStr
+
+from concio.errors import InputError
+from concio.model.drawing.bridge_lines import read_lines
+from concio.model.file.errors import placed
+from concio.model.file.road_tables import FillTable
+from concio.model.file.tables import Name, Table
+from concio.model.file.values import Length
+
+
+class BridgeDrawingTable(Table):
+    """A drawing of one span: a layer for each line of the barrel from the intrados outwards, and one for the road."""
+
+    file: Name
+    lines: list[StrictStr] = Field(default_factory=lambda: ["INTRADOS", "EXTRADOS"])
+    road: StrictStr | None = None
+    unit: StrictStr | None = None
+    chord_tolerance: Length = 0.002
+
+
+def drawn_barrel(drawing: BridgeDrawingTable | None, bridge: Any, folder: Path) -> dict[str, Any]:
+    """Return the lines of the barrel as arguments of the generator; none without a drawing.
+
+    Raises
+    ------
+    InputError
+        There is no ``[bridge]``, fewer than two lines are named, or the drawing has not one line on each layer.
+    """
+    if drawing is None:
+        return {}
+    with placed("[bridge_drawing]"):
+        if bridge is None or len(drawing.lines) < 2:
+            what = "there is no [bridge]" if bridge is None else "lines names fewer than two layers"
+            raise InputError(what, hint="it draws the barrel of [bridge], which says voussoirs and materials")
+        drawn = _read(drawing, folder)
+        inner, *between, outer = (drawn[name] for name in drawing.lines)
+        return {"intrados": inner, "extrados": outer, "ring_lines": between}
+
+
+def with_drawn_road(fill: FillTable | None, drawing: BridgeDrawingTable | None, folder: Path) -> FillTable | None:
+    """Return the table of the fill with the road line of a drawing, where it says neither cover nor road."""
+    if drawing is None or fill is None or drawing.road is None or fill.cover is not None or fill.road:
+        return fill
+    with placed("[bridge_drawing]"):
+        line = _read(drawing, folder)[drawing.road]
+    road = {"road": [(float(x), float(y)) for x, y in line]}
+    return fill.model_copy(update=road)
+
+
+def _read(drawing: BridgeDrawingTable, folder: Path) -> dict[str, list[list[float]]]:
+    """Return the lines of a drawing by layer, the left springing of the first at (0, 0) [m]."""
+    wanted = [*drawing.lines, *([] if drawing.road is None else [drawing.road])]
+    return read_lines(folder / drawing.file, wanted, unit=drawing.unit, chord=drawing.chord_tolerance)

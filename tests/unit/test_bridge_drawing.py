@@ -1,0 +1,101 @@
+"""An existing bridge from a DXF drawing: lines of the barrel and of the road, each on a layer."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import concio
+from concio.analysis.bridges.sweep import Sweep
+from concio.errors import InputError
+
+ezdxf = pytest.importorskip("ezdxf")
+
+SPAN, RISE, RING = 3.0, 0.75, 0.215
+FILE = """
+[bridge]
+voussoirs = 16
+width = 2.0
+block = "rigid"
+unit_weight = 22.0
+friction = 0.6
+[bridge_drawing]
+file = "survey.dxf"
+road = "STRADA"
+{more}
+[fill]
+passive = 1.0
+[vehicle]
+axles = [[0.0, 1.0]]
+"""
+
+
+def drawn(place: Path, *, layers: tuple[str, ...] = ("INTRADOS", "EXTRADOS", "STRADA"), ring: float = RING) -> Path:
+    """Draw the bridge in millimetres, far from the origin; the intrados as an arc, the extrados as a polyline."""
+    document = ezdxf.new(units=4)
+    space = document.modelspace()
+    radius = 1e3 * (SPAN**2 / 4 + RISE**2) / (2 * RISE)
+    half = math.degrees(2 * math.atan2(RISE, SPAN / 2))
+    centre = np.array([5000.0 + 1500.0, 2000.0 + 750.0 - radius])
+    space.add_arc(centre, radius, 90 - half, 90 + half, dxfattribs={"layer": layers[0]})
+    angle = np.radians(np.linspace(90 + half, 90 - half, 65))
+    outer = centre + (radius + 1e3 * ring) * np.column_stack([np.cos(angle), np.sin(angle)])
+    space.add_lwpolyline(outer.tolist(), dxfattribs={"layer": layers[1]})
+    top = 2000.0 + 1e3 * (RISE + RING + 0.3)
+    space.add_line((2000.0, top), (6500.0, top), dxfattribs={"layer": layers[2]})
+    space.add_line((6500.0, top), (12000.0, top), dxfattribs={"layer": layers[2]})
+    document.saveas(place / "survey.dxf")
+    path = place / "bridge.toml"
+    path.write_text(FILE.format(more=""))
+    return path
+
+
+def test_a_drawn_bridge_is_the_one_that_the_generator_makes(tmp_path: Path) -> None:
+    model = concio.load(drawn(tmp_path))
+    made = concio.bridge(span=SPAN, rise=RISE, ring=RING, voussoirs=16, width=2.0, block="rigid", unit_weight=22.0)
+    made = concio.with_fill(made, concio.Fill(cover=0.3, passive=1.0))
+    made = concio.with_vehicle(made, concio.Vehicle("axle", (concio.Axle(0.0, 1.0),)))
+    assert model.body("v01").centroid == pytest.approx(made.body("v01").centroid, abs=2e-3)
+    for x in (0.7, 1.5):
+        one, other = Sweep(model).at(x), Sweep(made).at(x)
+        assert one is not None
+        assert other is not None
+        assert one.multiplier == pytest.approx(other.multiplier, rel=5e-3)
+
+
+def test_lines_between_make_rings(tmp_path: Path) -> None:
+    path = drawn(tmp_path)
+    document = ezdxf.readfile(tmp_path / "survey.dxf")
+    radius = 1e3 * (SPAN**2 / 4 + RISE**2) / (2 * RISE)
+    half = math.degrees(2 * math.atan2(RISE, SPAN / 2))
+    document.modelspace().add_arc((6500.0, 2750.0 - radius), radius + 107.5, 90 - half, 90 + half,
+                                  dxfattribs={"layer": "MIDDLE"})  # fmt: skip
+    document.saveas(tmp_path / "survey.dxf")
+    path.write_text(FILE.format(more='lines = ["INTRADOS", "MIDDLE", "EXTRADOS"]'))
+    model = concio.load(path)
+    assert len(model.free_bodies) == 32
+    detection = concio.assemble(model).detection
+    assert not detection.overlaps
+    assert not detection.near_misses
+    assert len(detection.interfaces) >= 2 * 17 + 16
+
+
+@pytest.mark.parametrize(
+    ("layers", "ring", "more", "words"),
+    [
+        (("INTRADOS", "EXTRADO", "STRADA"), RING, "", "no line on layer 'EXTRADOS'"),
+        (("INTRADOS", "EXTRADOS", "STRADA"), -0.1, "", "meet or cross"),
+        (("INTRADOS", "EXTRADOS", "STRADA"), RING, 'lines = ["INTRADOS"]', "fewer than two"),
+        (("INTRADOS", "EXTRADOS", "ROAD"), RING, "", "no line on layer 'STRADA'"),
+    ],
+)
+def test_drawings_that_do_not_fit_are_refused(
+    layers: tuple[str, ...], ring: float, more: str, words: str, tmp_path: Path
+) -> None:
+    path = drawn(tmp_path, layers=layers, ring=ring)
+    path.write_text(FILE.format(more=more))
+    with pytest.raises(InputError, match=words):
+        concio.load(path)
