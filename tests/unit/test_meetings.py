@@ -7,16 +7,20 @@ import pytest
 
 import concio
 from concio.analysis.motion.meetings import EARNED, MOST, Meetings
+from concio.analysis.motion.scheme import Drive, Scheme
+from concio.analysis.motion.stepper import Stepper, at_rest
+from concio.contact.moving.reference import Reference
+from models import box, model_of, weight
 from motion_models import G, standing
 
 
 def followed(meets, count, h=1.0):
     """Return the lengths of the steps from 0, where something meets at certain times."""
-    meetings, time, lengths = Meetings(h / 64), 0.0, []
+    meetings, time, lengths = Meetings.of(1, h / 64), 0.0, []
     while time < count - 1e-9:
         length = meetings.length(time, h)
         ahead = min((m - time for m in meets if m > time + 1e-12), default=np.inf)
-        cut = meetings.located(ahead, length)
+        cut = meetings.located(np.array([ahead]), np.array([0]), length)
         meetings.after(time, cut is not None, 0.0, length)
         lengths.append(length if cut is None else cut)
         time += lengths[-1]
@@ -35,6 +39,37 @@ def test_no_more_impacts_are_located_than_steps_have_earned():
     located = sum(abs(length - 0.4) < 1e-9 for length in lengths)
     assert located <= MOST + EARNED * len(lengths)
     assert len(lengths) <= count * (1 + 2.2 * EARNED) + 2 * MOST
+
+
+def test_what_one_part_uses_up_counts_for_it_alone():
+    """One part rattles in every step; the impacts of the other, one in fifty steps, are all located."""
+    h, part = 1.0, np.array([0, 0, 1])
+    meetings, time, found = Meetings.of(3, h / 64), 0.0, 0
+    rattles = np.arange(600) + 0.4
+    others = np.arange(7, 600, 50) + 0.7
+    while time < 599.0:
+        length = meetings.length(time, h)
+        ahead = np.array([min(v[v > time + 1e-12], default=np.inf) - time for v in (rattles, others)])
+        cut = meetings.located(ahead, part, length)
+        found += cut is not None and abs(cut - ahead[1]) < 1e-9
+        meetings.after(time, cut is not None, 0.0, length)
+        time += length if cut is None else cut
+    assert found == len(others)
+    assert (meetings.credit[:2] < 1.1).all()
+    assert meetings.credit[2] > 1.5
+
+
+def test_blocks_on_one_floor_are_parts_of_their_own():
+    """Until they may touch: a fixed body connects nothing."""
+    near, far = box("near", 0.51, 0.9, 0.0, 1.0, kind="rigid", material="stone"), 8.0
+    blocks = [box("block", 0.0, 0.5, 0.0, 1.0, kind="rigid", material="stone"), near]
+    blocks.append(box("apart", far, far + 0.5, 0.0, 1.0, kind="rigid", material="stone"))
+    model = model_of(box("floor", -30.0, 30.0, -1.0, 0.0, kind="fixed"), *blocks, law=0.5, loads=(weight(),))
+    stepper = Stepper(Reference.of(model, G), Scheme())
+    state = stepper.located(at_rest(stepper.reference))
+    _, report = stepper.step(state, 1e-3, Drive(np.zeros(2), np.zeros(2), {}))
+    assert report.part[1] == report.part[2] != report.part[3]
+    assert len(set(report.part.tolist())) == 3
 
 
 def test_shots_stay_on_the_grid_of_steps():

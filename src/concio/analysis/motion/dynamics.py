@@ -16,6 +16,7 @@ from concio.analysis.motion.ground import Ground, Motion
 from concio.analysis.motion.history import Recorder
 from concio.analysis.motion.interruption import Interruption
 from concio.analysis.motion.joints import SAG
+from concio.analysis.motion.located import ties_give_way
 from concio.analysis.motion.meetings import Meetings
 from concio.analysis.motion.moved_supports import begun
 from concio.analysis.motion.observer import Observer
@@ -23,6 +24,7 @@ from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import Statics
 from concio.analysis.motion.stepper import Stepper, StepReport, at_rest
+from concio.analysis.motion.tie_cuts import where_ties_give_way
 from concio.arguments import strict
 from concio.contact.moving.reference import Reference
 from concio.errors import InputError
@@ -47,6 +49,9 @@ HALVINGS = 6
 
 SUNK = 1e-3
 """Penetration at an impact over the width of a body from which on the step is halved."""
+
+LEAST_CUT = 1e-6
+"""Step over that asked for below which it is not cut where a tie gives way."""
 
 AFTER = 20.0
 """How long after the ground a motion is followed where no duration is given and it neither rests nor falls [s]."""
@@ -280,7 +285,7 @@ class _Run:
         maker = self.stepper.maker
         self.observer = Observer(self.reference, maker, self.stepper.frames, self.factors, self.points)
         self.recorder = Recorder()
-        self.meetings = Meetings(self.step / 2**HALVINGS)
+        self.meetings = Meetings.of(len(self.reference.model.bodies), self.step / 2**HALVINGS)
         self.sums = dict.fromkeys(("friction", "impact", "damping", "crushing", "input", "overlap", "drift"), 0.0)
         self.seconds = 0.0
         self.begun = clock.perf_counter()
@@ -340,6 +345,22 @@ class _Run:
         return Ending.FALLEN if sunk and (self.stands is not False or self.stated is None) else None
 
     def _attempt(self, state: MotionState, h: float) -> tuple[MotionState, StepReport, float] | None:
+        """Make a step that ends where a tie gives way, if one does; see :meth:`_made`."""
+        made = self._made(state, h)
+        if made is None or not self.adaptive or not ties_give_way(state, made[0]):
+            return made
+        whole, ties = made[0].time - state.time, self.stepper.maker.ties
+
+        def at(length: float) -> tuple[MotionState, StepReport]:
+            return self.stepper.step(state, length, self.drive(state.time, length))
+
+        cut = where_ties_give_way(ties, state, made[0], at, whole, LEAST_CUT * self.step)
+        if cut is None or cut[1].solution.residual > CERTIFIED:
+            return made
+        self.meetings.until = max(self.meetings.until, state.time + whole)
+        return *cut, 0.0
+
+    def _made(self, state: MotionState, h: float) -> tuple[MotionState, StepReport, float] | None:
         """Make a step, smaller where that is needed; None where none can be solved.
 
         The third is its length, none where it ended or began with an impact that was located.
@@ -353,7 +374,7 @@ class _Run:
             solved = report.solution.residual <= CERTIFIED
             late = self.adaptive and report.struck > SUNK * self.stepper.maker.width
             if solved and self.adaptive:
-                cut = meetings.located(report.meets, h)
+                cut = meetings.located(report.meets, report.part, h)
                 if cut is not None:
                     to_it = self.stepper.step(state, cut, self.drive(state.time, cut))
                     if to_it[1].solution.residual <= CERTIFIED:

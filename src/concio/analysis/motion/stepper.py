@@ -24,7 +24,7 @@ from concio.analysis.motion.frames import Frames
 from concio.analysis.motion.impacts import Impact
 from concio.analysis.motion.joint_memory import after_step
 from concio.analysis.motion.joint_step import JointAnswer, PairData
-from concio.analysis.motion.meetings import first_meeting, time_until
+from concio.analysis.motion.meetings import Parts, first_meetings, time_until
 from concio.analysis.motion.pairs import PairMaker, assembled, relative
 from concio.analysis.motion.scheme import RETURN, Drive, Scheme
 from concio.analysis.motion.state import Memory, MotionState, TieMemory
@@ -60,8 +60,12 @@ class StepReport:
         Deepest penetration at its end of what was apart at its beginning [m].
     normal : (pairs, d) array
         From body a to body b.
-    meets, left : float
-        Time from its beginning, and from its end, until what was apart meets; infinite where nothing does [s].
+    meets : (P,) array
+        Time from its beginning until what was apart meets, by connected part; infinite where nothing does [s].
+    part : (B,) integer array
+        Connected part of each body.
+    left : float
+        Time from its end until what was apart meets; infinite where nothing does [s].
     """
 
     solution: StepSolution
@@ -70,7 +74,8 @@ class StepReport:
     depth: float
     struck: float
     normal: Array
-    meets: float
+    meets: Array
+    part: Array
     left: float
 
 
@@ -92,6 +97,7 @@ class Stepper:
         self.certificate = Certificate(reference, scheme, self.maker)
         self.solver = StepSolver(engine)
         self.fixed = np.flatnonzero(disc.shape_of == -2)
+        self.parts = Parts(disc.shape_of == -2)
         self._movable = np.full(disc.unknowns, np.inf)
         for b in np.setdiff1d(reference.rigid, self.maker.held.points.body).tolist():
             own = slice(*disc.offsets[b : b + 2])
@@ -200,10 +206,11 @@ class Stepper:
         hit = hard & ~(memory_before.force[:, 0] > 0) & (joint.gap > 0.5 * h * joint.y0[:, 0] - maker.joints.sag)
         struck = float(np.maximum(-end[hit], 0.0).max(initial=0.0))
         free = hard & ~(memory_before.force[:, 0] > 0)
-        meets = first_meeting(joint, end, free, speed, h)
+        part, part_of_pair = self.parts.of(slots)
+        meets = first_meetings(joint, end, free, speed, h, part_of_pair)
         nearing = free & ~joint.struck & (parting[:, 0] < -speed)
         left = time_until(end, parting[:, 0], nearing)
-        return new, StepReport(found, m, works, depth, struck, rows.normal, meets, left)
+        return new, StepReport(found, m, works, depth, struck, rows.normal, meets, part, left)
 
     def _certified(
         self, found: StepSolution, state: MotionState, new: MotionState, memory: Memory, h: float, drive: Drive,
