@@ -85,3 +85,47 @@ crown_load = 2.0
 
 THIN = ARCH.replace("ring = 0.4", "ring = 0.1").replace("voussoirs = 9", "voussoirs = 15")
 """An arch thinner than Milankovitch's ring."""
+
+
+def hanging(live: str = "") -> str:
+    """Return a block between two fixed walls that nothing presses, beside a heavier block on a floor of its own."""
+    walls = "".join(
+        f'[[blocks]]\nname = "{name}"\nrectangle = [[{x}, 0.0], [{x + 1}, 1.0]]\nkind = "fixed"\n'
+        for name, x in (("left", -1.0), ("right", 1.0))
+    )
+    ground = '[[blocks]]\nname = "ground"\nrectangle = [[5.0, -1.0], [7.0, 0.0]]\nkind = "fixed"\n'
+    blocks = "".join(
+        f'[[blocks]]\nname = "{name}"\nrectangle = {place}\nmaterial = "stone"\n'
+        for name, place in (("hangs", "[[0.0, 0.0], [1.0, 1.0]]"), ("stands", "[[5.0, 0.0], [7.0, 2.0]]"))
+    )
+    return STONE.format(friction=0.6) + walls + ground + blocks + WEIGHT + live
+
+
+def soft(live: str) -> str:
+    """Return the pillar on joints that give way."""
+    return pillar(live).replace(
+        "friction = 0.7", 'friction = 0.7\nnormal_stiffness = "20 GPa/m"\ntangential_stiffness = "8 GPa/m"'
+    )
+
+
+def held(force: float, height: float, *, friction: float = 0.6) -> str:
+    """Return a block of 0.5 x 1 m and 10 kN pushed by ``force`` [kN] at its top, held by a tie of 3 kN."""
+    block = '[[blocks]]\nname = "b"\nrectangle = [[0.0, 0.0], [0.5, 1.0]]\nkind = "rigid"\nmaterial = "stone"\n'
+    live = f'[[loads]]\nkind = "point"\nvalue = [{force}, 0.0]\nbodies = ["b"]\nat = [0.0, 1.0]\ngroup = "live"\n'
+    tie = (
+        f'[[ties]]\nname = "rod"\nbody_a = "b"\nat_a = [0.0, {height}]\nbody_b = ""\nat_b = [-1.0, {height}]\n'
+        'stiffness = "1000 kN/m"\nyield_force = "3 kN"\n'
+    )
+    return STONE.format(friction=friction) + FLOOR + block + WEIGHT + live + tie
+
+
+def strip(wind: float) -> str:
+    """Return a strip of facade, 6.2 x 0.5 m, with a floor, a roof that thrusts, and wind [kN/m2] that acts as live."""
+    wall = '[[blocks]]\nname = "pillar"\nrectangle = [[0.0, 0.0], [0.5, 6.2]]\nkind = "rigid"\nmaterial = "stone"\n'
+    roof = point(0.0, -12.0, (0.40, 3.0), "floors") + point(-1.0, -7.0, (0.35, 6.2), "roof")
+    blown = (
+        f'[[loads]]\nkind = "pressure"\nvalue = "{wind} kN/m2"\nbodies = ["pillar"]\n'
+        'edge = [[0.5, 0.0], [0.5, 6.2]]\ngroup = "live"\n'
+    )
+    stone = STONE.format(friction=0.6).replace("20 kN", "18 kN")
+    return stone + FLOOR + wall + WEIGHT + roof + blown

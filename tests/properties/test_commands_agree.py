@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from commands import run
-from pillars import ARCH, NARROW, THIN, pillar, point, sideways, slot, turned
+from pillars import ARCH, NARROW, THIN, hanging, held, pillar, point, sideways, slot, soft, strip, turned
 
 HOLDS, FAILS = "holds", "fails"
 MODELS: dict[str, tuple[str, str]] = {
@@ -27,6 +27,16 @@ MODELS: dict[str, tuple[str, str]] = {
     "slot of rigid blocks": (slot(), FAILS),
     "slot of elastic blocks": (slot(elastic=True), FAILS),
     "narrow panel": (NARROW, FAILS),
+    "hangs beside a heavy block": (hanging(point(0.0, -1.0, (6.0, 2.0)).replace('"pillar"', '"stands"')), FAILS),
+    "hangs beside a heavy block that is pushed": (hanging(sideways(0.1)), FAILS),
+    "leans and is pressed low": (pillar(point(0.0, -5.0, (0.17, 0.5)), lean=0.7), FAILS),
+    "stiff joints hold": (soft(sideways(0.2)), HOLDS),
+    "stiff joints tip": (soft(sideways(0.3)), FAILS),
+    "shelf": (pillar(sideways(0.15), friction=0.2), HOLDS),
+    "held by a tie": (held(4.5, 0.75), HOLDS),
+    "held by a tie that yields": (held(5.0, 0.75), FAILS),
+    "wind on a strip": (strip(0.7), HOLDS),
+    "wind on a strip, too strong": (strip(0.8), FAILS),
     "arch": (ARCH, HOLDS),
     "thin arch": (THIN, FAILS),
 }

@@ -36,6 +36,11 @@ high = 0.2
 CELL = "[cell]\nblock_size = [0.4, 0.2]\nfriction = 3.0\n"
 WALL = "[wall]\nlength = 0.8\nheight = 0.4\nblock_size = [0.4, 0.2]\nfriction = 3.0\nhorizontal = 0.1\n"
 
+SURVEY = (
+    (Path(concio.__file__).parents[2] / "examples" / "cracked_arch.toml").read_text(encoding="utf-8")
+    .replace("friction = ", "friction = 3.0 # ")
+)  # fmt: skip
+
 ASKS: dict[str, tuple[str, tuple[object, ...]]] = {
     "check": (ODD, ()),
     "run": (ODD, ()),
@@ -47,6 +52,7 @@ ASKS: dict[str, tuple[str, tuple[object, ...]]] = {
     "assess": (pillar(friction=3.0) + SITE, ("--quiet",)),
     "study": (ODD + STUDY, ()),
     "prove": (ODD, ()),
+    "diagnose": (SURVEY, ("--most", "1")),
     "cell": (CELL, ("--no-strength",)),
     "continuum": (WALL, ("--no-strength", "--mesh-size", "0.4")),
 }
@@ -61,6 +67,7 @@ WRONG: dict[str, tuple[str, tuple[object, ...]]] = {
     "assess": (ODD, ()),
     "study": (ODD, ()),
     "prove": (ODD, ("--group", "none")),
+    "diagnose": (ODD, ()),
     "cell": (ODD, ()),
     "continuum": (WALL, ("--group", "none")),
 }
@@ -157,6 +164,12 @@ def test_an_exception_of_every_analysis_has_a_verdict(name: str, monkeypatch: py
         from seismic_walls import site
 
         more["site"] = site()
+    if name == "diagnose":
+        from concio.analysis.cracks.measurement import Candidate, Measurement
+
+        places = ((-0.2, 1.6), (0.2, 1.6))
+        more["measurements"] = [Measurement(f"K{x}", "level", 1e-4, -1e-3, body="pillar", at=(x, y)) for x, y in places]
+        more["candidates"] = [Candidate("sinks", body="floor", direction=(0, -1))]
     if name == "run_path":
         more["stages"] = [concio.Stage("dead", {"dead": 1.0})]
     if name == "strain_path":

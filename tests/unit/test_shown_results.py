@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import html
 import math
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -170,10 +171,11 @@ def test_a_load_that_all_multiples_fail_of_says_how() -> None:
     """A text once printed the name of its variable."""
     from concio.verdict.limit_words import limit_lines
 
-    for path in sorted(Path(concio.__file__).parent.rglob("*.py")):
-        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
-            if '"({' in line and 'f"({' not in line:
-                pytest.fail(f"{path.name}:{number}: {line.strip()}")
+    for path in sorted((Path(concio.__file__).parent / "verdict").rglob("*.py")):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        for node in ast.walk(tree):
+            text = node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else ""
+            assert not re.search(r"\{[a-z_.]+\(", text), f"{path.name}:{node.lineno}: {text}"
     found = concio.limit(concio.loads(pillar(sideways(1.0)).replace('group = "dead"', 'group = "live"')))
     assert "{" not in "\n".join(limit_lines(found))
     assert np.isfinite(found.associated.multiplier)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from concio.analysis.collapse_proof import against_slips
 from concio.analysis.limit_torsion import SPREAD, SpreadSteps, twisting
 from concio.analysis.load_steps import LoadSteps
 from concio.contact.assembly import Assembly
@@ -215,12 +216,10 @@ class LimitResult(Shown):
     def _ways(self) -> tuple[Array, Array]:
         """Return directions (m, d) of friction forces, and of what would oppose the slips of the mechanism."""
         pairs, a = self.assembly.pairs, self.associated
-        m = len(pairs)
-        slip = np.zeros((m, pairs.normal.shape[1] - 1))
+        slips = np.zeros(pairs.normal.shape)
         if a.mechanism is not None:
-            slip = (pairs.C_t @ (self.assembly.supported.T @ a.mechanism.velocity)).reshape(m, -1)
-        frame = pairs.tangents
-        return np.einsum("ki,kij->kj", a.friction_force, frame), -np.einsum("ki,kij->kj", slip, frame)
+            slips = against_slips(self.assembly, a.mechanism.velocity)
+        return np.einsum("ki,kij->kj", a.friction_force, pairs.tangents), slips
 
     def summary(self) -> dict[str, Any]:
         """Return the numbers of ``--json``."""

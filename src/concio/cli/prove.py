@@ -42,9 +42,9 @@ def prove(
     Example: concio prove wall.toml --group live --out wall.proof.json
     """
     import concio
+    from concio.analysis.collapse_proof import collapse_proof
     from concio.analysis.limit import limit
     from concio.errors import InputError
-    from concio.proof.certificate import prove_collapse
     from concio.proof.verify import check
     from concio.verdict.proof_verdict import proof_verdict, with_attention
     from concio.verdict.unanswered import with_a_verdict
@@ -61,7 +61,7 @@ def prove(
     factors = factors_of(factor) or None
     with with_a_verdict(assembly, "prove"):
         if claim == "collapse":
-            live, made = [], prove_collapse(assembly, factors, numbers=numbers)
+            live, made = [], collapse_proof(assembly, factors, numbers=numbers)
         else:
             made = limit(assembly, live=live, path=False, steps=False, search=False).proof(numbers)
     made = with_attention(made, assembly)

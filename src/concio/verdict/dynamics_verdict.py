@@ -31,6 +31,8 @@ HEADLINES = {
     Outcome.UNDECIDED: "The motion was lost before its end.",
     Outcome.INCOMPLETE: "The motion was not followed to its end.",
 }
+SHORT = "no equilibrium was found from where its supports have moved"
+"""Begins the note of a motion whose supports did not get to where they were asked to be."""
 SENSITIVE = "rocking depends on small things: another step, restitution or record may decide otherwise near the limit"
 
 
@@ -103,6 +105,11 @@ def _asked(found: DynamicsResult) -> str:
     return f"the motion {start} {time} under {ground}{peak}"
 
 
+def supports_short(share: float) -> str:
+    """Return the note of a motion that begins where its supports are short of what was asked, at a share of it."""
+    return f"{SHORT} by {share:.3g} of what was asked: the motion begins there"
+
+
 def _answer(found: DynamicsResult, outcome: Outcome) -> str:
     """Return what became of the structure, in sentences with numbers."""
     time = f"{number(float(found.end.time), 5)} s"
@@ -116,6 +123,11 @@ def _answer(found: DynamicsResult, outcome: Outcome) -> str:
         told.append(f"After {time} no step, however small, satisfies its equations.")
     elif found.ending.name == "STOPPED":
         told.append(f"It was stopped on request at {time}.")
+    elif found.stands is False and any(note.startswith(SHORT) for note in found.notes):
+        told.append(
+            f"Its supports stand where they had moved to when it was lost, short of what was asked: what it does there "
+            f"until {time} says nothing of what was asked."
+        )
     elif found.rests:
         told.append(f"It has come to rest at {time}, in an equilibrium that was found where it stands.")
     else:

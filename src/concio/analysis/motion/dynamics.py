@@ -35,6 +35,7 @@ from concio.problem.solution import Progress, ProgressCallback
 from concio.problem.tolerances import CERTIFIED
 from concio.solvers.algebra.sparse_factor import Engine
 from concio.units import GRAVITY
+from concio.verdict.dynamics_verdict import supports_short
 
 Array = np.ndarray
 
@@ -220,10 +221,7 @@ def _begin(
             balanced, share, last = begun(Statics(reference, scheme, factors, engine=engine, sag=SAG), state)
             stands, state = balanced.found, balanced.state if balanced.found else last
             if not stands and 0.0 < share < 1.0:
-                notes.append(
-                    f"no equilibrium was found from where its supports have moved by {share:.3g} of what was asked: "
-                    "the motion begins there"
-                )
+                notes.append(supports_short(share))
             elif not stands:
                 notes.append("no equilibrium under the loads was found to begin with: the motion begins as described")
         elif any(s.moves for s in reference.model.supports):

@@ -1,0 +1,53 @@
+"""Exact certificates that nothing balances the loads, sought near the mechanism that floating point finds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+import numpy as np
+
+from concio.contact.assembly import Assembly
+from concio.proof.certificate import prove_collapse
+from concio.solvers.statics.existence import find_mechanism
+
+Array = np.ndarray
+
+
+def collapse_proof(
+    assembly: Assembly,
+    factors: Mapping[str, float] | None = None,
+    *,
+    numbers: Literal["binary", "decimal"] = "binary",
+) -> dict[str, Any]:
+    """Return the exact certificate that no joint forces within friction balance the loads.
+
+    In space round cones are cut by planes, finely near the slips of the mechanism that excludes equilibrium: a motion
+    that works against the round cones may work against none of coarse cuts.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    factors : mapping of str to float, optional
+        Of the load groups.
+    numbers : {"binary", "decimal"}
+        Numbers of the model as the computer holds them, or rounded to twelve decimal digits.
+
+    Raises
+    ------
+    InputError, SolverError
+        As :func:`concio.proof.certificate.prove_collapse`.
+    """
+    directions = None
+    if assembly.model.dim == 3:
+        found = find_mechanism(assembly.problem(factors))
+        directions = None if found is None else against_slips(assembly, found.velocity)
+    return prove_collapse(assembly, factors, numbers=numbers, directions=directions)
+
+
+def against_slips(assembly: Assembly, velocity: Array) -> Array:
+    """Return the direction (m, d) of what would oppose the slip of each pair in a motion (N,)."""
+    pairs = assembly.pairs
+    slip = np.asarray(pairs.C_t @ (assembly.supported.T @ velocity)).reshape(len(pairs), -1)
+    against: Array = -np.einsum("ki,kij->kj", slip, pairs.tangents)
+    return against
