@@ -15,7 +15,6 @@ from concio.solvers.algebra.scaled import scale
 from concio.solvers.auto.strategies import best_point_met
 from concio.solvers.interior.iteration import InteriorPoint
 from concio.solvers.interior.newton import NewtonStep, Products
-from concio.solvers.interior.newton_finish import states_of
 from concio.solvers.interior.point import Residuals
 from concio.solvers.interior.redundant_forces import least_forces
 from concio.solvers.interior.run import STARTS, Run, starts_for
@@ -23,7 +22,7 @@ from concio.solvers.methods import find
 from concio.solvers.relaxation import step as one_step
 from concio.solvers.relaxation.single_steps import at_once
 from concio.solvers.relaxation.slow_motion import relax
-from concio.solvers.states.reading import Finished, natural_residual
+from concio.solvers.states.reading import Finished, natural_residual, read_states
 from concio.solvers.statics.limit import associated_limit
 from space_problems import barrel, dome, wall
 
@@ -87,7 +86,7 @@ def test_forces_of_redundant_pairs_are_the_least_of_all() -> None:
         error, _ = natural_residual(s, u, other)
         assert error < 1e-11
         assert float((other**2 / s.share[:, None]).sum()) > norm
-        point = Finished(u, other, states_of(s, u, other), error, 0, np.zeros(0, dtype=int))
+        point = Finished(u, other, read_states(s, u, other), error, 0, np.zeros(0, dtype=int))
         assert np.abs(least_forces(s, point).t - t).max() < 1e-9 * np.abs(t).max()
 
 

@@ -73,9 +73,9 @@ class Meetings:
         if self.wanted is not None:
             return None
         self.credit = np.minimum(self.credit + EARNED, MOST)
-        credit = np.full(len(meets), np.inf)
+        credit = np.full(int(part.max(initial=-1)) + 1, np.inf)
         np.minimum.at(credit, part, self.credit)
-        first = np.where(credit >= 1.0, meets, np.inf)
+        first = np.where(credit[: len(meets)] >= 1.0, meets, np.inf)  # parts without pairs meet nothing
         if not len(first) or first.min() >= h or h <= PAST * self.least:
             return None
         self.credit[part == first.argmin()] -= 1.0

@@ -25,6 +25,7 @@ import scipy.sparse as sp
 from concio.errors import MethodError
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.natural_map import natural_map
 from concio.problem.tolerances import GRANTED, ROUNDING, SMOOTH
 from concio.solvers.algebra.block_factor import BlockFactor
 from concio.solvers.algebra.sparse_factor import Engine, chosen_engine
@@ -184,10 +185,14 @@ class Scaled:
         unit : float
             Force that counts as much as a length of one.
         """
+        return natural_map(self.cone, self.weighted(u, t, unit), t, self.dilatancy)
+
+    def weighted(self, u: Array, t: Array, unit: float) -> Array:
+        """Return gap without dilatancy and slip (m, d) times a force ``unit``; no slip where pairs are smooth."""
         y = self.position(u, t) * unit
-        y[:, 1:][~self.rough] = 0.0
-        distance: Array = t - self.cone.project(t - y, self.dilatancy)
-        return distance
+        if self.any_smooth:
+            y[~self.rough, 1:] = 0.0
+        return y
 
     # -- other data, other units ----------------------------------------------------------------------------------
 

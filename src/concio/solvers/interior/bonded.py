@@ -27,9 +27,9 @@ import numpy as np
 from concio.problem.contact_problem import Array
 from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
-from concio.solvers.interior.newton_finish import finish, states_of, stuck
+from concio.solvers.interior.newton_finish import finish, stuck
 from concio.solvers.interior.redundant_forces import least_forces
-from concio.solvers.states.reading import Finished, natural_residual, sizes
+from concio.solvers.states.reading import Finished, natural_residual, read_states, sizes
 
 DELTAS = (1e-8, 1e-10, 1e-12)
 """Compliances added to pairs of mean area, scaled units, tried in turn."""
@@ -77,7 +77,7 @@ def from_sticking(s: Scaled) -> tuple[Scaled, Finished] | None:
         return None
     error, _ = natural_residual(plain, *at)
     if not exceeded.any() and error <= EXACT:
-        held = Finished(*at, states_of(plain, *at), error, 1, np.zeros(0, dtype=int))
+        held = Finished(*at, read_states(plain, *at), error, 1, np.zeros(0, dtype=int))
         return plain, least_forces(plain, held)
     found = finish(plain, *at, rounds=ROUNDS, patience=PATIENCE, delta=delta)
     return (plain, found) if found.error <= EXACT else None

@@ -20,13 +20,12 @@ from __future__ import annotations
 import numpy as np
 
 from concio.problem.contact_problem import Array
-from concio.problem.pair_state import Normal, PairStates
 from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.second_order_cone import times
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.interior.redundant_forces import least_forces
-from concio.solvers.states.reading import Finished, natural_residual, sizes
+from concio.solvers.states.reading import Finished, natural_residual, read_states, sizes
 
 DELTA = 1e-3
 """Compliance added to pairs of mean area in the factorised matrix, scaled units."""
@@ -50,24 +49,9 @@ REFINEMENTS = 40
 """Largest number of times a direction is refined."""
 
 
-def states_of(s: Scaled, u: Array, t: Array) -> PairStates:
-    """Return the states that the natural map assigns to a point."""
-    force, length = sizes(u, t)
-    w = _trial(s, u, t, force / length)
-    J = _derivative(s, w)
-    size = np.linalg.norm(w[:, 1:], axis=1)
-    mapped = s.cone.project(w, s.dilatancy)
-    slips = s.rough & (size > s.cone.strength(mapped[:, 0])) & (size > 0)
-    direction = np.where(slips[:, None], -w[:, 1:] / np.where(slips, size, 1.0)[:, None], 0.0)
-    crushed = s.cone.capped & (mapped[:, 0] >= s.cone.cap)
-    opened = ~J.any(axis=(1, 2)) & (mapped[:, 0] <= -s.cone.tension)
-    normal = np.where(crushed, Normal.CRUSHED, np.where(opened, Normal.OPEN, Normal.CLOSED))
-    return PairStates(normal.astype(np.int8), direction * ~opened[:, None])
-
-
 def _trial(s: Scaled, u: Array, t: Array, rho: float) -> Array:
     """Return the trial forces t - rho y (m, d)."""
-    w: Array = t - rho * s.position(u, t)
+    w: Array = t - s.weighted(u, t, rho)
     w[~s.rough, 1:] = 0.0
     return w
 
@@ -126,7 +110,7 @@ def finish(
         if error < SETTLED or stale >= patience or not np.isfinite(error):
             break
     u, t, error, laws = best
-    found = Finished(u, t, states_of(s, u, t), error, solves, np.flatnonzero(laws > UNDECIDED))
+    found = Finished(u, t, read_states(s, u, t), error, solves, np.flatnonzero(laws > UNDECIDED))
     return least_forces(s, found) if least and error <= EXACT else found
 
 

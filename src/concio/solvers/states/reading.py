@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from concio.problem import natural_map
 from concio.problem.contact_problem import Array
-from concio.problem.pair_state import Normal, PairStates
+from concio.problem.pair_state import PairStates
 from concio.problem.tolerances import CERTIFIED, EXACT
 from concio.solvers.algebra.scaled import Scaled
 
@@ -61,17 +62,6 @@ def natural_residual(s: Scaled, u: Array, t: Array) -> tuple[float, Array]:
 
 
 def read_states(s: Scaled, u: Array, t: Array) -> PairStates:
-    """Return the states that the natural map assigns to a point of a plane problem.
-
-    A pair slips where the trial friction t_t - y_t lies beyond the strength it has at its trial normal force, an open
-    pair with strength left too; one without any strength is given no slip.
-    """
+    """Return the states that the natural map assigns to a point (:func:`concio.problem.natural_map.read_states`)."""
     force, length = sizes(u, t)
-    y = s.position(u, t) * (force / length)
-    slip = np.where(s.rough, y[:, 1], 0.0)
-    trial = t[:, 0] - y[:, 0] + s.dilatancy * np.abs(slip)
-    strength = s.cone.strength(np.clip(trial, 0.0, s.cone.cap))
-    tangential = t[:, 1] - slip
-    sliding = np.where(tangential < -strength, 1, np.where(tangential > strength, -1, 0))
-    normal = np.where(trial > s.cone.cap, Normal.CRUSHED, np.where(trial > 0, Normal.CLOSED, Normal.OPEN))
-    return PairStates.plane(normal, np.where(s.rough & (strength > 0), sliding, 0))
+    return natural_map.read_states(s.cone, s.weighted(u, t, force / length), t, s.dilatancy)

@@ -12,8 +12,9 @@ from typing import Protocol
 
 import numpy as np
 
+from concio.problem import natural_map
 from concio.problem.contact_problem import Array
-from concio.problem.pair_state import Normal, PairStates
+from concio.problem.pair_state import PairStates
 from concio.solvers.stepping.problem import Errors, StepProblem, largest
 
 EXACT = 1e-13
@@ -167,18 +168,8 @@ def _side_by_side(first: Array, second: Array) -> Array:
 def read_states(p: StepProblem, x: Array, t: Array, errors: Errors | None = None) -> PairStates:
     """Return the states that the natural map assigns to a point, each pair measured by its own flexibility."""
     y_n, y_t = p.relative(x, t) if errors is None else errors[1:]
-    stiff = 1.0 / np.where(p.flexibility > 0, p.flexibility, 1.0)
-    cone = p.cone
-    slip = y_t[:, 0]
-    trial = t[:, 0] - stiff[:, 0] * (y_n - p.dilatancy * np.abs(slip))
-    closed = (trial > -cone.tension) & p.active
-    crushed = closed & (trial > cone.cap)
-    with np.errstate(invalid="ignore"):
-        strength = cone.strength(np.clip(trial, -cone.tension, cone.cap))
-    tangential = t[:, 1] - stiff[:, 1] * slip
-    sliding = np.where(tangential < -strength, 1, np.where(tangential > strength, -1, 0))
-    sliding = np.where(p.pinned | ~p.active | ~cone.rough, 0, sliding)
-    return PairStates.plane(np.where(crushed, Normal.CRUSHED, np.where(closed, Normal.CLOSED, Normal.OPEN)), sliding)
+    y = np.column_stack([y_n, y_t]) / np.where(p.flexibility > 0, p.flexibility, 1.0)
+    return natural_map.read_states(p.cone, y, t, p.dilatancy, p.active)
 
 
 def halting(states: PairStates, before: PairStates) -> PairStates:
