@@ -14,7 +14,7 @@ from sources import source
 
 ROOT = Path(__file__).parents[2]
 NAMES = {
-    "skfem": "scikit-fem", "mpl_toolkits": "matplotlib", "pydantic_core": "pydantic", "docutils": "sphinx",
+    "skfem": "scikit-fem", "mpl_toolkits": "matplotlib", "docutils": "sphinx",
     "PIL": "pillow", "vtkmodules": "vtk",
 }  # fmt: skip
 """Distributions of packages of another name, or that cannot do without them."""

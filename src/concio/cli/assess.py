@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, in_units
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
-from concio.cli.run import EngineOf, File, Json, Quiet
 
 if TYPE_CHECKING:
     from concio.analysis.seismic.assessment import Assessment
@@ -36,6 +36,7 @@ def assess(
         str | None, typer.Option("--language", "-l", help="Language of the report, en or it; by default the file's.")
     ] = None,
     engine: EngineOf = None,
+    units: UnitsOf = None,
     json: Json = False,
     quiet: Quiet = False,
 ) -> int:
@@ -53,9 +54,9 @@ def assess(
     if out is not None:
         check_directory(out)
     asked = read_asked(file)
-    model = asked.model if engine is None else replace(asked.model, engine=engine)
+    model = in_units(asked.model if engine is None else replace(asked.model, engine=engine), units)
     tie: TieForce | None = None
-    with progress_bar(shown=not (json or quiet)) as progress:
+    with progress_bar(shown=not json) as progress:
         found = concio.assess(model, progress=progress, **asked.arguments)
         if asked.size_tie:
             arguments = {**asked.arguments, "progress": progress}
@@ -77,7 +78,7 @@ def assess(
                                        anchors=asked.anchors, varied=varied)  # fmt: skip
     if json:
         print_json(told)
-    elif not quiet:
+    else:
         for line in assess_lines(found, tie):
             say(line)
         if written:

@@ -7,10 +7,10 @@ from typing import Annotated, Any, Literal
 
 import typer
 
+from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
-from concio.cli.run import EngineOf, File, Json, UnitsOf, loaded
 
 
 @guarded
@@ -42,6 +42,7 @@ def bridge(
     engine: EngineOf = None,
     units: UnitsOf = None,
     json: Json = False,
+    quiet: Quiet = False,
 ) -> int:
     """Find the load factor of a vehicle at every position on a bridge, the worst position, and what it rests on.
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
-from concio.cli.run import EngineOf, File, Json, loaded
 
 if TYPE_CHECKING:
     from concio.analysis.cells.moduli import Moduli
@@ -28,7 +28,7 @@ def cell(
         typer.Option("--direction", "-d", help="Direction of stress: xx=1,yy=-1 (repeatable)."),
     ] = None,
     stress: Annotated[
-        str | None, typer.Option("--stress", "-s", help="Stress the directions begin from: yy=-100 [kN/m2].")
+        str | None, typer.Option("--stress", help="Stress the directions begin from: yy=-100 [kN/m2].")
     ] = None,
     stage: Annotated[
         list[str] | None,
@@ -41,7 +41,9 @@ def cell(
     programmes: Annotated[int, typer.Option("--programmes", help="Linear programmes for the domain at most.")] = 400,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for tables and figures.")] = None,
     engine: EngineOf = None,
+    units: UnitsOf = None,
     json: Json = False,
+    quiet: Quiet = False,
 ) -> int:
     """Homogenise a periodic cell: moduli, strength domain, and its response to macroscopic strains and stresses.
 
@@ -63,7 +65,7 @@ def cell(
         check_directory(out)
     directions = [components(text, "--direction") for text in direction or ()]
     base = components(stress, "--stress") if stress is not None else (0.0, 0.0, 0.0)
-    model = loaded(file, engine=engine)
+    model = loaded(file, units, engine)
     if model.periods is None:
         msg = "this model is no periodic cell"
         hint = "start from: concio new cell; or give the blocks of a model periods = [[x1, y1], [x2, y2]]"

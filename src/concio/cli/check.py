@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from concio.cli.options import File, Json, Quiet, UnitsOf, in_units
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import PICTURES, check_file, replaced_file
-from concio.cli.run import File, Json, UnitsOf, in_units
 
 if TYPE_CHECKING:
     from concio.model.interfaces.detect import Detection
@@ -26,6 +26,7 @@ def check(
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
     units: UnitsOf = None,
     json: Json = False,
+    quiet: Quiet = False,
 ) -> int:
     """Say what a model file holds and what is wrong with it, without solving.
 

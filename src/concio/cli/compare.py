@@ -6,20 +6,22 @@ from typing import Annotated
 
 import typer
 
+from concio.cli.options import Factors, File, Json, Quiet, UnitsOf, factors_of, in_units
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.progress import progress_bar
-from concio.cli.run import Factors, File, Json, factors_of
 
 
 @guarded
 def compare(
     file: File,
     methods: Annotated[
-        str | None, typer.Option("--methods", "-m", help="Names separated by commas; default all.")
+        str | None, typer.Option("--methods", help="Names separated by commas; default all.")
     ] = None,
     time_limit: Annotated[float, typer.Option("--time-limit", help="Seconds for each method.")] = 60.0,
     factor: Factors = None,
+    units: UnitsOf = None,
     json: Json = False,
+    quiet: Quiet = False,
 ) -> int:
     """Decide one model as 'concio run' does, solve the same problem by several methods, and print one table.
 
@@ -41,7 +43,7 @@ def compare(
     names = None if methods is None else [name.strip() for name in methods.split(",") if name.strip()]
     for name in names or ():
         find(name)
-    model = concio.load(file)
+    model = in_units(concio.load(file), units)
     assembly = as_assembly(model)
     with factorised_by(model.engine), progress_bar(shown=not json) as progress:
         result = concio.solve(assembly, factors=factors_of(factor), on_failure="return", progress=progress)

@@ -7,10 +7,10 @@ from typing import Annotated
 
 import typer
 
+from concio.cli.options import EngineOf, Factors, File, Json, Quiet, UnitsOf, factors_of, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
-from concio.cli.run import EngineOf, Factors, File, Json, factors_of, loaded
 
 
 @guarded
@@ -31,7 +31,9 @@ def continuum(
     strength: Annotated[bool, typer.Option("--strength/--no-strength", help="Compare limit loads.")] = True,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for tables and figures.")] = None,
     engine: EngineOf = None,
+    units: UnitsOf = None,
     json: Json = False,
+    quiet: Quiet = False,
 ) -> int:
     """Solve a wall block by block and as a homogenised continuum, and put both side by side.
 
@@ -72,7 +74,7 @@ def continuum(
             found = halving.comparisons[0]
         else:
             found = concio.compare_with_continuum(
-                loaded(file, engine=engine), own, factors=factors_of(factor), live=live, mesh_size=size,
+                loaded(file, units, engine), own, factors=factors_of(factor), live=live, mesh_size=size,
                 elastic=elastic, strength=strength, progress=progress,
             )  # fmt: skip
     written: list[str] = []

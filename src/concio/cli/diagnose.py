@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, in_units
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
-from concio.cli.run import EngineOf, File, Json, Quiet, UnitsOf, in_units
 
 if TYPE_CHECKING:
     from concio.analysis.cracks.diagnosis import Diagnosis

@@ -27,7 +27,7 @@ def halved_file(file: Path, engine: Engine | None = None) -> Callable[[int], Mod
     InputError
         The file describes no ``[wall]`` and no ``[panel]``.
     """
-    from concio.cli.run import loaded
+    from concio.cli.options import loaded
     from concio.errors import InputError
     from concio.model.file.reading import model_from_tables, read_tables
 

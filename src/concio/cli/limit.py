@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
-from concio.cli.run import EngineOf, File, Json, UnitsOf, loaded
 
 if TYPE_CHECKING:
     from concio.analysis.limit import LimitResult
@@ -47,10 +47,14 @@ def limit(
     solves: Annotated[
         bool, typer.Option("--solves", help="Also bisect load and friction with solved load steps (some twenty).")
     ] = False,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="The proven bound alone: no path, no steps, no search, no friction margin.")
+    ] = False,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for figures of the mechanisms.")] = None,
     engine: EngineOf = None,
     units: UnitsOf = None,
     json: Json = False,
+    quiet: Quiet = False,
 ) -> int:
     """Find the load multiplier: the associated bound, what Coulomb friction is shown to carry, and the friction margin.
 
@@ -68,6 +72,8 @@ def limit(
     if out is not None:
         check_directory(out)
     assembly = concio.assemble(loaded(file, units, engine))
+    if quick:
+        path, steps, search, friction = path or False, steps or False, search or False, friction or False
     wanted = len(assembly.pairs) <= LARGEST_MARGIN if friction is None else friction
     found: LimitResult | None = None
 

@@ -31,21 +31,23 @@ from concio.cli import (
     view,
 )
 
+EXIT_CODES = (
+    "Exit codes: 0 what was asked for is shown, 2 bad input, 3 it is shown not to hold, 4 it is left open (not "
+    "reached, not checked, undecided, still moving), 130 interrupted, 1 anything else."
+)
+
 app = typer.Typer(
     name="concio",
     no_args_is_help=True,
-    add_completion=False,
+    add_completion=True,
     rich_markup_mode="markdown",
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
     help=(
-        "Masonry of blocks held together by contact and friction: answers that prove themselves.\n\n"
+        "Masonry of blocks held together by contact and friction: results with an independent certificate.\n\n"
         "Start:  concio new panel  |  concio check panel.toml  |  concio run panel.toml --out result"
     ),
-    epilog=(
-        "Exit codes: 0 what was asked for is shown, 2 bad input, 3 it is shown not to hold, 4 it is left open (not "
-        "reached, not checked, undecided, still moving), 130 interrupted, 1 anything else."
-    ),
+    epilog=EXIT_CODES,
 )
 
 
@@ -64,25 +66,13 @@ def _common(
     pass
 
 
-app.command("new")(new.new)
-app.command("check")(check.check)
-app.command("run")(run.run)
-app.command("path")(path.path)
-app.command("limit")(limit.limit)
-app.command("push")(push.push)
-app.command("shake")(shake.shake)
-app.command("cell")(cell.cell)
-app.command("continuum")(continuum.continuum)
-app.command("assess")(assess.assess)
-app.command("diagnose")(diagnose.diagnose)
-app.command("bridge")(bridge.bridge)
-app.command("prove")(prove.prove)
-app.command("verify")(verify.verify)
-app.command("compare")(compare.compare)
-app.command("study")(study.study)
-app.command("view")(view.view)
-app.command("export")(export.export)
-app.command("schema")(schema.schema)
+COMMANDS = (
+    new.new, check.check, run.run, path.path, limit.limit, push.push, shake.shake, cell.cell, continuum.continuum,
+    assess.assess, diagnose.diagnose, bridge.bridge, prove.prove, verify.verify, compare.compare, study.study, view.view,
+    export.export, schema.schema,
+)  # fmt: skip
+for command in COMMANDS:
+    app.command(command.__name__, epilog=EXIT_CODES)(command)
 
 
 def main() -> None:

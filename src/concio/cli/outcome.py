@@ -12,6 +12,7 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Any, NoReturn, ParamSpec
 
@@ -24,6 +25,10 @@ _GLYPH = re.compile(r"Glyph (?P<code>\d+) ")
 INTERRUPTED = 130
 INTERNAL = 1
 STDOUT = "standard output"
+JSON_VERSION = 1
+"""Version of what ``--json`` prints: it grows when an entry changes its meaning or goes; new entries leave it."""
+QUIET: ContextVar[bool] = ContextVar("quiet", default=False)
+"""Whether the command that runs prints no text."""
 DEBUG = "CONCIO_DEBUG"
 """Environment variable that makes commands show tracebacks."""
 
@@ -34,12 +39,14 @@ def guarded(command: Callable[P, int]) -> Callable[P, None]:
     Parameters
     ----------
     command : callable
-        Returns its exit code; an argument called ``json`` says whether failures are printed as JSON too.
+        Returns its exit code; an argument called ``json`` says whether failures are printed as JSON too, one called
+        ``quiet`` that no text is printed.
     """
 
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
         as_json = bool(kwargs.get("json"))
+        QUIET.set(bool(kwargs.get("quiet")))
         try:
             with _letters_told():
                 code = command(*args, **kwargs)
@@ -177,13 +184,16 @@ def silence() -> None:
 
 
 def print_json(data: Mapping[str, Any]) -> None:
-    """Print one JSON object on standard output; numbers that JSON does not know become null.
+    """Print one JSON object on standard output, with its format first; numbers that JSON does not know become null.
 
     What is odd about the model stands under ``attention``, whatever the command.
     """
+    from concio import __version__
+
     if "verdict" in data and "attention" not in data:
         data = {**data, "attention": data["verdict"]["attention"]}
-    _print(json_text.dumps(plain(data), allow_nan=False, ensure_ascii=False) + "\n")
+    told = {"format_version": JSON_VERSION, "concio": __version__, **plain(data)}
+    _print(json_text.dumps(told, allow_nan=False, ensure_ascii=False) + "\n")
     flush()
 
 
@@ -197,8 +207,9 @@ def plain(value: Any) -> Any:
 
 
 def say(text: str = "") -> None:
-    """Print a line on standard output."""
-    _print(text + "\n")
+    """Print a line on standard output, unless the command is quiet."""
+    if not QUIET.get():
+        _print(text + "\n")
 
 
 def note(text: str) -> None:

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, factors_of, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
-from concio.cli.run import EngineOf, File, Json, UnitsOf, factors_of, loaded
 
 if TYPE_CHECKING:
     from concio.analysis.path import ControlPoint
@@ -45,6 +45,7 @@ def path(
     engine: EngineOf = None,
     units: UnitsOf = None,
     json: Json = False,
+    quiet: Quiet = False,
 ) -> int:
     """Follow a load path from event to event: which joint opens, closes, slips or sticks at which load.
 

@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from concio.cli.outcome import QUIET
+
 if TYPE_CHECKING:
     from concio.problem.solution import Progress, ProgressCallback
 
@@ -26,7 +28,7 @@ def progress_bar(*, shown: bool) -> Iterator[ProgressCallback | None]:
     The bar shows how far the residual has fallen on a logarithmic scale; it never goes back. Long runs tell how much
     time is left if the residual goes on falling as it did.
     """
-    if not shown or not sys.stderr.isatty():
+    if not shown or QUIET.get() or not sys.stderr.isatty():
         yield None
         return
     from rich.console import Console

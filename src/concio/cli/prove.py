@@ -8,16 +8,16 @@ from typing import Annotated, Literal
 
 import typer
 
+from concio.cli.options import Factors, File, Json, Quiet, factors_of, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_file, replaced_file
-from concio.cli.run import Factors, File, Json, factors_of, loaded
 
 
 @guarded
 def prove(
     file: File,
     claim: Annotated[
-        Literal["limit", "collapse"], typer.Option("--claim", "-c", help="What to prove of the loads.")
+        Literal["limit", "collapse"], typer.Option("--claim", help="What to prove of the loads.")
     ] = "limit",
     group: Annotated[
         list[str] | None,
@@ -33,6 +33,7 @@ def prove(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
     json: Json = False,
+    quiet: Quiet = False,
 ) -> int:
     """Prove a multiplier from both sides, or that loads are not balanced, in fractions that anyone can recompute.
 

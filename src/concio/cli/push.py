@@ -7,11 +7,11 @@ from typing import Annotated, Literal
 
 import typer
 
+from concio.cli.options import EngineOf, Factors, File, Json, Quiet, UnitsOf, factors_of, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.path import control_of
 from concio.cli.progress import progress_bar
-from concio.cli.run import EngineOf, Factors, File, Json, UnitsOf, factors_of, loaded
 
 Film = Annotated[
     list[str] | None,
@@ -63,6 +63,7 @@ def push(
     engine: EngineOf = None,
     units: UnitsOf = None,
     json: Json = False,
+    quiet: Quiet = False,
 ) -> int:
     """Push a structure over: equilibria where the bodies stand, past the peak, until nothing is carried any more.
 

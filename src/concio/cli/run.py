@@ -3,33 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated
 
 import typer
 
+from concio.cli.options import EngineOf, Factors, File, Json, Out, Quiet, UnitsOf, factors_of, in_units
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory
 from concio.cli.progress import progress_bar
-
-if TYPE_CHECKING:
-    from concio.model.model import Model
-    from concio.solvers.algebra.sparse_factor import Engine
-
-File = Annotated[Path, typer.Argument(help="Model file (TOML).", show_default=False)]
-Out = Annotated[Path | None, typer.Option("--out", "-o", help="Directory for figures, report and numbers.")]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing; the exit code tells.")]
-UnitsOf = Annotated[
-    str | None,
-    typer.Option("--units", help="Units of texts, figures and reports: 'N, mm, MPa'; by default those of the file."),
-]
-EngineOf = Annotated[
-    Literal["superlu", "pardiso"] | None,
-    typer.Option("--engine", help="Engine of linear systems: superlu or pardiso; by default that of the file."),
-]
-Factors = Annotated[
-    list[str] | None, typer.Option("--factor", "-f", help="Factor of a load group: live=1.5 (repeatable).")
-]
 
 
 @guarded
@@ -55,7 +36,7 @@ def run(
         check_directory(out)
     model = in_units(concio.load(file), units)
     chosen = {} if engine is None else {"engine": engine}
-    with progress_bar(shown=not (json or quiet)) as progress:
+    with progress_bar(shown=not json) as progress:
         result = concio.solve(
             model, method=method, factors=factors_of(factor), on_failure="return", progress=progress, **chosen
         )
@@ -66,70 +47,12 @@ def run(
         written = write_result(result, out, figures=figures)
     if json:
         print_json(result.summary())
-    elif not quiet:
+    else:
         for line in result_lines(result):
             say(line)
         for line in where_written(written):
             say(line)
     return result.verdict.exit_code
-
-
-def loaded(file: Path, units: str | None = None, engine: Engine | None = None) -> Model:
-    """Return the model of a file, told in the units of ``--units`` and solved by ``--engine``, where there are any.
-
-    Raises
-    ------
-    InputError
-        The file is no model, or an option says nothing.
-    """
-    from dataclasses import replace
-
-    import concio
-
-    model = in_units(concio.load(file), units)
-    return model if engine is None else replace(model, engine=engine)
-
-
-def in_units(model: Model, units: str | None) -> Model:
-    """Return the model told in the units of ``--units``, where there are any.
-
-    Raises
-    ------
-    InputError
-        A part of the text is no unit.
-    """
-    from dataclasses import replace
-
-    from concio.display import Units
-    from concio.errors import InputError
-
-    if units is None:
-        return model
-    try:
-        return replace(model, report=Units.parse(units))
-    except InputError as error:
-        raise InputError(error.what, where="--units", hint=error.hint) from None
-
-
-def factors_of(texts: list[str] | None) -> dict[str, float]:
-    """Return load factors from texts such as ``live=1.5``.
-
-    Raises
-    ------
-    InputError
-        A text is not of that form.
-    """
-    from concio.errors import InputError
-    from concio.units import quantity
-
-    factors = {}
-    for text in texts or ():
-        group, sign, value = text.partition("=")
-        if not sign or not group.strip():
-            msg = f"'{text}' is not a factor of a load group"
-            raise InputError(msg, where="--factor", hint="write for example --factor live=1.5")
-        factors[group.strip()] = quantity(value, "number", where=f"--factor {group.strip()}")
-    return factors
 
 
 def where_written(paths: list[Path]) -> list[str]:

@@ -8,26 +8,26 @@ from typing import Annotated, Any
 
 import typer
 
+from concio.cli.options import EngineOf, Factors, File, Json, Quiet, UnitsOf, factors_of, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import replaced_directory
 from concio.cli.path import control_of
 from concio.cli.progress import progress_bar
 from concio.cli.push import Film, Series, check_out
-from concio.cli.run import EngineOf, Factors, File, Json, UnitsOf, factors_of, loaded
 
 
 @guarded
 def shake(
     file: File,
     motion: Annotated[
-        Path | None, typer.Option("--motion", "-m", help="Record: AT2, VT2, DT2, or a text of one or two columns.")
+        Path | None, typer.Option("--motion", help="Record: AT2, VT2, DT2, or a text of one or two columns.")
     ] = None,
     vertical: Annotated[Path | None, typer.Option("--vertical", help="Record of the vertical motion.")] = None,
     pulse: Annotated[
         str | None,
         typer.Option("--pulse", help="SHAPE,AMPLITUDE,LENGTH: 'half sine,0.4 g,0.5 s' (rectangular, sine, ricker)."),
     ] = None,
-    scale: Annotated[float | None, typer.Option("--scale", "-s", help="Factor of the ground motion.")] = None,
+    scale: Annotated[float | None, typer.Option("--scale", help="Factor of the ground motion.")] = None,
     record_unit: Annotated[str | None, typer.Option("--record-unit", help="g, m/s2, cm/s2, m/s, m...")] = None,
     record_step: Annotated[str | None, typer.Option("--record-step", help="Time between samples: '10 ms'.")] = None,
     duration: Annotated[str | None, typer.Option("--duration", help="Time to compute: '10 s'.")] = None,
@@ -46,6 +46,7 @@ def shake(
     engine: EngineOf = None,
     units: UnitsOf = None,
     json: Json = False,
+    quiet: Quiet = False,
 ) -> int:
     """Shake a structure: rocking, sliding and impacts under a record or a pulse, every step certified.
 

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from concio.cli.outcome import guarded, print_json, say
+from concio.cli.options import File, Json, Quiet
+from concio.cli.outcome import QUIET, guarded, print_json, say
 from concio.cli.output import replaced_file
 from concio.cli.progress import duration
-from concio.cli.run import File, Json, Quiet
 
 if TYPE_CHECKING:
     from concio.studies.study import Progress, StudyProgress
@@ -47,15 +47,19 @@ def study(
     from concio.errors import InputError
     from concio.io.csv_table import write_csv
     from concio.io.owned_dir import add_own, is_own
+    from concio.model.file.reading import STDIN
     from concio.report.study_page import write_study_report
 
+    if out is None and file == STDIN:
+        msg = "a model from standard input has no name for its directory"
+        raise InputError(msg, hint="give one with --out")
     directory = out if out is not None else file.with_name(f"{file.stem}-study")
     for name in WRITTEN:
         if (directory / name).exists() and not is_own(directory / name):
             msg = "there is a file of that name that concio did not write, or that was changed since"
             raise InputError(msg, where=str(directory / name), hint="move it, or give another directory with --out")
     executor = "dask" if scheduler == "local" else scheduler
-    with study_bar(shown=not (json or quiet)) as progress:
+    with study_bar(shown=not json) as progress:
         found = concio.study(
             file, directory=directory, executor=executor, workers=workers, resume=resume, progress=progress
         )
@@ -67,7 +71,7 @@ def study(
     add_own(directory, [table, report], begin=True)
     if json:
         print_json({"status": found.verdict.status, **found.summary()})
-    elif not quiet:
+    else:
         for line in study_lines(found, directory):
             say(line)
     return found.verdict.exit_code
@@ -96,7 +100,7 @@ def study_lines(found: StudyResult, directory: Path) -> list[str]:
 @contextmanager
 def study_bar(*, shown: bool) -> Iterator[Progress | None]:
     """Give a callback that moves a bar with the time left, or None where there is nobody to see it."""
-    if not shown or not sys.stderr.isatty():
+    if not shown or QUIET.get() or not sys.stderr.isatty():
         yield None
         return
     from rich.console import Console

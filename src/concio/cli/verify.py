@@ -8,14 +8,15 @@ from typing import Annotated
 
 import typer
 
+from concio.cli.options import Json, Quiet
 from concio.cli.outcome import guarded, print_json, say
-from concio.cli.run import Json
 
 
 @guarded
 def verify(
     certificate: Annotated[Path, typer.Argument(help="Certificate that 'concio prove' wrote.", show_default=False)],
     json: Json = False,
+    quiet: Quiet = False,
 ) -> int:
     """Recompute an exact certificate with Python's own fractions; exit code 2 where it proves nothing.
 

@@ -25,6 +25,7 @@ from __future__ import annotations
 
 import os
 import re
+import sys
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -42,6 +43,9 @@ from concio.model.file.values import FileUnits
 from concio.model.model import Model
 from concio.units import DECIMAL_COMMA, quantity
 
+STDIN = Path("-")
+"""The name of standard input."""
+
 
 @strict
 def load(path: str | os.PathLike[str]) -> Model:
@@ -50,6 +54,7 @@ def load(path: str | os.PathLike[str]) -> Model:
     Parameters
     ----------
     path : str or Path
+        ``-`` reads standard input; files that it names are relative to the working directory.
 
     Raises
     ------
@@ -67,9 +72,23 @@ def read_tables(path: Path) -> dict[str, Any]:
     if key is not None:
         msg = f"this is a drawing of blocks ({path.suffix}), not a model file"
         raise InputError(msg, where=str(path), hint=f"name it in a model file: {key} = '{path.name}'")
+    if path == STDIN:
+        return parse(_standard_input(), "standard input")
     too_large = "put the blocks into a table of their own: blocks_file = 'blocks.csv'"
     text = read_text(path, hint="start one with: concio new panel", pipes=True, too_large=too_large)
     return parse(text, str(path))
+
+
+def _standard_input() -> str:
+    hint = "send a model file: concio run - < model.toml"
+    if sys.stdin is None or sys.stdin.isatty():
+        msg = "nothing is sent there"
+        raise InputError(msg, where="standard input", hint=hint)
+    try:
+        return sys.stdin.buffer.read().decode("utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        msg = f"it cannot be read: {error}"
+        raise InputError(msg, where="standard input", hint=hint) from None
 
 
 @strict

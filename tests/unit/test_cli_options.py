@@ -1,0 +1,120 @@
+"""Options mean one thing in every command, every help names the exit codes, and ``--json`` keeps to its schema."""
+
+from __future__ import annotations
+
+import json
+from collections import defaultdict
+from pathlib import Path
+
+import jsonschema
+import pytest
+import typer.main
+from typer.testing import CliRunner
+
+from commands import run
+from concio.cli.main import EXIT_CODES, app
+
+COMMANDS = typer.main.get_command(app).commands
+WALL = """
+[wall]
+length = 0.9
+height = 0.6
+block_size = [0.3, 0.2]
+block = "rigid"
+unit_weight = 20
+friction = 0.6
+horizontal = 0.1
+"""
+
+
+@pytest.fixture
+def wall(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "wall.toml"
+    path.write_text(WALL)
+    return path
+
+
+def test_a_short_option_stands_for_one_long_one() -> None:
+    long = defaultdict(set)
+    for command in COMMANDS.values():
+        for option in command.params:
+            names = [n for n in option.opts if n.startswith("--")]
+            for short in (n for n in option.opts if not n.startswith("--") and n.startswith("-")):
+                long[short].add(names[0])
+    assert {short: names for short, names in long.items() if len(names) > 1} == {}
+
+
+def test_options_of_one_name_say_the_same() -> None:
+    said = defaultdict(set)
+    for command in COMMANDS.values():
+        for option in command.params:
+            said[option.opts[0]].add((option.help, *option.opts[1:]))
+    said["file"] = {(p.help,) for name, c in COMMANDS.items() if name != "new" for p in c.params if p.opts[0] == "file"}
+    for name in ("--json", "--quiet", "--units", "--engine", "file"):
+        assert len(said[name]) == 1, said[name]
+
+
+def test_commands_that_print_json_can_be_quiet_and_those_that_solve_take_units() -> None:
+    for name, command in COMMANDS.items():
+        options = {o for p in command.params for o in p.opts}
+        assert ("--json" in options) == ("--quiet" in options), name
+        if name in ("run", "path", "limit", "push", "shake", "cell", "continuum", "assess", "compare", "check"):
+            assert "--units" in options, name
+
+
+def test_every_help_names_the_exit_codes() -> None:
+    for name in COMMANDS:
+        code, out, _ = run(name, "--help")
+        assert code == 0
+        assert "Exit codes" in out
+    assert "3 it is shown not to hold" in EXIT_CODES
+
+
+def test_a_model_comes_from_standard_input(wall: Path) -> None:
+    found = CliRunner().invoke(app, ["run", "-", "--json"], input=WALL)
+    assert found.exit_code == 0
+    told, same = json.loads(found.stdout), json.loads(run("run", wall, "--json")[1])
+    assert told["verdict"] == same["verdict"]
+    for text, word in (("", "empty"), ("[wall", "standard input, last line")):
+        found = CliRunner().invoke(app, ["run", "-"], input=text)
+        assert found.exit_code == 2
+        assert word in found.stderr
+    found = CliRunner().invoke(app, ["study", "-"], input=WALL)
+    assert found.exit_code == 2
+    assert "--out" in found.stderr
+
+
+def test_quiet_prints_nothing(wall: Path) -> None:
+    for command in ("run", "check", "compare"):
+        code, out, err = run(command, wall, "--quiet")
+        assert (code, out, err) == (0, "", "")
+    code, out, _ = run("run", wall)
+    assert code == 0
+    assert out, "the next command prints again"
+
+
+def test_the_quick_limit_is_the_bound_alone(wall: Path) -> None:
+    code, out, err = run("limit", wall, "--quick", "--json")
+    assert code in (0, 4), err
+    told = json.loads(out)
+    assert told["associated_multiplier"] > 0
+    assert told["verdict"]["outcome"] == "incomplete" or told["verdict"]["limits"] or told["verdict"]["unchecked"]
+
+
+@pytest.mark.parametrize("arguments", [("run",), ("check",), ("compare",), ("run", "--factor", "dead=0"), ("path",)])
+def test_output_keeps_to_its_schema(arguments: tuple[str, ...], wall: Path) -> None:
+    schema = json.loads(run("schema", "output")[1])
+    told = json.loads(run(arguments[0], wall, *arguments[1:], "--json")[1])
+    jsonschema.validate(told, schema)
+    assert told["format_version"] == 1
+
+
+def test_an_error_keeps_to_the_schema_too(wall: Path) -> None:
+    schema = json.loads(run("schema", "output")[1])
+    told = json.loads(run("run", "missing.toml", "--json")[1])
+    jsonschema.validate(told, schema)
+    assert told["status"] == "error"
+    for name in ("what", "kind", "exit_code"):
+        with pytest.raises(jsonschema.ValidationError):
+            jsonschema.validate({k: v for k, v in told.items() if k != name}, schema)
