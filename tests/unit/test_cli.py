@@ -15,7 +15,8 @@ import typer
 import concio
 from commands import run
 from concio.cli.outcome import fail
-from concio.cli.run import factors_of, where_written
+from concio.cli.options import factors_of
+from concio.cli.run import where_written
 from concio.problem.solution import Progress
 
 SMALL = "[panel]\ncourses = 1\nblocks = 2\ntop_pressure = 10\nelements_per_block = [2, 1]\n"
