@@ -14,8 +14,8 @@ import typer
 
 import concio
 from commands import run
-from concio.cli.outcome import fail
 from concio.cli.options import factors_of
+from concio.cli.outcome import fail
 from concio.cli.run import where_written
 from concio.problem.solution import Progress
 

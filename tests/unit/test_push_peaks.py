@@ -78,7 +78,10 @@ def test_a_peak_is_as_hand_statics_says_but_for_what_joints_give_way():
 
 @pytest.mark.parametrize("seed", range(sample(2, 8)))
 def test_bodies_meet_where_they_do(seed):
-    """The top corner of a pillar that turns about its toe has moved by the gap; nothing is carried across before."""
+    """The top corner of a pillar that turns about its toe has moved by the gap; nothing is carried across before.
+
+    The toe of a hard joint gives way by what is lent to it, half a micrometre here, whatever the gap.
+    """
     rng = np.random.default_rng(seed)
     gap = rng.uniform(2e-3, 2e-2)
     model = neighbours(rng, gap)
@@ -88,7 +91,7 @@ def test_bodies_meet_where_they_do(seed):
         between = [e for e in found.events if set(e.bodies) == {"first", "other"} and e.kind in ("touches", "closes")]
         met = min(e.step for e in between)
         turned = np.abs(found.rotation[: met + 1, 1])
-        assert turned[met] == pytest.approx(angle, rel=1e-4)
+        assert 1.2 * np.sin(turned[met]) == pytest.approx(gap, abs=1e-6)
         assert (turned[:met] < angle * (1 + 1e-6)).all()
         assert found.multiplier[met + 1] > 1.1 * found.multiplier[met]
 

@@ -14,6 +14,8 @@ import numpy as np
 import pytest
 
 import concio
+from concio.model.crossing import Axle, Fill, Vehicle
+from concio.model.road.earth import with_fill, with_vehicle
 from concio.studies.compare import compare
 from concio.verdict.verdict import Outcome, Verdict
 from models import box, model_of, weight
@@ -65,6 +67,13 @@ def tilted_ground() -> object:
     return concio.diagnose(model_of(ground, box("a", 0, 1, 0, 1, **stone), loads=(weight(),)), level, [turns])
 
 
+def crossed() -> object:
+    bridge = concio.bridge(span=3.0, rise=0.75, ring=0.3, voussoirs=8, block="rigid", unit_weight=22.0, friction=0.6)
+    vehicle = Vehicle("one axle", (Axle(0.0, 10.0),))
+    model = with_vehicle(with_fill(bridge, Fill(cover=0.3, unit_weight=20.0)), vehicle)
+    return concio.assess_bridge(model, step=3.0, fine=1.0, worst=1, checked=1, sensitivity=False)
+
+
 STAGES = [concio.Stage("dead", {"dead": 1.0}), concio.Stage("push", {"live": 1.0})]
 MAKE: dict[str, Callable[[], Any]] = {
     "Result": lambda: concio.solve(pushed()),
@@ -85,6 +94,7 @@ MAKE: dict[str, Callable[[], Any]] = {
     "Assessment": lambda: concio.assess(overturning(), site=site()),
     "StudyResult": two_runs,
     "Diagnosis": tilted_ground,
+    "BridgeResult": crossed,
 }
 """A result of every class that has a verdict."""
 

@@ -12,7 +12,7 @@ from concio.arguments import closest
 from concio.contact.assembly import Assembly
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED
-from concio.kinematics.frames import tangents, turned_left
+from concio.kinematics.frames import cross, tangents, turned_left
 from concio.kinematics.rigid import swept
 from concio.model.interfaces.detect import Interface
 from concio.model.interfaces.patch import Patch
@@ -53,7 +53,7 @@ class Reading:
 
     def value(self, displacement: Array, factors: Mapping[str, float]) -> float:
         """Return what is read of displacements (N_all,) under load factors [m or rad]."""
-        return float(self.row @ displacement) + sum(f * factors.get(g, 0.0) for g, f in self.moved.items())
+        return float(self.row @ displacement) + sum(f * factors[g] for g, f in self.moved.items() if g in factors)
 
 
 def readings(assembly: Assembly, measurements: Sequence[Measurement]) -> tuple[Reading, ...]:
@@ -145,7 +145,7 @@ def _tilt(assembly: Assembly, m: Measurement, b: int, where: str) -> Reading:
         msg = "a tilt in space needs the axis about which it turns"
         raise InputError(msg, where=where, hint="direction = [1, 0, 0] is a lean towards -y")
     arm = to - at
-    across = turned_left(arm) if d == 2 else np.cross(_direction(m.direction, d, where), arm)
+    across = turned_left(arm) if d == 2 else cross(_direction(m.direction, d, where), arm)
     size2 = float(across @ across)
     if not size2 > (1e-9 * assembly.model.size) ** 2:
         msg = "the two points between which the tilt is measured do not tell it"

@@ -21,11 +21,12 @@ from concio.analysis.motion.state import Memory, MotionState
 from concio.analysis.motion.tie_bars import TieStep
 from concio.contact.moving.edges import as_complex, as_vectors
 from concio.contact.moving.laws import LawTable
-from concio.contact.moving.original import OriginalContacts, left, turned
+from concio.contact.moving.original import OriginalContacts
 from concio.contact.moving.points import MaterialPoints
 from concio.contact.moving.reference import Reference
 from concio.contact.moving.rows import Rows
 from concio.contact.moving.slots import Slots
+from concio.kinematics.frames import cross, turned, turned_left
 from concio.problem.cone import Cone
 from concio.solvers.stepping.matrix import StepMatrix
 
@@ -145,7 +146,7 @@ class Certificate:
         disp = self._moved(slots, rows, before, state)
         went = np.hypot(*(state.centre - before.centre).T)
         far = np.maximum(went[slots.body_a], went[slots.body_b])
-        along = (disp * left(rows.normal)).sum(axis=1)
+        along = (disp * turned_left(rows.normal)).sum(axis=1)
         turn = np.abs(state.rotation - before.rotation)
         most = np.maximum(turn[slots.body_a], turn[slots.body_b])
         bound = BENT * most * np.hypot(*disp.T) + PATH * far + ROUNDING * self.maker.width
@@ -291,7 +292,7 @@ class Certificate:
         """Return the pairs of supports that are off by (k, 2)."""
         held, k = self.maker.held, len(self.maker.held)
         normal = as_vectors(held.normal)
-        ways = (normal, left(normal))
+        ways = (normal, turned_left(normal))
         zero, inf = np.zeros(k), np.full(k, np.inf)
         return PairData(
             held.points.columns, np.stack([_rows(held.points, way, rotation) for way in ways], axis=1),
@@ -337,6 +338,6 @@ def _rows(points: MaterialPoints, way: Array, rotation: Array) -> Array:
     arm, local = turned(as_vectors(points.arm), rotation[body]), turned(way, -rotation[body])
     values = np.zeros(points.columns.shape)
     values[:, :2] = way
-    values[:, 2] = (arm[:, 0] * way[:, 1] - arm[:, 1] * way[:, 0]) / points.reach
+    values[:, 2] = cross(arm, way) / points.reach
     values[:, 3:] = (points.weight[:, :, None] * local[:, None, :]).reshape(len(body), -1)
     return values

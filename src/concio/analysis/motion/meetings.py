@@ -97,7 +97,9 @@ def time_until(gap: Array, velocity: Array, closing: Array) -> float:
     return float((np.maximum(gap[closing], 0.0) / -velocity[closing]).min())
 
 
-def first_meetings(step: JointStep, end: Array, apart: Array, speed: float, h: float, part: Array) -> Array:
+def first_meetings(
+    step: JointStep, end: Array, apart: Array, speed: float, h: float, part: Array, count: int
+) -> Array:  # fmt: skip
     """Return the times (P,) until what was apart at the beginning of a step meets in it; infinite without [s].
 
     Parameters
@@ -113,12 +115,14 @@ def first_meetings(step: JointStep, end: Array, apart: Array, speed: float, h: f
         [s].
     part : (m,) integer array
         Connected part to which each pair belongs.
+    count : int
+        Connected parts P, those without pairs counted.
     """
     begun = step.gap - 0.5 * h * step.y0[:, 0]
     found = apart & (begun > 0) & (step.y0[:, 0] < -speed) & (step.struck | (end < 0))
     mean = np.where(step.struck, step.y0[:, 0], (end - begun) / h)
     found &= mean < 0
-    times = np.full(int(part.max(initial=-1)) + 1, np.inf)
+    times = np.full(count, np.inf)
     np.minimum.at(times, part[found], np.maximum(begun[found], 0.0) / -mean[found])
     return times
 

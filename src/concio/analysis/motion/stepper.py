@@ -207,7 +207,7 @@ class Stepper:
         struck = float(np.maximum(-end[hit], 0.0).max(initial=0.0))
         free = hard & ~(memory_before.force[:, 0] > 0)
         part, part_of_pair = self.parts.of(slots)
-        meets = first_meetings(joint, end, free, speed, h, part_of_pair)
+        meets = first_meetings(joint, end, free, speed, h, part_of_pair, 1 + int(part.max(initial=-1)))
         nearing = free & ~joint.struck & (parting[:, 0] < -speed)
         left = time_until(end, parting[:, 0], nearing)
         return new, StepReport(found, m, works, depth, struck, rows.normal, meets, part, left)

@@ -23,6 +23,7 @@ from scipy.sparse.csgraph import connected_components
 
 from concio.analysis.seismic.layout import leaves_of, openings_of, returns_of, spans_along
 from concio.contact.assembly import Assembly
+from concio.kinematics.frames import turned_left
 from concio.model.model import Model
 
 Array = np.ndarray
@@ -145,7 +146,7 @@ def _lines_of(model: Model, group: tuple[int, ...], along: Array) -> list[_Line]
     """Return the lines of all openings, returns and cross walls of a structure, those of one place once."""
     if model.dim == 2:
         return _once([_Line("openings", along, at, False) for o in openings_of(model, group, along) for at in o.sides])
-    across = np.array([-along[1], along[0], 0.0])
+    across = np.array([*turned_left(along[:2]), 0.0])
     across = across * (1.0 if across[np.argmax(np.abs(across))] > 0 else -1.0)
     cross = returns_of(model, group, along, across)
     lines = [_Line("returns", across, at, True) for face in cross for at in face]

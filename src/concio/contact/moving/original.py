@@ -19,6 +19,7 @@ from concio.contact.moving.rows import Rows
 from concio.contact.moving.search import Layout
 from concio.contact.moving.slots import KINDS, LONE, Slots
 from concio.fem.discretisation import FIXED, RIGID
+from concio.kinematics.frames import cross, turned, turned_left
 from concio.kinematics.placement import Placement
 from concio.model.interfaces.detect import SLIVER_SHARE
 
@@ -248,7 +249,7 @@ class OriginalContacts:
         inside[1] = whole - inside[1]
         near = np.abs(inside) <= COINCIDE * self.length[a]
         of_b = np.where(near, layout.toucher.inner[:, n.claimed], inside > 0.0)
-        out_a, out_b = -left(t_a), -left(t_b)  # out of either body
+        out_a, out_b = -turned_left(t_a), -turned_left(t_b)  # out of either body
         gap_b = ((corners_b - p0[a]) * out_a).sum(axis=2)
         gap_a = ((corners_a - p0[b]) * out_b).sum(axis=2)
         pick = of_b[:, :, None]
@@ -257,7 +258,7 @@ class OriginalContacts:
         gap = np.where(of_b, gap_b, gap_a).ravel()
         length = whole - np.where(of_b, inside, 0.0).sum(axis=0)
         valid = np.tile(length > n.shortest, 2)
-        lone, out = p0[n.corner], -left(tangent[n.edge])
+        lone, out = p0[n.corner], -turned_left(tangent[n.edge])
         away = lone - p0[n.edge]
         along = (away * tangent[n.edge]).sum(axis=1)
         slack = 1e-9 * self.reference.disc.size
@@ -280,9 +281,9 @@ class OriginalContacts:
         nodes = 6
         for sign, body, side, first in sides:
             moving = self.rigid[body]
-            for k, way in enumerate((normal, left(normal))):
+            for k, way in enumerate((normal, turned_left(normal))):
                 arm = place - centre[body]
-                moment = (arm[:, 0] * way[:, 1] - arm[:, 1] * way[:, 0]) / disc.reach[body]
+                moment = cross(arm, way) / disc.reach[body]
                 values[:, k, first : first + 3] = sign * moving[:, None] * np.column_stack([way, moment])
                 imposed[:, k] += sign * still[body] * (velocity[body] * way).sum(axis=1)
                 if side is not None:
@@ -330,17 +331,6 @@ class OriginalContacts:
         return worst
 
 
-def left(v: Array) -> Array:
-    """Return vectors (k, 2) turned left by a right angle."""
-    return np.column_stack([-v[:, 1], v[:, 0]])
-
-
-def turned(v: Array, angle: Array) -> Array:
-    """Return vectors (k, 2) turned by angles (k,)."""
-    c, s = np.cos(angle), np.sin(angle)
-    return np.column_stack([c * v[:, 0] - s * v[:, 1], s * v[:, 0] + c * v[:, 1]])
-
-
 def _turning(
     point: Array, normal: Array, sign: Array, master: Array, slave: Array, centre: Array, velocity: Array, spin: Array
 ) -> Array:
@@ -349,8 +339,9 @@ def _turning(
         return np.zeros((len(point), 2))
     w = spin[master][:, None]
     from_slave = point - centre[slave]
-    seen = velocity[slave] + spin[slave][:, None] * left(from_slave) - velocity[master]
+    seen = velocity[slave] + spin[slave][:, None] * turned_left(from_slave) - velocity[master]
     pulled = -(spin[slave] ** 2)[:, None] * from_slave
-    seen = pulled - 2.0 * w * left(seen) - w**2 * (point - centre[master])
-    found: Array = sign[:, None] * np.column_stack([(seen * normal).sum(axis=1), (seen * left(normal)).sum(axis=1)])
+    seen = pulled - 2.0 * w * turned_left(seen) - w**2 * (point - centre[master])
+    ways = np.stack([normal, turned_left(normal)], axis=1)
+    found: Array = sign[:, None] * np.einsum("ki,kji->kj", seen, ways)
     return found

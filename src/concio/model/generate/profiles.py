@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.errors import InputError
+from concio.kinematics.frames import turned_left
 
 Array = np.ndarray
 
@@ -132,7 +133,7 @@ def _smooth(curve: Callable[[Array], Array], end: float, kinks: tuple[float, ...
         low, high = np.maximum(t - step, 0.0), np.minimum(t + step, end)
         tangent = curve(high) - curve(low)
         tangent /= np.hypot(*tangent.T)[:, None]
-        return np.column_stack([-tangent[:, 1], tangent[:, 0]])
+        return turned_left(tangent)
 
     shares = tuple(float(v) for v in np.interp(kinks, fine, along)) if kinks else ()
     return Profile(lambda s: curve(parameter(s)), normals, shares)
