@@ -48,7 +48,7 @@ def limit(
         bool, typer.Option("--solves", help="Also bisect load and friction with solved load steps (some twenty).")
     ] = False,
     quick: Annotated[
-        bool, typer.Option("--quick", help="The proven bound alone: no path, no steps, no search, no friction margin.")
+        bool, typer.Option("--quick", help="The upper bound alone: no path, no steps, no search, no friction margin.")
     ] = False,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for figures of the mechanisms.")] = None,
     engine: EngineOf = None,
