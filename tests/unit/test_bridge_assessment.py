@@ -229,3 +229,12 @@ def test_a_study_varies_ring_and_fill_with_the_bridge_as_its_model(tmp_path: Pat
     assert np.isfinite(factors).all()
     assert np.ptp(factors) > 0
     assert found.values("bridge_axle") == pytest.approx(100.0 * factors)
+
+
+def test_brackets_are_at_positions_that_are_least_in_their_neighbourhood() -> None:
+    found = concio.assess_bridge(small(), step=0.15, fine=0.05, worst=5, checked=0, sensitivity=False)
+    curve = [(s.position, s.multiplier) for s in found.standings]
+    for bracket in found.brackets:
+        k = next(i for i, (x, _) in enumerate(curve) if x == bracket.standing.position)
+        assert bracket.standing.multiplier <= min(m for _, m in curve[max(k - 1, 0) : k + 2])
+    assert len(found.brackets) == 2  # the mirror images of one

@@ -10,6 +10,7 @@ import pytest
 import concio
 from concio.errors import InputError
 from concio.model.crossing import Axle, Fill, Layer, Vehicle
+from concio.model.plausibility import implausible
 from concio.model.road.earth import ground_of, spread_under, stress_at, with_fill, with_vehicle, without_pressure
 from concio.model.road.spread import spread_rules
 from concio.model.road.vehicles import convoy, find_vehicle, vehicles
@@ -164,3 +165,30 @@ def test_width_by_rule_is_reported_and_at_most_that_of_the_bridge() -> None:
     assert narrow.body("v01").thickness == pytest.approx(1.8 + 1.5 + 0.4)
     wide = with_fill(arch(), Fill(cover=0.4, spread="CS 454", width="rule"))
     assert wide.body("v01").thickness == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("[0.0, 90.0]", "[0.0, 11.5]"), "if tonnes were meant, write '11.5 tf'"),
+        (("[0.0, 90.0]", "[0.0, 112800]"), "if newtons were meant, write '112800 N'"),
+        (("width = 2.0", "width = 1.5"), "is 1.8 m wide, the structure below it 1.5 m"),
+        (("unit_weight = 19.0", "unit_weight = 1900"), "'1900 kg/m3'"),
+        (("unit_weight = 19.0", "unit_weight = 1.9"), "'1.9 t/m3'"),
+        (("unit_weight = 23.0", "unit_weight = 2300"), "layer 'surfacing' weighs 2300"),
+        (("cover = 0.3", "cover = 300"), "a cover of 300 m"),
+        (("ring = 0.215", "ring = 21.5"), "a ring of 21.5 m in a span of 3 m"),
+    ],
+)
+def test_numbers_in_other_units_are_told(change: tuple[str, str], words: str) -> None:
+    text = (
+        "[bridge]\nspan = 3.0\nrise = 0.75\nring = 0.215\nvoussoirs = 16\nblock = 'rigid'\nwidth = 2.0\n"
+        "[fill]\ncover = 0.3\nunit_weight = 19.0\nlayers = [{ depth = 0.1, unit_weight = 23.0 }]\n"
+        "[vehicle]\naxles = [[0.0, 90.0]]\n"
+    )
+    assert not implausible(concio.loads(text))
+    assert words in " ".join(implausible(concio.loads(text.replace(*change))))
+    for unit, value in (("t/m3", 1.9), ("kg/m3", 1900)):  # what is told to write can be read
+        read = concio.loads(text.replace("unit_weight = 19.0", f"unit_weight = '{value} {unit}'"))
+        assert read.fill is not None
+        assert read.fill.unit_weight == pytest.approx(1.9 * 9.80665, rel=1e-3)

@@ -10,10 +10,9 @@ import numpy as np
 
 from concio.model.actions import Point
 from concio.model.body import Body
-from concio.model.crossing import TONNES
 from concio.model.materials import Elastic, JointLaw
 from concio.model.model import Model
-from concio.units import GRAVITY
+from concio.model.odd_crossing import odd_crossing
 
 STEEP = 1.5
 """Coefficients of friction above this are not those of masonry: 56 degrees."""
@@ -65,7 +64,7 @@ def implausible(model: Model) -> tuple[str, ...]:
             )
     return (
         *found, *_sizes(model), *_thickness(model), *_ring(model), *_places(model), *_ties(model), *_weights(model),
-        *_stages(model), *_axles(model),
+        *_stages(model), *odd_crossing(model),
     )  # fmt: skip
 
 
@@ -169,19 +168,6 @@ def _ties(model: Model) -> list[str]:
         more = f" and {len(unlimited) - 1} more" if len(unlimited) > 1 else ""
         found.append(f"tie '{unlimited[0]}'{more} without a yield_force: bar and anchors carry any tension")
     return found
-
-
-def _axles(model: Model) -> list[str]:
-    """Return a sentence where axles are so light that they may be tonnes."""
-    if model.vehicle is None:
-        return []
-    heaviest = model.vehicle.heaviest.load
-    if heaviest > TONNES or heaviest == 1.0:  # a unit load is to be multiplied
-        return []
-    return [
-        f"the heaviest axle of vehicle '{model.vehicle.name}' is {heaviest:g} kN: if tonnes were meant, "
-        f"write '{heaviest:g} tf', which is {heaviest * GRAVITY:.4g} kN"
-    ]
 
 
 def _stages(model: Model) -> list[str]:

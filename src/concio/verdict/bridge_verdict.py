@@ -83,9 +83,10 @@ def bridge_lines(found: BridgeResult) -> list[str]:
         )  # fmt: skip
         lines.append(f"  vehicle      {name}: {what}")
     for c in found.changes:
+        unit = "" if c.unit == "-" else f" {c.unit}"
         lines.append(
-            f"  sensitivity  {c.name} {number(c.low, 4)} to {number(c.high, 4)} {c.unit if c.unit != '-' else ''}: "
-            f"bound {number(c.at_low, 4)} to {number(c.at_high, 4)}".replace("  bound", " bound")
+            f"  sensitivity  {c.name} {number(c.low, 4)} to {number(c.high, 4)}{unit}: "
+            f"bound {number(c.at_low, 4)} to {number(c.at_high, 4)}"
         )
     lines.append(f"  working      {_service(found)}")
     if found.settled is not None:

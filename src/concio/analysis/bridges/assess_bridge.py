@@ -11,7 +11,7 @@ import numpy as np
 from concio.analysis.bridges.bridge_result import Bracket, BridgeResult, Coulomb
 from concio.analysis.bridges.mexe import mexe_of
 from concio.analysis.bridges.service import service_state
-from concio.analysis.bridges.sweep import APART, FINE, Standing, Sweep, grid, least, search
+from concio.analysis.bridges.sweep import APART, FINE, Standing, Sweep, grid, least, lowest, search
 from concio.analysis.bridges.variants import changes, parts
 from concio.analysis.engine import by_its_engine
 from concio.analysis.lent_compliance import lend
@@ -62,7 +62,8 @@ def assess_bridge(
     fine : float
         Distance to which the worst positions are refined [m].
     worst : int
-        At how many worst positions the bracket of associated bound and Coulomb load steps is found.
+        At how many positions the bracket of associated bound and Coulomb load steps is found, each the least in its
+        neighbourhood, at most.
     checked : int
         At how many positions a Coulomb state under ``required`` times the vehicle is found; 0 leaves that out, and the
         answer open.
@@ -105,7 +106,7 @@ def assess_bridge(
     _refuse_what_does_not_stand(sweep)
     standings = search(sweep, step=step, fine=fine, worst=worst, progress=progress)
     low, high = sweep.reach()
-    few = least(standings, max(worst, 1), APART * (high - low))
+    few = least(lowest(standings), max(worst, 1), APART * (high - low))
     if not few:
         msg = "no position of the vehicle has a load factor: nothing bounds its load anywhere"
         raise SolverError(msg, hint="does the vehicle stand on masonry that can move?")

@@ -191,7 +191,7 @@ def search(
     for way in sweep.directions:
         own = [x for x, w in places if w == way]
         apart = own[1] - own[0]
-        for standing in least(_known(sweep, way), worst, APART * (own[-1] - own[0])):
+        for standing in least(lowest(_known(sweep, way)), worst, APART * (own[-1] - own[0])):
             _refine(sweep, standing, apart, fine)
     return tuple(s for way in sweep.directions for s in _known(sweep, way))
 
@@ -204,6 +204,17 @@ def least(standings: Sequence[Standing], count: int, apart: float) -> list[Stand
             found.append(s)
         if len(found) == count:
             break
+    return found
+
+
+def lowest(standings: Sequence[Standing]) -> list[Standing]:
+    """Return the standings whose multiplier is not above those of their neighbours of the same direction."""
+    found = []
+    for way in dict.fromkeys(s.direction for s in standings):
+        own = sorted((s for s in standings if s.direction == way), key=lambda s: s.position)
+        values = np.array([np.inf, *(s.multiplier for s in own), np.inf])
+        low = (values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:])
+        found += [s for s, is_low in zip(own, low.tolist(), strict=True) if is_low]
     return found
 
 

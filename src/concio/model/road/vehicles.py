@@ -37,7 +37,8 @@ def find_vehicle(name: str) -> Vehicle:
     known = vehicles()
     if name not in known:
         msg = f"there is no vehicle '{name}'"
-        raise InputError(msg, where="vehicle", hint=closest(name, known) + ", or give axles = [[place, load], ...]")
+        own = "your own is axles = [[place, load], ...]"
+        raise InputError(msg, where="vehicle", hint=f"{closest(name, known)}; {own}")
     return known[name]
 
 
