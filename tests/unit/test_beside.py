@@ -1,4 +1,4 @@
-"""Work in a second thread: its result, what it raises, the engine it uses, and that it stops when it is told to."""
+"""Work in a second thread: its result, what it raises, and that it stops when it is told to."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import pytest
 
 from concio.analysis.beside import Beside
 from concio.problem.solution import Progress, ProgressCallback
-from concio.solvers.algebra.sparse_factor import chosen_engine, factorised_by
 
 
 def endless(begun: threading.Event, ended: threading.Event) -> object:
@@ -51,8 +50,3 @@ def test_what_the_work_raises_is_raised_where_it_is_waited_for() -> None:
 
     with Beside(work) as beside, pytest.raises(ZeroDivisionError):
         beside.result(None)
-
-
-def test_the_work_uses_the_engine_that_was_chosen_around_it() -> None:
-    with factorised_by("pardiso"), Beside(lambda tell: chosen_engine()) as beside:
-        assert beside.result(None) == "pardiso"

@@ -5,11 +5,11 @@ import pytest
 import scipy.sparse as sp
 
 import concio
-from concio.problem.contact_problem import Array
+from concio.problem.contact_problem import Array, Engine
 from concio.solvers.algebra import sparse_factor
 from concio.solvers.algebra.block_factor import BlockFactor
 from concio.solvers.algebra.scaled import LOOSE, scale
-from concio.solvers.algebra.sparse_factor import Engine, OrderedFactor, Pattern, SingularMatrixError
+from concio.solvers.algebra.sparse_factor import OrderedFactor, Pattern, SingularMatrixError
 from concio.solvers.methods import find
 
 FACTORS = ("band", "superlu", "pardiso")

@@ -9,8 +9,7 @@ from threadpoolctl import ThreadpoolController
 
 import concio
 from concio.problem.solution import Progress
-from concio.solvers.algebra.sparse_factor import factorised_by
-from concio.solvers.algebra.threads import VARIABLES
+from concio.solvers.algebra.threads import VARIABLES, one_thread
 
 BLAS = ThreadpoolController().select(internal_api="openblas")
 needs_blas = pytest.mark.skipif(not BLAS.lib_controllers, reason="NumPy and SciPy were built with another library")
@@ -45,12 +44,12 @@ def test_a_solve_works_with_one_thread_and_gives_them_back(chosen_by_nobody: Non
 @needs_blas
 def test_contexts_within_each_other_and_other_threads_leave_the_number_as_it_was(chosen_by_nobody: None) -> None:
     def inside() -> None:
-        with factorised_by(None):
+        with one_thread():
             seen.append(threads())
 
     seen: list[set[int]] = []
     with BLAS.limit(limits=2):
-        with factorised_by(None):
+        with one_thread():
             inside()
             assert threads() == {1}
         assert threads() == {2}
@@ -64,5 +63,5 @@ def test_contexts_within_each_other_and_other_threads_leave_the_number_as_it_was
 @needs_blas
 def test_who_names_a_number_has_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "2")
-    with BLAS.limit(limits=2), factorised_by(None):
+    with BLAS.limit(limits=2), one_thread():
         assert threads() == {2}

@@ -5,7 +5,6 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, wait
-from contextvars import copy_context
 from types import TracebackType
 from typing import Generic, TypeVar
 
@@ -18,7 +17,7 @@ LOOK = 0.1
 
 
 class Beside(Generic[T]):
-    """Runs a function in a second thread, with the engine chosen here; leaving the block asks it to stop.
+    """Runs a function in a second thread; leaving the block asks it to stop.
 
     Callbacks are called in the thread that waits, and only while it waits: a bar shows one thing at a time.
 
@@ -32,7 +31,7 @@ class Beside(Generic[T]):
         self.asked = threading.Event()
         self.told: Progress | None = None
         self.pool = ThreadPoolExecutor(1)
-        self.future = self.pool.submit(copy_context().run, work, self.note)
+        self.future = self.pool.submit(work, self.note)
 
     def note(self, state: Progress) -> bool:
         """Keep what is told; return whether to stop."""

@@ -24,7 +24,7 @@ import numpy as np
 
 from concio.analysis.beside import Beside
 from concio.analysis.coulomb_path import coulomb_path, dead_state, live_load_path
-from concio.analysis.engine import by_its_engine, step_by_step
+from concio.analysis.entry_point import entry_point, entry_point_in_stages
 from concio.analysis.friction_margin import FrictionMargin
 from concio.analysis.lent_compliance import lent_assembly
 from concio.analysis.limit_result import LimitResult
@@ -75,7 +75,7 @@ Found = Literal["bound", "friction", "steps", "collapse state", "in one step", "
 
 
 @strict
-@by_its_engine
+@entry_point
 def limit(
     model: Model | Assembly,
     live: str | Sequence[str] = "live",
@@ -120,7 +120,7 @@ def limit(
 
 
 @strict
-@step_by_step
+@entry_point_in_stages
 def limit_stages(
     model: Model | Assembly,
     live: str | Sequence[str] = "live",
@@ -272,7 +272,7 @@ def search_collapse(
 
 
 @strict
-@by_its_engine
+@entry_point
 def friction_margin(
     model: Model | Assembly, live: str | Sequence[str] | None = None, factor: float = 1.0
 ) -> FrictionMargin:

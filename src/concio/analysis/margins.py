@@ -17,7 +17,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from concio.analysis.engine import by_its_engine
+from concio.analysis.entry_point import entry_point
 from concio.analysis.lent_compliance import lent_assembly
 from concio.analysis.limit import dead_and_live, factored_problem, live_groups
 from concio.analysis.margin_of import MarginOf
@@ -87,7 +87,7 @@ class Margin(Shown):
 
 
 @strict
-@by_its_engine
+@entry_point
 def load_margin(model: Model | Assembly, live: str | Sequence[str] = "live", tolerance: float = 1e-3) -> Margin:
     """Return the largest factor of the live load that :func:`concio.solve` was found to carry, in one step.
 
@@ -121,7 +121,7 @@ def _load_margin(dead: ContactProblem, load: Array, tolerance: float) -> Margin:
 
 
 @strict
-@by_its_engine
+@entry_point
 def friction_by_solving(
     model: Model | Assembly, live: str | Sequence[str] | None = None, factor: float = 1.0, tolerance: float = 1e-3
 ) -> Margin:

@@ -18,7 +18,7 @@ from typing import Literal
 
 import numpy as np
 
-from concio.analysis.engine import by_its_engine
+from concio.analysis.entry_point import entry_point
 from concio.analysis.lent_compliance import SHEAR_TO_NORMAL, lent_assembly
 from concio.analysis.path_breaks import marked, released, without_gone
 from concio.analysis.path_result import NamedEvent, PathResult, PathStep, control_functional, named_event
@@ -43,7 +43,7 @@ Array = np.ndarray
 
 
 @strict
-@by_its_engine
+@entry_point
 def run_path(
     model: Model | Assembly,
     stages: Sequence[Stage] = (),

@@ -15,8 +15,8 @@ from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import InputError, NoEquilibriumError, SolverError
 from concio.model.model import Model
 from concio.problem.solution import PROVEN_FAILURES, ProgressCallback, Solver, Status
-from concio.solvers.algebra.sparse_factor import factorised_by
 from concio.solvers.algebra.stiff_limit import without_compliance
+from concio.solvers.algebra.threads import one_thread
 from concio.solvers.methods import check_options, find
 from concio.verdict.unanswered import with_a_verdict
 
@@ -137,10 +137,11 @@ def _solve(
         solver, options = find("sparse-lemke" if problem.dim == 2 else "auto"), {}
     assembled = time.perf_counter()
     engine = options.get("engine", "")
-    with factorised_by(engine or None):  # what a method asks on its way factorises as it does
+    problem = problem.by(options.get("engine"))  # what a method asks on its way factorises as it does
+    with one_thread():
         solution = solver(problem, progress=progress, **options)
         if lent.lent_compliance and solution.solved:
-            solution, left = without_compliance(assembly.problem(factors), problem, solution)
+            solution, left = without_compliance(assembly.problem(factors).by(problem.engine), problem, solution)
             lent = stiffened(lent, assembly, left)
     end = time.perf_counter()
     seconds = {"total": end - begin, "assemble": assembled - begin, "solve": end - assembled}

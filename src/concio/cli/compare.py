@@ -35,7 +35,7 @@ def compare(
     import concio
     from concio.analysis.lent_compliance import lend
     from concio.contact.assembly import as_assembly
-    from concio.solvers.algebra.sparse_factor import factorised_by
+    from concio.solvers.algebra.threads import one_thread
     from concio.solvers.methods import find
     from concio.studies.compare import compare as compared
     from concio.studies.compare import format_table
@@ -45,7 +45,7 @@ def compare(
         find(name)
     model = in_units(concio.load(file), units)
     assembly = as_assembly(model)
-    with factorised_by(model.engine), progress_bar(shown=not json) as progress:
+    with one_thread(), progress_bar(shown=not json) as progress:
         result = concio.solve(assembly, factors=factors_of(factor), on_failure="return", progress=progress)
         lent = lend(result.assembly)
         problem = lent.problem(result.factors)  # the one that 'concio run' decides

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from concio.model.model import Model
-    from concio.solvers.algebra.sparse_factor import Engine
+    from concio.problem.contact_problem import Engine
 
 STIFFNESSES = ("normal_stiffness", "tangential_stiffness")
 

@@ -9,7 +9,7 @@ import typer
 
 if TYPE_CHECKING:
     from concio.model.model import Model
-    from concio.solvers.algebra.sparse_factor import Engine
+    from concio.problem.contact_problem import Engine
 
 File = Annotated[Path, typer.Argument(help="Model file (TOML); - reads standard input.", show_default=False)]
 Out = Annotated[Path | None, typer.Option("--out", "-o", help="Directory for figures, report and numbers.")]

@@ -155,6 +155,7 @@ class Assembly:
             slip_origin=origin,
             area=self.pairs.area,
             inertia=self.inertia,
+            engine=self.model.engine,
         )
 
     @cached_property

@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 import scipy.sparse as sp
@@ -32,6 +33,8 @@ from concio.problem.tolerances import SMOOTH
 from concio.representation import short_repr
 
 Array = np.ndarray
+Engine = Literal["superlu", "pardiso"]
+"""Names of the libraries that factorise sparse matrices."""
 
 
 @short_repr
@@ -128,6 +131,8 @@ class ContactProblem:
         The loads by which certificates measure forces [kN], where f holds more than loads: forces -K u0 of imposed
         displacements. An array tells of each connected part what it carries, a number is the total of every part.
         Default 0: the sum of |f|.
+    engine : {"superlu", "pardiso"}
+        What factorises the sparse matrices of whatever solves the problem.
     """
 
     K: sp.csr_array
@@ -142,6 +147,7 @@ class ContactProblem:
     area: Array = field(default_factory=lambda: np.zeros(0))
     inertia: sp.csr_array = field(default_factory=lambda: sp.csr_array((0, 0)))
     load: float | Array = 0.0
+    engine: Engine = "superlu"
 
     def __post_init__(self) -> None:
         m, n = self.C_n.shape
@@ -228,6 +234,10 @@ class ContactProblem:
         """Area of each pair over the mean, kept between 0.05 and 20: weighs forces where these are not unique (m,)."""
         share: Array = np.clip(self.area / (self.area.mean() if self.pairs else 1.0), 0.05, 20.0)
         return share
+
+    def by(self, engine: Engine | None) -> ContactProblem:
+        """Return the problem with another engine; None leaves it as it is."""
+        return self if engine is None or engine == self.engine else replace(self, engine=engine)
 
     def with_loads(self, f: Array) -> ContactProblem:
         """Return the same problem under other loads, all of them loads."""

@@ -15,7 +15,7 @@ from concio.contact.factors import load_factor
 from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
 from concio.problem.solution import PROVEN_FAILURES, Progress, Status
-from concio.solvers.algebra.sparse_factor import factorised_by
+from concio.solvers.algebra.threads import one_thread
 
 if TYPE_CHECKING:
     from concio.analysis.bridges.sweep import Standing
@@ -120,7 +120,7 @@ class Analyses:
         """The smallest common factor of friction with which forces balance the loads of the load step."""
         from concio.solvers.statics.friction import smallest_friction
 
-        with factorised_by(self.model.engine):
+        with one_thread():
             return smallest_friction(self.assembly.problem(dict(self.settings.factors))).factor
 
     @cached_property
@@ -130,7 +130,7 @@ class Analyses:
         from concio.solvers.statics.existence import find_mechanism
 
         sweep = Sweep(self.model)
-        with factorised_by(self.model.engine):
+        with one_thread():
             if find_mechanism(sweep.dead) is not None:
                 msg = "the bridge does not stand without the vehicle"
                 raise NoEquilibriumError(msg)

@@ -13,7 +13,7 @@ from concio.analysis.bridges.mexe import mexe_of
 from concio.analysis.bridges.service import service_state
 from concio.analysis.bridges.sweep import APART, FINE, Standing, Sweep, grid, least, lowest, search
 from concio.analysis.bridges.variants import changes, parts
-from concio.analysis.engine import by_its_engine
+from concio.analysis.entry_point import entry_point
 from concio.analysis.lent_compliance import lend
 from concio.analysis.limit import limit
 from concio.arguments import strict
@@ -34,7 +34,7 @@ CHECKED = 40
 
 
 @strict
-@by_its_engine
+@entry_point
 def assess_bridge(
     model: Model,
     *,

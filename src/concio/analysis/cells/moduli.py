@@ -25,7 +25,7 @@ import numpy as np
 from concio.analysis.cells.half_spaces import HalfSpaces
 from concio.analysis.cells.periodic_cell import PeriodicCell
 from concio.analysis.cells.tensors import rotation
-from concio.analysis.engine import by_its_engine
+from concio.analysis.entry_point import entry_point
 from concio.analysis.stress import Stress
 from concio.arguments import strict
 from concio.contact.assembly import Assembly
@@ -240,7 +240,7 @@ def _table(faces: HalfSpaces) -> list[dict[str, Any]]:
 
 
 @strict
-@by_its_engine
+@entry_point
 def homogenise(
     cell: Model | Assembly | PeriodicCell, *, contact: Array | None = None, sliding: Array | None = None
 ) -> Moduli:

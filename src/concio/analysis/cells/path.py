@@ -17,7 +17,7 @@ import numpy as np
 
 from concio.analysis.cells.path_result import CellPath, CellStep
 from concio.analysis.cells.periodic_cell import PeriodicCell
-from concio.analysis.engine import by_its_engine
+from concio.analysis.entry_point import entry_point
 from concio.analysis.lent_compliance import SHEAR_TO_NORMAL, with_compliance
 from concio.analysis.path_result import NamedEvent, named_event
 from concio.arguments import strict
@@ -61,7 +61,7 @@ class Drive:
 
 
 @strict
-@by_its_engine
+@entry_point
 def strain_path(
     cell: Model | Assembly | PeriodicCell,
     stages: Sequence[Stage | Mapping[str, float]] | Mapping[str, float] = (),

@@ -20,7 +20,7 @@ import numpy as np
 from concio.analysis.cells.half_spaces import HalfSpaces
 from concio.analysis.cells.periodic_cell import PeriodicCell, three
 from concio.analysis.cells.strength_faces import StrengthFaces, strength_faces
-from concio.analysis.engine import by_its_engine
+from concio.analysis.entry_point import entry_point
 from concio.analysis.lent_compliance import with_compliance
 from concio.analysis.limit import coulomb_path, search_collapse
 from concio.arguments import strict
@@ -215,7 +215,7 @@ class StrengthDomain(Shown):
 
 
 @strict
-@by_its_engine
+@entry_point
 def strength(
     cell: Model | Assembly | PeriodicCell,
     directions: Sequence[Sequence[float]] | Array | int = (),

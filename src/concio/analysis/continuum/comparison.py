@@ -26,7 +26,7 @@ from concio.analysis.continuum.continuum import Continuum, continuum_of
 from concio.analysis.continuum.elastic import solve_elastic
 from concio.analysis.continuum.kinematic_bound import kinematic_bound
 from concio.analysis.continuum.static_bound import StaticBound, static_bound
-from concio.analysis.engine import by_its_engine
+from concio.analysis.entry_point import entry_point
 from concio.analysis.limit import LIVE, limit
 from concio.analysis.step import solve
 from concio.arguments import closest, strict
@@ -140,7 +140,7 @@ def _number(value: float) -> float | None:
 
 
 @strict
-@by_its_engine
+@entry_point
 def compare_with_continuum(
     wall: Model | Assembly,
     cell: Model | Assembly | PeriodicCell | None = None,

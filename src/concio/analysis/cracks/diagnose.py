@@ -21,7 +21,7 @@ from concio.analysis.cracks.observed import readings
 from concio.analysis.cracks.places import next_places
 from concio.analysis.cracks.search import Found, allowed, search
 from concio.analysis.cracks.unseen import unseen_of
-from concio.analysis.engine import by_its_engine
+from concio.analysis.entry_point import entry_point
 from concio.arguments import strict
 from concio.contact.assembly import as_assembly
 from concio.errors import InputError
@@ -45,7 +45,7 @@ CHANGED = 0.3
 
 
 @strict
-@by_its_engine
+@entry_point
 def diagnose(
     model: Model,
     measurements: Sequence[Measurement],

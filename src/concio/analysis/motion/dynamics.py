@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from concio.analysis.engine import by_its_engine
+from concio.analysis.entry_point import entry_point
 from concio.analysis.motion.dynamics_result import DynamicsResult, Ending
 from concio.analysis.motion.fate import Watch
 from concio.analysis.motion.ground import Ground, Motion
@@ -31,9 +31,9 @@ from concio.errors import InputError
 from concio.kinematics.rigid import swept
 from concio.model.model import Model
 from concio.model.stages import ControlPoint
+from concio.problem.contact_problem import Engine
 from concio.problem.solution import Progress, ProgressCallback
 from concio.problem.tolerances import CERTIFIED
-from concio.solvers.algebra.sparse_factor import Engine
 from concio.units import GRAVITY
 from concio.verdict.dynamics_verdict import supports_short
 
@@ -59,7 +59,7 @@ AFTER = 20.0
 
 
 @strict
-@by_its_engine
+@entry_point
 def dynamics(
     model: Model,
     motion: Motion = None,

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from concio.analysis.engine import by_its_engine
+from concio.analysis.entry_point import entry_point
 from concio.analysis.motion.interruption import Interruption
 from concio.analysis.motion.joint_events import JointEvent, joint_events, tie_events
 from concio.analysis.motion.located import highest, meetings, ties_give_way, touching
@@ -38,8 +38,8 @@ from concio.contact.moving.reference import Reference
 from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
 from concio.model.stages import ControlPoint
+from concio.problem.contact_problem import Engine
 from concio.problem.solution import Progress, ProgressCallback
-from concio.solvers.algebra.sparse_factor import Engine
 from concio.units import GRAVITY
 from concio.verdict.not_standing import not_standing
 
@@ -85,7 +85,7 @@ ENDS = 1e-9
 
 
 @strict
-@by_its_engine
+@entry_point
 def push(
     model: Model,
     *,

@@ -24,9 +24,10 @@ from concio.analysis.motion.state import Memory, MotionState
 from concio.analysis.motion.tie_bars import settled_ties
 from concio.contact.moving.reference import Reference
 from concio.model.stages import ControlPoint
+from concio.problem.contact_problem import Engine
 from concio.problem.pair_state import PairStates
 from concio.problem.tolerances import CERTIFIED
-from concio.solvers.algebra.sparse_factor import Engine, SingularMatrixError
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.stepping.problem import StepProblem, StepSolution
 from concio.solvers.stepping.solver import StepSolver
 
@@ -114,7 +115,7 @@ class Statics(SmallDisplacements):
         sign: float = 1.0,
     ) -> None:
         super().__init__(reference, scheme, factors, live, control, sag, sign)
-        self.solver = StepSolver(engine)
+        self.solver = StepSolver(engine or reference.model.engine)
         self._unsolved = 0
         self.certificate = Certificate(reference, scheme, self.maker)
 

@@ -34,8 +34,8 @@ from concio.contact.moving.attachments import Ties
 from concio.contact.moving.edges import as_complex, as_vectors
 from concio.contact.moving.reference import Reference
 from concio.contact.moving.rows import Rows
+from concio.problem.contact_problem import Engine
 from concio.problem.tolerances import CERTIFIED
-from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.stepping.matrix import StepMatrix
 from concio.solvers.stepping.problem import StepSolution
 from concio.solvers.stepping.solver import StepSolver
@@ -95,7 +95,7 @@ class Stepper:
         self.frames = Frames(reference, scheme)
         self.maker = PairMaker(reference, scheme)
         self.certificate = Certificate(reference, scheme, self.maker)
-        self.solver = StepSolver(engine)
+        self.solver = StepSolver(engine or reference.model.engine)
         self.fixed = np.flatnonzero(disc.shape_of == -2)
         self.parts = Parts(disc.shape_of == -2)
         self._movable = np.full(disc.unknowns, np.inf)

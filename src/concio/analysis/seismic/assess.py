@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from concio.analysis.engine import by_its_engine
+from concio.analysis.entry_point import entry_point
 from concio.analysis.seismic.acting import acting_in
 from concio.analysis.seismic.assessment import Assessment
 from concio.analysis.seismic.directions import Direction, pushes
@@ -32,7 +32,7 @@ Array = np.ndarray
 
 
 @strict
-@by_its_engine
+@entry_point
 def assess(
     model: Model,
     *,

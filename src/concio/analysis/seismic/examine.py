@@ -146,7 +146,7 @@ def prepared(assembly: Assembly, found: Found, push: Push, name: str, control: C
     forces = tuple(f for _, f in dead), tuple(f for _, f in pushing)
     alpha, motion = found.multiplier, np.array([b.motion for b in mechanics.blocks])
     contacts = contacts_of(assembly, mechanics, found.normal_force)
-    sequence = Sequence(mechanics, contacts, *forces, ties, (block, at, along))
+    sequence = Sequence(mechanics, contacts, *forces, ties, (block, at, along), model.engine)
     linkage: Linkage | Sequence = sequence
     unfollowed: CapacityCurve | None = not_followed("several motions")
     if model.dim == 2:

@@ -24,6 +24,7 @@ from concio.analysis.seismic.placed import Contacts, Placed, Stated, on_blocks, 
 from concio.analysis.seismic.tie_history import TieHistory
 from concio.kinematics.rigid import motions
 from concio.model.model import Tie
+from concio.problem.contact_problem import Engine
 from concio.problem.tolerances import AT_BOUND, CHECKED
 from concio.solvers.statics.collapse_search import find_collapse_state
 from concio.solvers.statics.collapse_state import certify_collapse
@@ -103,6 +104,7 @@ class Sequence:
         With the macro-blocks of their ends.
     control : (int, (d,) array, (d,) array)
         Macro-block, point and direction of the control displacement.
+    engine : {"superlu", "pardiso"}
     """
 
     mechanics: Mechanics
@@ -111,6 +113,7 @@ class Sequence:
     push: tuple[Force, ...]
     ties: tuple[tuple[Tie, int, int], ...]
     control: tuple[int, Array, Array]
+    engine: Engine = "superlu"
 
     @cached_property
     def size(self) -> float:
@@ -151,7 +154,7 @@ class Sequence:
         now = stated(self.contacts, q, L)
         closed = np.flatnonzero(now.gap <= CLOSED * L)
         pull, longer, tied = self.pulls(q, history)
-        problem = problem_of(self.contacts, now, closed, on_blocks(q, self.dead, L) + tied)
+        problem = problem_of(self.contacts, now, closed, on_blocks(q, self.dead, L) + tied).by(self.engine)
         live = on_blocks(q, self.push, L)
         strength = problem.cone.strength(normal_force[closed])
         zero = np.zeros(len(closed))

@@ -9,7 +9,7 @@ from typing import Any
 
 from scipy.optimize import brentq
 
-from concio.analysis.engine import by_its_engine
+from concio.analysis.entry_point import entry_point
 from concio.analysis.seismic.assess import EVERY, assess
 from concio.analysis.seismic.assessment import Assessment
 from concio.analysis.seismic.directions import Direction
@@ -56,7 +56,7 @@ class TieForce:
 
 
 @strict
-@by_its_engine
+@entry_point
 def tie_force(model: Model, tie: str, *, zeta: float = 1.0, largest: float | None = None, **arguments: Any) -> TieForce:
     """Return the yield force of a tie that brings the least zeta_E of all mechanisms to ``zeta``, by solving.
 
@@ -141,7 +141,7 @@ class Variation:
     zeta: float
 
 
-@by_its_engine
+@entry_point
 def variations(found: Assessment, progress: ProgressCallback | None = None) -> tuple[Variation, ...]:
     """Return how the weakest mechanism changes with the friction and, where joints crush, with their strength.
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from concio.problem.contact_problem import Array
-from concio.solvers.algebra.sparse_factor import Engine, OrderedFactor, Pattern
+from concio.problem.contact_problem import Array, Engine
+from concio.solvers.algebra.sparse_factor import OrderedFactor, Pattern
 
 PIVOT = 0.0
 """Every diagonal entry is a pivot: refinement costs less than the fill that others bring late in an iteration."""
@@ -88,7 +88,7 @@ class BlockFactor:
     """
 
     def __init__(
-        self, K: sp.csr_array, C: sp.csr_array, pairs: int, bodies: Array, engine: Engine | None = None,
+        self, K: sp.csr_array, C: sp.csr_array, pairs: int, bodies: Array, engine: Engine = "superlu",
         added: sp.csr_array | None = None,
     ) -> None:  # fmt: skip
         n = K.shape[0]

@@ -24,11 +24,10 @@ import scipy.sparse as sp
 
 from concio.errors import MethodError
 from concio.problem.cone import Cone
-from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.contact_problem import Array, ContactProblem, Engine
 from concio.problem.natural_map import natural_map
 from concio.problem.tolerances import GRANTED, ROUNDING, SMOOTH
 from concio.solvers.algebra.block_factor import BlockFactor
-from concio.solvers.algebra.sparse_factor import Engine, chosen_engine
 
 LOOSE = 1e-10
 """Stiffness of the springs that keep unknowns which nothing holds where they are, scaled units."""
@@ -305,19 +304,17 @@ def typical_stiffness(problem: ContactProblem) -> float:
     return float(np.abs(problem.f).sum()) or 1.0
 
 
-def scale(problem: ContactProblem, engine: Engine | None = None, *, loads: Array | None = None) -> Scaled:
+def scale(problem: ContactProblem, *, loads: Array | None = None) -> Scaled:
     """Bring a problem to units of its own.
 
     Parameters
     ----------
     problem : ContactProblem
-    engine : {"superlu", "pardiso"}, optional
-        Sparse factorisation.
     loads : (N,) array, optional
         Loads by which forces are measured where those of the problem are not the measure (a load path) [kN].
     """
     m, d = problem.pairs, problem.dim
-    stiffness, K, C, factor = _matrices(problem, engine or chosen_engine())
+    stiffness, K, C, factor = _matrices(problem, problem.engine)
     springs = 1.0 / (_softness(problem) + compliances(problem) * stiffness)
     factor.factorise(springs[:, :, None] * np.eye(d), LOOSE)
     measured = problem.f if loads is None else loads

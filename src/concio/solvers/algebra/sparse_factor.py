@@ -7,19 +7,14 @@ Where the structure is small or slender its matrix is a narrow band, which LAPAC
 quarters of the time: panels of some thirty elastic or four hundred rigid blocks, columns and arches of any length.
 
 Engines, chosen by name and never by what happens to be installed: ``superlu`` (what comes with SciPy: SuperLU, and
-LAPACK for narrow bands) and ``pardiso`` (extra ``fast``).
-Paths, limit loads and motions solve many systems far below where the model names its engine: :func:`factorised_by`
-names it for all of them.
+LAPACK for narrow bands) and ``pardiso`` (extra ``fast``). A contact problem says which (``ContactProblem.engine``).
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
-from contextvars import ContextVar
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import scipy.linalg as sl
@@ -28,13 +23,7 @@ import scipy.sparse.linalg as sla
 from scipy.sparse import csgraph
 
 from concio.errors import ConcioError, InputError
-from concio.solvers.algebra.threads import one_thread
-
-Array = np.ndarray
-Engine = Literal["superlu", "pardiso"]
-
-_CHOSEN: ContextVar[Engine] = ContextVar("engine", default="superlu")
-"""What factorises where nothing else is asked for."""
+from concio.problem.contact_problem import Array, Engine
 
 PIVOT = 0.01
 """Share of the largest entry of its column down to which a diagonal entry is the pivot, unless told otherwise."""
@@ -48,22 +37,6 @@ NARROW = 1.1e7
 
 class SingularMatrixError(ConcioError):
     """A factorisation met a zero or a non-finite pivot."""
-
-
-@contextmanager
-def factorised_by(engine: Engine | None) -> Iterator[None]:
-    """Let an engine factorise all systems inside that leave the choice; None leaves it. Dense kernels are serial."""
-    before = _CHOSEN.set(engine or chosen_engine())
-    try:
-        with one_thread():
-            yield
-    finally:
-        _CHOSEN.reset(before)
-
-
-def chosen_engine() -> Engine:
-    """Return the engine that factorises where nothing else is asked for."""
-    return _CHOSEN.get()
 
 
 def nested_dissection(pattern: sp.csr_array, group: int = 2) -> tuple[Array, str]:
@@ -142,12 +115,11 @@ class Pattern:
     width: int | None = None
 
     @classmethod
-    def of(cls, row: Array, column: Array, size: int, engine: Engine | None = None, group: int = 2) -> Pattern:
+    def of(cls, row: Array, column: Array, size: int, engine: Engine = "superlu", group: int = 2) -> Pattern:
         """Return the pattern of entries (k,), repeated ones among them, of a matrix of ``size`` unknowns.
 
         ``group`` consecutive unknowns each belong to one node, or to one rigid body, as in :func:`nested_dissection`.
         """
-        engine = engine or chosen_engine()
         if engine not in ("superlu", "pardiso"):
             msg = f"unknown factorisation engine '{engine}'"
             raise InputError(msg, hint="superlu or pardiso")

@@ -138,7 +138,7 @@ class _States:
         u = answer.displacement.copy()
         t = self.bound(np.column_stack([answer.normal_force, answer.friction_force.reshape(m, d - 1)]))
         springs = LOOSE * (float(np.abs(self.D).max(initial=0.0)) or float(abs(hard.K).max()) or 1.0)
-        factor = BlockFactor(hard.K, self.C, m, hard.bodies)
+        factor = BlockFactor(hard.K, self.C, m, hard.bodies, hard.engine)
         factor.factorise(self.D, springs)
         force, length = (float(np.abs(v).max(initial=0.0)) or 1.0 for v in (t, u))
         best, error = (u, t), np.inf

@@ -13,10 +13,9 @@ over.
 
 from __future__ import annotations
 
-from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.contact_problem import Array, ContactProblem, Engine
 from concio.problem.solution import ProgressCallback, Solution, Status
 from concio.solvers.algebra.scaled import scale
-from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.auto.strategies import (
     Strategy,
     best_point_met,
@@ -73,12 +72,13 @@ def solve(
         ``info["strategy"]`` names the strategy that decided, ``info["cost"]`` those tried, each with its processor
         time [s].
     """
+    problem = problem.by(engine)
     if not problem.pairs and problem.dim == 2:
         return sparse_lemke.solve(problem, progress=progress)  # linear, or a mechanism
     rest = at_rest(problem)
     if rest is not None:
         return rest
-    return first_answer(Run(scale(problem, engine), progress), STRATEGIES)
+    return first_answer(Run(scale(problem), progress), STRATEGIES)
 
 
 def let_go(problem: ContactProblem, u: Array, progress: ProgressCallback | None = None) -> Solution:

@@ -51,12 +51,12 @@ def from_neighbours(run: Run, progress: ProgressCallback | None = None) -> Solut
     Cancelled
         The callback asked to stop.
     """
-    problem, engine = run.scaled.problem, run.scaled.factor.engine
+    problem = run.scaled.problem
     if not problem.laws.friction.any():
         return None
     left = min(BUDGET, WORK // problem.pairs)
     for factor in FACTORS:
-        near = Run(scale(problem.with_friction(factor), engine), progress)
+        near = Run(scale(problem.with_friction(factor)), progress)
         found = None
         for start in STARTS:
             found = found or near.from_start(start)

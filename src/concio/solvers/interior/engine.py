@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from concio.problem.contact_problem import ContactProblem
+from concio.problem.contact_problem import ContactProblem, Engine
 from concio.problem.solution import ProgressCallback, Solution, Status
 from concio.solvers.algebra.scaled import require_plane, scale
-from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.interior.run import SIZES, Cancelled, Run, Start, at_rest
 
 
@@ -39,7 +38,7 @@ def solve(
     if rest is not None:
         return rest
     require_plane(problem)
-    scaled = scale(problem, engine)
+    scaled = scale(problem.by(engine))
     run = Run(scaled, progress)
     try:
         found = None

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.contact_problem import Array, ContactProblem, Engine
 from concio.problem.solution import ProgressCallback, Solution, Status
 from concio.solvers.algebra.scaled import scale
-from concio.solvers.algebra.sparse_factor import Engine
 from concio.solvers.interior.run import STARTS, WEIGHTS, Cancelled, Run, at_rest, starts_for
 
 
@@ -38,7 +37,7 @@ def solve(
     rest = at_rest(problem)
     if rest is not None:
         return rest
-    run = Run(scale(problem, engine), progress)
+    run = Run(scale(problem.by(engine)), progress)
     try:
         found = None if near is None else run.newton(*run.scaled.bring(*near), WEIGHTS[:1])
         for start in starts_for(run.scaled)[:starts]:

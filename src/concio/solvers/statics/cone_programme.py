@@ -12,7 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.cone import Cone
-from concio.problem.contact_problem import Array
+from concio.problem.contact_problem import Array, Engine
 from concio.problem.tolerances import SMOOTH
 from concio.solvers.algebra.block_factor import BlockFactor
 
@@ -32,11 +32,13 @@ class Pairs:
         Strengths of forces shifted so that t_n >= 0.
     bodies : (B+1,) integer array
         Motions of block k are ``bodies[k]:bodies[k+1]``.
+    engine : {"superlu", "pardiso"}
     """
 
     C: sp.csr_array
     cone: Cone
     bodies: Array
+    engine: Engine = "superlu"
 
     @property
     def count(self) -> int:
@@ -102,7 +104,7 @@ class ConeProgramme:
         self.pairs = pairs
         self.C, self.Ct = pairs.C, sp.csr_array(pairs.C.T)
         r = pairs.C.shape[1]
-        self.factor = BlockFactor(sp.csr_array((r, r)), pairs.C, pairs.count, pairs.bodies)
+        self.factor = BlockFactor(sp.csr_array((r, r)), pairs.C, pairs.count, pairs.bodies, pairs.engine)
         cone = pairs.cone
         self.capped, self.rough = cone.capped, cone.rough
         self.cap = np.where(self.capped, cone.cap, 0.0)

@@ -106,7 +106,7 @@ class ConeStatics:
         self.force = float(np.abs(R.T @ load / self.scale).max(initial=0.0)) or 1.0
         motions = sp.csr_array(moved @ sp.diags_array(1.0 / self.scale))
         strengths = problem.cone.in_units(self.force)
-        self.programme = ConeProgramme(Pairs(motions, strengths.shifted, _motions_of_bodies(problem)))
+        self.programme = ConeProgramme(Pairs(motions, strengths.shifted, _motions_of_bodies(problem), problem.engine))
         self.shift = np.zeros((problem.pairs, problem.dim))
         self.shift[:, 0] = strengths.tension
 

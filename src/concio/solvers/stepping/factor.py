@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from concio.problem.contact_problem import Array
-from concio.solvers.algebra.sparse_factor import Engine, OrderedFactor, Pattern, SingularMatrixError
+from concio.problem.contact_problem import Array, Engine
+from concio.solvers.algebra.sparse_factor import OrderedFactor, Pattern, SingularMatrixError
 
 SMALL = 40
 """Unknowns up to which a dense inverse is cheaper than everything around a sparse factor."""
@@ -54,7 +54,7 @@ class StepFactor:
     engine : {"superlu", "pardiso"}, optional
     """
 
-    def __init__(self, matrix: sp.csr_array, columns: Array, engine: Engine | None = None) -> None:
+    def __init__(self, matrix: sp.csr_array, columns: Array, engine: Engine = "superlu") -> None:
         n = matrix.shape[0]
         m, w = columns.shape
         coo = matrix.tocoo()

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from concio.problem.contact_problem import Array
+from concio.problem.contact_problem import Array, Engine
 from concio.problem.pair_state import PairStates
-from concio.solvers.algebra.sparse_factor import Engine, SingularMatrixError
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.interior import engine as interior
 from concio.solvers.pivoting import sparse_lemke
 from concio.solvers.stepping.factor import StepFactor
@@ -38,7 +38,7 @@ class StepSolver:
     engine : {"superlu", "pardiso"}, optional
     """
 
-    def __init__(self, engine: Engine | None = None) -> None:
+    def __init__(self, engine: Engine = "superlu") -> None:
         self.engine = engine
         self.factor: StepFactor | None = None
         self.counts: dict[str, int] = {}
@@ -99,7 +99,7 @@ class StepSolver:
         return found
 
     def _fallback(self, p: StepProblem, best: StepSolution | None) -> StepSolution:
-        problem = p.contact_problem()
+        problem = p.contact_problem().by(self.engine)
         pick = np.flatnonzero(p.active)
         answer = interior.solve(problem)
         found = self._read(p, pick, answer.displacement, answer.normal_force, answer.friction_force, "interior point")
