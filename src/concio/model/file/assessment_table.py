@@ -20,7 +20,15 @@ Kind = TypeVar("Kind", bound=Table)
 
 
 class HazardTable(Table):
-    """What one limit state or one return period brings."""
+    """What one limit state or one return period brings.
+
+    Keys
+    ----
+    F0 :
+        Largest spectral amplification.
+    Tc :
+        Period T*_C of the code.
+    """
 
     a_g: Acceleration
     F0: Number | None = None
@@ -29,7 +37,27 @@ class HazardTable(Table):
 
 
 class BuildingTable(Table):
-    """A mode of the building: of a regular one by height and storeys, or by period, participation and shape."""
+    """A mode of the building: of a regular one by height and storeys, or by period, participation and shape.
+
+    Keys
+    ----
+    height :
+        Of the building.
+    storeys :
+        Number of storeys.
+    T1 :
+        First period, in s; estimated from the height where it is not given.
+    base :
+        Height of the foundation.
+    T :
+        Period of a mode, in s.
+    participation :
+        Participation factor of the mode.
+    shape :
+        Displacement of the mode at the height of the mechanism.
+    xi :
+        Damping ratio; 0.05 where it is not given.
+    """
 
     height: Length | None = None
     storeys: StrictInt | None = None
@@ -55,14 +83,40 @@ class SiteTable(Table):
 
 
 class HeightsTable(Table):
-    """Bodies by the height of their centroid."""
+    """Bodies by the height of their centroid.
+
+    Keys
+    ----
+    above, below :
+        Bodies whose centroid lies above, or below, this height.
+    """
 
     above: Length | None = None
     below: Length | None = None
 
 
 class AnchorTable(Table):
-    """The anchor of a tie; strengths are design values, already divided by their factors."""
+    """The anchor of a tie; strengths are design values, already divided by their factors.
+
+    Keys
+    ----
+    tie :
+        Name of the tie.
+    steel_strength :
+        Design strength of the steel.
+    plate :
+        Width and height of the anchor plate.
+    wall_thickness :
+        Thickness of the wall behind the plate.
+    shear_strength :
+        Design shear strength of the masonry.
+    bearing_strength :
+        Design strength of the masonry under the plate.
+    depth :
+        Depth of a bonded anchor.
+    hole :
+        Diameter of the hole of a bonded anchor.
+    """
 
     tie: Name
     steel_area: Annotated[Number | None, Field(description="in m2")] = None
@@ -76,7 +130,19 @@ class AnchorTable(Table):
 
 
 class FreeStandingTable(Table):
-    """An element that is free to vibrate; the arguments of ``FreeStanding``."""
+    """An element that is free to vibrate; the arguments of ``FreeStanding``.
+
+    Keys
+    ----
+    kind :
+        Which closed formula gives its period; see the how-to on assessment.
+    length :
+        Free height of the element.
+    thickness :
+        Its thickness.
+    unit_weight :
+        Its weight per volume.
+    """
 
     kind: Name
     E: Stress
@@ -86,7 +152,17 @@ class FreeStandingTable(Table):
 
 
 class ReportTextTable(Table):
-    """What stands in the head of the report, and its language."""
+    """What stands in the head of the report, and its language.
+
+    Keys
+    ----
+    project, place, author, date :
+        Printed in the head of the report.
+    knowledge :
+        What is known of the structure, and from where.
+    language :
+        Language of the report.
+    """
 
     project: StrictStr = ""
     place: StrictStr = ""
@@ -97,7 +173,19 @@ class ReportTextTable(Table):
 
 
 class AssessmentTable(Table):
-    """The arguments of :func:`concio.assess`, ties to dimension, anchors, and what the report is headed with."""
+    """The arguments of :func:`concio.assess`, ties to dimension, anchors, and what the report is headed with.
+
+    Keys
+    ----
+    largest_tie :
+        Largest force that is tried for ``size_tie``.
+    sensitivity :
+        Whether the report says how the answer changes with what was assumed.
+    anchors :
+        Anchors of ties that are checked.
+    report :
+        Head and language of the report.
+    """
 
     levels: list[Name] | None = None
     mechanisms: dict[str, list[StrictStr] | HeightsTable] = Field(default_factory=dict)

@@ -16,7 +16,21 @@ from concio.model.file.values import Length
 
 
 class BridgeDrawingTable(Table):
-    """A drawing of one span: a layer for each line of the barrel from the intrados outwards, and one for the road."""
+    """A drawing of one span: a layer for each line of the barrel from the intrados outwards, and one for the road.
+
+    Keys
+    ----
+    file :
+        DXF file, beside the model file.
+    lines :
+        Layers of the lines of the barrel, from the intrados outwards.
+    road :
+        Layer of the road line.
+    unit :
+        Unit of the drawing, where the file does not say it.
+    chord_tolerance :
+        Arcs are replaced by chords that deviate by no more.
+    """
 
     file: Name
     lines: list[StrictStr] = Field(default_factory=lambda: ["INTRADOS", "EXTRADOS"])

@@ -10,6 +10,7 @@ from pydantic import Field, StrictStr, create_model
 
 from concio.model.file.assessment_table import AssessmentEntry, SiteEntry
 from concio.model.file.bridge_drawing_table import BridgeDrawingTable
+from concio.model.file.descriptions import described
 from concio.model.file.generator_tables import generator_table
 from concio.model.file.import_tables import DrawingTable, SolidsTable
 from concio.model.file.motion_table import Motion
@@ -39,7 +40,31 @@ from concio.model.generate.generators import GENERATORS
 
 
 class FileTable(Table):
-    """A whole model file, without the tables of generators."""
+    """A whole model file, without the tables of generators.
+
+    Keys
+    ----
+    title :
+        Title of the model, in reports and figures.
+    materials :
+        Materials by name.
+    joints :
+        Joint laws by name.
+    rules :
+        Which joint law applies between which blocks.
+    blocks :
+        Blocks one by one.
+    blocks_file :
+        CSV or JSON table of blocks, or a DXF drawing, beside the model file.
+    loads :
+        Loads by group.
+    supports :
+        Supports, and displacements that are imposed.
+    stages :
+        Stages of a load path, in order.
+    parts :
+        Parts that the structure is put together from.
+    """
 
     title: StrictStr = ""
     units: UnitsTable = Field(default_factory=UnitsTable)
@@ -83,6 +108,7 @@ def file_table() -> type[FileTable]:
 def json_schema() -> dict[str, Any]:
     """Return the JSON Schema of a model file (draft 2020-12)."""
     schema = _any_of(file_table().model_json_schema())
+    schema = described(schema)
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         **schema,

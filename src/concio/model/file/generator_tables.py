@@ -155,7 +155,7 @@ def _table_of(kind: type) -> type[Table]:
         raise TypeError(kind)
     hints = get_type_hints(kind)
     members: dict[str, Any] = {f.name: (field_type(f.name, hints[f.name]), Field(None)) for f in fields(kind)}
-    return create_model(kind.__name__, __base__=Table, __doc__=first_line(kind), **members)
+    return create_model(kind.__name__, __base__=Table, __doc__=inspect.getdoc(kind), **members)
 
 
 @cache

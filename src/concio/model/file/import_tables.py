@@ -12,7 +12,27 @@ from concio.model.model import Face
 
 
 class LayerTable(Table):
-    """What a layer of a drawing means; see :mod:`concio.model.drawing.layers`."""
+    """What a layer of a drawing means; see :mod:`concio.model.drawing.layers`.
+
+    Keys
+    ----
+    use :
+        What its closed lines are.
+    material :
+        Name of a table in ``[materials]``.
+    role :
+        Word by which rules find its blocks.
+    thickness :
+        Out of plane.
+    load :
+        Kind of load that its lines or points are.
+    group :
+        Load group.
+    face :
+        Side that the loaded edge looks to.
+    support :
+        Directions in which its points or lines are held.
+    """
 
     use: Literal["block", "rigid", "fixed", "hole", "names", "ignore"] | None = None
     material: StrictStr | None = None

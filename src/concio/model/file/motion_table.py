@@ -70,7 +70,17 @@ class PulseTable(Table):
 
 
 class MotionPoint(Table):
-    """A point whose displacement is kept at every step."""
+    """A point whose displacement is kept at every step.
+
+    Keys
+    ----
+    body :
+        Name of the block.
+    at :
+        The point, where it is at the start.
+    direction :
+        Direction in which the displacement is positive.
+    """
 
     body: Name
     at: tuple[float, float]
@@ -78,7 +88,21 @@ class MotionPoint(Table):
 
 
 class MotionTable(Table):
-    """The arguments of :func:`concio.dynamics`."""
+    """The arguments of :func:`concio.dynamics`.
+
+    Keys
+    ----
+    record :
+        File of accelerations along x, beside the model file.
+    vertical :
+        The same along y.
+    unit :
+        Unit of the accelerations, where the file does not say it.
+    record_step :
+        Time from one value of the record to the next, where the file does not say it.
+    pulse :
+        A pulse along x, in place of a record.
+    """
 
     record: StrictStr | None = None
     vertical: StrictStr | None = None

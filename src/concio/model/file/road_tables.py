@@ -19,7 +19,13 @@ from concio.model.road.vehicles import axles_of, convoy, find_vehicle
 
 
 class LayerTable(Table):
-    """A layer of the road above the fill."""
+    """A layer of the road above the fill.
+
+    Keys
+    ----
+    name :
+        What it is, for reports.
+    """
 
     name: Name = "surfacing"
     depth: Length
@@ -27,7 +33,15 @@ class LayerTable(Table):
 
 
 class SpreadTable(Table):
-    """A rule of the user's by which live load spreads; see :class:`concio.model.road.spread.SpreadRule`."""
+    """A rule of the user's by which live load spreads; see :class:`concio.model.road.spread.SpreadRule`.
+
+    Keys
+    ----
+    name :
+        Name under which reports give it.
+    source :
+        Where it is published.
+    """
 
     name: Name = "own"
     along: Number
@@ -75,14 +89,28 @@ class FillTable(Table):
 
 
 class FollowerTable(Table):
-    """Another vehicle, its reference point at a distance from that of the first."""
+    """Another vehicle, its reference point at a distance from that of the first.
+
+    Keys
+    ----
+    name :
+        Name of a vehicle of the library.
+    """
 
     name: Name
     distance: Length
 
 
 class VehicleTable(Table):
-    """What crosses the bridge; see :class:`concio.model.crossing.Vehicle`."""
+    """What crosses the bridge; see :class:`concio.model.crossing.Vehicle`.
+
+    Keys
+    ----
+    name :
+        Name of a vehicle of the library, or of one of your own.
+    also :
+        Further vehicles on the bridge.
+    """
 
     name: Name = "own"
     axles: list[Any] | None = Field(None, description="[place in m, load in kN] each, or tables with at and load")

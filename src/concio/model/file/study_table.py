@@ -17,7 +17,33 @@ Plain = StrictInt | float
 
 
 class VariableTable(Table):
-    """A variable; keys beside these are parameters of its distribution."""
+    """A variable; keys beside these are parameters of its distribution.
+
+    Keys
+    ----
+    name :
+        Name of the variable; columns of the results have it.
+    distribution :
+        Name of the distribution; see ``concio study``.
+    keys :
+        Keys of the file that take its value.
+    unit :
+        Unit of its values.
+    values :
+        Values of a discrete variable.
+    weights :
+        Probabilities of the values, up to a factor.
+    levels :
+        Number of values of a grid.
+    low, high :
+        Smallest and largest value.
+    mean, sd, cov :
+        Mean, standard deviation, coefficient of variation.
+    median, mode :
+        Median, most likely value.
+    alpha, beta, shape, scale :
+        Parameters of the distribution.
+    """
 
     name: Name
     distribution: Name = "uniform"
@@ -44,14 +70,30 @@ class VariableTable(Table):
 
 
 class CorrelationTable(Table):
-    """Rank correlation of two variables."""
+    """Rank correlation of two variables.
+
+    Keys
+    ----
+    between :
+        Names of the two variables.
+    rank :
+        Spearman's coefficient, from -1 to 1.
+    """
 
     between: tuple[Name, Name]
     rank: float
 
 
 class StopTable(Table):
-    """When the study has seen enough; see :class:`concio.studies.study.Stop`."""
+    """When the study has seen enough; see :class:`concio.studies.study.Stop`.
+
+    Keys
+    ----
+    output :
+        Name of the output whose mean or share is watched.
+    confidence :
+        Confidence of its interval.
+    """
 
     output: Name
     width: float
@@ -62,7 +104,17 @@ class StopTable(Table):
 
 
 class StudyTable(Table):
-    """The arguments of :func:`concio.study`."""
+    """The arguments of :func:`concio.study`.
+
+    Keys
+    ----
+    method :
+        Solver of each run.
+    factors :
+        Load factors of each run.
+    live :
+        Load groups that grow where a limit load is asked for.
+    """
 
     sample: Name = "latin-hypercube"
     size: StrictInt | None = None

@@ -19,7 +19,13 @@ Reading = Annotated[Any, Field(description="a length, of a tilt an angle; or a t
 
 
 class MeasurementTable(Table):
-    """The arguments of :class:`concio.Measurement`."""
+    """The arguments of :class:`concio.Measurement`.
+
+    Keys
+    ----
+    name :
+        Name of the measurement.
+    """
 
     name: Name
     kind: Literal["opening", "slip", "closed", "tilt", "level", "distance"] = "opening"
@@ -40,7 +46,13 @@ class MeasurementTable(Table):
 
 
 class CandidateTable(Table):
-    """The arguments of :class:`concio.Candidate`."""
+    """The arguments of :class:`concio.Candidate`.
+
+    Keys
+    ----
+    name :
+        Name of the possible cause.
+    """
 
     name: Name
     body: StrictStr = ""
@@ -60,7 +72,17 @@ class CandidateTable(Table):
 
 
 class SurveyTable(Table):
-    """The arguments of :func:`concio.diagnose`, and what its report is headed with."""
+    """The arguments of :func:`concio.diagnose`, and what its report is headed with.
+
+    Keys
+    ----
+    measurements :
+        What was measured.
+    candidates :
+        What may have moved or changed.
+    report :
+        Head and language of the report.
+    """
 
     measurements: list[MeasurementTable] = Field(default_factory=list)
     measurements_file: Annotated[StrictStr, Field(description="CSV table of measurements, beside the file")] = ""

@@ -60,7 +60,15 @@ class Table(BaseModel):
 
 
 class UnitsTable(Table):
-    """The consistent system of the bare numbers of the file."""
+    """The consistent system of the bare numbers of the file.
+
+    Keys
+    ----
+    force :
+        Unit of forces.
+    length :
+        Unit of lengths; stresses and weights follow from both.
+    """
 
     force: Literal["N", "kN", "MN"] = "kN"
     length: Literal["mm", "cm", "m"] = "m"
@@ -76,7 +84,19 @@ class ReportTable(Table):
 
 
 class MaterialTable(Table):
-    """A material; ``kind = "rigid"`` has a unit weight only."""
+    """A material; ``kind = "rigid"`` has a unit weight only.
+
+    Keys
+    ----
+    kind :
+        A rigid material does not deform.
+    E :
+        Young's modulus.
+    nu :
+        Poisson's ratio.
+    unit_weight :
+        Weight per volume.
+    """
 
     kind: Literal["elastic", "rigid"] = "elastic"
     E: Stress | None = None
@@ -152,7 +172,17 @@ Bond = Annotated[
 
 
 class RuleTable(Table):
-    """Which law the joints between two sorts of bodies have; the last rule that fits wins."""
+    """Which law the joints between two sorts of bodies have; the last rule that fits wins.
+
+    Keys
+    ----
+    law :
+        Name of a table in ``[joints]``.
+    between :
+        Roles, layers or names of the two bodies; * stands for any text.
+    gap :
+        Initial gap of these joints, closed before they press.
+    """
 
     law: Name
     between: tuple[StrictStr, StrictStr] = ("*", "*")
@@ -160,14 +190,28 @@ class RuleTable(Table):
 
 
 class GridTable(Table):
-    """Mesh lines of a rectangular block."""
+    """Mesh lines of a rectangular block.
+
+    Keys
+    ----
+    x, y :
+        Places of the mesh lines from one side to the other.
+    """
 
     x: list[Length]
     y: list[Length]
 
 
 class HoleTable(Table):
-    """A hole in a face of a block in space: the number of the face from 0, and its vertices."""
+    """A hole in a face of a block in space: the number of the face from 0, and its vertices.
+
+    Keys
+    ----
+    face :
+        Number of the face, from 0.
+    loop :
+        Numbers of the vertices around the hole, from 0.
+    """
 
     face: StrictInt
     loop: list[StrictInt]
@@ -184,6 +228,37 @@ class BlockTable(Table):
 
     In the plane an outline, or a rectangle by two opposite corners, and holes in it; in space vertices and faces, or a
     box by two opposite corners.
+
+    Keys
+    ----
+    name :
+        Name of the block; each has its own.
+    outline :
+        Vertices of a polygon, in order.
+    holes :
+        Holes in the outline, or in faces of a block in space.
+    rectangle :
+        Two opposite corners, in place of an outline.
+    vertices :
+        Vertices of a block in space.
+    faces :
+        Vertices of each face by number from 0, counter-clockwise seen from outside.
+    box :
+        Two opposite corners of a block in space, in place of vertices and faces.
+    material :
+        Name of a table in ``[materials]``.
+    kind :
+        "fixed" is an obstacle, "rigid" does not deform; by default what the material is.
+    role :
+        Word by which rules find the block, such as "mortar".
+    layer :
+        Layer of a drawing, by which rules and loads find the block too.
+    thickness :
+        Out of plane, where it is not that of the model.
+    mesh_size :
+        Target element size, where it is not that of the model.
+    grid :
+        Mesh lines of a rectangular block.
     """
 
     name: Name
@@ -215,7 +290,29 @@ Rotation = Annotated[
 
 
 class SupportTable(Table):
-    """A support: of a whole body, of an edge, of a polygon on faces in space, or of the point ``at``."""
+    """A support: of a whole body, of an edge, of a polygon on faces in space, or of the point ``at``.
+
+    Keys
+    ----
+    name :
+        Name of the support; reactions are reported under it.
+    body :
+        Name of the block that is held.
+    edge :
+        Both ends of the edge that is held.
+    polygon :
+        Polygon on faces of a block in space that is held.
+    at :
+        Point that is held; without edge, polygon and point the whole body is.
+    directions :
+        Directions in which it is held.
+    displacement :
+        Displacement that is imposed at factor 1.
+    rotation :
+        Rotation that is imposed at factor 1.
+    group :
+        Load group whose factor multiplies what is imposed.
+    """
 
     name: Name
     body: Name
@@ -240,7 +337,26 @@ def load_value(kind: str, value: Any, info: ValidationInfo) -> tuple[float, ...]
 
 
 class LoadTable(Table):
-    """A load; the unit of ``value`` follows from its kind."""
+    """A load; the unit of ``value`` follows from its kind.
+
+    Keys
+    ----
+    kind :
+        "weight": multiples of the own weight; "pressure" and "traction": on edges or faces; "point": a force; "body": a
+        force per volume.
+    bodies :
+        Names of the blocks that it acts on; none names all.
+    edge :
+        Both ends of the edge that it acts on.
+    polygon :
+        Polygon on faces of blocks in space that it acts on.
+    at :
+        Point of application of a force.
+    group :
+        Load group, whose factor multiplies it.
+    face :
+        Faces that it acts on, by the side that they look to.
+    """
 
     kind: Literal["weight", "pressure", "traction", "point", "body"]
     value: Annotated[Any, Field(description="a number for pressure, [x, y] otherwise, [x, y, z] in space")]
@@ -258,7 +374,27 @@ class LoadTable(Table):
 
 
 class TieTable(Table):
-    """A bar that takes tension only; without ``body_b`` it ends at a fixed point."""
+    """A bar that takes tension only; without ``body_b`` it ends at a fixed point.
+
+    Keys
+    ----
+    name :
+        Name of the tie.
+    body_a, body_b :
+        Blocks that it joins; without the second it ends at a fixed point.
+    at_a, at_b :
+        Ends.
+    stiffness :
+        Force per elongation.
+    prestress :
+        Force before anything is loaded.
+    yield_force :
+        Force at which it yields; none: it does not.
+    break_elongation :
+        Elongation at which it breaks; none: it does not.
+    kind :
+        "soil" presses in place of pulling: a one-way spring with a cap.
+    """
 
     name: Name
     body_a: Name
@@ -284,6 +420,11 @@ class StageTable(Table):
     """A stage of a load path; see :class:`concio.model.stages.Stage`.
 
     Factors are plain numbers, but those called "stress xx", "stress yy", "stress xy" (of a periodic cell) are stresses.
+
+    Keys
+    ----
+    name :
+        Name of the stage.
     """
 
     name: Name
@@ -301,7 +442,13 @@ class StageTable(Table):
 
 
 class AnalysisTable(Table):
-    """How the model is meshed and how joints are found; see :class:`concio.model.model.Model`."""
+    """How the model is meshed and how joints are found; see :class:`concio.model.model.Model`.
+
+    Keys
+    ----
+    thickness :
+        Out of plane, of bodies that state none.
+    """
 
     plane: Literal["stress", "strain"] = "stress"
     element: Element = "Q4"
@@ -314,7 +461,13 @@ class AnalysisTable(Table):
 
 
 class SolverTable(Table):
-    """What solves the linear systems; "pardiso" comes with ``pip install 'concio[fast]'``."""
+    """What solves the linear systems; "pardiso" comes with ``pip install 'concio[fast]'``.
+
+    Keys
+    ----
+    engine :
+        Library that factorises the linear systems.
+    """
 
     engine: Literal["superlu", "pardiso"] = "superlu"
 
@@ -327,7 +480,17 @@ class ExtrusionTable(Table):
 
 
 class PartTable(Table):
-    """A part of the structure: a model file or a generator, placed; see :func:`concio.place`."""
+    """A part of the structure: a model file or a generator, placed; see :func:`concio.place`.
+
+    Keys
+    ----
+    file :
+        Another model file, beside this one; in place of a generator.
+    repeat :
+        How many copies stand in a row.
+    step :
+        From one copy to the next.
+    """
 
     name: Name | None = None
     file: Name | None = None

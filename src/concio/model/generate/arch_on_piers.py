@@ -53,6 +53,7 @@ def arch_on_piers(
     ring : float or str
         Thickness of the arch [m].
     voussoirs : int
+        Number of voussoirs.
     pier_width, pier_height : float or str
         The piers stand on the ground at y = 0 and end at the springing of the intrados [m].
     pier_courses : int

@@ -58,6 +58,7 @@ def arch(
     voussoirs : int
         Number of voussoirs; an odd number has a keystone.
     shape : {"semicircular", "segmental", "pointed", "flat"}
+        Of the intrados.
     rise : float or str, optional
         Rise of the intrados [m]; needed for a segmental arch, of a pointed one by default that of the equilateral arch.
     skew : float

@@ -36,6 +36,7 @@ class Common(TypedDict, total=False):
     horizontal : float
         Horizontal force towards +x as a share of the own weight, load group "live". Default 0.
     plane : {"stress", "strain"}
+        Plane stress or plane strain.
     element : str
         Element family, "Q4" by default.
     mesh_size : float, str or None
@@ -43,6 +44,7 @@ class Common(TypedDict, total=False):
     refinement : int
         Every element is split this many times more.
     title : str
+        Title of the model; by default what was made.
     """
 
     block: Elastic | Rigid | Literal["elastic", "rigid"]

@@ -64,6 +64,7 @@ def bridge(
     rise : float or str, or sequence
         Rise of the intrados of each span [m]; a semicircular arch needs none.
     shape : {"segmental", "semicircular", "elliptical", "three-centred", "parabolic", "pointed"}
+        Of the intrados.
     springing_ring : float or str, or sequence, optional
         Thickness of each ring at the springings, where it grows with the square of the distance from the crown [m].
     ring_friction : float, str or JointLaw, optional

@@ -68,6 +68,7 @@ def cloister_vault(
     oculus : float or str
         Clear width of the opening at the top; 0 closes the vault with a key [m].
     groin : {"stone", "mitre"}
+        One stone reaches round the corner where two webs meet, or both end in a mitre joint.
     **common
         See :class:`concio.model.generate.solid_masonry.CommonSpace`.
 
@@ -200,6 +201,7 @@ def cross_vault(
     springing : float or str
         Angle above the horizontal at which the webs leave the springers, which are one solid below [degrees].
     groin : {"stone", "mitre"}
+        One stone reaches round the corner where two webs meet, or both end in a mitre joint.
     **common
         See :class:`concio.model.generate.solid_masonry.CommonSpace`.
 

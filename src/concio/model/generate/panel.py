@@ -89,9 +89,11 @@ def running_bond_panel(
     refinement : int
         Each element is split this many times more in both directions.
     plane : {"stress", "strain"}
+        Plane stress or plane strain.
     element : str
         Element family, see :data:`concio.fem.elements.FAMILIES`.
     bed_mortar : {"continuous", "cut"}
+        Bed joints of mortar as one body along the panel, or cut at every head joint.
 
     Raises
     ------

@@ -47,6 +47,7 @@ class CommonSpace(TypedDict, total=False):
     contact_points : "auto", "corners" or int
         See :class:`concio.Model`.
     title : str
+        Title of the model; by default what was made.
     """
 
     block: Elastic | Rigid | Literal["elastic", "rigid"]
