@@ -13,6 +13,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from concio import bridges as bridges
+    from concio import cells as cells
+    from concio import cracks as cracks
+    from concio import generate as generate
+    from concio import motion as motion
+    from concio import seismic as seismic
     from concio.analysis.bridges.assess_bridge import assess_bridge
     from concio.analysis.bridges.bridge_result import BridgeResult
     from concio.analysis.cells.moduli import homogenise
@@ -153,6 +159,7 @@ _HOMES = {
     "concio.model.generate.rubble": ("rubble",),
     "concio.model.generate.walls": ("wall", "wall_of_courses"),
 }
+_NAMESPACES = ("bridges", "cells", "cracks", "generate", "motion", "seismic")
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
 
 __all__ = [
@@ -262,9 +269,11 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     if name in _HOME:
         return getattr(import_module(_HOME[name]), name)
+    if name in _NAMESPACES:
+        return import_module(f"concio.{name}")
     msg = f"module 'concio' has no attribute '{name}'"
     raise AttributeError(msg)
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return sorted((*__all__, *_NAMESPACES))
