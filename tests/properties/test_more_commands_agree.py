@@ -12,7 +12,7 @@ import pytest
 from test_commands_agree import FAILS, HOLDS, LIVE, MODELS, asked
 
 import concio
-from concio.analysis.collapse_proof import collapse_proof
+from concio.analysis.exact_proofs import collapse_proof
 from concio.analysis.limit_result import LimitResult
 from concio.problem.solution import Status
 from concio.proof.certificate import prove_collapse

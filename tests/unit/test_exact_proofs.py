@@ -16,10 +16,10 @@ import pytest
 
 import concio
 from commands import run
-from concio import Body, JointLaw, Load, Model, Polyhedron, Rigid, Tie
+from concio import Body, JointLaw, JointRule, Load, Model, Polyhedron, Rigid, Support, Tie
 from concio.errors import InputError, SolverError
 from concio.proof import verify
-from concio.proof.certificate import prove_collapse, prove_limit, sealed
+from concio.proof.certificate import prove_balance, prove_collapse, prove_limit, sealed
 from concio.proof.exact_solve import solve_exactly
 from pillars import ARCH, THIN, pillar, sideways, slot
 from samples import sample
@@ -208,13 +208,71 @@ def plain(**more: Any) -> Model:
     return Model((ground, block), {"block": Rigid(20.0)}, **{**given, **more})
 
 
+PUSHED = (Load("weight", (0, -1)), Load("weight", (1, 0), group="live"))
+TOP = Support("top", "a", edge=((0, 1), (0, 1)), directions="x")
+ROD = Tie("rod", "a", (0, 0.5), "", (-2, 0.5), 1e4, prestress=1.0, yield_force=3.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "right"),
+    [
+        ({"laws": {"joint": JointLaw(0.2, cohesion=5.0)}}, Fraction(9, 20)),
+        ({"laws": {"joint": JointLaw(0.9, cohesion=90.0, tensile_strength=4.0)}}, Fraction(6, 5)),
+        ({"laws": {"joint": JointLaw(0.3, dilatancy=0.1)}}, Fraction(3, 10)),
+        ({"laws": {"joint": JointLaw(0.3)}, "ties": (ROD,)}, Fraction(9, 20)),
+        ({"laws": {"joint": JointLaw(0.3)}, "supports": (TOP,)}, Fraction(8, 5)),
+    ],
+    ids=["cohesion", "tension", "dilatancy", "tie", "held"],
+)
+def test_cohesion_tension_ties_and_held_blocks_are_fractions(changes: dict[str, Any], right: Any) -> None:
+    """A block of 20 kN slides at cohesion + friction and tips at 1 + 2 T / W; held at its top, with friction below."""
+    assembly = concio.assemble(plain(loads=PUSHED, **changes))
+    made = prove_limit(assembly, numbers="decimal")
+    assert bounds(made) == (right, right)
+    assert "proved exactly" in verify.check(made)
+    high = {**made, "upper": str(right - Fraction(1, 10**30))}
+    with pytest.raises(ValueError, match="work"):
+        verify.check(sealed(high))
+
+
+def test_forces_that_balance_the_loads_are_proved_in_plane_and_space() -> None:
+    for model in (plain(loads=PUSHED), box(0.5, 0.3)):
+        made = prove_balance(concio.assemble(model), {"live": 0.3})
+        assert "balance dead x 1, live x 0.3: proved exactly" in verify.check(made)
+        with pytest.raises(ValueError, match="not in balance"):
+            verify.check(sealed({**made, "constant": {**made["constant"], "dead": "2"}}))
+        with pytest.raises(SolverError, match="no exact forces"):
+            prove_balance(concio.assemble(model), {"live": 0.7})
+
+
+def test_a_toe_that_crushes_is_a_fraction_near_the_plastic_hinge() -> None:
+    """30 kN/m2 carry 20 kN over two thirds of the joint: 1/3, and less by what its points miss of the edge."""
+    assembly = concio.assemble(plain(loads=PUSHED, laws={"joint": JointLaw(0.9, compressive_strength=30.0)}))
+    low, high = bounds(prove_limit(assembly, numbers="decimal"))
+    found = concio.limit(assembly, path=False, steps=False, search=False).associated.multiplier
+    assert low == high
+    assert float(low) == pytest.approx(found, rel=1e-9)
+    assert float(low) == pytest.approx(1 / 3, rel=0.01)
+
+
+def test_strength_in_space_is_bounded_from_both_sides() -> None:
+    """A box that slides with cohesion: 2 kN of cohesion over 2 m2 beside 0.2 of a weight of 120 kN."""
+    ground = Polyhedron.box("ground", (-9, -9, -1), (9, 9, 0), kind="fixed")
+    loads = (Load("weight", (0, 0, -1)), Load("weight", (0.6, 0.8, 0), group="live"))
+    block = Polyhedron.box("box", (0, 0, 0), (1, 2, 3), kind="rigid")
+    model = Model((ground, block), {"block": Rigid(20.0)}, {"joint": JointLaw(0.2, cohesion=2.0)}, loads=loads)
+    low, high = bounds(concio.limit(model, path=False, steps=False, search=False).proof())
+    right = 0.2 + 4.0 / 120.0
+    assert float(low) <= right * (1 + 1e-12)
+    assert float(high) >= right * (1 - 1e-12)
+    assert float(high - low) <= 1e-5
+
+
 @pytest.mark.parametrize(
     ("model", "words"),
     [
-        (plain(laws={"joint": JointLaw(0.6, cohesion=10.0)}), "cohesion"),
-        (plain(laws={"joint": JointLaw(0.6, compressive_strength=1e3)}), "crushes"),
-        (plain(laws={"joint": JointLaw(0.6, dilatancy=0.1)}), "dilates"),
-        (plain(ties=(Tie("rod", "a", (1, 1), "", (3, 1), 1e4, yield_force=9.0),)), "tie 'rod'"),
+        (plain(supports=(Support("sinks", "ground", displacement=(0.0, -0.1)),)), "a support that is moved"),
+        (plain(rules=(JointRule("joint", gap=0.01),)), "initial gap"),
     ],
 )
 def test_what_is_not_proved_exactly_is_refused_by_name(model: Model, words: str) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from concio.analysis.collapse_proof import against_slips
+from concio.analysis.exact_proofs import against_slips
 from concio.analysis.limit_torsion import SPREAD, SpreadSteps, twisting
 from concio.analysis.load_steps import LoadSteps
 from concio.contact.assembly import Assembly

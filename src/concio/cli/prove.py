@@ -17,7 +17,7 @@ from concio.cli.output import check_file, replaced_file
 def prove(
     file: File,
     claim: Annotated[
-        Literal["limit", "collapse"], typer.Option("--claim", help="What to prove of the loads.")
+        Literal["limit", "collapse", "balance"], typer.Option("--claim", help="What to prove of the loads.")
     ] = "limit",
     group: Annotated[
         list[str] | None,
@@ -35,7 +35,7 @@ def prove(
     json: Json = False,
     quiet: Quiet = False,
 ) -> int:
-    """Prove a multiplier from both sides, or that loads are not balanced, in fractions that anyone can recompute.
+    """Prove a multiplier from both sides, or that loads are balanced or not, in fractions that anyone can recompute.
 
     The certificate holds the numbers of the model, the forces and the motion. 'concio verify' recomputes all of it with
     Python's own fractions.
@@ -43,7 +43,7 @@ def prove(
     Example: concio prove wall.toml --group live --out wall.proof.json
     """
     import concio
-    from concio.analysis.collapse_proof import collapse_proof
+    from concio.analysis.exact_proofs import balance_proof, collapse_proof
     from concio.analysis.limit import limit
     from concio.errors import InputError
     from concio.proof.verify import check
@@ -53,16 +53,17 @@ def prove(
     if factor and claim == "limit":
         msg = "--factor does not go with --claim limit: what is not multiplied acts once"
         raise InputError(msg, hint="write the loads into the file as they are to act")
-    if group and claim == "collapse":
-        msg = "--group does not go with --claim collapse: nothing is multiplied"
+    if group and claim != "limit":
+        msg = f"--group does not go with --claim {claim}: nothing is multiplied"
         raise InputError(msg, hint="give the loads their factors with --factor")
     place = file.with_suffix(".proof.json") if out is None else out
     check_file(place, force=force)
     assembly, live = concio.assemble(loaded(file)), list(group or ["live"])
     factors = factors_of(factor) or None
     with with_a_verdict(assembly, "prove"):
-        if claim == "collapse":
-            live, made = [], collapse_proof(assembly, factors, numbers=numbers)
+        if claim != "limit":
+            prove_that = {"collapse": collapse_proof, "balance": balance_proof}[claim]
+            live, made = [], prove_that(assembly, factors, numbers=numbers)
         else:
             made = limit(assembly, live=live, path=False, steps=False, search=False).proof(numbers)
     made = with_attention(made, assembly)

@@ -118,6 +118,38 @@ def prove_collapse(
     raise SolverError(msg, hint="forces in balance within friction may exist; 'concio run' and 'concio limit' tell")
 
 
+def prove_balance(
+    assembly: Assembly, factors: Mapping[str, float] | None = None, *, numbers: Numbers = "binary",
+    directions: np.ndarray | None = None,
+) -> dict[str, Any]:  # fmt: skip
+    """Return the exact certificate of joint forces within their strength that balance the loads.
+
+    Rigid blocks on joints without compliance are in equilibrium under such forces, and stay where they are. Of elastic
+    blocks and of compliant joints they say less: forces in balance are necessary and not sufficient.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    factors : mapping of str to float, optional
+        Of the load groups.
+    numbers, directions
+        As in :func:`prove_limit`; directions of friction forces alone.
+
+    Raises
+    ------
+    InputError, SolverError
+        As :func:`prove_limit`.
+    """
+    data = statement(assembly, numbers)
+    acting = {g: _factor(factors, g, numbers) for g in assembly.groups}
+    made = {"format": FORMAT, "claim": "balance", **data, "constant": _texts(acting)}
+    found = _lower(forces_below(data, acting, {}, Fraction(0), directions))
+    if found is not None and _holds({**made, "forces": found["forces"]}):
+        return sealed({**made, "forces": found["forces"]})
+    msg = "no exact forces within friction were found that balance the loads"
+    raise SolverError(msg, hint="there may be none, or they are on the edge of a round cone; 'concio run' tells")
+
+
 def sealed(made: Mapping[str, Any]) -> dict[str, Any]:
     """Return a certificate with its digest, which shows a change in transit; it proves nothing."""
     return {**made, "digest": digest(made)}

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from concio.contact.assembly import Assembly
 from concio.contact.load_faces import loaded_bodies
 from concio.contact.loads import load_vectors
+from concio.contact.supports import points_held
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID
 from concio.kinematics.frames import cross
@@ -19,6 +21,9 @@ from concio.model.model import Model
 from concio.model.polyhedron import Polyhedron
 
 Numbers = Literal["binary", "decimal"]
+
+FIXED_POINTS = "fixed points"
+"""Name of the body to which ties and supports are fastened that end at no body."""
 
 REFUSED = "this is not proved exactly yet"
 
@@ -36,7 +41,7 @@ def statement(assembly: Assembly, numbers: Numbers = "binary") -> dict[str, Any]
     Raises
     ------
     InputError
-        The model has something that exact certificates do not state: ties, cohesion, held blocks, moved supports.
+        The model has something that exact certificates do not state: moved supports, initial gaps, periods.
     """
     refuse(assembly)
 
@@ -46,7 +51,7 @@ def statement(assembly: Assembly, numbers: Numbers = "binary") -> dict[str, Any]
     def texts(values: np.ndarray) -> list[str]:
         return [text(v) for v in np.asarray(values, dtype=float).ravel()]
 
-    pairs, model = assembly.pairs, assembly.model
+    model = assembly.model
     bodies = [
         {
             "name": body.name,
@@ -57,12 +62,18 @@ def statement(assembly: Assembly, numbers: Numbers = "binary") -> dict[str, Any]
         }
         for body in model.bodies
     ]
+    points = joint_points(assembly)
+    if any(min(point.a, point.b) < 0 for point in points):
+        nowhere = [["0"] * model.dim] * model.dim
+        bodies.append({"name": FIXED_POINTS, "fixed": True, "unit_weight": "0", "thickness": "1", "pieces": [nowhere]})
     joints = [
-        {"a": int(a), "b": int(b), "at": texts(at), "normal": texts(normal), "friction": text(mu)}
-        for a, b, at, normal, mu in zip(
-            pairs.body_a, pairs.body_b, pairs.point, pairs.normal, assembly.laws.friction, strict=True
-        )
-    ]
+        {
+            "a": point.a % len(bodies), "b": point.b % len(bodies), "at": texts(point.at),
+            "normal": texts(point.normal), "friction": text(point.friction),
+            **{name: text(value) for name, value in point.more.items()},
+        }
+        for point in points
+    ]  # fmt: skip
     loads = [
         {"kind": "weight", "group": load.group, "body": b, "value": texts(np.array(load.value))}
         for load in model.loads
@@ -83,6 +94,52 @@ def statement(assembly: Assembly, numbers: Numbers = "binary") -> dict[str, Any]
     return {"title": model.title, "bodies": bodies, "joints": joints, "loads": loads}
 
 
+@dataclass(frozen=True)
+class JointPoint:
+    """A point of a joint, a tie, or a point that a support holds.
+
+    Parameters
+    ----------
+    a, b : int
+        Bodies; -1 is a fixed point.
+    at, normal : (d,) arrays
+        [m]; from a to b.
+    friction : float
+    more : mapping
+        Cohesion, tension and cap where they are not 0, 0 and inf [kN].
+    """
+
+    a: int
+    b: int
+    at: np.ndarray
+    normal: np.ndarray
+    friction: float
+    more: Mapping[str, float] = field(default_factory=dict)
+
+
+HELD = {"tension": math.inf, "cap": math.inf}
+
+
+def joint_points(assembly: Assembly) -> list[JointPoint]:
+    """Return the contact pairs, ties among them, in their order, then what supports hold of blocks."""
+    pairs, law, disc = assembly.pairs, assembly.laws, assembly.disc
+    at = pairs.point.copy()
+    at[assembly.ties] = [tie.at_a for tie in assembly.model.ties] or at[assembly.ties]
+    usual = {"cohesion": 0.0, "tension": 0.0, "cap": math.inf}
+    found = []
+    for k in range(len(pairs)):
+        values = {name: float(getattr(law, name)[k]) for name in usual}
+        more = {name: value for name, value in values.items() if value != usual[name]}
+        found.append(
+            JointPoint(int(pairs.body_a[k]), int(pairs.body_b[k]), at[k], pairs.normal[k], float(law.friction[k]), more)
+        )
+    for b, conditions in assembly.supported.held.items():
+        for number in dict.fromkeys(c.support for c in conditions):
+            _, points, _, axes = points_held(disc, b, number)
+            found += [JointPoint(-1, b, p, np.eye(disc.dim)[axis], 0.0, HELD) for p in points for axis in axes]
+    return found
+
+
 def refuse(assembly: Assembly) -> None:
     """Refuse what exact certificates do not state.
 
@@ -91,17 +148,12 @@ def refuse(assembly: Assembly) -> None:
     InputError
         With the first thing that stands in the way.
     """
-    model, law = assembly.model, assembly.laws
+    model = assembly.model
     reasons: Mapping[str, bool] = {
         "a periodic cell": model.periods is not None,
-        f"tie '{model.ties[0].name}'" if model.ties else "": bool(model.ties),
-        "a joint with cohesion or tensile strength": bool((law.cohesion > 0).any() or (law.tension > 0).any()),
-        "a joint that crushes": bool(np.isfinite(law.cap).any()),
-        "a joint that dilates": bool((law.dilatancy > 0).any()),
-        "a support that holds a block": bool({s.body for s in model.supports} & {b.name for b in model.free_bodies}),
         "a support that is moved": any(s.moves for s in model.supports),
-        "a joint with an initial gap": bool((assembly.pairs.gap > 0).any()),
-        "no joint": not len(assembly.pairs),
+        "a joint with an initial gap": bool((assembly.pairs.gap[assembly.pairs.interface >= 0] > 0).any()),
+        "no joint": not joint_points(assembly),
     }
     found = next((words for words, holds in reasons.items() if holds), None)
     if found is not None:

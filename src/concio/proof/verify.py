@@ -5,16 +5,22 @@ and the balance of every block as fractions, and checks the claim without any ro
 of a joint, -F on block a; n points from a to b.
 
 limit       Loads that are constant plus x times loads that are multiplied. Given are joint forces that balance the
-            loads at x = lower, each within the cone of friction, and a motion of the blocks at x = upper that no joint
-            resists: no joint can open against it or hold it by friction, and the loads do more work on it at any x
-            above. So x = lower is balanced within friction, and no x above upper is, whatever the joint forces.
-collapse    Such a motion on which the loads as they are do work: nothing balances them.
+            loads at x = lower, each within the strength of its joint, and a motion of the blocks at x = upper on which
+            the loads do more work at any x above than joint forces within their strength can take. So x = lower is
+            balanced, and no x above upper is, whatever the joint forces.
+balance     Joint forces that balance the loads as they are.
+collapse    Such a motion on which the loads as they are do more work than that: nothing balances them.
+
+A joint force F = p n + s has strength where -tension <= p <= cap and |s| <= (cohesion + friction p) |n|. What is not
+given is 0, and a cap inf. A tie is a joint without friction along its line, a support that holds a point one with
+tension and cap inf.
 """
 
 import hashlib
 import json
 import sys
 from fractions import Fraction
+from math import isqrt
 from typing import Any
 
 Vector = list[Fraction]
@@ -87,14 +93,26 @@ def loads(data: Data, factors: Factors) -> list[list[Vector]]:
     return total
 
 
+def strength(joint: Data) -> list[Fraction]:
+    """Return friction, cohesion, tension and cap of a joint point; -1 stands for inf."""
+    texts = [joint.get(name, "inf" if name == "cap" else "0") for name in ("friction", "cohesion", "tension", "cap")]
+    found = [Fraction(-1) if text == "inf" else exact(text) for text in texts]
+    if min(found[:2]) < 0 or any(x < 0 for x, text in zip(found, texts, strict=True) if text != "inf"):
+        raise ValueError("a strength is negative, or friction or cohesion is inf")
+    return found
+
+
 def check_forces(data: Data, forces: list[Texts], factors: Factors) -> None:
-    """Raise unless joint forces lie in their cones and balance the loads on every free block."""
+    """Raise unless joint forces lie within the strength of their joints and balance the loads on every free block."""
     total = loads(data, factors)
     for k, (joint, text) in enumerate(zip(data["joints"], forces, strict=True)):
-        F, n, mu, at = vector(text), vector(joint["normal"]), exact(joint["friction"]), vector(joint["at"])
-        pressed = dot(F, n)
-        if pressed < 0 or dot(F, F) * dot(n, n) > (1 + mu * mu) * pressed * pressed:
-            raise ValueError(f"the force at joint point {k} is outside its cone of friction")
+        F, n, at = vector(text), vector(joint["normal"]), vector(joint["at"])
+        mu, cohesion, tension, cap = strength(joint)
+        size = dot(n, n)
+        pressed = dot(F, n) / size
+        sheared, most = dot(F, F) - pressed * pressed * size, cohesion + mu * pressed
+        if 0 <= tension < -pressed or 0 <= cap < pressed or most < 0 or sheared > most * most * size:
+            raise ValueError(f"the force at joint point {k} is outside its strength")
         add(total[joint["b"]], F, cross(at, F))
         add(total[joint["a"]], [-x for x in F], [-x for x in cross(at, F)])
     for body, (force, moment) in zip(data["bodies"], total, strict=True):
@@ -102,18 +120,35 @@ def check_forces(data: Data, forces: list[Texts], factors: Factors) -> None:
             raise ValueError(f"block {body['name']!r} is not in balance")
 
 
-def check_motion(data: Data, motion: Motion) -> None:
-    """Raise unless a motion is one that no joint resists: w.n >= mu |w_t| at every point, in squares."""
+def roots(square: Fraction) -> tuple[Fraction, Fraction]:
+    """Return fractions on both sides of a square root, equal where it is a fraction."""
+    below = isqrt(square.numerator * square.denominator * 10**80)
+    unit = square.denominator * 10**40
+    low = Fraction(below, unit)
+    return low, low if low * low == square else Fraction(below + 1, unit)
+
+
+def taken(data: Data, motion: Motion) -> Fraction:
+    """Return the most work that joint forces within their strength take in a motion; raise where it has no end."""
     for body, (v, turn) in zip(data["bodies"], motion, strict=True):
         if body["fixed"] and (any(vector(v)) or any(vector(turn))):
             raise ValueError(f"block {body['name']!r} is fixed and moves")
+    total = Fraction(0)
     for k, joint in enumerate(data["joints"]):
-        n, mu, at = vector(joint["normal"]), exact(joint["friction"]), vector(joint["at"])
+        n, at = vector(joint["normal"]), vector(joint["at"])
+        mu, cohesion, tension, cap = strength(joint)
         b, a = (velocity(motion[joint[side]], at) for side in "ba")
         w = [p - q for p, q in zip(b, a, strict=True)]
         opening = dot(w, n)
-        if opening < 0 or (1 + mu * mu) * opening * opening < mu * mu * dot(w, w) * dot(n, n):
-            raise ValueError(f"the joint at point {k} resists the motion")
+        most = []
+        for slip in roots(dot(w, w) * dot(n, n) - opening * opening):
+            closing = mu * slip - opening  # a normal force p takes p times as much, and cohesion its part
+            limit = cap if closing > 0 else tension
+            if closing and limit < 0:
+                raise ValueError(f"the joint at point {k} resists the motion")
+            most.append(cohesion * slip + abs(closing) * limit)
+        total += max(most)
+    return total
 
 
 def velocity(motion: list[Texts], at: Vector) -> Vector:
@@ -141,13 +176,16 @@ def check(data: Data) -> str:
     growing = {group: exact(x) for group, x in data.get("multiplied", {}).items()}
     if set(constant) & set(growing):
         raise ValueError("a load group is both constant and multiplied")
-    points = f"with friction at the {len(data['joints'])} joint points stated"
+    more = any(set(joint) & {"cohesion", "tension", "cap"} for joint in data["joints"])
+    points = f"with friction{' and strength' if more else ''} at the {len(data['joints'])} joint points stated"
     acting = ", ".join([f"{g} x {float(x):g}" for g, x in constant.items()] + [f"{g} multiplied" for g in growing])
     if data["claim"] == "collapse":
-        check_motion(data, data["motion"])
-        if not work(data, data["motion"], constant) > 0:
-            raise ValueError("the loads do no work on the motion")
+        if not work(data, data["motion"], constant) > taken(data, data["motion"]):
+            raise ValueError("the loads do no work on the motion that joints could not take")
         return f"no forces {points} balance {acting}: proved exactly"
+    if data["claim"] == "balance":
+        check_forces(data, data["forces"], constant)
+        return f"forces {points} balance {acting}: proved exactly"
     if data["claim"] != "limit":
         raise ValueError(f"unknown claim {data['claim']!r}")
     found = []
@@ -157,10 +195,9 @@ def check(data: Data) -> str:
         found.append(f"{data['lower']} = {float(lower):.12g} is balanced")
     if "motion" in data:
         upper = exact(data["upper"])
-        check_motion(data, data["motion"])
         rate = work(data, data["motion"], growing)
-        if not rate > 0 or work(data, data["motion"], constant) + upper * rate < 0:
-            raise ValueError("the loads need not do work on the motion above the upper bound")
+        if not rate > 0 or work(data, data["motion"], constant) + upper * rate < taken(data, data["motion"]):
+            raise ValueError("the loads need not do more work on the motion above the upper bound than joints take")
         found.append(f"nothing above {data['upper']} = {float(upper):.12g} is")
     if not found:
         raise ValueError("neither forces nor a motion are given")

@@ -1,12 +1,12 @@
 r"""Exact forces and motions that prove a multiplier from below and from above.
 
-With the joint forces written as sums of rays of the friction cones, F = sum p_j r_j with p >= 0, balance of every
-free block under dead and x times live loads is a linear programme for the largest x, and its dual the least work of a
-motion that no ray resists. A simplex code finds a basis in floating point. The basis says which p_j are not zero and
-which rays the motion leaves at rest: two square systems of fractions, solved exactly
-(:mod:`concio.proof.exact_solve`). In the plane the rays are the two edges of the cone, and both answers are one
-fraction. In space the cone is round: rays inside it give forces, rays round it motions, and what lies between the two
-fractions is told.
+With the joint forces written as sums of rays of the friction cones, F = sum p_j r_j with p >= 0 (and sums of some p_j
+bounded, where a joint has cohesion, tension or a cap), balance of every free block under dead and x times live loads is
+a linear programme for the largest x, and its dual the least work of a motion that no ray resists. A simplex code finds
+a basis in floating point. The basis says which p_j are not zero and which rays the motion leaves at rest: two square
+systems of fractions, solved exactly (:mod:`concio.proof.exact_solve`). In the plane the rays are the two edges of the
+cone, and both answers are one fraction. In space the cone is round: rays inside it give forces, rays round it motions,
+and what lies between the two fractions is told.
 
 Nothing that floating point says is part of the proof: what comes out is handed to :mod:`concio.proof.verify`.
 """
@@ -16,32 +16,26 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Literal
+from typing import Any
 
 import highspy
 import numpy as np
 import scipy.linalg as sl
 import scipy.sparse as sp
 
-from concio.kinematics.frames import cross as turned
 from concio.proof.exact_solve import Row, solve_exactly
-from concio.proof.verify import cross, exact, vector
+from concio.proof.joint_rays import Ray, Side, Vector, joint_rays
+from concio.proof.verify import cross, vector
 from concio.proof.verify import loads as loads_on
 
-Side = Literal["inside", "outside"]
-Vector = list[Fraction]
 Ways = Sequence[Sequence[float]] | np.ndarray | None
 
-AROUND = 12
-"""Rays of a round cone that are spread evenly."""
-NEAR = 1e-3
-"""Angle between the rays beside the direction in which a joint slides or is pulled [rad]."""
-WITHIN = 1e-12
-"""Share by which a ray of a round cone is drawn inwards or outwards, so that rounding leaves it on its side."""
 REACHED = 1e-8
 """Share of a column, beside those of a basis, from which it counts as reaching further rows."""
 ORIGIN = 64
 """Moments are taken about points whose coordinates are multiples of 1 / ORIGIN m, near each block."""
+MOST = 100
+"""Largest sum of the shares of all rays, in loads, where forces are sought that are far inside their cones."""
 OPTIONS: tuple[tuple[str, object], ...] = (
     ("output_flag", False), ("solver", "simplex"), ("presolve", "off"), ("threads", 1), ("random_seed", 0),
     ("primal_feasibility_tolerance", 1e-10), ("dual_feasibility_tolerance", 1e-10),
@@ -68,7 +62,7 @@ class Witness:
 
 @dataclass(frozen=True)
 class Programme:
-    """The balance of every free block, its joint forces as sums of rays.
+    """The balance of every free block, its joint forces as sums of rays, and what bounds those sums.
 
     Parameters
     ----------
@@ -76,37 +70,51 @@ class Programme:
         Of :func:`concio.proof.statement.statement`.
     dead, live : sequences of (force, moment)
         Loads on each body, about the origin.
-    rays : list of (joint, vector)
+    rays : sequence of Ray
+    base : sequence of vectors
+        Force of each joint where every ray is 0.
+    most : sequence of Fraction
+        Right sides of the sums.
     """
 
     data: dict[str, Any]
     dead: Sequence[Sequence[Vector]]
     live: Sequence[Sequence[Vector]]
-    rays: list[tuple[int, Vector]]
+    rays: Sequence[Ray]
+    base: Sequence[Vector]
+    most: Sequence[Fraction]
 
     def columns(self) -> tuple[list[Row], list[Fraction], dict[int, int], list[Vector]]:
         """Return columns of the rays and of the multiplier last, right side, first row of each free body, origins."""
-        bodies, joints = self.data["bodies"], self.data["joints"]
+        bodies = self.data["bodies"]
         d = len(bodies[0]["pieces"][0][0])
         rows = d + (1 if d == 2 else 3)
         first = {b: rows * k for k, b in enumerate(b for b, body in enumerate(bodies) if not body["fixed"])}
         origin = [_middle(body) for body in bodies]
-        found: list[Row] = []
-        for k, ray in self.rays:
-            joint, at = joints[k], vector(joints[k]["at"])
-            column: Row = {}
-            for body, sign in ((joint["b"], 1), (joint["a"], -1)):
-                if body in first:
-                    arm = [p - q for p, q in zip(at, origin[body], strict=True)]
-                    for i, value in enumerate([*ray, *cross(arm, ray)]):
-                        if value:
-                            column[first[body] + i] = sign * value
-            found.append(column)
+        sums = rows * len(first)
+        found = [
+            {**self._acting(ray.joint, ray.force, first, origin), **{sums + i: Fraction(1) for i in ray.sums}}
+            for ray in self.rays
+        ]
         found.append(self._loaded(self.live, first, origin))
-        right = [Fraction(0)] * (rows * len(first))
-        for i, value in self._loaded(self.dead, first, origin).items():
-            right[i] = -value
+        right = [Fraction(0)] * sums + list(self.most)
+        held = [self._acting(k, force, first, origin) for k, force in enumerate(self.base) if any(force)]
+        for part in (self._loaded(self.dead, first, origin), *held):
+            for i, value in part.items():
+                right[i] -= value
         return found, right, first, origin
+
+    def _acting(self, k: int, force: Vector, first: Mapping[int, int], origin: Sequence[Vector]) -> Row:
+        """Return what a force of a joint does to the balance of its two bodies."""
+        joint = self.data["joints"][k]
+        at, column = vector(joint["at"]), {}
+        for body, sign in ((joint["b"], 1), (joint["a"], -1)):
+            if body in first:
+                arm = [p - q for p, q in zip(at, origin[body], strict=True)]
+                for i, value in enumerate([*force, *cross(arm, force)]):
+                    if value:
+                        column[first[body] + i] = sign * value
+        return column
 
     def _loaded(self, loads: Sequence[Sequence[Vector]], first: Mapping[int, int], origin: Sequence[Vector]) -> Row:
         column: Row = {}
@@ -117,6 +125,32 @@ class Programme:
                 if value:
                     column[row + i] = value
         return column
+
+    def forces(self, value: Mapping[int, Fraction]) -> list[Vector]:
+        """Return the force of each joint from the shares of the rays."""
+        found = [list(force) for force in self.base]
+        for column, share in value.items():
+            if column < len(self.rays) and share:
+                k, force = self.rays[column].joint, self.rays[column].force
+                found[k] = [f + share * r for f, r in zip(found[k], force, strict=True)]
+        return found
+
+
+def programme(
+    data: dict[str, Any], constant: Mapping[str, Fraction], multiplied: Mapping[str, Fraction], side: Side,
+    directions: Ways, wider: Fraction = Fraction(0),
+) -> Programme:  # fmt: skip
+    """Return the programme of a statement under its loads, see :func:`witness`."""
+    rays: list[Ray] = []
+    base: list[Vector] = []
+    most: list[Fraction] = []
+    for k, joint in enumerate(data["joints"]):
+        toward = directions[k] if directions is not None and k < len(directions) else None  # none where supports hold
+        found = joint_rays(joint, side, toward, wider)
+        rays += [Ray(k, force, tuple(len(most) + i for i in sums)) for force, sums in found.rays]
+        base.append(found.base)
+        most += found.most
+    return Programme(data, loads_on(data, dict(constant)), loads_on(data, dict(multiplied)), rays, base, most)
 
 
 def witness(
@@ -143,21 +177,15 @@ def witness(
     Witness or None
         None where the programme has no last multiplier, or its basis is not that of an exact solution.
     """
-    dead, live = loads_on(data, dict(constant)), loads_on(data, dict(multiplied))
-    rays = [
-        (k, ray)
-        for k, joint in enumerate(data["joints"])
-        for ray in _rays(joint, side, None if directions is None else directions[k], wider)
-    ]
-    columns, right, first, origin = Programme(data, dead, live, rays).columns()
+    made = programme(data, constant, multiplied, side, directions, wider)
+    columns, right, first, origin = made.columns()
     found = _at_basis(columns, right)
     if found is None:
         return None
     value, dual = found
     last = len(columns) - 1
     whole = all(v >= 0 for c, v in value.items() if c != last)
-    forces = _forces(data, rays, value) if whole else None
-    return Witness(value[last], forces, _motion(data, first, origin, dual))
+    return Witness(value[last], made.forces(value) if whole else None, _motion(data, first, origin, dual))
 
 
 def forces_below(
@@ -170,26 +198,25 @@ def forces_below(
     Here the least share of all rays is made as large as it gets, so that rounding has no say.
     """
     acting = {**constant, **{group: multiplier * factor for group, factor in multiplied.items()}}
-    rays = [
-        (k, ray)
-        for k, joint in enumerate(data["joints"])
-        for ray in _rays(joint, "inside", None if directions is None else directions[k])
-    ]
-    nothing = loads_on(data, {})
-    columns, right, _, _ = Programme(data, loads_on(data, acting), nothing, rays).columns()
+    made = programme(data, acting, {}, "inside", directions)
+    columns, right, first, _ = made.columns()
+    total = sum((abs(x) for b in first for x in made.dead[b][0]), Fraction(0))
+    columns[-1] = {}  # what is left of the largest sum of all shares, without which self-stress has no end
+    columns = [{**column, len(right): Fraction(1)} for column in columns]
+    right = [*right, MOST * total + sum(made.most, Fraction(0))]
     even: Row = {}
-    for column in columns[:-1]:
+    for column in columns:
         for row, value in column.items():
             even[row] = even.get(row, Fraction(0)) + value
-    columns[-1] = {row: value for row, value in even.items() if value}
+    columns.append({row: value for row, value in even.items() if value})
     found = _at_basis(columns, right)
     if found is None:
         return None
     least = found[0][len(columns) - 1]
-    shares = {k: least + found[0].get(k, Fraction(0)) for k in range(len(rays))}
+    shares = {k: least + found[0].get(k, Fraction(0)) for k in range(len(made.rays))}
     if not all(v >= 0 for v in shares.values()):
         return None
-    return Witness(multiplier, _forces(data, rays, shares), None)
+    return Witness(multiplier, made.forces(shares), None)
 
 
 def _at_basis(
@@ -255,16 +282,6 @@ def _completed(columns: Sequence[Row], used: list[int], rows: list[int], m: int)
     return more, sorted(kept[: len(more)].tolist())
 
 
-def _forces(data: Mapping[str, Any], rays: Sequence[tuple[int, Vector]], value: Mapping[int, Fraction]) -> list[Vector]:
-    d = len(data["bodies"][0]["pieces"][0][0])
-    forces = [[Fraction(0)] * d for _ in data["joints"]]
-    for column, share in value.items():
-        if column < len(rays) and share:
-            k, ray = rays[column]
-            forces[k] = [f + share * r for f, r in zip(forces[k], ray, strict=True)]
-    return forces
-
-
 def _motion(
     data: Mapping[str, Any], first: Mapping[int, int], origin: Sequence[Vector], dual: Mapping[int, Fraction]
 ) -> list[tuple[Vector, Vector]]:
@@ -287,42 +304,6 @@ def _middle(body: Mapping[str, Any]) -> Vector:
     """Return a point near the middle of a body with short coordinates."""
     corners = [vector(corner) for piece in body["pieces"] for corner in piece]
     return [Fraction(round(float(sum(xs)) / len(corners) * ORIGIN), ORIGIN) for xs in zip(*corners, strict=True)]
-
-
-def _rays(
-    joint: Mapping[str, Any], side: Side, toward: Sequence[float] | np.ndarray | None, wider: Fraction = Fraction(0)
-) -> list[Vector]:
-    """Return rays of the friction cone of a joint point; in space inside or round it, more of them near a direction."""
-    n, mu = vector(joint["normal"]), exact(joint["friction"]) * (1 + wider)
-    if not mu:
-        return [n]
-    if len(n) == 2:
-        return [[n[0] - s * mu * n[1], n[1] + s * mu * n[0]] for s in (1, -1)]
-    t1, t2 = _tangents(n)
-    angles = np.linspace(0.0, 2.0 * np.pi, AROUND, endpoint=False)
-    if toward is not None and np.any(toward):
-        a, b = (float(np.dot([float(x) for x in t], toward)) for t in (t1, t2))
-        angles = np.sort(
-            np.concatenate([angles, np.arctan2(b, a) + NEAR * np.array([-2.0, -1.0, 0.0, 1.0, 2.0])]) % (2 * np.pi)
-        )
-    radius = np.full(len(angles), 1.0 - WITHIN)
-    if side == "outside":  # corners of the polygon of tangents at these angles
-        half = np.diff(np.append(angles, angles[0] + 2.0 * np.pi)) / 2.0
-        angles, radius = angles + half, (1.0 + WITHIN) / np.cos(half)
-    return [
-        [p + mu * (Fraction(float(c)) * x + Fraction(float(s)) * y) for p, x, y in zip(n, t1, t2, strict=True)]
-        for c, s in zip(radius * np.cos(angles), radius * np.sin(angles), strict=True)
-    ]
-
-
-def _tangents(n: Vector) -> tuple[Vector, Vector]:
-    """Return two vectors at right angles to n and to each other to rounding, as long as n, with short fractions."""
-    normal = np.array([float(x) for x in n])
-    first = np.eye(3)[int(np.argmin(np.abs(normal)))]
-    first = first - (first @ normal) / (normal @ normal) * normal
-    first *= np.linalg.norm(normal) / np.linalg.norm(first)
-    second = turned(normal, first) / np.linalg.norm(normal)
-    return [Fraction(float(x)) for x in first], [Fraction(float(x)) for x in second]
 
 
 def _basis(columns: Sequence[Row], right: Sequence[Fraction]) -> tuple[list[int], list[int]] | None:

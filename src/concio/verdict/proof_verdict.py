@@ -11,8 +11,14 @@ from concio.verdict.attention import attention, joints_not_made
 from concio.verdict.question import question_of
 from concio.verdict.verdict import Outcome, Verdict
 
-COLLAPSE = "collapse"
-PROOF = "every number recomputed as a fraction: weights, balance of every block, friction cones, work of the motion"
+PROOF = "every number recomputed as a fraction: weights, balance of every block, strength of every joint, work"
+
+ASKED = {
+    "limit": "exact bounds of the multiplier with which joint forces within friction balance the loads",
+    "collapse": "a proof that no joint forces within friction balance the loads that act",
+    "balance": "exact joint forces within friction that balance the loads that act",
+}
+DILATES = "friction that dilates: forces in balance are necessary for Coulomb friction and not sufficient"
 
 
 def with_attention(made: Mapping[str, Any], assembly: Assembly) -> dict[str, Any]:
@@ -21,7 +27,7 @@ def with_attention(made: Mapping[str, Any], assembly: Assembly) -> dict[str, Any
     Parameters
     ----------
     made : mapping
-        What :func:`concio.proof.certificate.prove_limit` or ``prove_collapse`` returned.
+        What :func:`concio.proof.certificate.prove_limit` and its like returned.
     assembly : Assembly
     """
     return sealed({**made, "attention": list(attention(assembly))})
@@ -44,23 +50,17 @@ def proof_verdict(
     live : sequence of str
         Groups that are multiplied.
     """
-    collapse = made["claim"] == COLLAPSE
-    asked = "a proof that no joint forces within friction balance the loads that act"
-    if not collapse:
-        asked = "exact bounds of the multiplier with which joint forces within friction balance the loads"
-    whole = collapse or {"lower", "upper"} <= set(made)
+    claim = str(made["claim"])
+    whole = claim != "limit" or {"lower", "upper"} <= set(made)
     missing = "upper" if "lower" in made else "lower"
     return Verdict(
         outcome=Outcome.HOLDS if whole else Outcome.INCOMPLETE,
         status="proved" if whole else "incomplete",
-        question=question_of(asked, assembly, factors, multiplied=live),
+        question=question_of(ASKED[claim], assembly, factors, multiplied=live),
         headline="Proved exactly." if whole else f"Proved from one side: no {missing} bound was found.",
         answer=f"{sentence[0].upper()}{sentence[1:]}.",
         proof=PROOF,
-        limits=(
-            *joints_not_made(assembly.detection),
-            "friction that dilates: forces in balance are necessary for Coulomb friction and not sufficient",
-        ),
+        limits=(*joints_not_made(assembly.detection), DILATES),
         unchecked=() if whole else (f"the {missing} bound",),
         attention=attention(assembly),
     )

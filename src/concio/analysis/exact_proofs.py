@@ -1,4 +1,4 @@
-"""Exact certificates that nothing balances the loads, sought near the mechanism that floating point finds."""
+"""Exact certificates that something or nothing balances the loads, sought near what floating point finds."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any, Literal
 import numpy as np
 
 from concio.contact.assembly import Assembly
-from concio.proof.certificate import prove_collapse
-from concio.solvers.statics.existence import find_mechanism
+from concio.proof.certificate import prove_balance, prove_collapse
+from concio.solvers.statics.existence import find_mechanism, statically_admissible
 
 Array = np.ndarray
 
@@ -43,6 +43,32 @@ def collapse_proof(
         found = find_mechanism(assembly.problem(factors))
         directions = None if found is None else against_slips(assembly, found.velocity)
     return prove_collapse(assembly, factors, numbers=numbers, directions=directions)
+
+
+def balance_proof(
+    assembly: Assembly,
+    factors: Mapping[str, float] | None = None,
+    *,
+    numbers: Literal["binary", "decimal"] = "binary",
+) -> dict[str, Any]:
+    """Return the exact certificate of joint forces within their strength that balance the loads.
+
+    Parameters
+    ----------
+    assembly, factors, numbers
+        As in :func:`collapse_proof`.
+
+    Raises
+    ------
+    InputError, SolverError
+        As :func:`concio.proof.certificate.prove_balance`.
+    """
+    directions = None
+    if assembly.model.dim == 3:
+        found = statically_admissible(assembly.problem(factors))
+        tangential = found.friction_force.reshape(len(assembly.pairs), -1)
+        directions = np.einsum("ki,kij->kj", tangential, assembly.pairs.tangents)
+    return prove_balance(assembly, factors, numbers=numbers, directions=directions)
 
 
 def against_slips(assembly: Assembly, velocity: Array) -> Array:
