@@ -5,6 +5,8 @@ from __future__ import annotations
 import csv
 import re
 import tomllib
+from collections.abc import Callable
+from functools import cache
 from html.parser import HTMLParser
 from importlib.resources import files
 from pathlib import Path
@@ -15,12 +17,24 @@ from test_bridge_assessment import small, written
 import concio
 from commands import run
 from concio.report.bridge_page import BridgeReport
+from concio.verdict.bridge_verdict import bridge_lines
 
 
 @pytest.fixture(scope="module")
 def found() -> concio.BridgeResult:
     """Return an assessment of a small bridge."""
     return concio.assess_bridge(small(), step=0.5, fine=0.2, worst=1, checked=2, settled={"right abutment": 0.002})
+
+
+@pytest.fixture(scope="module")
+def page_in(found: concio.BridgeResult) -> Callable[[str], str]:
+    """Return what makes the report in a language, once."""
+
+    @cache
+    def made(language: str) -> str:
+        return BridgeReport(found, language).html()  # type: ignore[arg-type]
+
+    return made
 
 
 class Balanced(HTMLParser):
@@ -39,8 +53,8 @@ class Balanced(HTMLParser):
 
 
 @pytest.mark.parametrize("language", ["en", "it"])
-def test_the_report_holds_the_verdict_and_every_section(language: str, found: concio.BridgeResult) -> None:
-    page = BridgeReport(found, language).html()  # type: ignore[arg-type]
+def test_the_report_holds_the_verdict_and_every_section(language: str, page_in: Callable[[str], str]) -> None:
+    page = page_in(language)
     parser = Balanced()
     parser.feed(page)
     assert not parser.open
@@ -51,6 +65,35 @@ def test_the_report_holds_the_verdict_and_every_section(language: str, found: co
     text = re.sub(r"data:[^\"]*", "", page)
     assert ("owed to the pressure of the soil" in text) == (language == "en")
     assert ("dovuto alla spinta del terreno" in text) == (language == "it")
+
+
+def test_the_report_tells_every_datum_that_was_given_and_has_no_english_in_italian(
+    found: concio.BridgeResult, page_in: Callable[[str], str]
+) -> None:
+    """All of geometry, materials and soil is in the table of data; the film begins where the vehicle is worst."""
+    page = page_in("it")
+    text = re.sub(r"<[^>]*>", " ", re.sub(r"data:[^\"]*|<style>.*?</style>", "", page))
+    for datum in ("luci nette 3 m", "frecce 0,75 m", "0,215 m", "conci di un anello 12", "blocchi rigidi, 22 kN/m3",
+                  "ricoprimento in chiave 0,3 m", "riempimento 20 kN/m3", "costante; peso proprio, "):  # fmt: skip
+        assert datum in re.sub(r"\s+", " ", text), datum
+    for english in ("own weight", "constant;", "the whole width", "fill unit weight", "no_equilibrium"):
+        assert english not in text
+    film = page[page.index("<section id=film>") :]
+    begin = int(re.findall(r'<input [^>]*value="(\d+)"', film)[0])
+    shown = [k for k, tag in enumerate(re.findall(r"<img[^>]*?src", film)) if " hidden " not in tag]
+    assert shown == [begin]
+    place = re.findall(r'alt="x = ([-\d,]+) m"', film)[begin]
+    assert float(place.replace(",", ".")) == pytest.approx(found.worst.position, abs=1e-2)
+
+
+def test_a_vehicle_without_axles_is_told_by_its_load_along_the_road() -> None:
+    model = concio.with_vehicle(small(), concio.find_vehicle("SW/0"))
+    found = concio.assess_bridge(model, step=4.0, fine=2.0, worst=1, checked=1, sensitivity=False)
+    told = " ".join(bridge_lines(found))
+    assert "133 kN/m along the road, no axles" in told
+    assert "1995" not in told
+    assert found.summary()["axle"] is None
+    assert found.summary()["vehicle"]["uniform_load"] == pytest.approx(133.0)
 
 
 def test_both_languages_have_the_same_words() -> None:

@@ -11,7 +11,15 @@ import concio
 from concio.errors import InputError
 from concio.model.crossing import Axle, Fill, Layer, Vehicle
 from concio.model.plausibility import implausible
-from concio.model.road.earth import ground_of, spread_under, stress_at, with_fill, with_vehicle, without_pressure
+from concio.model.road.earth import (
+    ground_of,
+    spread_under,
+    stress_at,
+    width_used,
+    with_fill,
+    with_vehicle,
+    without_pressure,
+)
 from concio.model.road.spread import spread_rules
 from concio.model.road.vehicles import convoy, find_vehicle, vehicles
 from samples import sample
@@ -192,3 +200,23 @@ def test_numbers_in_other_units_are_told(change: tuple[str, str], words: str) ->
         read = concio.loads(text.replace("unit_weight = 19.0", f"unit_weight = '{value} {unit}'"))
         assert read.fill is not None
         assert read.fill.unit_weight == pytest.approx(1.9 * 9.80665, rel=1e-3)
+
+
+@pytest.mark.parametrize(("vehicle", "wide"), [("single axle", 1.8), ("LM1 lane 1", 2.4), ("LM71", 2.6)])
+def test_the_width_of_the_rule_is_that_of_the_vehicle_that_crosses(vehicle: str, wide: float) -> None:
+    """In a file the fill comes before the vehicle: width, weight and soil are those of the vehicle's width."""
+    text = (
+        "[bridge]\nspan = 3.0\nrise = 0.75\nring = 0.215\nvoussoirs = 16\nblock = 'rigid'\nwidth = 9.0\n"
+        "[fill]\ncover = 0.4\npassive = 1.0\nspread = 'uniform 1:2'\nwidth = 'rule'\n"
+    )
+    model = concio.loads(f"{text}[vehicle]\nname = '{vehicle}'\n")
+    right = wide + 0.4
+    direct = concio.loads(text.replace("'rule'", f"{right}"))
+    assert model.fill is not None
+    assert width_used(model, model.fill, model.vehicle)[0] == pytest.approx(right)
+    assert [b.thickness for b in model.bodies] == pytest.approx([right] * len(model.bodies))
+    assert len(model.loads) == len(direct.loads)
+    for one, other in zip(model.loads, direct.loads, strict=True):
+        assert one.value == pytest.approx(other.value)
+    assert [t.yield_force for t in model.ties] == pytest.approx([t.yield_force for t in direct.ties])
+    assert concio.loads(concio.dumps(model)).fill == model.fill

@@ -83,6 +83,8 @@ class Fill:
         Horizontal pressure per displacement into the fill [kN/m3]. It enters displacements, not limit loads.
     group : str
         Load group of the weight.
+    bridge_width : float, str or None
+        Width of the bodies before ``width`` made the structure narrower [m]; written by :func:`concio.with_fill`.
 
     Notes
     -----
@@ -104,6 +106,7 @@ class Fill:
     pressure: Side = "none"
     stiffness: float = 20_000.0
     group: str = "fill"
+    bridge_width: float | None = None
 
     def __post_init__(self) -> None:
         where = "fill"
@@ -133,6 +136,8 @@ class Fill:
         if not isinstance(self.width, str) and not 0 < self.width < math.inf:
             msg = f"width = {self.width:g} m must be positive"
             raise InputError(msg, where=where, hint="'full', 'rule' or a length")
+        if self.bridge_width is not None:
+            put(self, "bridge_width", _positive("bridge_width", self.bridge_width, "length", where))
         if self.friction_angle is not None:
             put(self, "friction_angle", _friction_angle(self.friction_angle, where))
         if not 0 <= self.mobilised <= 1:
@@ -282,10 +287,19 @@ class Vehicle:
         return self.dynamic * self.factor * sum(axle.load for axle in self.axles)
 
     @property
+    def points(self) -> tuple[Axle, ...]:
+        """Its axles, without stretches of uniform load."""
+        return tuple(a for a in self.axles if a.length is None or a.length < STRETCH)
+
+    @property
+    def uniform(self) -> tuple[float, ...]:
+        """Load per length of each stretch of uniform load, without factors [kN/m]."""
+        return tuple(a.load / a.length for a in self.axles if a.length is not None and a.length >= STRETCH)
+
+    @property
     def heaviest(self) -> Axle:
         """The axle of the largest load, of several the first; stretches of uniform load only where nothing else is."""
-        points = [a for a in self.axles if a.length is None or a.length < STRETCH] or list(self.axles)
-        return max(points, key=lambda axle: axle.load)
+        return max(self.points or self.axles, key=lambda axle: axle.load)
 
     def footprints(self, position: float, direction: str = "") -> tuple[tuple[float, float, float, bool], ...]:
         """Return of each axle middle x [m], length [m], load with all factors [kN], and whether it is a stretch."""

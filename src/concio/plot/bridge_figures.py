@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from concio.analysis.bridges.bridge_result import BridgeResult
     from concio.analysis.bridges.sweep import Standing
+    from concio.analysis.bridges.variants import Change
 
 Array = np.ndarray
 
@@ -33,11 +34,13 @@ ENGLISH = {
     "mechanism": "Mechanism at {factor} times the vehicle, x = {x} m", "thrust": "line of thrust",
     "crossing": "resultant of a joint", "opens": "opens", "slides": "slides",
     "moved": "velocities to scale, forces at the bound", "bars": "Load factor where one datum changes",
-    "parts": "What the bound is built up of",
+    "parts": "What the bound is built up of", "same": "no change", "decimal": ".",
 }  # fmt: skip
 """Words of the figures; another language gives others."""
 SHARE = 0.06
 """Size of the largest velocity as a share of the bridge."""
+SAME = 1e-6
+"""Changes below this share of the load factor are told as none."""
 LARGEST_SHOWN = 4.0
 """Load factors above this many times the least are cut off in the curve."""
 
@@ -63,7 +66,7 @@ def plot_curve(found: BridgeResult, ax: Axes | None = None, *, words: Mapping[st
     ax.set_xlabel(words["position"], fontsize=9)
     ax.set_ylabel(words["factor"], fontsize=9)
     ax.set_title(words["curve"], loc="left", fontsize=11, fontweight="bold")
-    ax.legend(fontsize=8, frameon=False, loc="upper center", ncols=2)
+    ax.legend(fontsize=8, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=2)
     return ax
 
 
@@ -96,7 +99,7 @@ def plot_standing(
     handles = [style.patch(style.FILL_OPEN, words["opens"]), style.handle(style.SLIP, words["slides"])]
     handles.append(_thrust(ax, result, words))
     draw_vehicle(ax, found.model, one.position, one.direction)
-    text = words["mechanism"].format(factor=number(one.multiplier, 4), x=number(one.position, 4)) if title else ""
+    text = words["mechanism"].format(factor=_n(one.multiplier, words), x=_n(one.position, words)) if title else ""
     style.dress(ax, box, text, words["moved"] if title else "", units=found.model.report)
     if title:
         style.legend(ax, handles)
@@ -111,17 +114,31 @@ def plot_changes(found: BridgeResult, ax: Axes | None = None, *, words: Mapping[
     for k, c in enumerate(reversed(shown)):
         ax.barh(k, c.at_high - base, left=base, color=style.STICK.colour, height=0.55)
         ax.barh(k, c.at_low - base, left=base, color=style.OPEN.colour, height=0.55)
+        if c.swing < SAME * base:
+            ax.annotate(words["same"], (base, k), (3, 0), textcoords="offset points", va="center", fontsize=7)
+            continue
         for value, at in ((c.low, c.at_low), (c.high, c.at_high)):
             side = "left" if at > base else "right"
-            ax.annotate(number(value, 3), (at, k), (3 if side == "left" else -3, 0), textcoords="offset points",
+            ax.annotate(_n(value, words, 3), (at, k), (3 if side == "left" else -3, 0), textcoords="offset points",
                         ha=side, va="center", fontsize=7)  # fmt: skip
-    labels = [f"{c.name}{'' if c.unit == '-' else f' [{c.unit}]'}" for c in reversed(shown)]
-    ax.set_yticks(range(len(shown)), labels, fontsize=8)
+    ax.set_yticks(range(len(shown)), [change_name(c, words) for c in reversed(shown)], fontsize=8)
     ax.axvline(base, color=style.INK, lw=0.8)
     ax.margins(x=0.15)
     ax.set_xlabel(words["factor"], fontsize=9)
     ax.set_title(words["bars"], loc="left", fontsize=11, fontweight="bold")
     return ax
+
+
+def change_name(change: Change, words: Mapping[str, str] = ENGLISH) -> str:
+    """Return the name of a datum that was changed, with its unit."""
+    base, mark, rest = change.name.partition(" '")
+    named = words.get("datum_" + base.replace(" ", "_"), base)
+    return named + mark + rest + ("" if change.unit == "-" else f" [{change.unit}]")
+
+
+def _n(value: float, words: Mapping[str, str], digits: int = 4) -> str:
+    """Return a number with the decimal sign of the language."""
+    return number(value, digits).replace(",", "\u2009").replace(".", words.get("decimal", "."))
 
 
 def state_of(found: BridgeResult, standing: Standing) -> Result:

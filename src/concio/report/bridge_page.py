@@ -7,6 +7,7 @@ import io
 import math
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from html import escape
 from importlib.resources import files
@@ -19,13 +20,13 @@ import concio
 from concio.arguments import closest
 from concio.display import number
 from concio.errors import InputError
-from concio.model.crossing import STRETCH
-from concio.model.road.spread import spread_rule
-from concio.plot.bridge_figures import plot_changes, plot_curve, plot_standing
+from concio.plot.bridge_figures import change_name, plot_changes, plot_curve, plot_standing
 from concio.plot.model_figure import plot_model
-from concio.problem.solution import Status
+from concio.problem.solution import PROVEN_FAILURES, Status
+from concio.report.bridge_data import data_rows
 from concio.report.html_parts import figure_html
-from concio.verdict.bridge_verdict import bridge_verdict
+from concio.verdict.bridge_verdict import bridge_verdict, heaviest_words
+from concio.verdict.bridge_words import Words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,11 +35,17 @@ if TYPE_CHECKING:
     from concio.analysis.bridges.service import ServiceState
     from concio.analysis.bridges.sweep import Standing
 
-MOST_FRAMES = 16
-"""Positions in the film."""
+MOST_FRAMES, MOST_PRINTED = 16, 8
+"""Positions in the film, and how many of them are printed."""
 SCRIPT = (
     "document.querySelectorAll('.film').forEach(f=>{const s=f.querySelector('input'),i=f.querySelectorAll('img');"
     "const d=()=>i.forEach((e,k)=>e.hidden=k!=s.value);s.addEventListener('input',d);d()})"
+)
+STYLE = (
+    ".film img,.film input{width:100%}#summary .facts th{width:26em}"
+    "#signed td{height:3.2rem}"
+    "@media print{.film input{display:none}.film img{display:none!important}"
+    ".film img.printed{display:inline-block!important;width:49%;break-inside:avoid}}"
 )
 
 
@@ -86,6 +93,7 @@ class BridgeReport:
         self.found, self.language = found, language
         self.words, self.units = words_of(language), found.model.report
         self.drawn = {key[2:]: text for key, text in self.words.items() if key.startswith("f_")}
+        self.said = Words(language, self.units)
 
     def n(self, value: float, digits: int = 4) -> str:
         """Return a number as the language writes it."""
@@ -110,13 +118,15 @@ class BridgeReport:
         style = "".join((files("concio.report") / name).read_text(encoding="utf-8")
                         for name in ("report.css", "assessment.css"))  # fmt: skip
         title = self.found.model.title or self.words["title"]
-        parts = [self.header(title), self.top(), self.summary(), self.model(), self.curve(), self.mechanism(),
-                 self.built(), self.sensitivity(), self.others(), self.service(), self.mexe(), self.film()]  # fmt: skip
+        parts = [
+            self.header(title), self.top(), self.summary(), self.model(), self.curve(), self.mechanism(), self.built(),
+            self.sensitivity(), self.others(), self.service(), self.mexe(), self.film(), self.signed(),
+        ]  # fmt: skip
         return (
             f'<!DOCTYPE html><html lang="{self.language}"><head><meta charset="utf-8">'
             '<meta name="viewport" content="width=device-width, initial-scale=1">'
             f'<title>{escape(title)} &middot; concio</title><link rel="icon" href="data:,">'
-            f"<style>{style}.film img{{width:100%}}.film input{{width:100%}}</style></head>"
+            f"<style>{style}{STYLE}</style></head>"
             f"<body class=assessment><main>{''.join(parts)}"
             f"<footer>{escape(self.say('footer', version=concio.__version__))}</footer></main>"
             f"<script>{SCRIPT}</script></body></html>\n"
@@ -131,8 +141,9 @@ class BridgeReport:
         """Return the verdict in the language of the report."""
         told, w = bridge_verdict(self.found, self.language), self.words
         facts: list[tuple[str, Sequence[str]]] = [
-            ("asked", (told.question.asked,)), ("acts", told.question.loads(self.units)), ("limits", told.limits),
-            ("not_checked", told.unchecked), ("attention", told.attention),
+            ("asked", (told.question.asked,)),
+            ("acts", [self.said.acting(v) for v in told.question.loads(self.units)]),
+            ("limits", told.limits), ("not_checked", told.unchecked), ("attention", told.attention),
         ]  # fmt: skip
         rows = "".join(f"<tr><th>{escape(w[key])}</th><td>{'<br>'.join(escape(v) for v in lines)}</td></tr>"
                        for key, lines in facts if lines)  # fmt: skip
@@ -146,52 +157,40 @@ class BridgeReport:
         """Return the numbers a client reads."""
         f, worst = self.found, self.found.worst
         width, by = f.width
-        by = self.words["width_full"] if by == "the whole width of the bodies" else by
         rows = [
             ("worst", f"{self.unit('length', worst.position)}, {self.words[worst.direction]}"),
-            ("design", self.n(f.design)), ("bound", self.n(worst.multiplier)), ("axle", self.unit("force", f.axle)),
-            ("permissible", self.unit("force", f.permissible_axle)),
+            ("design", self.n(f.design)), ("bound", self.n(worst.multiplier)), *self._axle(),
             ("no_soil", self.words["none"] if f.without_soil is None else self.n(f.without_soil.multiplier)),
             ("soil_share", f"{self.n(100 * f.owed_to_soil, 3)} %"),
             ("spread_share", f"{self.n(100 * f.owed_to_spread, 3)} %"),
-            ("width", f"{self.unit('length', width)} ({by})"),
+            ("width", f"{self.unit('length', width)} ({self.said.width(by)})"),
         ]  # fmt: skip
         return self.section("summary", self.facts(rows))
 
+    def _axle(self) -> list[tuple[str, str]]:
+        """Return the heaviest axle at the load factor, and that for the load factor asked for."""
+        f = self.found
+        if math.isnan(f.design):
+            return []
+        bare = replace(f.vehicle, dynamic=1.0, factor=1.0)
+        keys = ("axle", "permissible") if f.vehicle.points else ("load", "permissible_load")
+        found = (heaviest_words(f.vehicle, f.design, self.said), heaviest_words(bare, f.design / f.required, self.said))
+        return [(key, number) for key, (_, number) in zip(keys, found, strict=True)]
+
     def model(self) -> str:
         """Return the bridge with its data and where they come from."""
-        model, vehicle, fill = self.found.model, self.found.vehicle, self.found.model.fill
-        assert fill is not None
-        axles = [
-            self.say("stretch" if a.length is not None and a.length >= STRETCH else "axle_at",
-                     load=self.unit("force", a.load), at=self.unit("length", a.at),
-                     length=self.unit("length", a.length or 0.0)) for a in vehicle.axles
-        ]  # fmt: skip
-        rule = spread_rule(fill.spread)
-        rows = [("vehicle", vehicle.name), ("axles", "; ".join(axles))]
-        rows += [(key, getattr(vehicle, key)) for key in ("source", "assumed") if getattr(vehicle, key)]
-        rows.append(("dynamic", f"{self.n(vehicle.dynamic)}, {self.n(vehicle.factor)}"))
-        if fill.cover is not None:
-            rows += [("cover", self.unit("length", fill.cover)), ("gradient", self.n(fill.gradient))]
-        else:
-            rows.append(("road", self.say("road_given", n=str(len(fill.road)))))
-        if fill.layers:
-            rows.append(("layers", "; ".join(
-                self.say("layer", name=x.name, depth=self.unit("length", x.depth),
-                         weight=f"{self.n(x.unit_weight)} kN/m3") for x in fill.layers)))  # fmt: skip
-        rows += [
-            ("fill_weight", f"{self.n(fill.unit_weight)} kN/m3"), ("passive", self.n(fill.passive_coefficient)),
-            ("pressure", self.words["pressure_" + fill.pressure.replace(" ", "_")]),
-            ("spread", f"{rule.name}: {rule.source}" if rule.source else rule.name),
-        ]  # fmt: skip
-        named = [(self.words[key], text) for key, text in rows]
-        for name, law in model.laws.items():
-            named.append((self.say("friction", name=name), self.n(law.friction)))
-            strength = law.compressive_strength
-            told = self.words["unlimited"] if strength is None else self.unit("stress", strength)
-            named.append((self.say("strength", name=name), told))
-        figure = self.figure(plot_model(model, names=False), "model", "model_figure")
-        return self.section("model", figure + self.table(("datum", "value"), named, texts=2))
+        figure = self.figure(self._translated(plot_model(self.found.model, names=False)), "model", "model_figure")
+        return self.section("model", figure + self.table(("datum", "value"), data_rows(self), texts=2))
+
+    def _translated(self, axes: Axes) -> Axes:
+        """Return a figure of the model with its legend in the language, and without what blocks are meshed by."""
+        legend = axes.get_legend()
+        for text in [] if legend is None else legend.get_texts():
+            text.set_text(self.words.get("l_" + text.get_text().replace(" ", "_"), text.get_text()))
+        for text in axes.texts:
+            if "element" in text.get_text():
+                text.set_text("")
+        return axes
 
     def curve(self) -> str:
         """Return the load factor over the position, and the worst positions."""
@@ -223,7 +222,7 @@ class BridgeReport:
         if not self.found.changes:
             return ""
         rows = [
-            (f"{c.name}{'' if c.unit == '-' else f' [{c.unit}]'}", self.n(c.low), self.n(c.at_low), self.n(c.high),
+            (change_name(c, self.drawn), self.n(c.low), self.n(c.at_low), self.n(c.high),
              self.n(c.at_high)) for c in self.found.changes
         ]  # fmt: skip
         bars = self.figure(plot_changes(self.found, words=self.drawn), "changes", "sensitivity_figure")
@@ -250,10 +249,12 @@ class BridgeReport:
 
     def _state(self, state: ServiceState) -> dict[str, str]:
         if state.status is not Status.SOLVED:
-            return dict.fromkeys(("open_joints", "slipping", "crushed", "largest_pressure", "deflection", "soil"),
-                                 state.status.name.lower())  # fmt: skip
+            none = dict.fromkeys(("open_joints", "slipping", "crushed", "largest_pressure", "deflection", "soil"),
+                                 "\N{EN DASH}")  # fmt: skip
+            return {"balance": self.words["no" if state.status in PROVEN_FAILURES else "open"], **none}
         rigid = math.isnan(state.deflection)
         return {
+            "balance": self.words["yes"],
             "open_joints": str(state.open_joints), "slipping": str(state.slipping), "crushed": str(state.crushed),
             "largest_pressure": self.words["edge"] if math.isinf(state.largest_pressure)
             else self.unit("stress", state.largest_pressure),
@@ -265,7 +266,7 @@ class BridgeReport:
         """Return the formula's answer with its limits."""
         m = self.found.mexe
         if m is None:
-            return ""
+            return self.section("mexe", f"<p>{escape(self.words['mexe_other'])}</p>")
         told = self.words["mexe_none"] if math.isnan(m.axle) else self.say(
             "mexe_text", axle=self.unit("force", m.axle), provisional=self.unit("force", m.provisional),
             profile=self.n(m.profile), factors=self.n(m.factors))  # fmt: skip
@@ -280,13 +281,25 @@ class BridgeReport:
                and s.multiplier < 30 * least]  # fmt: skip
         if len(own) < 2:
             return ""
-        wanted = np.linspace(own[0].position, own[-1].position, MOST_FRAMES)
         at = np.array([s.position for s in own])
-        picked = sorted({int(np.argmin(np.abs(at - x))) for x in wanted})
-        frames = "".join(f'<img alt="x = {own[k].position:.3g} m" src="{self._frame(own[k])}">' for k in picked)
-        text = escape(self.say("film_text", first=self.n(own[picked[0]].multiplier)))
-        slider = f'<input type="range" min="0" max="{len(picked) - 1}" value="0" aria-label="x">'
+        wanted = np.linspace(at[0], at[-1], MOST_FRAMES)
+        first = int(np.argmin(np.abs(at - self.found.worst.position)))
+        picked = sorted({first, *(int(np.argmin(np.abs(at - x))) for x in wanted)})
+        step = -(-len(picked) // MOST_PRINTED)
+        begin = picked.index(first)
+        frames = "".join(
+            f'<img{" class=printed" * ((k - begin) % step == 0)}{" hidden" * (k != begin)} '
+            f'alt="x = {self.n(own[i].position, 3)} m" src="{self._frame(own[i])}">' for k, i in enumerate(picked)
+        )  # fmt: skip
+        slider = f'<input type="range" min="0" max="{len(picked) - 1}" value="{begin}" aria-label="x">'
+        text = escape(self.words["film_text"])
         return self.section("film", f'<p>{text}</p><div class="film">{slider}{frames}</div>')
+
+    def signed(self) -> str:
+        """Return empty fields for those who answer for the report."""
+        head = "".join(f"<th>{escape(self.words[key])}</th>" for key in ("prepared", "reviewed", "date"))
+        row = "<tr>" + "<td></td>" * 3 + "</tr>"
+        return f"<table id=signed><thead><tr>{head}</tr></thead><tbody>{row}</tbody></table>"
 
     def _frame(self, standing: Standing) -> str:
         axes = plot_standing(self.found, standing, words=self.drawn)

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from concio.display import number
+from concio.model.crossing import Vehicle
+from concio.model.road.earth import ground_of
 from concio.problem.solution import PROVEN_FAILURES, Status
 from concio.verdict.attention import attention, joints_not_made
-from concio.verdict.bridge_words import WIDTHS, Language, Words
+from concio.verdict.bridge_words import Language, Words
 from concio.verdict.crushing import crushing
 from concio.verdict.question import Question, question_of
 from concio.verdict.verdict import Outcome, Verdict
@@ -51,14 +54,31 @@ def bridge_verdict(found: BridgeResult, language: Language = "en") -> Verdict:
 def bridge_question(found: BridgeResult, language: Language = "en") -> Question:
     """Return what was asked, with what acts."""
     w, vehicle = Words(language, found.model.report), found.vehicle
-    asked = w.say(
-        "asked", required=w.n(found.required), vehicle=vehicle.name,
-        axle=w.unit("force", vehicle.heaviest.load * vehicle.dynamic * vehicle.factor),
-        total=w.unit("force", vehicle.total),
-    )  # fmt: skip
+    asked = w.say("asked", required=w.n(found.required), vehicle=vehicle.name, loads=_loads(vehicle, w))
     reached = found.design if math.isfinite(found.design) else math.nan
     return question_of(asked, found.assembly, multiplied={vehicle.group: reached},
                        wanted={vehicle.group: found.required})  # fmt: skip
+
+
+def _loads(vehicle: Vehicle, w: Words) -> str:
+    """Return the loads of a vehicle in words: its axles, and what is spread along the road."""
+    times = vehicle.dynamic * vehicle.factor
+    uniform = w.unit("line load", times * max(vehicle.uniform, default=0.0))
+    if not vehicle.points:
+        return w.say("loads_uniform", uniform=uniform)
+    axle = w.unit("force", times * vehicle.heaviest.load)
+    total = w.unit("force", times * sum(a.load for a in vehicle.points))
+    return w.say("loads_both" if vehicle.uniform else "loads_axles", axle=axle, total=total, uniform=uniform)
+
+
+def heaviest_words(vehicle: Vehicle, multiplier: float, w: Words) -> tuple[str, str]:
+    """Return the heaviest axle, or the largest uniform load, at a multiplier: in a sentence, and the number alone."""
+    times = multiplier * vehicle.dynamic * vehicle.factor
+    if vehicle.points:
+        axle = w.unit("force", times * vehicle.heaviest.load, 4)
+        return w.say("an_axle", axle=axle), axle
+    uniform = w.unit("line load", times * max(vehicle.uniform), 4)
+    return w.say("a_load", uniform=uniform), uniform
 
 
 def bridge_lines(found: BridgeResult) -> list[str]:
@@ -67,8 +87,9 @@ def bridge_lines(found: BridgeResult) -> list[str]:
     vehicle, worst = found.vehicle, found.worst
     lines = [found.model.title or "bridge without a title", verdict.sentence, *verdict.lines(units, most=8)]
     lines.append(f"  proof        {verdict.proof}")
-    axle, asked = units.text("force", found.permissible_axle, 4), number(found.required, 4)
-    lines.append(f"  permissible  a heaviest axle of {axle} for the load factor {asked}")
+    bare = replace(vehicle, dynamic=1.0, factor=1.0)
+    axle, _ = heaviest_words(bare, found.design / found.required, Words("en", units))
+    lines.append(f"  permissible  {axle} for the load factor {number(found.required, 4)}")
     for b in found.brackets:
         s = b.standing
         lines.append(
@@ -160,15 +181,14 @@ def _answer(found: BridgeResult, outcome: Outcome, w: Words) -> str:
         told = [w.say("open", required=required, count=len(found.open), all=len(found.coulomb))]
     else:
         told = [w.say("unasked", required=required, all=every)]
-    heaviest = vehicle.heaviest.load * vehicle.dynamic * vehicle.factor
     known = {
         "x": w.unit("length", worst.position, 4), "way": w.say(worst.direction),
-        "bound": w.n(worst.multiplier, 5), "bound_axle": w.unit("force", worst.multiplier * heaviest, 4),
+        "bound": w.n(worst.multiplier, 5), "bound_axle": heaviest_words(vehicle, worst.multiplier, w)[1],
     }  # fmt: skip
     if math.isnan(found.design):
         told.append(w.say("worst_unknown", **known))
     else:
-        design, axle = w.n(found.design, 5), w.unit("force", found.axle, 4)
+        design, axle = w.n(found.design, 5), heaviest_words(vehicle, found.design, w)[0]
         told.append(w.say("worst", design=design, axle=axle, **known))
     if found.without_soil is None:
         told.append(w.say("no_soil_none"))
@@ -201,18 +221,21 @@ def _proof(found: BridgeResult, w: Words) -> str:
 
 def _limits(found: BridgeResult, w: Words) -> tuple[str, ...]:
     width, by = found.width
-    by = WIDTHS.get(by, by) if w.language == "it" else by
     x = sorted({round(s.position, 6) for s in found.standings if s.direction == found.worst.direction})
     apart = max(np.diff(x), default=0.0)
     told = [
         w.say("shares", soil=w.n(100 * max(found.owed_to_soil, 0.0), 3),
             spread=w.n(100 * max(found.owed_to_spread, 0.0), 3)),
-        w.say("width", width=w.unit("length", width, 4), by=by),
+        w.say("width", width=w.unit("length", width, 4), by=w.width(by)),
         w.say("grid", step=w.unit("length", float(apart), 3), fine=w.unit("length", found.fine, 3)),
         w.say("brackets", count=len(found.brackets)),
     ]  # fmt: skip
     worst = found.worst
-    beside = found.vehicle.total - worst.on_masonry
+    line = ground_of(found.model)[1].line
+    times = found.vehicle.dynamic * found.vehicle.factor
+    on_road = [load for x, _, load, stretch in found.vehicle.footprints(worst.position, worst.direction)
+               if not stretch and line[0, 0] <= x <= line[-1, 0]]  # fmt: skip
+    beside = worst.elsewhere + times * sum(a.load for a in found.vehicle.points) - sum(on_road)
     if beside > 1e-6 * found.vehicle.total:
         told.append(w.say("elsewhere", load=w.unit("force", beside, 4)))
     return (*told, w.say("plane"), w.say("several"), *joints_not_made(found.assembly.detection),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Literal
 
@@ -10,8 +11,13 @@ from concio.display import Units, number
 Language = Literal["en", "it"]
 
 ENGLISH: Mapping[str, str] = {
-    "asked": "{required} times the vehicle '{vehicle}' (heaviest axle {axle}, {total} in all) at every position on "
-    "the bridge, while all other loads act once",
+    "asked": "{required} times the vehicle '{vehicle}' ({loads}) at every position on the bridge, while all other "
+    "loads act once",
+    "loads_axles": "heaviest axle {axle}, {total} in all",
+    "loads_both": "heaviest axle {axle}, {total} in axles, and a uniform load of up to {uniform} along the road",
+    "loads_uniform": "a uniform load of up to {uniform} along the road, no axles",
+    "an_axle": "a heaviest axle of {axle}",
+    "a_load": "a uniform load of {uniform}",
     "head_holds": "The vehicle is carried at every position that was looked at.",
     "head_fails": "The vehicle is not carried.",
     "head_open": "Whether the vehicle is carried is open.",
@@ -25,8 +31,8 @@ ENGLISH: Mapping[str, str] = {
     "open": "Whether {required} times the vehicle is carried was not shown at {count} of {all} positions.",
     "unasked": "No mechanism refutes {required} times the vehicle at any of {all} positions; what Coulomb friction "
     "carries was not asked for.",
-    "worst": "Worst is x = {x}, travelling to the {way}: Coulomb friction carries {design} times it there, a heaviest "
-    "axle of {axle}, and nothing is in equilibrium beyond {bound} times ({bound_axle}).",
+    "worst": "Worst is x = {x}, travelling to the {way}: Coulomb friction carries {design} times it there, {axle}, "
+    "and nothing is in equilibrium beyond {bound} times ({bound_axle}).",
     "worst_unknown": "Worst is x = {x}, travelling to the {way}: nothing is in equilibrium beyond {bound} times it "
     "there ({bound_axle}); what Coulomb friction carries of that was not found.",
     "no_soil": "Without the pressure of the soil the bound is {multiplier} times, at x = {x}.",
@@ -58,9 +64,13 @@ ENGLISH: Mapping[str, str] = {
     "right": "right", "left": "left",
 }  # fmt: skip
 ITALIAN: Mapping[str, str] = {
-    "asked": "{required} volte il veicolo '{vehicle}' (asse più pesante {axle}, {total} in tutto) in ogni "
-    "posizione sul "
-    "ponte, con tutti gli altri carichi applicati una volta",
+    "asked": "{required} volte il veicolo '{vehicle}' ({loads}) in ogni posizione sul ponte, con tutti gli altri "
+    "carichi applicati una volta",
+    "loads_axles": "asse più pesante {axle}, {total} in tutto",
+    "loads_both": "asse più pesante {axle}, {total} negli assi, e un carico uniforme fino a {uniform} lungo la strada",
+    "loads_uniform": "un carico uniforme fino a {uniform} lungo la strada, senza assi",
+    "an_axle": "un asse più pesante di {axle}",
+    "a_load": "un carico uniforme di {uniform}",
     "head_holds": "Il veicolo è portato in ogni posizione esaminata.",
     "head_fails": "Il veicolo non è portato.",
     "head_open": "Resta aperto se il veicolo sia portato.",
@@ -76,7 +86,7 @@ ITALIAN: Mapping[str, str] = {
     "unasked": "Nessun meccanismo esclude {required} volte il veicolo in alcuna di {all} posizioni; quanto porta "
     "l'attrito di Coulomb non è stato chiesto.",
     "worst": "La posizione peggiore è x = {x}, con marcia verso {way}: l'attrito di Coulomb vi porta {design} volte il "
-    "veicolo, un asse più pesante di {axle}, e oltre {bound} volte ({bound_axle}) nulla è in equilibrio.",
+    "veicolo, {axle}, e oltre {bound} volte ({bound_axle}) nulla è in equilibrio.",
     "worst_unknown": "La posizione peggiore è x = {x}, con marcia verso {way}: oltre {bound} volte il veicolo "
     "({bound_axle}) nulla vi è in equilibrio; quanto ne porti l'attrito di Coulomb non è stato trovato.",
     "no_soil": "Senza la spinta del terreno il limite è {multiplier} volte, in x = {x}.",
@@ -109,11 +119,19 @@ ITALIAN: Mapping[str, str] = {
     "right": "destra", "left": "sinistra",
 }  # fmt: skip
 TEXTS: Mapping[str, Mapping[str, str]] = {"en": ENGLISH, "it": ITALIAN}
-WIDTHS = {
-    "the whole width of the bodies": "tutta la larghezza del modello",
-    "as given": "come assegnata",
-}
-"""How widths are found, in Italian."""
+WIDTHS = (
+    ("the whole width of the bodies", "tutta la larghezza del modello"), ("as given", "come assegnata"),
+    ("that of the rule", "quella della regola"), (": the rule", ": la regola"),
+    ("at the depth of", "alla profondità di"), ("m below the road", "m sotto la strada"), ("gives", "dà"),
+)  # fmt: skip
+"""Phrases of how widths are found, in English and Italian."""
+ACTING = (
+    ("constant; ", "costante; "), ("multiplied", "moltiplicato"), ("asked for", "chiesto"), ("reached", "raggiunto"),
+    ("at factor 1", "con fattore 1"), ("not applied", "non applicato"), ("own weight", "peso proprio"),
+    ("point loads", "forze concentrate"), ("point load", "forza concentrata"), ("pressures", "pressioni"),
+    ("in forces that balance", "in forze che si equilibrano"), (" along ", " lungo "),
+)  # fmt: skip
+"""Phrases of what acts, in English and Italian."""
 
 
 class Words:
@@ -135,7 +153,26 @@ class Words:
 
     def local(self, text: str) -> str:
         """Return a number in words as the language writes it."""
-        return text if self.language == "en" else text.replace(",", "\u2009").replace(".", ",")
+        if self.language == "en":
+            return text
+        return re.sub(r"(?<=\d)\.(?=\d)", ",", re.sub(r"(?<=\d),(?=\d{3})", "\u2009", text))
+
+    def width(self, text: str) -> str:
+        """Return how a width was found."""
+        return self._phrases(text, WIDTHS)
+
+    def acting(self, text: str) -> str:
+        """Return what acts of a load group."""
+        group, mark, rest = text.partition(": ")
+        return group + mark + self._phrases(rest, ACTING)
+
+    def _phrases(self, text: str, phrases: tuple[tuple[str, str], ...]) -> str:
+        """Return a sentence of the house with its phrases in the language."""
+        if self.language == "en":
+            return text
+        for english, italian in phrases:
+            text = text.replace(english, italian)
+        return self.local(text)
 
     def n(self, value: float, digits: int = 4) -> str:
         """Return a number."""

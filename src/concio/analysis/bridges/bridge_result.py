@@ -134,13 +134,17 @@ class BridgeResult(Shown):
 
     @property
     def axle(self) -> float:
-        """Weight of the heaviest axle at the design multiplier, with all of its factors [kN]."""
+        """Weight of the heaviest axle at the design multiplier, with all of its factors [kN]; nan without axles."""
         vehicle = self.vehicle
+        if not vehicle.points:
+            return float("nan")
         return self.design * vehicle.heaviest.load * vehicle.dynamic * vehicle.factor
 
     @property
     def permissible_axle(self) -> float:
-        """Heaviest axle that keeps the required load factor, without dynamic and partial factors [kN]."""
+        """Heaviest axle that keeps the required load factor, without dynamic and partial factors [kN]; or nan."""
+        if not self.vehicle.points:
+            return float("nan")
         return self.design / self.required * self.vehicle.heaviest.load
 
     @property
@@ -187,7 +191,8 @@ class BridgeResult(Shown):
         state = self.service
         return {
             "verdict": self.verdict.as_dict(),
-            "vehicle": {"name": vehicle.name, "heaviest_axle": vehicle.heaviest.load, "total": vehicle.total,
+            "vehicle": {"name": vehicle.name, "heaviest_axle": vehicle.heaviest.load if vehicle.points else None,
+                        "uniform_load": max(vehicle.uniform, default=None), "total": vehicle.total,
                         "dynamic": vehicle.dynamic, "factor": vehicle.factor, "source": vehicle.source},
             "required": self.required,
             "load_factor": {"design": _finite(self.design), "associated": _finite(worst.multiplier),

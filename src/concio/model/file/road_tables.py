@@ -85,6 +85,7 @@ class FillTable(Table):
     pressure: Literal["none", "active", "at rest"] = "none"
     stiffness: JointStiffness = 20_000.0
     group: Name = "fill"
+    bridge_width: Length | None = Field(None, description="of the bodies before width made them narrower")
     applied: StrictBool = Field(default=False, description="its loads and soil elements stand in the file already")
 
 

@@ -29,6 +29,8 @@ Array = np.ndarray
 
 SOIL = "soil "
 """How the names of soil elements begin."""
+NARROW = 1e-9
+"""Widths that differ by less than this share are one."""
 FLAT = 1e-6
 """Faces whose vertical projection is below this share of their length carry no horizontal pressure."""
 
@@ -42,6 +44,7 @@ def with_fill(model: Model, fill: Fill) -> Model:
     model : Model
         Plane, without fill.
     fill : Fill
+        Where its ``width`` is "rule", the width is that of a vehicle of 1.8 m until another is put on.
 
     Raises
     ------
@@ -54,7 +57,10 @@ def with_fill(model: Model, fill: Fill) -> Model:
     if fill.group in model.load_groups:
         msg = f"the load group '{fill.group}' has loads already"
         raise InputError(msg, where="fill", hint="give the fill another group")
-    model = _narrowed(model, fill)
+    width, _ = width_used(model, fill, model.vehicle)
+    if fill.width != "full":
+        fill = replace(fill, bridge_width=max(b.thickness for b in model.bodies))
+        model = _as_wide(model, width)
     surface = Surface.of(model)
     road = Road.of(fill, surface)
     weight = _weights(model, fill, surface, road)
@@ -87,6 +93,13 @@ def with_vehicle(model: Model, vehicle: Vehicle, *, whole: bool = True) -> Model
     if vehicle.group in model.load_groups:
         msg = f"the load group '{vehicle.group}' has other loads already"
         raise InputError(msg, where="vehicle", hint="give the vehicle a group of its own")
+    assert model.fill is not None
+    width, _ = width_used(model, model.fill, vehicle)
+    if model.fill.width == "rule" and abs(width / max(b.thickness for b in model.bodies) - 1.0) > NARROW:
+        full = model.fill.bridge_width or width
+        model = with_fill(_as_wide(without_fill(model), full), replace(model.fill, width=width))
+        assert model.fill is not None
+        model = replace(model, fill=replace(model.fill, width="rule"))
     bare = replace(model, vehicle=vehicle)
     if vehicle.position is None:
         return bare
@@ -190,27 +203,25 @@ def point_loads(model: Model, found: SpreadLoad, group: str) -> tuple[Load, ...]
 
 def width_used(model: Model, fill: Fill, vehicle: Vehicle | None = None) -> tuple[float, str]:
     """Return the width of the structure that is computed [m], and how it was found."""
-    full = max(b.thickness for b in model.bodies)
+    own = max(b.thickness for b in model.bodies)
+    full = fill.bridge_width or own
     if fill.width == "full":
-        return full, "the whole width of the bodies"
+        return own, "the whole width of the bodies"
     if fill.width == "rule":
         rule = spread_rule(fill.spread)
         surface = Surface.of(model)
         crown = surface.crown
         depth = float(Road.of(fill, surface).height(crown[:1])[0] - crown[1])
-        own = rule.width_at(1.8 if vehicle is None else vehicle.width, depth)
-        if own < full:
-            return own, f"that of the rule '{rule.name}' at the depth of {depth:.3g} m below the road"
-        return full, f"the whole width of the bodies: the rule '{rule.name}' gives {own:.3g} m"
+        wide = rule.width_at(1.8 if vehicle is None else vehicle.width, depth)
+        if wide < full:
+            return wide, f"that of the rule '{rule.name}' at the depth of {depth:.3g} m below the road"
+        return full, f"the whole width of the bodies: the rule '{rule.name}' gives {wide:.3g} m"
     return float(fill.width), "as given"
 
 
-def _narrowed(model: Model, fill: Fill) -> Model:
-    width, _ = width_used(model, fill, model.vehicle)
-    if fill.width == "full":
-        return model
-    bodies = tuple(replace(cast("Body", b), thickness=width) for b in model.bodies)
-    return replace(model, bodies=bodies)
+def _as_wide(model: Model, width: float) -> Model:
+    """Return a model whose bodies are all of one width [m]."""
+    return replace(model, bodies=tuple(replace(cast("Body", b), thickness=width) for b in model.bodies))
 
 
 def stress_at(fill: Fill, depth: Array) -> Array:
