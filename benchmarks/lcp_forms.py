@@ -20,12 +20,12 @@ from concio.contact.assembly import assemble
 from concio.errors import MethodError
 from concio.model.generate.panel import running_bond_panel
 from concio.problem.contact_problem import ContactProblem
-from concio.solvers.forms.force_method import force_method
-from concio.solvers.forms.forms import MixedForm, mixed_form
-from concio.solvers.forms.reduction import reduce
-from concio.solvers.forms.split_motions import split
 from concio.solvers.lcp.lemke_method import LemkeResult, Outcome, lemke
 from concio.solvers.lcp.linear_problem import LinearComplementarity
+from concio.solvers.methods.forms.force_method import force_method
+from concio.solvers.methods.forms.forms import MixedForm, mixed_form
+from concio.solvers.methods.forms.reduction import reduce
+from concio.solvers.methods.forms.split_motions import split
 from concio.solvers.pivoting.sparse_lemke import solve
 
 PANELS: dict[str, dict[str, Any]] = {

@@ -12,10 +12,10 @@ from scipy.optimize import linprog
 from concio.errors import MethodError
 from concio.problem.contact_problem import ContactProblem, Laws
 from concio.problem.solution import Status
-from concio.solvers.exhaustive.clauses import ClauseSearch
-from concio.solvers.exhaustive.relaxation import Relaxation
-from concio.solvers.exhaustive.search import solve
-from concio.solvers.exhaustive.states import Empty, StateQuestions
+from concio.solvers.methods.exhaustive.clauses import ClauseSearch
+from concio.solvers.methods.exhaustive.relaxation import Relaxation
+from concio.solvers.methods.exhaustive.search import solve
+from concio.solvers.methods.exhaustive.states import Empty, StateQuestions
 from concio.solvers.statics.existence import statically_admissible
 from contact_problems import wall
 from lcp_problems import small_wall

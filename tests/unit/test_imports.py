@@ -24,9 +24,10 @@ ORDER = (
     "model/solids", "model/file",
     "fem", "problem", "contact", "contact/moving",
     "solvers/algebra", "solvers/lcp", "solvers/states", "solvers/statics", "solvers/interior", "solvers/pivoting",
-    "solvers/forms", "solvers/iterative", "solvers/exhaustive", "solvers/relaxation", "solvers/stepping",
-    "solvers/auto", "solvers/path", "solvers", "proof", "verdict", "analysis", "analysis/motion", "analysis/cells",
-    "analysis/continuum", "analysis/seismic", "analysis/bridges", "analysis/cracks", "post", "plot", "report", "io",
+    "solvers/relaxation", "solvers/stepping", "solvers/auto", "solvers/path", "solvers",
+    "solvers/methods/forms", "solvers/methods/iterative", "solvers/methods/exhaustive", "solvers/methods",
+    "proof", "verdict", "analysis", "analysis/motion", "analysis/cells", "analysis/continuum",
+    "analysis/seismic", "analysis/bridges", "analysis/cracks", "post", "plot", "report", "io",
     "studies", "bridges", "cells", "cracks", "generate", "motion", "seismic", "cli", "__main__",
 )  # fmt: skip
 """Rooms in the order in which things flow: each imports from itself and from those before it."""

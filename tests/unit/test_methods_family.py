@@ -13,7 +13,8 @@ import scipy.sparse as sp
 from concio.errors import MethodError
 from concio.problem.contact_problem import ContactProblem, Laws
 from concio.problem.solution import Progress, Solution, Status
-from concio.solvers.iterative import (
+from concio.solvers.methods import find
+from concio.solvers.methods.iterative import (
     admm,
     alart_curnier,
     gauss_seidel,
@@ -23,7 +24,6 @@ from concio.solvers.iterative import (
     simo_laursen,
     uzawa,
 )
-from concio.solvers.methods import find
 from contact_problems import rigid, wall
 
 FAMILY = ("lagrange", "alart-curnier", "uzawa", "simo-laursen", "de-saxce", "panagiotopoulos", "gauss-seidel", "admm")

@@ -81,6 +81,15 @@ def test_a_method_of_ones_own() -> None:
         concio.solve(model, "silent", patince=2)
 
 
+def test_a_method_may_be_another_function_in_space_and_wait_to_be_imported() -> None:
+    register("two", {2: silent, 3: "concio.solvers.auto.chain"}, dimensions=(2, 3), laws=LAWS)
+    assert find("two").options == ("patience", "engine")
+    assert find("two")(wall(2, 1, kn=1e3).problem).solved
+    register("later", "no.such.module", load=False)
+    with pytest.raises(MethodError, match="cannot be imported"):
+        find("later").solver(2)
+
+
 def test_what_it_does_not_treat_never_reaches_it() -> None:
     register("silent", silent, dimensions=(2,))
     problem = wall(2, 1, kn=1e3).problem

@@ -9,13 +9,13 @@ import pytest
 
 from concio.errors import MethodError
 from concio.problem.solution import Status
-from concio.solvers.forms.condensation import condense
-from concio.solvers.forms.force_method import force_method
-from concio.solvers.forms.forms import mixed_form
-from concio.solvers.forms.reduction import reduce
-from concio.solvers.forms.split_motions import join, split
 from concio.solvers.lcp.lemke_method import Outcome, lemke
 from concio.solvers.methods import find
+from concio.solvers.methods.forms.condensation import condense
+from concio.solvers.methods.forms.force_method import force_method
+from concio.solvers.methods.forms.forms import mixed_form
+from concio.solvers.methods.forms.reduction import reduce
+from concio.solvers.methods.forms.split_motions import join, split
 from contact_problems import wall
 from lcp_problems import small_wall
 

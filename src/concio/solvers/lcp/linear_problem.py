@@ -6,7 +6,7 @@ Generalised (horizontal), the paper's (33):      :math:`A t + B y = c,\quad 0 \l
 
 With B regular the second is the first with ``M = -B^{-1} A``, ``q = B^{-1} c``; the force method gives a singular B,
 and then any *complementary basis* (one column of each pair ``A_i, B_i``, all independent) does the same service, that
-of the isostatic structure for instance (:mod:`concio.solvers.forms.force_method`).
+of the isostatic structure for instance (:mod:`.force_method`).
 """
 
 from __future__ import annotations

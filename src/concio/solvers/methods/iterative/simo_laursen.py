@@ -1,9 +1,8 @@
 r"""Augmented Lagrangian with nested or simultaneous updates of the multipliers (Simo and Laursen).
 
 Penalty springs whose forces are corrected: with multipliers ``lam`` fixed, equilibrium under
-``t = P(lam - rho y(u))`` is found by the semismooth Newton steps of :mod:`concio.solvers.iterative.alart_curnier` (in
-each pair a
-spring of stiffness ``rho`` preloaded with ``lam``), then ``lam = t(u)`` and again, so that the exact joint law is
+``t = P(lam - rho y(u))`` is found by the semismooth Newton steps of :mod:`.alart_curnier` (in each
+pair a spring of stiffness ``rho`` preloaded with ``lam``), then ``lam = t(u)`` and again, so that the exact joint law is
 reached at a finite, harmless ``rho``. *Nested* solves each equilibrium before it updates (Uzawa's outer loop, a Newton
 inner one); *simultaneous* updates after each Newton step, cheaper where the states settle quickly. ``rho`` starts at
 ten times the typical stiffness and is raised tenfold (at most to 1e5) while multipliers converge slowly.
@@ -27,8 +26,8 @@ from concio.errors import MethodError
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
 from concio.solvers.algebra.scaled import scale
-from concio.solvers.iterative.alart_curnier import newton
-from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer, require_positive
+from concio.solvers.methods.iterative.alart_curnier import newton
+from concio.solvers.methods.iterative.iteration import GOAL, Record, Stopped, answer, require_positive
 
 LARGEST = 1e5
 

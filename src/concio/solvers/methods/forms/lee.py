@@ -1,7 +1,7 @@
 r"""``lee``: rigid motions split into nonnegative parts (Stavroulakis et al. 1991; Lee 1994), solved by Lemke's method.
 
 Six unknowns more for each free body than the force method, but a sparse and copositive matrix; see
-:mod:`concio.solvers.forms.split_motions`.
+:mod:`.split_motions`.
 
 Parameters of :func:`solve`
 ---------------------------
@@ -14,9 +14,9 @@ from __future__ import annotations
 
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
-from concio.solvers.forms.dense_solve import DenseRun
-from concio.solvers.forms.forms import FormName, mixed_form
-from concio.solvers.forms.reduction import reduce
+from concio.solvers.methods.forms.dense_solve import DenseRun
+from concio.solvers.methods.forms.forms import FormName, mixed_form
+from concio.solvers.methods.forms.reduction import reduce
 
 
 def solve(

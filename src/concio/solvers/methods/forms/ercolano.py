@@ -2,7 +2,7 @@ r"""``ercolano``: the force method with rigid coordinates of the paper (26-33), 
 
 Gaps of chosen contacts stand for the rigid motions, which leave the problem without adding unknowns: six fewer for each
 free body than in the split form of Lee. The generalised problem (33) is brought to standard form through the
-complementary basis of the isostatic structure (:mod:`concio.solvers.forms.force_method`).
+complementary basis of the isostatic structure (:mod:`.force_method`).
 
 The paper's own variables are those of the 3m form, which is not copositive: Lemke's method often ends on a ray although
 there is a solution. The default here is the 4m form; ``form="3m"`` is the paper's.
@@ -20,9 +20,9 @@ from __future__ import annotations
 
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
-from concio.solvers.forms.dense_solve import DenseRun
-from concio.solvers.forms.forms import FormName, mixed_form
-from concio.solvers.forms.reduction import reduce
+from concio.solvers.methods.forms.dense_solve import DenseRun
+from concio.solvers.methods.forms.forms import FormName, mixed_form
+from concio.solvers.methods.forms.reduction import reduce
 
 
 def solve(

@@ -23,7 +23,7 @@ import numpy as np
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array
 from concio.solvers.algebra.scaled import Scaled
-from concio.solvers.iterative.iteration import Record
+from concio.solvers.methods.iterative.iteration import Record
 
 LARGEST = 1e3
 """Augmentation beyond which multipliers are not helped by more, in multiples of the typical stiffness."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from concio.errors import MethodError
-from concio.solvers.forms.forms import MixedForm
 from concio.solvers.lcp.linear_problem import LinearComplementarity
+from concio.solvers.methods.forms.forms import MixedForm
 
 
 def condense(form: MixedForm) -> LinearComplementarity:

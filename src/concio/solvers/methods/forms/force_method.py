@@ -27,8 +27,8 @@ import scipy.linalg as sl
 
 from concio.errors import MethodError
 from concio.problem.contact_problem import Array
-from concio.solvers.forms.forms import MixedForm
 from concio.solvers.lcp.linear_problem import GeneralisedComplementarity, LinearComplementarity
+from concio.solvers.methods.forms.forms import MixedForm
 
 NORMAL_ONLY = 1e4
 """Largest condition number at which normal gaps alone are taken, as in the paper."""

@@ -1,15 +1,10 @@
 r"""``lemke``: Lemke's method on a copositive form of the whole problem, rigid motions included.
 
-The displacements are eliminated (:mod:`concio.solvers.forms.reduction`), and rigid motions treated as the number of
-pairs
-suggests: by the force method (:mod:`concio.solvers.forms.force_method`) on small problems, where it halves the pivots;
-split
-(:mod:`concio.solvers.forms.split_motions`) on larger ones, where the sparse basis pays. Friction is written in the 3m
-form
-first, which has fewer unknowns, then in the copositive 4m form (:mod:`concio.solvers.forms.forms`), each under a cover
-that lets
-friction do no work along a ray: the cover matters more than the form
-(``docs/research/covers-under-which-friction-does-no-work.md``). The states of the pairs
+The displacements are eliminated (:mod:`.reduction`), and rigid motions treated as the number of pairs suggests: by
+the force method (:mod:`.force_method`) on small problems, where it halves the pivots; split (:mod:`.split_motions`)
+on larger ones, where the sparse basis pays. Friction is written in the 3m form first, which has fewer unknowns, then
+in the copositive 4m form (:mod:`.forms`), each under a cover that lets friction do no work along a ray: the cover
+matters more than the form (``docs/research/covers-under-which-friction-does-no-work.md``). The states of the pairs
 are read off and solved for once more on the original matrices, so that the answer does not carry the errors of the
 elimination.
 
@@ -31,9 +26,9 @@ from typing import Literal
 from concio.errors import MethodError
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution, Status
-from concio.solvers.forms.dense_solve import DenseRun, Elimination
-from concio.solvers.forms.forms import FormName, mixed_form
-from concio.solvers.forms.reduction import reduce
+from concio.solvers.methods.forms.dense_solve import DenseRun, Elimination
+from concio.solvers.methods.forms.forms import FormName, mixed_form
+from concio.solvers.methods.forms.reduction import reduce
 
 SMALL = 120
 """Number of pairs up to which the force method is tried first."""

@@ -35,8 +35,8 @@ from concio.errors import MethodError
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
 from concio.solvers.algebra.scaled import Scaled, scale
-from concio.solvers.iterative.de_saxce import isotropic
-from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer, require_positive
+from concio.solvers.methods.iterative.de_saxce import isotropic
+from concio.solvers.methods.iterative.iteration import GOAL, Record, Stopped, answer, require_positive
 
 PROXIMAL = 1e-9
 """Regularisation that keeps the factorisation finite where a body hangs on nothing."""

@@ -30,8 +30,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
-from concio.solvers.exhaustive.states import Empty, Point
-from concio.solvers.forms.reduction import Reduction, reduce
+from concio.solvers.methods.exhaustive.states import Empty, Point
+from concio.solvers.methods.forms.reduction import Reduction, reduce
 
 REACH = 1e7
 """States whose displacements and forces, scaled, stay below this are excluded beyond rounding."""

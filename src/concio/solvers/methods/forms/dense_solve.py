@@ -12,12 +12,12 @@ from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.pair_state import Normal
 from concio.problem.solution import Progress, ProgressCallback, Solution, Status, failed, judge, pair_states
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
-from concio.solvers.forms.condensation import condense
-from concio.solvers.forms.force_method import force_method
-from concio.solvers.forms.forms import MixedForm
-from concio.solvers.forms.split_motions import join, split
 from concio.solvers.lcp.lemke_method import LemkeResult, Outcome, lemke
 from concio.solvers.lcp.linear_problem import LinearComplementarity
+from concio.solvers.methods.forms.condensation import condense
+from concio.solvers.methods.forms.force_method import force_method
+from concio.solvers.methods.forms.forms import MixedForm
+from concio.solvers.methods.forms.split_motions import join, split
 from concio.solvers.pivoting import sparse_lemke
 from concio.solvers.pivoting.lemke_outcome import no_solution
 from concio.solvers.pivoting.state_solution import finish

@@ -31,7 +31,7 @@ from concio.errors import MethodError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
 from concio.solvers.algebra.scaled import Scaled, scale
-from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer
+from concio.solvers.methods.iterative.iteration import GOAL, Record, Stopped, answer
 
 
 def solve(

@@ -26,7 +26,7 @@ import numpy as np
 
 from concio.errors import MethodError
 from concio.problem.contact_problem import Array
-from concio.solvers.forms.reduction import Reduction
+from concio.solvers.methods.forms.reduction import Reduction
 
 FormName = Literal["3m", "4m", "normal"]
 

@@ -19,8 +19,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array
-from concio.solvers.forms.forms import MixedForm
 from concio.solvers.lcp.linear_problem import LinearComplementarity
+from concio.solvers.methods.forms.forms import MixedForm
 
 NEGLIGIBLE = 1e-14
 """Entries of the scaled matrix that are rounding."""

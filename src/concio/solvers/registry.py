@@ -1,4 +1,4 @@
-"""The methods by name: what each can treat, where its ``solve`` is, and how to add one's own."""
+"""What a method is: its name, what it can treat, where its ``solve`` is; and :func:`register`, by which all come in."""
 
 from __future__ import annotations
 
@@ -80,10 +80,7 @@ class Method:
     def solver(self, dim: int) -> Solver:
         """Return the function for problems of dimension ``dim``."""
         found = self.modules[dim]
-        if isinstance(found, str):
-            solve: Solver = import_module(found).solve
-            return solve
-        return found
+        return _function(found) if isinstance(found, str) else found
 
     @property
     def options(self) -> tuple[str, ...]:
@@ -131,38 +128,8 @@ def laws_of(problem: ContactProblem) -> tuple[str, ...]:
     return tuple(name for name in LAWS if there[name])
 
 
-def _method(name: str, plane: str, space: str | None = "", *, without: Iterable[str] = ()) -> Method:
-    """Return a method of ours; ``space`` is its module there, None for none, empty for the same."""
-    modules = {2: f"concio.solvers.{plane}"}
-    if space is not None:
-        modules[3] = f"concio.solvers.{space or plane}"
-    return Method(name, modules, frozenset(LAWS) - frozenset(without))
-
-
-METHODS: dict[str, Method] = {
-    method.name: method
-    for method in (
-        _method("auto", "auto.chain"),
-        _method("interior-point", "interior.engine", "interior.space"),
-        _method("lemke", "forms.lemke", None, without=["cap"]),
-        _method("sparse-lemke", "pivoting.sparse_lemke", None),
-        _method("exhaustive", "exhaustive.search", None, without=["cohesion", "tension", "dilatancy", "cap"]),
-        _method("klarbring", "forms.klarbring", None, without=["cap"]),
-        _method("ercolano", "forms.ercolano", None, without=["cap"]),
-        _method("lee", "forms.lee", None, without=["cap"]),
-        _method("del-piero", "forms.del_piero", None, without=["friction", "cap"]),
-        _method("penalty", "iterative.penalty"),
-        _method("alart-curnier", "iterative.alart_curnier"),
-        _method("simo-laursen", "iterative.simo_laursen"),
-        _method("de-saxce", "iterative.de_saxce"),
-        _method("panagiotopoulos", "iterative.panagiotopoulos"),
-        _method("lagrange", "iterative.lagrange", None),
-        _method("uzawa", "iterative.uzawa"),
-        _method("gauss-seidel", "iterative.gauss_seidel"),
-        _method("admm", "iterative.admm"),
-    )
-}
-"""The methods by name."""
+METHODS: dict[str, Method] = {}
+"""The methods by name, as :func:`register` has taken them in; ours are in :mod:`concio.solvers.methods`."""
 
 
 def names_for(problem: ContactProblem) -> tuple[str, ...]:
@@ -187,10 +154,11 @@ def find(name: str) -> Method:
 
 def register(
     name: str,
-    solver: str | Solver,
+    solver: str | Solver | Mapping[int, str | Solver],
     *,
     dimensions: Iterable[int] = (2,),
     laws: Iterable[str] = ("friction",),
+    load: bool = True,
 ) -> Method:
     """Add a method of one's own: ``concio.solve(model, name)``, the command line and ``compare`` then know it.
 
@@ -198,13 +166,16 @@ def register(
     ----------
     name : str
         One that no method has yet.
-    solver : str or callable
+    solver : str, callable or mapping of int to either
         The function, or the name of a module with a function ``solve``:
         ``solve(problem, *, progress=None, option=...) -> Solution``, see :func:`concio.problem.solution.judge`.
+        A mapping says it for each dimension.
     dimensions : iterable of int
         2, 3, or both: problems of other dimensions are refused before the method sees them.
     laws : iterable of str
         Joint laws it treats, of :data:`LAWS`; others are refused likewise.
+    load : bool
+        Import modules now and tell what is wrong with them; otherwise when the method is first asked for something.
 
     Returns
     -------
@@ -218,7 +189,8 @@ def register(
     if name in METHODS:
         msg = f"there is a method '{name}' already"
         raise MethodError(msg, hint="choose another name, or take the other out: del METHODS[name]")
-    unknown = [law for law in laws if law not in LAWS]
+    treated = frozenset(laws)
+    unknown = sorted(treated - set(LAWS))
     if unknown:
         msg = f"unknown joint law '{unknown[0]}'"
         raise MethodError(msg, hint=closest(unknown[0], LAWS, names="one of"))
@@ -226,12 +198,14 @@ def register(
     if not dims or any(dim not in SPACES for dim in dims):
         msg = f"a method treats dimension 2, 3 or both, not {dims}"
         raise MethodError(msg)
-    function = _function(solver) if isinstance(solver, str) else solver
-    if "progress" not in options_of(function):
-        msg = f"method '{name}' does not take progress"
-        raise MethodError(msg, hint="def solve(problem, *, progress=None, option=...)")
-    METHODS[name] = Method(name, dict.fromkeys(dims, function), frozenset(laws))
-    return METHODS[name]
+    modules = dict(solver) if isinstance(solver, Mapping) else dict.fromkeys(dims, solver)
+    method = Method(name, modules, treated)
+    for dim in dims if load else ():
+        if "progress" not in options_of(method.solver(dim)):
+            msg = f"method '{name}' does not take progress"
+            raise MethodError(msg, hint="def solve(problem, *, progress=None, option=...)")
+    METHODS[name] = method
+    return method
 
 
 def _function(module: str) -> Solver:

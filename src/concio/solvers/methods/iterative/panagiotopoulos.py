@@ -35,9 +35,9 @@ from concio.errors import MethodError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
 from concio.solvers.algebra.scaled import scale
-from concio.solvers.iterative.augmented import Augmented, multipliers
-from concio.solvers.iterative.de_saxce import LOOSE, change_stalls, inexact, isotropic
-from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer, require_positive
+from concio.solvers.methods.iterative.augmented import Augmented, multipliers
+from concio.solvers.methods.iterative.de_saxce import LOOSE, change_stalls, inexact, isotropic
+from concio.solvers.methods.iterative.iteration import GOAL, Record, Stopped, answer, require_positive
 
 
 def solve(

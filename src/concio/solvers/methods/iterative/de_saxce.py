@@ -28,8 +28,8 @@ import numpy as np
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
 from concio.solvers.algebra.scaled import scale
-from concio.solvers.iterative.augmented import Augmented, multipliers
-from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer, require_positive
+from concio.solvers.methods.iterative.augmented import Augmented, multipliers
+from concio.solvers.methods.iterative.iteration import GOAL, Record, Stopped, answer, require_positive
 
 WINDOW = 20
 """Changes of a fixed point in which it has to make progress."""

@@ -33,7 +33,7 @@ from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.pair_state import Normal, PairStates
 from concio.problem.solution import ProgressCallback, Solution
 from concio.solvers.algebra.scaled import Scaled, scale
-from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer
+from concio.solvers.methods.iterative.iteration import GOAL, Record, Stopped, answer
 
 STIFFNESS = 1e3
 """Inverse of the compliance that regularises the multipliers."""

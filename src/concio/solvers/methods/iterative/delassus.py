@@ -1,7 +1,7 @@
 r"""The Delassus operator: flexibility of the structure seen from its contact pairs, ``W = C A^{-1} C'``.
 
 ``A`` is block diagonal, one definite block for each body: K itself where no body floats, else K with a proximal term
-(see :mod:`concio.solvers.iterative.gauss_seidel`). W couples the pairs of one body with each other and nothing else; it
+(see :mod:`.gauss_seidel`). W couples the pairs of one body with each other and nothing else; it
 is computed body by body and kept sparse. Pairs that share no body can be treated at once: :func:`colours` sorts them.
 """
 

@@ -29,8 +29,8 @@ import numpy as np
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
 from concio.solvers.algebra.scaled import Scaled, scale
-from concio.solvers.iterative.augmented import proximal
-from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer, require_positive, residual_of
+from concio.solvers.methods.iterative.augmented import proximal
+from concio.solvers.methods.iterative.iteration import GOAL, Record, Stopped, answer, require_positive, residual_of
 
 SHIFT = 1e-7
 """Least damping: relative shift of the contact rows."""

@@ -3,7 +3,7 @@
 Of every pair: is it open (no force)? Of a rough pair also: is s+ used up (p = 0), is s- used up (q = 0)? The answers of
 a rough pair leave four states: open (yes, yes, yes), stick (no, no, no), slip + (no, yes, no) and slip - (no, no, yes);
 a pair with both used up carries nothing and counts as open. Every answer fixes at most one column of
-:class:`concio.solvers.exhaustive.relaxation.Relaxation` at zero, and every column but the rigid motions has its answer.
+:class:`.relaxation.Relaxation` at zero, and every column but the rigid motions has its answer.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.problem.contact_problem import Array
-from concio.solvers.exhaustive.clauses import Clause
+from concio.solvers.methods.exhaustive.clauses import Clause
 
 
 @dataclass(frozen=True, eq=False)

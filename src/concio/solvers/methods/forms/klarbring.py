@@ -16,9 +16,9 @@ from __future__ import annotations
 
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
-from concio.solvers.forms.dense_solve import DenseRun
-from concio.solvers.forms.forms import FormName, mixed_form
-from concio.solvers.forms.reduction import reduce
+from concio.solvers.methods.forms.dense_solve import DenseRun
+from concio.solvers.methods.forms.forms import FormName, mixed_form
+from concio.solvers.methods.forms.reduction import reduce
 
 
 def solve(

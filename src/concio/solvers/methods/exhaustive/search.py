@@ -5,10 +5,10 @@ forces may exist and no Coulomb state. What remains is to try the states of the 
 4^m of them, without trying them one by one:
 
 1. some states are assumed, the conditions of all others are relaxed to a linear programme
-   (:mod:`concio.solvers.exhaustive.relaxation`);
+   (:mod:`.relaxation`);
 2. if it has no solution, Farkas' multipliers, rechecked on the original equations, name the few assumptions that
    exclude each other; that clause holds whatever the rest of the structure does, and is kept
-   (:mod:`concio.solvers.exhaustive.clauses`);
+   (:mod:`.clauses`);
 3. if its solution obeys all conditions, it is a state: solved for exactly and judged, it is the answer;
 4. otherwise a condition it violates is decided, and so on. Before the first decision both answers of every violated
    condition are tried alone, the worst first; what fails is settled for good.
@@ -39,8 +39,8 @@ from concio.errors import MethodError
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Progress, ProgressCallback, Solution, Status, failed, judge
 from concio.solvers.algebra.scaled import Scaled, scale
-from concio.solvers.exhaustive.clauses import Clause, ClauseSearch
-from concio.solvers.exhaustive.states import Empty, Point, StateQuestions
+from concio.solvers.methods.exhaustive.clauses import Clause, ClauseSearch
+from concio.solvers.methods.exhaustive.states import Empty, Point, StateQuestions
 from concio.solvers.states.settle import Settler
 
 ZERO = 1e-9
@@ -100,7 +100,7 @@ class Search:
     """
 
     def __init__(self, problem: ContactProblem) -> None:
-        from concio.solvers.exhaustive.relaxation import Relaxation  # loads HiGHS
+        from concio.solvers.methods.exhaustive.relaxation import Relaxation  # loads HiGHS
 
         self.problem = problem
         self.scaled: Scaled = scale(problem)

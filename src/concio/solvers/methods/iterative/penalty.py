@@ -4,7 +4,7 @@ Every hard joint is given the compliance ``1/r`` of a spring,
 
 .. math:: t_n = \mathrm{clip}(-r\,y_n, -T, N), \qquad t_t = \mathrm{proj}_{|t_t| \le c + \mu t_n}(-r\,y_t),
 
-and equilibrium is found by the semismooth Newton steps of :mod:`concio.solvers.iterative.alart_curnier` on
+and equilibrium is found by the semismooth Newton steps of :mod:`.alart_curnier` on
 displacements and spring
 forces together (same answer as on displacements alone, and much more robust), ``r`` raised tenfold at a time from the
 typical stiffness so that each problem starts near its answer.
@@ -31,8 +31,8 @@ import numpy as np
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import ProgressCallback, Solution
 from concio.solvers.algebra.scaled import scale
-from concio.solvers.iterative.alart_curnier import newton
-from concio.solvers.iterative.iteration import GOAL, Record, Stopped, answer, require_positive, residual_of
+from concio.solvers.methods.iterative.alart_curnier import newton
+from concio.solvers.methods.iterative.iteration import GOAL, Record, Stopped, answer, require_positive, residual_of
 
 
 def solve(
