@@ -1,11 +1,11 @@
 r"""Augmented Lagrangian with nested or simultaneous updates of the multipliers (Simo and Laursen).
 
-Penalty springs whose forces are corrected: with multipliers ``lam`` fixed, equilibrium under
-``t = P(lam - rho y(u))`` is found by the semismooth Newton steps of :mod:`.alart_curnier` (in each
-pair a spring of stiffness ``rho`` preloaded with ``lam``), then ``lam = t(u)`` and again, so that the exact joint law is
-reached at a finite, harmless ``rho``. *Nested* solves each equilibrium before it updates (Uzawa's outer loop, a Newton
-inner one); *simultaneous* updates after each Newton step, cheaper where the states settle quickly. ``rho`` starts at
-ten times the typical stiffness and is raised tenfold (at most to 1e5) while multipliers converge slowly.
+Penalty springs whose forces are corrected: with multipliers ``lam`` fixed, equilibrium under ``t = P(lam - rho
+y(u))`` is found by the semismooth Newton steps of :mod:`.alart_curnier` (in each pair a spring of stiffness ``rho``
+preloaded with ``lam``), then ``lam = t(u)`` and again, so that the exact joint law is reached at a finite, harmless
+``rho``. *Nested* solves each equilibrium before it updates (Uzawa's outer loop, a Newton inner one); *simultaneous*
+updates after each Newton step, cheaper where the states settle quickly. ``rho`` starts at ten times the typical
+stiffness and is raised tenfold (at most to 1e5) while multipliers converge slowly.
 
 Floating bodies are no obstacle; every joint law is supported. There is no proof of convergence for Coulomb friction
 (no energy); the record says how far it came.
