@@ -27,7 +27,7 @@ PLACES = 3
 """Places named as the next to be measured."""
 COARSE = 1.0
 """Change of a reading, in errors, from which on finer steps are asked for."""
-FAR = 50.0
+FAR = 20.0
 """Times the misfit allowed beyond which a choice was left after one state (:data:`concio.analysis.cracks.fit.FAR`)."""
 NOTABLE = 0.5
 """Change of a reading, in errors, from which on the order of motions is worth a word."""

@@ -19,7 +19,7 @@ from concio.analysis.cracks.mistakes import Doubt, doubts_of
 from concio.analysis.cracks.moved import moved_model
 from concio.analysis.cracks.observed import readings
 from concio.analysis.cracks.places import next_places
-from concio.analysis.cracks.search import Found, allowed, search
+from concio.analysis.cracks.search import Found, Trial, allowed, search
 from concio.analysis.cracks.unseen import unseen_of
 from concio.analysis.entry_point import entry_point
 from concio.arguments import strict
@@ -119,13 +119,15 @@ def diagnose(
         np.array([getattr(t, key) for t in things])
         for key, things in (("low", given[1]), ("high", given[1]), ("value", given[0]), ("error", given[0]))
     )
+    trials: tuple[Trial, ...] = ()
     for number in STEPS if steps is None else (steps,):
         forward = Forward.of(assembly, moved, found, method, number)
         case = _Case(Fitter(forward, value, error, low, high, scale), *given, confidence)
         searched = search(
             case.fitter, [c.mover for c in given[1]], most=most, beyond=beyond, confidence=confidence,
-            progress=progress,
+            coarse=trials, progress=progress,
         )  # fmt: skip
+        trials = searched.trials
         coarse = case.refinement(searched)
         if coarse <= CHANGED:
             break

@@ -21,11 +21,17 @@ from concio.analysis.cracks.forward import Forward, Prediction
 
 Array = np.ndarray
 
-MOST_STEPS = 12
+MOST_STEPS = 8
 """Predictions along one descent, those for derivatives not counted."""
 FLAT = 0.02
 """Decrease of the misfit below which a descent ends."""
-FAR = 50.0
+SLOW = 0.03
+"""Relative decrease of the misfit below which a descent far from what is allowed ends."""
+TRUST = 2.0
+"""Longest step over the size of a motion."""
+DISTANT = 4.0
+"""Times the misfit allowed from which on a descent is far from it."""
+FAR = 20.0
 """Choices are left after one state where it and the linear model miss by this many times what is allowed."""
 DIFFERENCE = 0.1
 """Step of a difference over the size of a motion."""
@@ -150,15 +156,16 @@ class Fitter:
         starts : int
             Patterns of signs that are followed.
         begin : Fit, optional
-            Begin at an earlier fit of the same candidates instead.
+            Begin at an earlier fit of the same candidates instead, whose paths may have been coarser.
         """
         kept = np.ones(len(self.value), dtype=bool) if kept is None else kept
         own = list(chosen)
         if begin is not None:
-            return self._descend(own, replace(begin, kept=kept), allowed)
+            here = self._first(own, begin.motions[own], begin.slope, kept)
+            return None if here is None else self._descend(own, here, allowed)
         best: Fit | None = None
         for expected, start, J in self.starts(own, kept)[:starts]:
-            if best is not None and (best.misfit <= allowed or expected > FAR * allowed):
+            if best is not None and (best.misfit <= allowed or expected > max(DISTANT * allowed, 0.5 * best.misfit)):
                 break
             here = self._first(own, start, J, kept)
             if here is None:
@@ -202,7 +209,7 @@ class Fitter:
     def _descend(self, own: list[int], here: Fit, allowed: float) -> Fit:
         """Return the end of a descent."""
         kept = here.kept
-        radius, steps, refreshed = np.inf, 0, False
+        radius, steps, refreshed = TRUST, 0, False
         while steps < MOST_STEPS:
             s = here.motions[own]
             size = np.minimum(radius * self.scale[own], np.inf)
@@ -210,11 +217,12 @@ class Fitter:
             d = self._step(here.slope[kept], here.residual[kept], low, high, self.scale[own])
             expected = (here.residual + here.slope @ d)[kept]
             gain = here.misfit - float(expected @ expected)
-            stuck = gain < max(FLAT, 1e-3 * here.misfit)
+            least = SLOW if here.misfit > DISTANT * allowed else 1e-3
+            stuck = gain < max(FLAT, least * here.misfit)
             if stuck or radius < 1e-3:
                 if here.misfit <= allowed or refreshed or float(without_each(here).min()) > FAR * allowed:
                     break
-                here, refreshed, radius = self._refreshed(here), True, np.inf
+                here, refreshed, radius = self._refreshed(here), True, TRUST
                 continue
             steps += 1
             there = self._moved(here, own, d)

@@ -8,18 +8,18 @@ with more. Where a measurement spoils an otherwise good choice it is named, with
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 from scipy.special import gammainccinv
 
-from concio.analysis.cracks.fit import Fit, Fitter, without_each
+from concio.analysis.cracks.fit import FAR, Fit, Fitter, without_each
 from concio.problem.solution import Progress, ProgressCallback
 
 Array = np.ndarray
 
-HOPELESS = 20.0
+HOPELESS = 4.0
 """A misfit without a measurement, to first order, that is this many times the one allowed is not looked at further."""
 CLEAR = 4.0
 """A measurement that is left out must be further than this from what the others predict, in standard deviations."""
@@ -66,6 +66,7 @@ def allowed(freedom: int, confidence: float) -> float:
 
 def search(
     fitter: Fitter, movers: Sequence[str], *, most: int, beyond: int, confidence: float,
+    coarse: Sequence[Trial] = (),
     progress: ProgressCallback | None = None,
 ) -> Found:  # fmt: skip
     """Return the causes of up to ``most`` motions, ``beyond`` more than the simplest needs at most.
@@ -77,8 +78,11 @@ def search(
         What each candidate moves; the causes are ranked by how many of these move, then by motions, then by misfit.
     most, beyond : int
     confidence : float
+    coarse : sequence of Trial
+        What a search with coarser paths looked at: its fits are begun with, and those far off are taken as they are.
     progress : callable, optional
     """
+    before = {t.chosen: t for t in coarse}
     candidates = range(len(movers))
     n = len(fitter.value)
     accepted: list[Fit] = []
@@ -93,7 +97,12 @@ def search(
         for i, chosen in enumerate(choices):
             if progress is not None:
                 progress(Progress("diagnose", len(trials), 1.0 - i / len(choices), f"{size} motions"))
-            fit = fitter.fit(chosen, allowed=limit) if size else _rest(fitter)
+            known = before.get(chosen)
+            begin = None if known is None else known.fit
+            if begin is not None and size and (begin.left or without_each(begin).min() > FAR * limit):
+                trials.append(Trial(chosen, replace(begin, left=True)))
+                continue
+            fit = fitter.fit(chosen, allowed=limit, begin=begin) if size else _rest(fitter)
             trials.append(Trial(chosen, fit))
             if fit is None or fit.left:
                 continue
