@@ -16,7 +16,7 @@ CLASSES = {
     name: f"an {name}" if name[0] in "AE" else f"a {name}"
     for name in (
         "Body", "ControlPoint", "Elastic", "JointLaw", "JointRule", "Load", "PathResult",
-        "Polyhedron", "Result", "Rigid", "Stage", "Stop", "Support", "Tie", "Units",
+        "Polyhedron", "Result", "Rigid", "Stage", "Stop", "Support", "Temperature", "Tie", "Units",
     )
 }  # fmt: skip
 """Classes of the project that are told from each other by their names."""

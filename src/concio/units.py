@@ -32,6 +32,9 @@ KINDS: dict[str, tuple[int, int]] = {
     "joint stiffness": (1, -3),
     "stiffness": (1, -1),
     "moment": (1, 1),
+    "temperature": (0, 0),
+    "temperature gradient": (0, -1),
+    "expansion": (0, 0),
 }
 """Kinds of quantity, with the exponents of force and length."""
 
@@ -48,8 +51,18 @@ SYMBOL: dict[str, str] = {
     "joint stiffness": "kN/m3",
     "stiffness": "kN/m",
     "moment": "kN m",
+    "temperature": "K",
+    "temperature gradient": "K/m",
+    "expansion": "1/K",
 }
 """Unit in which concio keeps and prints each kind."""
+
+_KELVIN: dict[str, dict[str, float]] = {
+    "temperature": {"K": 1.0},
+    "temperature gradient": {"K/m": 1.0, "K/cm": 100.0, "K/mm": 1000.0},
+    "expansion": {"1/K": 1.0, "/K": 1.0, "K-1": 1.0, "K^-1": 1.0},
+}
+"""Units of changes of temperature; degrees Celsius are kelvins there."""
 
 _VALUE = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[-+]?inf|nan)\s*(.*?)\s*$")
 _ATOM = re.compile(r"^([A-Za-z]+)(?:\^|\*\*)?([23])?$")
@@ -154,6 +167,8 @@ def quantity(value: float | str, kind: str, *, where: str | None = None) -> floa
         raise InputError(msg, where=where, hint="give a finite value")
     if not unit or unit == "-":
         return number
+    if kind in _KELVIN:
+        return number * _kelvin(unit, kind, value, where)
     angle = _ANGLE.get(unit.replace("°", "deg"))
     if angle is not None and kind in ("friction", "angle"):
         return number * angle if kind == "angle" else _tangent(number * angle, str(value), where)
@@ -176,6 +191,16 @@ def quantity(value: float | str, kind: str, *, where: str | None = None) -> floa
         masses = "kg, g and t are masses: write N, kN or kgf for a force"
         raise InputError(msg, where=where, hint=masses if mass else expected)
     return number * factor
+
+
+def _kelvin(unit: str, kind: str, value: float | str, where: str | None) -> float:
+    """Return the factor of a unit of temperature."""
+    known = _KELVIN[kind]
+    found = known.get(re.sub("°C|degC", "K", unit.replace(" ", "")))
+    if found is None:
+        msg = f"'{_short(str(value))}' is not a {kind}"
+        raise InputError(msg, where=where, hint=f"expected a unit like {SYMBOL[kind]}")
+    return found
 
 
 def _tangent(angle: float, value: str, where: str | None) -> float:

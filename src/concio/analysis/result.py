@@ -226,7 +226,7 @@ class Result(Shown):
     @cached_property
     def stress(self) -> Stress:
         """Stresses of the bodies, tension positive."""
-        return Stress(self.assembly.disc, self.displacement)
+        return Stress(self.assembly.disc, self.displacement - self.assembly.expansion(self.factors))
 
     def in_units(self, units: Units | str) -> Result:
         """Return the same result, told in other units; arrays stay in kN and m.
@@ -309,7 +309,8 @@ class Result(Shown):
             found[self.model.bodies[b].name] = tuple(total.tolist())
         if self.assembly.supported.held:
             s = self.solution
-            rest = self.assembly.K @ self.displacement - self.assembly.load(self.factors)
+            strained = self.displacement - self.assembly.expansion(self.factors)
+            rest = self.assembly.K @ strained - self.assembly.load(self.factors)
             rest -= pairs.C_n.T @ s.normal_force + pairs.C_t.T @ s.friction_force.ravel()
             found.update(self.assembly.supported.reactions(disc, rest))
         return found

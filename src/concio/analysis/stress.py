@@ -24,7 +24,7 @@ class Stress:
     ----------
     disc : Discretisation
     displacement : (N_all,) array
-        [m].
+        Less what bodies expand by where their temperature changes [m].
     """
 
     disc: Discretisation

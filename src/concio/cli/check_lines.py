@@ -84,6 +84,8 @@ def check_lines(
         words = [f"{n} {kind}" for kind, n in kinds.items()]
         moved = sum(s.group == group for s in model.supports)
         words += [f"{moved} support{'s' if moved > 1 else ''}"] if moved else []
+        warmed = sum(change.group == group for change in model.temperatures)
+        words += [f"{warmed} change{'s' if warmed > 1 else ''} of temperature"] if warmed else []
         total = facts.get("total_load", {}).get(group)
         force = f", {units.force_vector(total)} in all" if total else ""
         lines.append(f"load group   {group}: {', '.join(words)}{force}")

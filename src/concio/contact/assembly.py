@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
 
 from concio.arguments import closest, strict
+from concio.contact.expansion import add_expansions, free_strains
 from concio.contact.factors import load_factor
 from concio.contact.geometry import GEOMETRIES
 from concio.contact.inertia import masses
@@ -53,7 +54,9 @@ class Assembly:
     loads : dict of (N_all,) arrays
         Nodal forces of each load group [kN].
     moved : dict of ((m,), (m, d-1)) arrays
-        Change of gap and of tangential position by moved obstacles, for each group [m].
+        Change of gap and of tangential position by moved obstacles and rigid bodies that expand, for each group [m].
+    expands : dict of (N_all,) arrays
+        Displacements of elastic bodies that expand freely, for each group that changes temperatures [m].
     lent_compliance : float
         Normal compliance lent to hard joints between bodies that do not deform, a pair of mean area [m/kN]; 0 where
         none was (:mod:`concio.analysis.lent_compliance`).
@@ -69,11 +72,12 @@ class Assembly:
     loads: Mapping[str, Array]
     moved: Mapping[str, tuple[Array, Array]]
     lent_compliance: float = 0.0
+    expands: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def groups(self) -> tuple[str, ...]:
         """Names of the groups that load factors scale."""
-        return tuple(dict.fromkeys([*self.loads, *self.moved, *self.supported.imposed]))
+        return tuple(dict.fromkeys([*self.loads, *self.moved, *self.supported.imposed, *self.expands]))
 
     @cached_property
     def prestress(self) -> Array:
@@ -101,6 +105,13 @@ class Assembly:
         for group, vector in self.supported.imposed.items():
             u0 += load_factor(factors, group) * vector
         return u0
+
+    def expansion(self, factors: Mapping[str, float] | None = None) -> Array:
+        """Return the displacements (N_all,) without stress under load factors, by changes of temperature [m]."""
+        u = np.zeros(self.disc.unknowns)
+        for group, vector in self.expands.items():
+            u += load_factor(factors, group) * vector
+        return u
 
     def load(self, factors: Mapping[str, float] | None = None) -> Array:
         """Return the nodal forces (N_all,) under load factors [kN]."""
@@ -139,7 +150,7 @@ class Assembly:
             gap = gap + load_factor(factors, group) * normal
             origin = origin - load_factor(factors, group) * tangential
         loads = T.T @ self.load(factors)
-        f = loads - T.T @ (self.K @ u0)
+        f = loads - T.T @ (self.K @ (u0 - self.expansion(factors)))
         if like is not None:
             return replace(like, f=f, load=loads, gap=gap, slip_origin=origin)
         return ContactProblem(
@@ -286,14 +297,18 @@ def assemble(model: Model) -> Assembly:
     pairs = geometry.pairs(disc, detection) if detection.interfaces else _no_pairs(disc)
     laws = pair_laws(model, pairs)
     pairs, laws = add_ties(disc, pairs, laws)
+    supported = apply_supports(disc)
+    moved = strain_groups(pairs, detection.segments) if periodic else moved_obstacles(disc, pairs)
+    add_expansions(disc, pairs, moved)
     return Assembly(
         model=model,
         detection=detection,
         disc=disc,
         pairs=pairs,
         laws=laws,
-        supported=apply_supports(disc),
+        supported=supported,
         K=disc.stiffness(),
         loads=load_vectors(disc),
-        moved=strain_groups(pairs, detection.segments) if periodic else moved_obstacles(disc, pairs),
+        moved=moved,
+        expands=free_strains(disc),
     )

@@ -10,6 +10,7 @@ import numpy as np
 
 from concio.arguments import strict_class
 from concio.representation import short_repr
+from concio.units import quantity
 
 Face = Literal["lower", "upper", "left", "right", "both"]
 FACES: tuple[str, ...] = get_args(Face)
@@ -95,6 +96,54 @@ class Load:
     group: str = "dead"
     face: Face | None = None
     polygon: tuple[Point, ...] | None = None
+
+
+@strict_class
+@short_repr
+@dataclass(frozen=True)
+class Temperature:
+    """A change of temperature of bodies, uniform or linear over them, which makes them expand or shrink.
+
+    The strain is the change times the ``expansion`` of their material in every direction. In a body that is free to
+    expand it makes no stress. Load factors scale it, as they scale loads.
+
+    Parameters
+    ----------
+    change : float or str
+        Of the temperature at ``at`` [K]; negative cools.
+    bodies : tuple of str
+        Names, roles, layers, or patterns of names such as ``"tower-*"``; empty means every body that is not fixed.
+    gradient : (gx, gy) or (gx, gy, gz)
+        How the change grows along x, y and z [K/m]; empty is uniform.
+    at : point or None
+        Where ``change`` is reached [m]; by default the centroid of each body.
+    group : str
+        Load group that scales the change. In a load path it begins at factor 0, like a support that moves.
+
+    Examples
+    --------
+    >>> import concio
+    >>> summer = concio.Temperature("25 K")
+    >>> summer.change
+    25.0
+    """
+
+    change: float
+    bodies: tuple[str, ...] = ()
+    gradient: Point = ()
+    at: Point | None = None
+    group: str = "temperature"
+
+    def __post_init__(self) -> None:
+        where = f"load group '{self.group}'"
+        object.__setattr__(self, "change", quantity(self.change, "temperature", where=where))
+        along = tuple(quantity(g, "temperature gradient", where=where) for g in self.gradient)
+        object.__setattr__(self, "gradient", along)
+
+    @property
+    def kind(self) -> str:
+        """Word of messages."""
+        return "temperature"
 
 
 @strict_class

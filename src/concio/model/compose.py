@@ -95,6 +95,13 @@ def place(
             continue
         kept = tuple(renamed(w) for w in load.bodies if any(called(w, b) for b in left))
         kept_loads.append(replace(_moved_load(load, matrix, shift, ways), bodies=kept))
+    changes = []
+    for change in model.temperatures:
+        kept = tuple(renamed(w) for w in change.bodies if any(called(w, b) for b in left))
+        if kept or not change.bodies:
+            place = None if change.at is None else _point(change.at, matrix, shift)
+            along = _point(change.gradient, matrix) if change.gradient else ()
+            changes.append(replace(change, bodies=kept, at=place, gradient=along))
     ties = [_moved_tie(t, matrix, shift, label, renamed) for t in model.ties if not {t.body_a, t.body_b} & gone]
     rules = [
         replace(rule, between=(renamed(rule.between[0]), renamed(rule.between[1])))
@@ -104,7 +111,7 @@ def place(
     stages = tuple(_moved_stage(s, matrix, shift, renamed) for s in model.stages)
     return replace(
         model, bodies=bodies, supports=tuple(supports), loads=tuple(kept_loads), ties=tuple(ties), rules=tuple(rules),
-        stages=stages, fill=None, vehicle=None,
+        stages=stages, temperatures=tuple(changes), fill=None, vehicle=None,
     )  # fmt: skip
 
 

@@ -82,6 +82,8 @@ def model_lines(model: Model) -> list[str]:
         words = [f"{count} {kind}" for kind, count in loads.items()]
         moved = sum(support.group == group for support in model.supports)
         words += [f"{moved} support{'s' if moved > 1 else ''}"] if moved else []
+        warmed = sum(change.group == group for change in model.temperatures)
+        words += [f"{warmed} change{'s' if warmed > 1 else ''} of temperature"] if warmed else []
         lines.append(f"  load group {group}: {', '.join(words)}")
     if model.stages:
         lines.append(f"  stages: {', '.join(stage.name for stage in model.stages)}")

@@ -11,7 +11,7 @@ import numpy as np
 from concio.errors import InputError
 
 if TYPE_CHECKING:
-    from concio.model.model import Load, Model, Support, Tie
+    from concio.model.model import Load, Model, Support, Temperature, Tie
     from concio.model.stages import Stage
 
 ELEMENTS: dict[int, tuple[str, ...]] = {
@@ -59,6 +59,7 @@ def resolved(model: Model) -> dict[str, Any]:
         "element": element,
         "supports": tuple(_support(s, dim) for s in model.supports),
         "loads": tuple(_load(load, dim) for load in model.loads),
+        "temperatures": tuple(_temperature(change, dim) for change in model.temperatures),
         "ties": tuple(_tie(tie, dim) for tie in model.ties),
         "stages": tuple(_stage(stage, dim) for stage in model.stages),
     }
@@ -95,6 +96,15 @@ def _load(load: Load, dim: int) -> Load:
     if load.at is not None:
         _numbers(load.at, dim, "at", where, dim)
     return load
+
+
+def _temperature(change: Temperature, dim: int) -> Temperature:
+    where = f"load group '{change.group}'"
+    if change.at is not None:
+        _numbers(change.at, dim, "at", where, dim)
+    if change.gradient:
+        _numbers(change.gradient, dim, "gradient", where, dim)
+    return change
 
 
 def _region(thing: Support | Load, where: str, dim: int) -> None:

@@ -9,6 +9,9 @@ from concio.arguments import strict_class
 from concio.errors import InputError
 from concio.units import quantity
 
+LARGEST_EXPANSION = 1e-3
+"""Strains for each kelvin from this on are mistakes of the unit [1/K]."""
+
 
 def _number(value: float | str, kind: str, name: str) -> float:
     number = quantity(value, kind, where=name)
@@ -24,6 +27,12 @@ def _check_weight(unit_weight: float) -> None:
         raise InputError(msg, hint="weight acts downwards by itself; give it as a positive number")
 
 
+def _check_expansion(expansion: float) -> None:
+    if not (0 <= expansion < LARGEST_EXPANSION):
+        msg = f"expansion = {expansion:g} must be zero or positive and below {LARGEST_EXPANSION:g} for each kelvin"
+        raise InputError(msg, hint="masonry has some 5e-6 to 1e-5 for each kelvin")
+
+
 @strict_class
 @dataclass(frozen=True)
 class Elastic:
@@ -37,6 +46,8 @@ class Elastic:
         Poisson's ratio, -1 < nu < 0.5.
     unit_weight : float or str
         Weight per volume >= 0 [kN/m3], or the mass: ``"2100 kg/m3"``.
+    expansion : float or str
+        Strain for each kelvin >= 0 [1/K], for :class:`concio.Temperature`; brick has some 6e-6, limestone 5e-6 to 9e-6.
 
     Raises
     ------
@@ -47,11 +58,13 @@ class Elastic:
     E: float
     nu: float = 0.2
     unit_weight: float = 0.0
+    expansion: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "E", _number(self.E, "stress", "Young's modulus E"))
         object.__setattr__(self, "nu", _number(self.nu, "number", "Poisson's ratio nu"))
         object.__setattr__(self, "unit_weight", _number(self.unit_weight, "unit weight", "unit_weight"))
+        object.__setattr__(self, "expansion", _number(self.expansion, "expansion", "expansion"))
         if not (0 < self.E < math.inf):
             msg = f"Young's modulus E = {self.E:g} must be positive and finite"
             raise InputError(msg, hint="give E in kN/m2 or with a unit, for example '2 GPa'")
@@ -59,6 +72,7 @@ class Elastic:
             msg = f"Poisson's ratio nu = {self.nu:g} must lie between -1 and 0.5"
             raise InputError(msg, hint="masonry lies near 0.15 to 0.25; nu = 0.5 is incompressible")
         _check_weight(self.unit_weight)
+        _check_expansion(self.expansion)
 
 
 @strict_class
@@ -70,13 +84,18 @@ class Rigid:
     ----------
     unit_weight : float or str
         Weight per volume >= 0 [kN/m3].
+    expansion : float or str
+        Strain for each kelvin >= 0 [1/K]: it does not deform under forces, and expands where it is warmed.
     """
 
     unit_weight: float = 0.0
+    expansion: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "unit_weight", _number(self.unit_weight, "unit weight", "unit_weight"))
+        object.__setattr__(self, "expansion", _number(self.expansion, "expansion", "expansion"))
         _check_weight(self.unit_weight)
+        _check_expansion(self.expansion)
 
 
 @strict_class

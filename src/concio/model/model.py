@@ -14,7 +14,7 @@ import numpy as np
 from concio.arguments import closest, strict_class
 from concio.display import DEFAULT, Units
 from concio.errors import InputError
-from concio.model.actions import FACES, Face, Load, Point, Support, Tie
+from concio.model.actions import FACES, Face, Load, Point, Support, Temperature, Tie
 from concio.model.body import Body, Kind, called
 from concio.model.crossing import Fill, Vehicle
 from concio.model.described import model_lines
@@ -27,7 +27,7 @@ from concio.views import Shown
 
 __all__ = [
     "ENGINES", "FACES", "Array", "Body", "Face", "JointRule", "Kind", "Load", "Model", "Periods", "Point", "Support",
-    "Tie", "called", "check_cell", "check_rules", "require_model",
+    "Temperature", "Tie", "called", "check_cell", "check_rules", "require_model",
 ]  # fmt: skip
 
 Array = np.ndarray
@@ -51,7 +51,7 @@ class Model(Shown):
     laws : mapping of str to JointLaw
     rules : tuple of JointRule
         The last rule that matches an interface gives its law.
-    supports, loads, ties : tuples
+    supports, loads, ties, temperatures : tuples
     plane : {"stress", "strain"}
         Of plane models.
     element : str
@@ -112,6 +112,7 @@ class Model(Shown):
     engine: Literal["superlu", "pardiso"] = "superlu"
     fill: Fill | None = None
     vehicle: Vehicle | None = None
+    temperatures: tuple[Temperature, ...] = ()
 
     def __repr__(self) -> str:
         return "\n".join(model_lines(self))
@@ -203,7 +204,8 @@ class Model(Shown):
     @property
     def load_groups(self) -> tuple[str, ...]:
         """Names of the load groups, in order of appearance."""
-        return tuple(dict.fromkeys([load.group for load in self.loads] + [s.group for s in self.supports]))
+        own: tuple[Load | Support | Temperature, ...] = (*self.loads, *self.supports, *self.temperatures)
+        return tuple(dict.fromkeys(action.group for action in own))
 
     def body(self, name: str) -> Body | Polyhedron:
         """Return the body called ``name``."""
@@ -238,7 +240,7 @@ def _check_names(model: Model) -> None:
     """
     words = {word for b in model.bodies for word in (b.name, b.role, b.layer)}
     words |= {word for s in model.supports for word in (s.name, s.group)} | {t.name for t in model.ties}
-    words |= {load.group for load in model.loads} | {*model.materials, *model.laws}
+    words |= {*model.load_groups, *model.materials, *model.laws}
     bad = sorted(word for word in words if CONTROL.search(word))
     if bad:
         msg = f"the name {bad[0]!r} holds a control character"
@@ -263,7 +265,8 @@ def check_cell(model: Model) -> None:
     fixed = [b.name for b in model.bodies if b.kind == "fixed"]
     for what, found in (
         (f"a fixed body ('{fixed[0]}')" if fixed else "", fixed), ("supports", model.supports),
-        ("loads", model.loads), ("ties", model.ties), ("a gap_reach", model.gap_reach),
+        ("loads", model.loads), ("ties", model.ties),
+        ("changes of temperature", model.temperatures), ("a gap_reach", model.gap_reach),
     ):  # fmt: skip
         if found:
             msg = f"a periodic cell has {what}"

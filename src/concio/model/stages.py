@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from concio.arguments import strict_class
+from concio.arguments import strict, strict_class
 from concio.errors import InputError
 from concio.model.limits import LARGEST_STEPS
 
@@ -59,3 +59,39 @@ class Stage:
         if isinstance(self.steps, bool) or not isinstance(self.steps, int) or not 1 <= self.steps <= LARGEST_STEPS:
             msg = f"steps = {self.steps!r} must be a whole number from 1 to {LARGEST_STEPS:,}"
             raise InputError(msg, where=f"stage '{self.name}'")
+
+
+@strict
+def cycles(group: str, factor: float = 1.0, *, times: int = 1, back: float = 0.0, steps: int = 20) -> tuple[Stage, ...]:
+    """Return the stages in which the factor of a load group comes and goes, such as the temperature of the seasons.
+
+    What slips remembers it: after every cycle the structure may stand elsewhere than before.
+
+    Parameters
+    ----------
+    group : str
+    factor : float
+        Of the group at the far end of every cycle.
+    times : int
+        How often it goes there and comes back.
+    back : float
+        Its factor at the near end.
+    steps : int
+        Of each of the two stages of a cycle, where they are walked in steps.
+
+    Raises
+    ------
+    InputError
+        There is no cycle, or no way between its two ends.
+
+    Examples
+    --------
+    >>> import concio
+    >>> [stage.factors["temperature"] for stage in concio.cycles("temperature", 25.0, times=2)]
+    [25.0, 0.0, 25.0, 0.0]
+    """
+    if times < 1 or factor == back:
+        msg = f"times = {times}, from {back:g} to {factor:g} and back, is no cycle"
+        raise InputError(msg, where=f"load group '{group}'", hint="give at least one cycle between two factors")
+    ends = (("there", factor), ("back", back))
+    return tuple(Stage(f"{group} {k} {way}", {group: f}, steps=steps) for k in range(1, times + 1) for way, f in ends)

@@ -152,6 +152,7 @@ def refuse(assembly: Assembly) -> None:
     reasons: Mapping[str, bool] = {
         "a periodic cell": model.periods is not None,
         "a support that is moved": any(s.moves for s in model.supports),
+        "a change of temperature": bool(model.temperatures),
         "a joint with an initial gap": bool((assembly.pairs.gap[assembly.pairs.interface >= 0] > 0).any()),
         "no joint": not joint_points(assembly),
     }

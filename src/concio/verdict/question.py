@@ -204,6 +204,8 @@ def group_words(model: Model, group: str) -> str:
     words += [f"{count} {kind} load{'s' * (count > 1)}" for kind, count in kinds.items()]
     moved = sum(s.moves for s in model.supports if s.group == group)
     words += [f"{moved} support{'s' * (moved > 1)} moved"] if moved else []
+    warmed = sum(change.group == group for change in model.temperatures)
+    words += [f"{warmed} change{'s' * (warmed > 1)} of temperature"] if warmed else []
     return ", ".join(words) or "nothing"
 
 

@@ -73,8 +73,8 @@ def _no_weight(model: Model, heavy: int) -> tuple[str, ...]:
     if heavy and not sideways:
         words = f"{counted(heavy, 'block')} {'has' if heavy == 1 else 'have'} a unit weight"
         return (f"own weight does not act: {words}, and there is no load of kind weight",)
-    acts = model.loads or any(s.moves for s in model.supports) or any(t.prestress for t in model.ties)
-    if not acts:
+    acts = any(s.moves for s in model.supports) or any(t.prestress for t in model.ties)
+    if not (acts or model.loads or model.temperatures):
         return ("nothing acts: there are no loads, no support is moved and no tie is prestressed",)
     return ()
 

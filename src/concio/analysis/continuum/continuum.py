@@ -193,6 +193,7 @@ def _refuse(assembly: Assembly) -> None:
     held = [s.name for s in model.supports if s.body in free]
     for found, what in (
         (model.ties, "ties"),
+        (model.temperatures, "changes of temperature"),
         (held, f"a support of a block ('{held[0]}')" if held else ""),
         ([v for v in model.loads if v.kind == "point"], "point loads"),
         ([v for v in model.loads if v.bodies], "loads on single blocks"),

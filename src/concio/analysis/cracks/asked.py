@@ -192,5 +192,5 @@ def _candidate(table: CandidateTable) -> Candidate:
     bounds = {key: getattr(table, key) for key in ("low", "high") if getattr(table, key) is not None}
     return Candidate(
         table.name, body=table.body, direction=table.direction or (), rotation=table.rotation, about=table.about,
-        group=table.group, base=table.base, **bounds,
+        group=table.group, base=table.base, times=table.times, **bounds,
     )  # fmt: skip

@@ -36,6 +36,8 @@ HALF = 2.0
 """A rotation that is expected moves points at the size of the structure over this by what was measured."""
 FINER = 4
 """The simplest cause is followed once more in this many times as many steps."""
+WARMER = 10.0
+"""Changes of temperature are expected to be of this size [K]."""
 MOST = 3
 """Motions tried together unless told otherwise."""
 STEPS = (4, 16)
@@ -153,7 +155,9 @@ def expected(model: Model, measurements: Sequence[Measurement], candidates: Sequ
     sizes = [max(abs(m.value), LEAST * m.error) * (half if m.quantity == "rotation" else 1.0) for m in measurements]
     size = sorted(sizes)[-2]  # the largest may be a mistake
     kinds = {"motion": size, "rotation": size / half, "number": 1.0}
-    return np.array([min(kinds[c.quantity], max(c.high, -c.low)) for c in candidates])
+    warmest = {t.group: WARMER / max(abs(t.change), 1.0) for t in model.temperatures}
+    sizes = [warmest.get(c.group, kinds[c.quantity]) for c in candidates]
+    return np.array([min(own, max(c.high, -c.low)) for own, c in zip(sizes, candidates, strict=True)])
 
 
 @dataclass(frozen=True, eq=False)

@@ -131,7 +131,7 @@ class Forward:
         """Return the state at the last of some motions, each followed from the one before."""
         self.runs += 1
         loaded = self.loaded
-        stages = [Stage(f"motion {i}", self.moved.factors(end), steps=steps) for i, end in enumerate(ends, 1)]
+        stages = self.moved.stages(ends, steps)
         try:
             path = run_path(self.assembly, stages, method=self.method, restart=(loaded, len(loaded.steps) - 1))
         except SolverError:

@@ -103,7 +103,7 @@ def future_of(forward: Forward, cause: Cause, candidates: Sequence[Candidate], *
     on = forward.predict(another * cause.motions)
     openings = [float(c.gap[c.pairs.interface >= 0].max(initial=0.0)) if ok else np.nan
                 for ok, c in ((True, cause.result.contacts), (on.reached, on.path.result(-1).contacts))]  # fmt: skip
-    if not (large and forward.assembly.model.dim == 2):
+    if not (large and forward.assembly.model.dim == 2 and not forward.assembly.model.temperatures):
         return Future(False, size, cause.prediction.reached, another if on.reached else 1.0,
                       np.inf if on.reached else another, another, max(cause.certificate, on.path.certificate),
                       another, openings[1], openings[0])  # fmt: skip

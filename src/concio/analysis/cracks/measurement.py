@@ -155,10 +155,13 @@ class Candidate:
     about : point, optional
         Point about which it turns [m]; by default the centroid of the body.
     group : str
-        Instead of a body, a load group of the model: loads whose factor changes, or supports that move. The motion is
-        the change of its factor.
+        Instead of a body, a load group of the model: loads whose factor changes, supports that move, or temperatures.
+        The motion is the change of its factor.
     base : float, optional
-        Factor of that group before it changed: by default 1 of loads, 0 of supports.
+        Factor of that group before it changed: by default 1 of loads, 0 of supports and temperatures.
+    times : int
+        How often the group's factor went by the motion and came back, after everything else, before anything was
+        measured: what friction has kept of it is measured then, such as after summers. 0: it went and stayed.
     low, high : float
         Smallest and largest motion that can be meant, such as ``low=0`` of a pier that sinks and does not rise.
 
@@ -182,6 +185,7 @@ class Candidate:
     about: Point | None = None
     group: str = ""
     base: float | None = None
+    times: int = 0
     low: float = -math.inf
     high: float = math.inf
 
@@ -203,6 +207,9 @@ class Candidate:
         if not self.low <= 0.0 <= self.high or self.low == self.high:
             msg = f"the motion must be allowed to be zero and something else, not {self.low:g} to {self.high:g}"
             raise InputError(msg, where=where, hint="low is zero or negative, high zero or positive")
+        if self.times < 0 or (self.times and not self.group):
+            msg = f"times = {self.times} is how often the factor of a load group came and went"
+            raise InputError(msg, where=where, hint="leave it out, or name a group")
         if self.base is not None and not (self.group and math.isfinite(self.base)):
             msg = "base is the finite factor of a load group"
             raise InputError(msg, where=where, hint="leave it out, or name a group")

@@ -12,6 +12,7 @@ from concio.arguments import closest
 from concio.errors import InputError
 from concio.kinematics.rigid import swept
 from concio.model.model import Model, Support
+from concio.model.stages import Stage, cycles
 
 Array = np.ndarray
 
@@ -32,12 +33,26 @@ class MovedModel:
         Factor of every load group before anything moves.
     unit : (k,) array
         Motion of each candidate at factor 1 [m or rad]; of a load group 1.
+    times : (k,) tuple of int
+        How often the group of each candidate comes and goes; 0 where it stays.
     """
 
     model: Model
     groups: tuple[str, ...]
     base: Mapping[str, float]
     unit: Array
+    times: tuple[int, ...] = ()
+
+    def stages(self, ends: Sequence[Array] | Array, steps: int) -> list[Stage]:
+        """Return the stages to some motions (k,), one after the other, then what comes and goes, to the last."""
+        returning = {g: n for g, n in zip(self.groups, self.times, strict=True) if n}
+        rest = {g: self.base[g] for g in returning}
+        found = [Stage(f"motion {i}", {**self.factors(end), **rest}, steps=steps) for i, end in enumerate(ends, 1)]
+        far = {g: self.factors(ends[-1])[g] for g in returning}
+        for group, times in returning.items():
+            if far[group] != rest[group]:
+                found += cycles(group, far[group], times=times, back=rest[group], steps=steps)
+        return found
 
     def factors(self, motions: Array) -> dict[str, float]:
         """Return the load factors at motions (k,) of the candidates."""
@@ -90,7 +105,8 @@ def moved_model(model: Model, candidates: Sequence[Candidate], scale: Array) -> 
         supports.append(_support(model, candidate, size, group, where))
         groups.append(group)
         base[group] = 0.0
-    return MovedModel(replace(model, supports=(*model.supports, *supports), stages=()), tuple(groups), base, unit)
+    return MovedModel(replace(model, supports=(*model.supports, *supports), stages=()), tuple(groups), base, unit,
+                      tuple(c.times for c in candidates))  # fmt: skip
 
 
 def cause_model(moved: MovedModel, candidates: Sequence[Candidate], motions: Array, group: str) -> Model:

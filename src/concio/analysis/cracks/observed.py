@@ -10,8 +10,9 @@ import numpy as np
 from concio.analysis.cracks.measurement import AT_A_JOINT, Measurement
 from concio.arguments import closest
 from concio.contact.assembly import Assembly
+from concio.contact.expansion import expanded, warmed
 from concio.errors import InputError
-from concio.fem.discretisation import FIXED
+from concio.fem.discretisation import FIXED, RIGID
 from concio.kinematics.frames import cross, tangents, turned_left
 from concio.kinematics.rigid import swept
 from concio.model.interfaces.detect import Interface
@@ -33,7 +34,7 @@ class Reading:
     row : (N_all,) array
         Of the displacements of all unknowns.
     moved : mapping of str to float
-        What fixed bodies add for each load group that moves them, at factor 1.
+        What fixed bodies that are moved, and rigid ones that expand, add for each load group, at factor 1.
     at : (d,) array
         Where it is read, for figures [m].
     along : (d,) array
@@ -172,7 +173,13 @@ def _moving(
     except InputError as error:
         raise InputError(error.what, where=where or error.where, hint=error.hint) from None
     row[unknowns] = along @ operator
-    return row, {}
+    model = assembly.model
+    changes = model.temperatures if disc.shape_of[b] == RIGID else ()  # nodes of elastic bodies move by all of it
+    grown: dict[str, float] = {}
+    for change in (c for c in changes if b in warmed(model, c)):
+        by = float(expanded(model, b, change, point[None, :])[0] @ along)
+        grown[change.group] = grown.get(change.group, 0.0) + by
+    return row, grown
 
 
 def _joint(assembly: Assembly, m: Measurement, where: str) -> Joint:

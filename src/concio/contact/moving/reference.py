@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from concio.contact.assembly import default_tolerance, detect_without_overlap
+from concio.contact.expansion import refuse_temperatures
 from concio.contact.geometry import GEOMETRIES
 from concio.contact.moving.edges import MovingEdges
 from concio.contact.moving.laws import LawTable, RuleBook
@@ -73,6 +74,7 @@ class Reference:
         if model.periods is not None:
             msg = "a periodic cell has no place of its own: it cannot move"
             raise InputError(msg, hint="take a wall of several blocks")
+        refuse_temperatures(model, "a motion, or a push at large displacements,")
         detection = detect_without_overlap(model)
         disc = discretise(model, GEOMETRIES[model.dim].marks(model, detection))
         apply_supports(disc)  # what cannot be used is said before anything moves

@@ -31,13 +31,14 @@ from concio.model.file.tables import (
     StageTable,
     SupportTable,
     Table,
+    TemperatureTable,
     TieTable,
 )
 from concio.model.generate.bonds import Course
 from concio.model.generate.extrusion import extrude
 from concio.model.generate.generators import GENERATORS
 from concio.model.materials import Elastic, JointLaw, Rigid
-from concio.model.model import Body, JointRule, Load, Model, Support, Tie, check_rules
+from concio.model.model import Body, JointRule, Load, Model, Support, Temperature, Tie, check_rules
 from concio.model.polyhedron import Polyhedron
 from concio.model.solids.importing import model_from_solids
 from concio.model.stages import ControlPoint, Stage
@@ -113,6 +114,7 @@ def _parts(
         "rules": tuple(rules),
         "supports": (*(start.supports if start else ()), *(_support(t, k) for k, t in enumerate(data.supports, 1))),
         "loads": (*(start.loads if start else ()), *(_load(t) for t in data.loads)),
+        "temperatures": (*(start.temperatures if start else ()), *(_temperature(t) for t in data.temperatures)),
         "ties": (*(start.ties if start else ()), *(_tie(t) for t in data.ties)),
         "stages": (*(start.stages if start else ()), *(_stage(t, k) for k, t in enumerate(data.stages, 1))),
         **chosen,
@@ -277,12 +279,12 @@ def _material(table: MaterialTable, place: str) -> Elastic | Rigid:
             if table.E is not None or table.nu is not None:
                 msg = "a rigid material has no E and no nu"
                 raise InputError(msg, hint="leave them out, or set kind = 'elastic'")
-            return Rigid(table.unit_weight)
+            return Rigid(table.unit_weight, table.expansion)
         if table.E is None:
             msg = "'E' is missing"
             raise InputError(msg, hint="give Young's modulus, or set kind = 'rigid'")
         given = {} if table.nu is None else {"nu": table.nu}
-        return Elastic(table.E, unit_weight=table.unit_weight, **given)
+        return Elastic(table.E, unit_weight=table.unit_weight, expansion=table.expansion, **given)
 
 
 def _law(table: JointTable, place: str) -> JointLaw:
@@ -304,6 +306,10 @@ def _support(table: SupportTable, number: int) -> Support:
 def _load(table: LoadTable) -> Load:
     region = None if table.polygon is None else tuple(table.polygon)
     return Load(table.kind, table.value, tuple(table.bodies), table.edge, table.at, table.group, table.face, region)
+
+
+def _temperature(table: TemperatureTable) -> Temperature:
+    return Temperature(**{**table.model_dump(), "bodies": tuple(table.bodies)})
 
 
 def _tie(table: TieTable) -> Tie:
@@ -328,6 +334,7 @@ def _check_names(model: Model) -> None:
     used += [(f"[[ties]] '{t.name}'", w, names) for t in model.ties for w in (t.body_a, t.body_b) if w]
     used += [(f"[[stages]] '{s.name}'", s.control.body, names) for s in model.stages if s.control]
     used += [(f"[[loads]] of kind {load.kind}", w, sorts) for load in model.loads for w in load.bodies]
+    used += [("[[temperatures]]", w, sorts) for change in model.temperatures for w in change.bodies]
     for place, word, known in used:
         if word not in known and not ("*" in word and any(fnmatchcase(name, word) for name in names)):
             msg = f"there is no body called '{word}'"

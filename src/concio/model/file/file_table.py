@@ -33,6 +33,7 @@ from concio.model.file.tables import (
     StageTable,
     SupportTable,
     Table,
+    TemperatureTable,
     TieTable,
     UnitsTable,
 )  # fmt: skip
@@ -81,6 +82,7 @@ class FileTable(Table):
     extrusion: ExtrusionTable | None = None
     supports: list[SupportTable] = Field(default_factory=list)
     loads: list[LoadTable] = Field(default_factory=list)
+    temperatures: list[TemperatureTable] = Field(default_factory=list)
     ties: list[TieTable] = Field(default_factory=list)
     stages: list[StageTable] = Field(default_factory=list)
     analysis: AnalysisTable = Field(default_factory=AnalysisTable)

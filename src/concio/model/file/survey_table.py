@@ -61,6 +61,7 @@ class CandidateTable(Table):
     about: Point | None = None
     group: StrictStr = ""
     base: Number | None = None
+    times: StrictInt = 0
     low: Annotated[Any, Field(description="smallest motion: a length, an angle, or the change of a factor")] = None
     high: Annotated[Any, Field(description="largest motion")] = None
 

@@ -25,8 +25,11 @@ from concio.model.file.values import (
     Angle,
     Coefficient,
     Degrees,
+    Expansion,
     Force,
     JointStiffness,
+    Kelvin,
+    KelvinGradient,
     Length,
     Number,
     Stiffness,
@@ -84,7 +87,7 @@ class ReportTable(Table):
 
 
 class MaterialTable(Table):
-    """A material; ``kind = "rigid"`` has a unit weight only.
+    """A material; ``kind = "rigid"`` has a unit weight and an expansion only.
 
     Keys
     ----
@@ -96,12 +99,15 @@ class MaterialTable(Table):
         Poisson's ratio.
     unit_weight :
         Weight per volume.
+    expansion :
+        Strain for each kelvin.
     """
 
     kind: Literal["elastic", "rigid"] = "elastic"
     E: Stress | None = None
     nu: Number | None = None
     unit_weight: UnitWeight = 0.0
+    expansion: Expansion = 0.0
 
 
 class JointTable(Table):
@@ -371,6 +377,30 @@ class LoadTable(Table):
     @classmethod
     def _value(cls, value: Any, info: ValidationInfo) -> tuple[float, ...]:
         return load_value(info.data["kind"], value, info) if "kind" in info.data else ()
+
+
+class TemperatureTable(Table):
+    """A change of temperature of bodies, which expand or shrink.
+
+    Keys
+    ----
+    change :
+        Change of the temperature at ``at``; negative cools.
+    bodies :
+        Names, roles, layers, or patterns of names; none: every body that is not fixed.
+    gradient :
+        How the change grows along x, y and, in space, z.
+    at :
+        Where the change is reached; none: at the centroid of each body.
+    group :
+        Load group that scales it.
+    """
+
+    change: Kelvin
+    bodies: list[StrictStr] = Field(default_factory=list)
+    gradient: Annotated[tuple[KelvinGradient, ...], Field(max_length=3)] = ()
+    at: Point | None = None
+    group: Name = "temperature"
 
 
 class TieTable(Table):

@@ -105,6 +105,11 @@ JointStiffness = Annotated[
     float, BeforeValidator(_converter("joint stiffness")), WithJsonSchema(_schema("joint stiffness"))
 ]
 Stiffness = Annotated[float, BeforeValidator(_converter("stiffness")), WithJsonSchema(_schema("stiffness"))]
+Kelvin = Annotated[float, BeforeValidator(_converter("temperature")), WithJsonSchema(_schema("temperature"))]
+KelvinGradient = Annotated[
+    float, BeforeValidator(_converter("temperature gradient")), WithJsonSchema(_schema("temperature gradient"))
+]
+Expansion = Annotated[float, BeforeValidator(_converter("expansion")), WithJsonSchema(_schema("expansion"))]
 
 SMALLEST, LARGEST = 1e-9, 1e7
 """Sizes of a structure lie between these, or are zero [m]."""

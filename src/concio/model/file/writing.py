@@ -62,6 +62,9 @@ def dumps(model: Model, *, blocks_file: str | None = None) -> str:
         lines += _table("supports", _support(support), many=True)
     for load in model.loads:
         lines += _table("loads", _load(load), many=True)
+    for change in model.temperatures:
+        own_fields = {f.name: getattr(change, f.name) for f in fields(change)}
+        lines += _table("temperatures", {key: value for key, value in own_fields.items() if value != ()}, many=True)
     for tie in model.ties:
         bar = {f.name: getattr(tie, f.name) for f in fields(tie)}
         lines += _table("ties", {**bar, "kind": None if tie.kind == "bar" else tie.kind}, many=True)
@@ -127,8 +130,10 @@ _IN_SPACE = ("element", "mesh_size", "refinement", "gap_tolerance", "gap_reach",
 
 def _material(material: Elastic | Rigid) -> dict[str, Any]:
     if isinstance(material, Rigid):
-        return {"kind": "rigid", "unit_weight": material.unit_weight}
-    return {"E": material.E, "nu": material.nu, "unit_weight": material.unit_weight}
+        own: dict[str, Any] = {"kind": "rigid", "unit_weight": material.unit_weight}
+    else:
+        own = {"E": material.E, "nu": material.nu, "unit_weight": material.unit_weight}
+    return {**own, "expansion": material.expansion} if material.expansion else own
 
 
 def _body(body: Body | Polyhedron) -> dict[str, Any]:

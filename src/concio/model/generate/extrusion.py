@@ -20,7 +20,7 @@ import numpy as np
 from concio.arguments import strict
 from concio.errors import InputError
 from concio.model.generate.arguments import positive
-from concio.model.model import Body, Load, Model, Point, Support, Tie, called, require_model
+from concio.model.model import Body, Load, Model, Point, Support, Temperature, Tie, called, require_model
 from concio.model.polyhedron import Polyhedron
 from concio.model.stages import Stage
 from concio.model.surfaces import from_grid, prism
@@ -72,6 +72,7 @@ def extrude(model: Model, thickness: float | str | None = None, *, held: bool = 
         supports=tuple(supports),
         loads=tuple(_load(load, model, deep, widest) for load in model.loads),
         ties=tuple(_tie(t) for t in model.ties),
+        temperatures=tuple(_temperature(t) for t in model.temperatures),
         stages=tuple(_stage(s) for s in model.stages),
         element=ELEMENTS[model.element],
         fill=None,
@@ -82,6 +83,11 @@ def extrude(model: Model, thickness: float | str | None = None, *, held: bool = 
 
 def _point(p: Point, y: float = 0.0) -> Point:
     return (float(p[0]), y, float(p[1]))
+
+
+def _temperature(change: Temperature) -> Temperature:
+    at = None if change.at is None else _point(change.at)
+    return replace(change, at=at, gradient=_point(change.gradient) if change.gradient else ())
 
 
 def _body(body: Body, t: float, model: Model) -> Polyhedron:

@@ -14,7 +14,7 @@ from concio.errors import InputError
 from concio.model.interfaces.detect import detect_interfaces
 from concio.model.interfaces.patches import detect_patches
 from concio.model.materials import JointLaw
-from concio.model.model import JointRule, Load, Model
+from concio.model.model import JointRule, Load, Model, Temperature
 
 T = TypeVar("T")
 
@@ -92,6 +92,7 @@ def merged(models: Sequence[Model], *, title: str = "", joint: JointLaw | float 
         supports=tuple(s for m in models for s in m.supports),
         loads=_loads(models),
         ties=tuple(t for m in models for t in m.ties),
+        temperatures=_temperatures(models),
         stages=tuple(s for m in models for s in m.stages),
         mesh_size=None,
         gap_tolerance=max(tolerances) if tolerances else None,
@@ -101,6 +102,15 @@ def merged(models: Sequence[Model], *, title: str = "", joint: JointLaw | float 
         vehicle=None,
         generator={"kind": "merged", "parts": tuple(str(m.generator.get("kind", "blocks")) for m in models)},
     )
+
+
+def _temperatures(models: Sequence[Model]) -> tuple[Temperature, ...]:
+    """Return the changes of temperature of all parts, each in the bodies of its own part."""
+    found = []
+    for model in models:
+        free = tuple(b.name for b in model.bodies if b.kind != "fixed")
+        found += [replace(t, bodies=t.bodies or free) for t in model.temperatures]
+    return tuple(found)
 
 
 def _general_law(model: Model) -> JointLaw | None:
