@@ -30,7 +30,7 @@ GROUPS = {
     "Blocks, one by one or from files": (
         "blocks", "blocks_file", "drawing", "solids_file", "solids", "extrusion", "periods", "parts",
     ),
-    "Loads, supports, ties": ("loads", "supports", "ties", "stages"),
+    "Loads, supports, ties": ("loads", "supports", "temperatures", "ties", "stages"),
     "Bridges": ("bridge", "bridge_drawing", "fill", "vehicle"),
     "Generators in the plane": (
         "panel", "wall", "wall_of_courses", "arch", "arch_on_piers", "column", "buttress", "rubble", "cell",

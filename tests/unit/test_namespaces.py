@@ -15,8 +15,9 @@ import concio
 CORE = {
     "Assembly", "Body", "ConcioError", "ControlPoint", "Elastic", "GeometryError", "InputError", "JointLaw",
     "JointRule", "Load", "MethodError", "Model", "NoEquilibriumError", "Outcome", "PathResult", "Polyhedron", "Result",
-    "Rigid", "SolverError", "Stage", "Status", "Stop", "StudyResult", "Support", "Tie", "Units", "Variable", "Verdict",
-    "__version__", "assemble", "dumps", "extrude", "friction_by_solving", "friction_margin", "limit", "load",
+    "Rigid", "SolverError", "Stage", "Status", "Stop", "StudyResult", "Support", "Temperature", "Tie", "Units",
+    "Variable", "Verdict",
+    "__version__", "assemble", "cycles", "dumps", "extrude", "friction_by_solving", "friction_margin", "limit", "load",
     "load_margin", "load_study", "loads", "merge", "model_from_dxf", "model_from_solids", "place", "run_path", "save",
     "settle", "solve", "study", "thrust_line", "thrust_surface", "variable", "write_solids",
 }  # fmt: skip
