@@ -85,6 +85,16 @@ class Units:
     ------
     InputError
         A unit is not among these.
+
+    Examples
+    --------
+    1 kgf is 9.80665 N:
+
+    >>> import concio
+    >>> concio.Units(force="kgf").text("force", 9.80665)
+    '1000 kgf'
+    >>> concio.Units.parse("force = N, motion = cm").text("motion", 0.0123)
+    '1.23 cm'
     """
 
     force: str = "kN"

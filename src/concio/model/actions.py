@@ -43,6 +43,22 @@ class Support:
         Load group that scales the imposed displacement.
     polygon : tuple of points, or None
         In space: the part of the body's faces that is held, as a planar polygon [m].
+
+    Examples
+    --------
+    An elastic block of 40 kN is held at its foot:
+
+    >>> import concio
+    >>> block = concio.Body("block", [(0.0, 0.0), (1.0, 0.0), (1.0, 2.0), (0.0, 2.0)], "stone")
+    >>> model = concio.Model(
+    ...     bodies=(block,),
+    ...     materials={"stone": concio.Elastic(E="5 GPa", unit_weight=20.0)},
+    ...     laws={"joint": concio.JointLaw(friction=0.6)},
+    ...     supports=(concio.Support("foot", "block", edge=((0.0, 0.0), (1.0, 0.0))),),
+    ...     loads=(concio.Load("weight", (0.0, -1.0)),),
+    ... )
+    >>> round(float(concio.solve(model).reactions["foot"][1]), 6)
+    40.0
     """
 
     name: str
@@ -86,6 +102,18 @@ class Load:
         bodies; None is the lower one, the top of the body below. Where the edge lies on one face only, it is that one.
     polygon : tuple of points, or None
         Planar polygon for pressure and traction in space; only parts of faces that lie in it are loaded [m].
+
+    Examples
+    --------
+    A force at the head of a block of 40 kN, 1 m wide and 2 m high, overturns it from 40 * 0.5 / 2 = 10 kN on:
+
+    >>> import concio
+    >>> import dataclasses
+    >>> pillar = concio.column(width=1.0, height=2.0, blocks=1, block="rigid", unit_weight=20.0)
+    >>> push = concio.Load("point", (1.0, 0.0), bodies=("b01",), at=(-0.5, 2.0), group="live")
+    >>> model = dataclasses.replace(pillar, loads=(*pillar.loads, push))
+    >>> round(concio.limit(model).design, 6)
+    10.0
     """
 
     kind: Literal["weight", "pressure", "traction", "point", "body"]
@@ -172,6 +200,15 @@ class Tie:
         Elongation at which it breaks [m]; None is never.
     kind : {"bar", "soil"}
         A bar pulls its ends together, soil pushes them apart.
+
+    Examples
+    --------
+    A tie of 10 MN/m with a prestress of 5 kN, at elongations of 1 and 2 mm. It yields at 20 kN:
+
+    >>> import concio
+    >>> tie = concio.Tie("t1", "left", (0.0, 3.0), "right", (4.0, 3.0), stiffness=10e3, prestress=5.0, yield_force=20.0)
+    >>> round(tie.force(0.001), 6), round(tie.force(0.002), 6)
+    (15.0, 20.0)
     """
 
     name: str

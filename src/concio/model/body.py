@@ -53,6 +53,13 @@ class Body:
     holes : sequence of (k, 2) arrays
         Interior rings, inside the outline and clear of it and of each other [m]; stored clockwise. Other bodies may
         stand in them, as a shelf in a frame.
+
+    Examples
+    --------
+    >>> import concio
+    >>> block = concio.Body("b01", [(0.0, 0.0), (0.6, 0.0), (0.6, 0.3), (0.0, 0.3)], kind="rigid", thickness=0.4)
+    >>> round(block.volume, 6)
+    0.072
     """
 
     name: str

@@ -64,6 +64,17 @@ def place(
     ------
     InputError
         A word of ``without`` names nothing, nothing would be left, or a number cannot be used.
+
+    Examples
+    --------
+    A slab on an inclined plane slides where the tangent of the slope exceeds the friction of 0.6, at 30.96 degrees:
+
+    >>> import concio
+    >>> slab = concio.column(width=2.0, height=0.5, blocks=1, block="rigid", friction=0.6)
+    >>> for angle in (30.0, 31.0):
+    ...     print(angle, concio.solve(concio.place(slab, turn=angle), on_failure="return").status.name)
+    30.0 SOLVED
+    31.0 NO_EQUILIBRIUM
     """
     matrix, shift = _motion(model, at, turn, axis, mirror)
     if loads not in ("body", "world"):

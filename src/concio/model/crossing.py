@@ -33,6 +33,14 @@ class Layer:
     unit_weight : float or str
         Weight per volume >= 0 [kN/m3].
     name : str
+
+    Examples
+    --------
+    >>> import concio
+    >>> surfacing = concio.Layer("8 cm", unit_weight=23.0)
+    >>> fill = concio.Fill(cover=0.5, layers=(surfacing,))
+    >>> round(fill.layers[0].depth, 6)
+    0.08
     """
 
     depth: float
@@ -90,6 +98,15 @@ class Fill:
     -----
     Weights are those of vertical strips. Horizontal pressure acts on each block at the middle of its upper face, on the
     vertical projection of that face, from the side where the fill is.
+
+    Examples
+    --------
+    Rankine's passive coefficient is 3 for 30 degrees. Half of it is mobilised:
+
+    >>> import concio
+    >>> fill = concio.Fill(cover=0.5, friction_angle=30.0, mobilised=0.5)
+    >>> round(fill.passive_coefficient, 6)
+    1.5
     """
 
     cover: float | None = None
@@ -196,6 +213,13 @@ class Axle:
         Length of the footprint along the road [m]; None takes that of the vehicle.
     width : float or str or None
         Width over the wheels or of the sleeper [m]; None takes that of the vehicle.
+
+    Examples
+    --------
+    >>> import concio
+    >>> axle = concio.Axle(at=1.2, load="120 kN", width=2.5)
+    >>> axle.load
+    120.0
     """
 
     at: float
@@ -250,6 +274,15 @@ class Vehicle:
         Where the axles come from.
     assumed : str
         What the source left open and was assumed.
+
+    Examples
+    --------
+    The dynamic factor multiplies both axles:
+
+    >>> import concio
+    >>> lorry = concio.Vehicle("lorry", axles=(concio.Axle(0.0, 60.0), concio.Axle(3.2, 100.0)), dynamic=1.2)
+    >>> round(lorry.total, 6)
+    192.0
     """
 
     name: str

@@ -53,6 +53,13 @@ class Elastic:
     ------
     InputError
         A constant is not finite or out of its range.
+
+    Examples
+    --------
+    >>> import concio
+    >>> limestone = concio.Elastic(E="20 GPa", nu=0.2, unit_weight="2300 kg/m3")
+    >>> round(limestone.E), round(limestone.unit_weight, 3)
+    (20000000, 22.555)
     """
 
     E: float
@@ -86,6 +93,14 @@ class Rigid:
         Weight per volume >= 0 [kN/m3].
     expansion : float or str
         Strain for each kelvin >= 0 [1/K]: it does not deform under forces, and expands where it is warmed.
+
+    Examples
+    --------
+    A mass per volume becomes a weight under 9.80665 m/s2:
+
+    >>> import concio
+    >>> round(concio.Rigid("2000 kg/m3").unit_weight, 4)
+    19.6133
     """
 
     unit_weight: float = 0.0
@@ -117,6 +132,13 @@ class JointLaw:
         Stiffness of a compliant joint [kN/m3]; None is a hard joint.
     compressive_strength : float, str or None
         Largest contact pressure [kN/m2]; None is unlimited.
+
+    Examples
+    --------
+    >>> import concio
+    >>> law = concio.JointLaw(friction="30 deg", cohesion="0.1 MPa")
+    >>> round(law.friction, 4), round(law.cohesion, 6)
+    (0.5774, 100.0)
     """
 
     friction: float

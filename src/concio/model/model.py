@@ -88,6 +88,22 @@ class Model(Shown):
         :func:`concio.with_fill` puts them there.
     vehicle : Vehicle or None
         What crosses it: :func:`concio.with_vehicle`.
+
+    Examples
+    --------
+    A block on the ground, 1 m wide and 2 m high. A horizontal share of its weight overturns it at width over height:
+
+    >>> import concio
+    >>> ground = concio.Body("ground", [(-1.0, -0.5), (2.0, -0.5), (2.0, 0.0), (-1.0, 0.0)], kind="fixed")
+    >>> block = concio.Body("block", [(0.0, 0.0), (1.0, 0.0), (1.0, 2.0), (0.0, 2.0)], "stone", kind="rigid")
+    >>> model = concio.Model(
+    ...     bodies=(ground, block),
+    ...     materials={"stone": concio.Rigid(unit_weight=20.0)},
+    ...     laws={"joint": concio.JointLaw(friction=0.7)},
+    ...     loads=(concio.Load("weight", (0.0, -1.0)), concio.Load("weight", (1.0, 0.0), group="live")),
+    ... )
+    >>> round(concio.limit(model).design, 6)
+    0.5
     """
 
     bodies: tuple[Body | Polyhedron, ...]

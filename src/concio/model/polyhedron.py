@@ -58,6 +58,17 @@ class Polyhedron:
     GeometryError
         The faces do not close, point inwards, cross themselves or are not planar: see
         :mod:`concio.model.polyhedron_check`.
+
+    Examples
+    --------
+    A pyramid over a square of 1 m2, 0.6 m high:
+
+    >>> import concio
+    >>> corners = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0), (0.5, 0.5, 0.6)]
+    >>> faces = [(3, 2, 1, 0), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
+    >>> block = concio.Polyhedron("apex", corners, faces)
+    >>> round(block.volume, 6)
+    0.2
     """
 
     name: str

@@ -27,6 +27,21 @@ class JointRule:
         that names no body of a model is refused.
     gap : float
         Initial opening of these interfaces, added to what the geometry shows >= 0 [m].
+
+    Examples
+    --------
+    The joint with the ground has a law of its own. The last rule that matches counts:
+
+    >>> import concio
+    >>> pillar = concio.column(width=0.5, height=2.0, blocks=4)
+    >>> model = concio.Model(
+    ...     pillar.bodies,
+    ...     pillar.materials,
+    ...     {"joint": concio.JointLaw(0.7), "base": concio.JointLaw(0.4)},
+    ...     rules=(concio.JointRule("joint"), concio.JointRule("base", between=("*", "ground"))),
+    ... )
+    >>> model.rule_between(model.body("ground"), model.body("b01")).law
+    'base'
     """
 
     law: str

@@ -23,6 +23,16 @@ class ControlPoint:
         Position; the nearest node of an elastic body is taken [m].
     direction : (x, y) or (x, y, z)
         Direction in which the displacement is measured; scaled to length one.
+
+    Examples
+    --------
+    A block falls once its centroid, the control point here, has moved by half its width:
+
+    >>> import concio
+    >>> pillar = concio.column(width=0.5, height=2.0, blocks=1, block="rigid")
+    >>> centroid = concio.ControlPoint("b01", at=(0.0, 1.0), direction=(1.0, 0.0))
+    >>> round(float(concio.push(pillar, control=centroid).capacity), 3)
+    0.25
     """
 
     body: str
@@ -47,6 +57,16 @@ class Stage:
         Displacement of the control point [m].
     steps : int
         Steps of the stage where it is walked in steps.
+
+    Examples
+    --------
+    The weight acts first. Then a horizontal share of it grows, until the pillar tips at width over height:
+
+    >>> import concio
+    >>> pillar = concio.column(width=0.5, height=2.0, blocks=1, block="rigid", horizontal=1.0)
+    >>> stages = [concio.Stage("weight", {"dead": 1.0}), concio.Stage("push", {"live": 1.0})]
+    >>> round(concio.run_path(pillar, stages).peak(), 6)
+    0.25
     """
 
     name: str

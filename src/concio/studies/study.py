@@ -81,6 +81,19 @@ class Stop:
     confidence : float
     least : int
         Runs that are made in any case.
+
+    Examples
+    --------
+    The study of 40 runs ends when the probability that the pillar stands is known to within 0.6:
+
+    >>> import concio
+    >>> push = concio.variable("push", "uniform", low=0.1, high=0.4)
+    >>> def pillar(values):
+    ...     return concio.column(width=0.5, height=2.0, blocks=1, block="rigid", horizontal=values["push"])
+    >>> stop = concio.Stop("stands", width=0.6, above=0.5, least=5)
+    >>> found = concio.study(pillar, [push], "stands", size=40, stop=stop)
+    >>> found.stopped
+    True
     """
 
     output: str

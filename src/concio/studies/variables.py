@@ -49,6 +49,14 @@ class Variable:
     ------
     InputError
         Something does not fit; the message names the variable.
+
+    Examples
+    --------
+    >>> import concio
+    >>> import numpy as np
+    >>> mu = concio.Variable("mu", "uniform", keys=("arch.friction",), parameters={"low": 0.4, "high": 0.8})
+    >>> mu.quantile(np.array([0.0, 0.5, 1.0])).round(6).tolist()
+    [0.4, 0.6, 0.8]
     """
 
     name: str
@@ -169,7 +177,13 @@ def variable(
 
     Examples
     --------
-    >>> mu = variable("mu", "normal", keys="wall.friction", mean=0.6, sd=0.06, low=0.3)
+    The median, and the value 1.645 standard deviations below it:
+
+    >>> import concio
+    >>> import numpy as np
+    >>> mu = concio.variable("mu", "normal", keys="wall.friction", mean=0.6, sd=0.06)
+    >>> mu.quantile(np.array([0.5, 0.05])).round(4).tolist()
+    [0.6, 0.5013]
     """
     if any(not math.isfinite(w) for w in weights):
         msg = "weights must be finite"

@@ -88,13 +88,15 @@ def assess_bridge(
 
     Examples
     --------
+    How many times an axle of 100 kN can cross a bridge of 3 m, at its worst position:
+
     >>> import concio
     >>> bare = concio.bridge(span=3.0, rise=0.75, ring=0.215, voussoirs=16, block="rigid", width=2.0)
     >>> filled = concio.with_fill(bare, concio.Fill(cover=0.3, friction_angle=30.0, mobilised=0.3))
     >>> loaded = concio.with_vehicle(filled, concio.find_vehicle("single axle"))
     >>> found = concio.assess_bridge(loaded, step=0.5, fine=0.1, checked=3, sensitivity=False)
-    >>> bool(found.worst.multiplier > 0)
-    True
+    >>> round(found.worst.multiplier, 2)
+    1.76
     """
     if not 0 < required < np.inf:
         msg = f"required = {required:g} must be positive"

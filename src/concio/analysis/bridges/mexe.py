@@ -80,6 +80,7 @@ def mexe(
 
     Examples
     --------
+    >>> from concio.analysis.bridges.mexe import mexe
     >>> round(mexe(6.0, 1.5, 1.16, 0.45, 0.40).axle, 1)
     482.1
     """

@@ -115,6 +115,18 @@ def halve_blocks(
     ------
     InputError
         The sizes are not increasing whole numbers from 1 on, or as :func:`concio.compare_with_continuum`.
+
+    Examples
+    --------
+    Blocks half as large are nearer to the continuum. Their joints are twice as stiff:
+
+    >>> import concio
+    >>> def make(n):
+    ...     law = concio.JointLaw(0.6, normal_stiffness=n * 10e6, tangential_stiffness=n * 4e6)
+    ...     return concio.wall(length=1.0, height=0.5, block_size=(0.5 / n, 0.25 / n), friction=law, top_pressure=100.0)
+    >>> found = concio.halve_blocks(make, sizes=(1, 2), strength=False, mesh_size=0.25)
+    >>> found.table()["difference_blocks"].round(1).tolist()
+    [0.2, 0.1]
     """
     chosen = tuple(sizes)
     whole = all(isinstance(n, int | np.integer) and not isinstance(n, bool) and n >= 1 for n in chosen)

@@ -96,14 +96,16 @@ def diagnose(
 
     Examples
     --------
-    A flat arch that opens by 10 mm at its crown and by 5.3 mm at one springer:
+    A flat arch opens by 10 mm at its crown and by 5.3 mm at one springer:
 
     >>> import concio
+    >>> import math
     >>> arch = concio.arch(shape="flat", span=1.2, ring=0.3, voussoirs=6, skew=70, block="rigid", friction=2.0)
-    >>> top = (-0.6 - 0.3 / np.tan(np.deg2rad(70)), 0.3)
+    >>> top = (-0.6 - 0.3 / math.tan(math.radians(70)), 0.3)
     >>> cracks = [
     ...     concio.Measurement("crown", "opening", "0.2 mm", "10.1 mm", ("v03", "v04"), at=(0.0, 0.0)),
-    ...     concio.Measurement("springer", "opening", "0.2 mm", "5.2 mm", ("left abutment", "v01"), at=top)]
+    ...     concio.Measurement("springer", "opening", "0.2 mm", "5.2 mm", ("left abutment", "v01"), at=top),
+    ... ]
     >>> spreads = concio.Candidate("abutment gives way", body="left abutment", direction=(-1, 0), low=0.0)
     >>> found = concio.diagnose(arch, cracks, [spreads], large=False)
     >>> print(found.verdict.status, f"{1e3 * found.best.motion[0]:.1f} mm")

@@ -90,6 +90,15 @@ class Site:
     ------
     InputError
         Something is not known to the code, or is no number of a site.
+
+    Examples
+    --------
+    A nominal life of 50 years and a class of use of 1.5 make a reference life of 75 years:
+
+    >>> import concio
+    >>> site = concio.Site({"SLV": {"a_g": 0.20, "F0": 2.45, "Tc": 0.32}}, nominal_life=50.0, use_class="III")
+    >>> site.life
+    75.0
     """
 
     hazard: Any

@@ -88,9 +88,10 @@ def parameters(thing: Any) -> dict[str, str]:
 
     Examples
     --------
+    >>> from concio.model.file.descriptions import parameters
     >>> from concio.model.materials import JointLaw
     >>> parameters(JointLaw)["friction"]
-    'Coulomb coefficient.'
+    'Coulomb coefficient mu >= 0, or its angle: `"31 deg"`.'
     """
     found = dict(_entries(inspect.getdoc(thing) or ""))
     for name, text in found.items():

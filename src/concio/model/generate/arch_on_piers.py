@@ -78,6 +78,15 @@ def arch_on_piers(
     -----
     Blocks are called ``left-p01`` (piers, from below), ``v01`` (arch, from the left), ``c01-b01`` (spandrels, course
     from below, block from the left). The fixed bodies are "left ground" and "right ground".
+
+    Examples
+    --------
+    >>> import concio
+    >>> model = concio.arch_on_piers(
+    ...     span=2.0, ring=0.3, voussoirs=9, pier_width=0.8, pier_height=2.0, pier_courses=4, spandrels=False
+    ... )
+    >>> len(model.free_bodies)
+    17
     """
     where = "arch_on_piers"
     options = checked(where, common)

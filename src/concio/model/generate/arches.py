@@ -83,6 +83,18 @@ def arch(
     -----
     Voussoirs are called ``v01``, ``v02``... from the left springing; the fixed bodies are "left abutment" and
     "right abutment", with the role "abutment".
+
+    Examples
+    --------
+    A semicircular arch carries its own weight from a thickness of 0.1075 mean radii on (Milankovitch, 1907). The mean
+    radius is 1 m here:
+
+    >>> import concio
+    >>> for ring in (0.10, 0.12):
+    ...     model = concio.arch(span=2 - ring, ring=ring, voussoirs=21, block="rigid", friction=2.0)
+    ...     print(ring, concio.solve(model, on_failure="return").status.name)
+    0.1 NO_EQUILIBRIUM
+    0.12 SOLVED
     """
     where = "arch"
     options = checked(where, common)

@@ -67,6 +67,18 @@ def barrel(
     -----
     Blocks are called ``v01-b01``: course from the left springing, block along the axis. The fixed bodies are "left
     abutment" and "right abutment".
+
+    Examples
+    --------
+    In section the vault is half a ring of 14 sides:
+
+    >>> import concio
+    >>> import math
+    >>> model = concio.barrel(span=2.0, ring=0.2, length=3.0, voussoirs=7, blocks=3)
+    >>> round(sum(block.volume for block in model.free_bodies), 6)
+    2.004543
+    >>> round(7 * math.sin(math.pi / 7) / 2 * (1.2**2 - 1.0**2) * 3.0, 6)
+    2.004543
     """
     where = "barrel"
     options = checked_space(where, common)

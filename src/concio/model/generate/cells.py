@@ -90,6 +90,15 @@ def cell(
     ------
     InputError
         An argument is out of range or does not go with the bond.
+
+    Examples
+    --------
+    Two blocks repeat: the second course is shifted by half a block.
+
+    >>> import concio
+    >>> model = concio.cell(bond="running", block_size=(0.25, 0.125), friction=0.6)
+    >>> len(model.bodies), model.periods
+    (2, ((0.25, 0.0), (0.0, 0.25)))
     """
     where = "cell"
     options = checked(where, common)

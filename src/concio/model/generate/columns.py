@@ -40,6 +40,15 @@ def column(
         Vertical force, downwards positive [kN], load group "top", and its distance from the axis [m].
     **common
         See :class:`concio.model.generate.arguments.Common`.
+
+    Examples
+    --------
+    Under a horizontal share of its weight a column tips at width over height:
+
+    >>> import concio
+    >>> model = concio.column(width=0.5, height=2.0, blocks=4, block="rigid", horizontal=1.0)
+    >>> round(concio.limit(model).design, 6)
+    0.25
     """
     where = "column"
     options = checked(where, common)
@@ -95,6 +104,15 @@ def buttress(
         Its height [m]; by default the middle of the highest course.
     **common
         See :class:`concio.model.generate.arguments.Common`.
+
+    Examples
+    --------
+    A buttress of 80 kN is 1 m wide. A thrust at a height of 3.5 m overturns it from 80 * 0.5 / 3.5 = 11.429 kN on:
+
+    >>> import concio
+    >>> model = concio.buttress(base=1.0, top=1.0, height=4.0, courses=4, thrust=1.0, block="rigid", unit_weight=20.0)
+    >>> round(concio.limit(model).design, 3)
+    11.429
     """
     where = "buttress"
     options = checked(where, common)

@@ -73,6 +73,17 @@ def dome(
     -----
     Blocks are called ``c01-b01``: ring from below, block from the x axis on; the key "key", the fixed bodies
     "springer 01"... The springing of the intrados lies at z = 0, the axis at x = y = 0.
+
+    Examples
+    --------
+    Three rings of 8 blocks and a key:
+
+    >>> import concio
+    >>> model = concio.dome(span=4.0, ring=0.4, courses=3, blocks=8, block="rigid")
+    >>> len(model.free_bodies)
+    25
+    >>> concio.solve(model).status.name
+    'SOLVED'
     """
     where = "dome"
     options = checked_space(where, common)

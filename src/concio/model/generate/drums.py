@@ -47,6 +47,15 @@ def drums(
         Where it acts [m].
     **common
         See :class:`concio.model.generate.solid_masonry.CommonSpace`.
+
+    Examples
+    --------
+    The section of a pillar with 8 sides is 2 sqrt(2) times the square of its radius, here 0.707 m2:
+
+    >>> import concio
+    >>> model = concio.drums(diameter=1.0, height=3.0, drums=3, sides=8, block="rigid", unit_weight=20.0)
+    >>> round(float(concio.solve(model).reactions["ground"][2]), 3)
+    42.426
     """
     where = "drums"
     options = checked_space(where, common)

@@ -53,6 +53,14 @@ def extrude(model: Model, thickness: float | str | None = None, *, held: bool = 
     ------
     InputError
         The model is in space already, or is a periodic cell.
+
+    Examples
+    --------
+    >>> import concio
+    >>> plane = concio.column(width=0.5, height=2.0, blocks=2, thickness=0.3)
+    >>> model = concio.extrude(plane)
+    >>> model.dim, round(model.body("b01").volume, 6)
+    (3, 0.15)
     """
     require_model(model)
     outlines = model.outlines

@@ -75,6 +75,17 @@ def cloister_vault(
     Notes
     -----
     Blocks are called ``s1-c01-b01``: side, course from below, block; those round a groin belong to the side before it.
+
+    Examples
+    --------
+    The springers carry the weight of the vault:
+
+    >>> import concio
+    >>> model = concio.cloister_vault(span=3.0, ring=0.3, courses=3, block_length=1.5, block="rigid", unit_weight=20.0)
+    >>> result = concio.solve(model)
+    >>> weight = sum(20.0 * block.volume for block in model.free_bodies)
+    >>> round(sum(float(force[2]) for force in result.reactions.values()) / weight, 6)
+    1.0
     """
     where = "cloister_vault"
     options = checked_space(where, common)
@@ -210,6 +221,16 @@ def cross_vault(
     Blocks are called ``s1-c01-b01``: side (1 towards +y, then round), course from the left springing over the crown to
     the right one, block from the groin outwards. The fixed bodies are "springer 1" to "springer 4", the stone in the
     middle "key". z = 0 is the level of the axes of the barrels.
+
+    Examples
+    --------
+    Each of the four springers carries a quarter of the weight:
+
+    >>> import concio
+    >>> model = concio.cross_vault(span=3.0, ring=0.3, courses=2, block_length=1.5, springing=45.0, block="rigid")
+    >>> result = concio.solve(model)
+    >>> round(float(-result.reactions["springer 1"][2] / result.total_load[2]), 6)
+    0.25
     """
     where = "cross_vault"
     options = checked_space(where, common)

@@ -42,6 +42,18 @@ def merge(*models: Model, title: str = "", joint: JointLaw | float | None = None
     InputError
         Names clash, or the parts differ in dimension, element, plane or refinement; or parts touch whose laws differ,
         and ``joint`` does not say which holds between them.
+
+    Examples
+    --------
+    Two pillars, 2.5 m apart:
+
+    >>> import concio
+    >>> pillar = concio.column(width=0.5, height=2.0, blocks=4)
+    >>> model = concio.merge(concio.place(pillar, name="left"), concio.place(pillar, at=(3.0, 0.0), name="right"))
+    >>> len(model.free_bodies)
+    8
+    >>> model.body("right-b01").centroid.round(6).tolist()
+    [3.0, 0.25]
     """
     whole = merged(models, title=title, joint=joint)
     if joint is None and len({_general_law(m) for m in models}) > 1:

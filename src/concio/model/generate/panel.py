@@ -99,6 +99,16 @@ def running_bond_panel(
     ------
     InputError
         A number is out of range.
+
+    Examples
+    --------
+    The base carries a pressure of 10 kN/m2 on a panel of 0.6 by 0.1 m in plan:
+
+    >>> import concio
+    >>> model = concio.running_bond_panel(courses=4, blocks=3, thickness=0.1, top_pressure=10.0, side_walls=False)
+    >>> result = concio.solve(model)
+    >>> round(float(result.reactions["base"][1]), 6)
+    0.6
     """
     where = "panel"
     n_c, n_b, refine = (_count(v, n) for v, n in ((courses, "courses"), (blocks, "blocks"), (refinement, "refinement")))

@@ -130,6 +130,15 @@ def walls(
     -----
     Blocks are called ``w1-c03-b07``: wall, course and block from 1, from below and along the axis; with several wythes
     ``w1-c03-y2-b07``. Layers hold "header" or the mason's word for the length.
+
+    Examples
+    --------
+    Two walls meet at a corner. They are 0.25 m thick and 0.5 m high, and their axes are 2 m long:
+
+    >>> import concio
+    >>> model = concio.walls(lines=[((0, 0), (2, 0)), ((0, 0), (0, 2))], height=0.5, block_size=(0.5, 0.25, 0.25))
+    >>> round(sum(block.volume for block in model.free_bodies), 6)
+    0.5
     """
     where = "walls"
     options = checked_space(where, common)
@@ -183,6 +192,15 @@ def tower(
         Openings of the front, right, back and left wall, each from its left end seen from outside, as in :func:`walls`.
     **common
         See :class:`concio.model.generate.solid_masonry.CommonSpace`.
+
+    Examples
+    --------
+    Walls of 0.3 m around 3 by 2.4 m, 1.5 m high:
+
+    >>> import concio
+    >>> model = concio.tower(width=3.0, depth=2.4, height=1.5, block_size=(0.6, 0.3, 0.3))
+    >>> round(sum(block.volume for block in model.free_bodies), 6)
+    4.32
     """
     where = "tower"
     bricks = _checked_bricks(where, block_size, bond, wythes, headers)

@@ -62,6 +62,15 @@ def rubble(
     ------
     InputError
         An argument is out of range.
+
+    Examples
+    --------
+    The stones fill the wall:
+
+    >>> import concio
+    >>> model = concio.rubble(length=2.0, height=1.5, stone=0.4, seed=1)
+    >>> round(sum(stone.area for stone in model.free_bodies), 6)
+    3.0
     """
     where = "rubble"
     options = checked(where, common)

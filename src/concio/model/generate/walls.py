@@ -78,6 +78,16 @@ def wall(
     -----
     Blocks are called ``c03-b07`` (course and block from 1, from below and from the left), after ``p2-`` where there are
     several panels; ``layer`` holds the mason's word (whole, half, closer, cut).
+
+    Examples
+    --------
+    A wall of 9 m2 with a door of 2 m2:
+
+    >>> import concio
+    >>> door = {"x": 1.0, "y": 0.0, "width": 1.0, "height": 2.0, "lintel": 0.25}
+    >>> model = concio.wall(length=3.0, height=3.0, block_size=(0.5, 0.25), openings=[door])
+    >>> round(sum(block.area for block in model.free_bodies), 6)
+    7.0
     """
     where = "wall"
     options = checked(where, common)
@@ -140,6 +150,15 @@ def wall_of_courses(
         [m].
     ground, top_pressure, **common
         As in :func:`wall`.
+
+    Examples
+    --------
+    The third course has an opening of one block:
+
+    >>> import concio
+    >>> model = concio.wall_of_courses([[1, 1, 1], [0.5, 1, 1, 0.5], [1, -1, 1]], block_size=(0.4, 0.2))
+    >>> len(model.free_bodies)
+    9
     """
     where = "wall"
     options = checked(where, common)

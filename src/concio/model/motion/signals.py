@@ -56,6 +56,16 @@ class Record:
         Time between samples [s].
     quantity : {"acceleration", "velocity", "displacement"}
     name : str
+
+    Examples
+    --------
+    A triangle of 2 m/s2 over 1 s ends with a velocity of 1 m/s:
+
+    >>> import concio
+    >>> import numpy as np
+    >>> record = concio.Record(np.array([0.0, 2.0, 0.0]), step=0.5)
+    >>> round(float(record.velocity(np.array([1.0]))[0]), 6)
+    1.0
     """
 
     values: Array
@@ -138,6 +148,16 @@ class Pulse:
     cycles : float
         Waves of a sine.
     name : str
+
+    Examples
+    --------
+    The velocity at the end of a half sine of amplitude A and length T is 2 A T / pi:
+
+    >>> import concio
+    >>> import numpy as np
+    >>> pulse = concio.Pulse("half sine", amplitude=np.pi, length=0.5)
+    >>> round(float(pulse.velocity(np.array([0.5]))[0]), 6)
+    1.0
     """
 
     shape: str

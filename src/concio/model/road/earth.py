@@ -50,6 +50,18 @@ def with_fill(model: Model, fill: Fill) -> Model:
     ------
     InputError
         The model is in space or has fill already; the road does not lie above the masonry.
+
+    Examples
+    --------
+    Where the barrel has no weight, its abutments carry that of the fill:
+
+    >>> import concio
+    >>> bare = concio.bridge(span=3.0, rise=0.75, ring=0.3, voussoirs=12, block="rigid", width=2.0, unit_weight=0.0)
+    >>> model = concio.with_fill(bare, concio.Fill(cover=0.5, unit_weight=18.0))
+    >>> fill = -sum(load.value[1] for load in model.loads if load.group == "fill")
+    >>> result = concio.solve(model)
+    >>> round(sum(float(force[1]) for force in result.reactions.values()) / fill, 6)
+    1.0
     """
     if model.fill is not None:
         msg = "the model has fill already"
@@ -84,6 +96,18 @@ def with_vehicle(model: Model, vehicle: Vehicle, *, whole: bool = True) -> Model
     ------
     InputError
         The model has no fill, other loads are in the group of the vehicle, or an axle stands outside the road.
+
+    Examples
+    --------
+    Both axles stand over the span. The barrel takes all of their 160 kN:
+
+    >>> import concio
+    >>> bare = concio.bridge(span=6.0, rise=1.5, ring=0.3, voussoirs=12, block="rigid", width=3.0)
+    >>> filled = concio.with_fill(bare, concio.Fill(cover=0.5))
+    >>> lorry = concio.Vehicle("lorry", axles=(concio.Axle(0.0, 60.0), concio.Axle(1.2, 100.0)), position=2.4)
+    >>> model = concio.with_vehicle(filled, lorry)
+    >>> round(-sum(load.value[1] for load in model.loads if load.group == "live"), 6)
+    160.0
     """
     if model.fill is None:
         msg = "the model has no fill, and nothing tells how the vehicle's load reaches the masonry"

@@ -33,6 +33,13 @@ def find_vehicle(name: str) -> Vehicle:
     ------
     InputError
         There is none of that name.
+
+    Examples
+    --------
+    >>> import concio
+    >>> vehicle = concio.find_vehicle("single axle")
+    >>> vehicle.total, len(vehicle.axles)
+    (100.0, 1)
     """
     known = vehicles()
     if name not in known:
