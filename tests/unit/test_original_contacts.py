@@ -16,12 +16,12 @@ from concio.analysis.motion.statics import Statics
 from concio.analysis.motion.stepper import Stepper, at_rest
 from concio.contact.moving import search as search_module
 from concio.contact.moving.attachments import Held, Ties
-from concio.contact.moving.edges import as_complex
 from concio.contact.moving.laws import LawTable
 from concio.contact.moving.original import OriginalContacts
 from concio.contact.moving.reference import Reference
 from concio.contact.moving.rows import RowMaker
 from concio.errors import NoEquilibriumError
+from concio.kinematics.placement import Placement
 from concio.problem.tolerances import CERTIFIED
 from models import box, model_of, weight
 from motion_models import G, standing
@@ -59,9 +59,7 @@ def test_pairs_written_twice_are_the_same(kind, law, seed):
     centre = state.centre + 1e-3 * free * rng.normal(size=(count, 2))
     rotation, spin = (free[:, 0] * size * rng.normal(size=count) for size in (3e-3, 1.0))
     velocity, strain = rng.normal(size=(count, 2)), 1e-4 * rng.normal(size=state.strain.shape)
-    _, rows, _ = maker.contacts(
-        state.memory, as_complex(centre), np.exp(1j * rotation), as_complex(velocity), spin, as_complex(strain)
-    )
+    _, rows, _ = maker.contacts(state.memory, Placement(centre, rotation), velocity, spin, strain)
     original = OriginalContacts(reference)
     layout = maker.search.layout
     slots, again = original.at(layout, centre, rotation, velocity, spin, strain)

@@ -17,19 +17,36 @@ FLAT = 1e-6
 def turned_left(v: Array) -> Array:
     """Return plane vectors (..., 2) turned left by a right angle: (-y, x)."""
     v = np.asarray(v)
-    return np.stack([-v[..., 1], v[..., 0]], axis=-1)
+    found = np.empty_like(v)
+    found[..., 0], found[..., 1] = -v[..., 1], v[..., 0]
+    return found
 
 
 def turned_right(v: Array) -> Array:
     """Return plane vectors (..., 2) turned right by a right angle: (y, -x)."""
     v = np.asarray(v)
-    return np.stack([v[..., 1], -v[..., 0]], axis=-1)
+    found = np.empty_like(v)
+    found[..., 0], found[..., 1] = v[..., 1], -v[..., 0]
+    return found
 
 
 def turned(v: Array, angle: Array | float) -> Array:
     """Return plane vectors (..., 2) turned left by angles (...) [rad]."""
     v, c, s = np.asarray(v), np.cos(angle), np.sin(angle)
     return np.stack([c * v[..., 0] - s * v[..., 1], s * v[..., 0] + c * v[..., 1]], axis=-1)
+
+
+def dot(p: Array, q: Array) -> Array:
+    """Return the scalar product (...) of vectors (..., d), component by component: faster than a sum along an axis."""
+    found = p[..., 0] * q[..., 0] + p[..., 1] * q[..., 1]
+    return np.asarray(found + p[..., 2] * q[..., 2] if p.shape[-1] == 3 else found)
+
+
+def norm(v: Array) -> Array:
+    """Return the lengths (...) of vectors (..., d)."""
+    if v.shape[-1] == 2:
+        return np.asarray(np.hypot(v[..., 0], v[..., 1]))
+    return np.asarray(np.sqrt(dot(v, v)))
 
 
 def cross(p: Array, q: Array) -> Array:
@@ -66,3 +83,23 @@ def tangents(normal: Array) -> Array:
     length = np.where(flat, np.linalg.norm(along_x, axis=-1, keepdims=True), 1.0)
     first = np.where(flat, along_x / length, in_plan)
     return np.stack([first, cross(n, first)], axis=-2)
+
+
+def frames(normal: Array) -> Array:
+    """Return unit normals (..., d) with their tangents, as rows (..., d, d)."""
+    n = np.asarray(normal, dtype=float)
+    found = np.empty((*n.shape, n.shape[-1]))
+    found[..., 0, :] = n
+    if n.shape[-1] == 2:
+        found[..., 1, 0], found[..., 1, 1] = -n[..., 1], n[..., 0]
+    else:
+        found[..., 1:, :] = tangents(n)
+    return found
+
+
+def components(v: Array, frame: Array) -> Array:
+    """Return the components (m, d) of vectors (m, d) in frames (m, d, d) whose rows are directions."""
+    found = np.empty(v.shape)
+    for k in range(v.shape[-1]):
+        found[:, k] = dot(frame[:, k], v)
+    return found

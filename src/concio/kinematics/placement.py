@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from concio.kinematics.rigid import plane_rotation, rotation_matrix
+from concio.kinematics.turns import Turns
 
 Array = np.ndarray
 
@@ -45,6 +46,11 @@ class Placement:
             return self.rotation
         return plane_rotation(self.rotation)
 
+    @cached_property
+    def turns(self) -> Turns:
+        """Rotations (B,), ready to be applied to vectors."""
+        return Turns.of(self.rotation)
+
     def moved(self, translation: Array, turn: Array) -> Placement:
         """Return the placement after a displacement of the centroids and a finite rotation about them.
 
@@ -61,5 +67,4 @@ class Placement:
 
     def points(self, body: Array, arm: Array) -> Array:
         """Return the positions (k, d) of points at reference arms (k, d) of bodies (k,) [m]."""
-        placed: Array = self.centre[body] + np.einsum("kij,kj->ki", self.matrix[body], arm)
-        return placed
+        return np.asarray(self.centre[body] + self.turns[body].apply(arm))

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from concio.kinematics.frames import cross, turned_left
+from concio.kinematics.frames import cross
 
 Array = np.ndarray
 
@@ -32,7 +32,11 @@ def swept(rotation: Array | float, arm: Array) -> Array:
     """
     arm = np.asarray(arm, dtype=float)
     if arm.shape[-1] == 2:
-        return np.asarray(np.asarray(rotation)[..., None] * turned_left(arm))
+        spin = np.asarray(rotation, dtype=float)
+        found = np.empty((*np.broadcast_shapes(spin.shape, arm.shape[:-1]), 2))
+        np.multiply(-spin, arm[..., 1], out=found[..., 0])
+        np.multiply(spin, arm[..., 0], out=found[..., 1])
+        return found
     return cross(np.broadcast_to(np.asarray(rotation, dtype=float), arm.shape), arm)
 
 
@@ -52,6 +56,29 @@ def rigid_row(direction: Array, arm: Array, reach: Array | float) -> Array:
     if direction.shape[-1] == 2:
         turn = turn[..., None]
     return np.concatenate([direction, turn / np.asarray(reach, dtype=float)[..., None]], axis=-1)
+
+
+def write_rigid_rows(out: Array, frame: Array, arm: Array, reach: Array) -> None:
+    """Write into ``out`` (m, d, 3 or 6) the displacements along directions ``frame`` (m, d, d), as :func:`rigid_row`.
+
+    Parameters
+    ----------
+    out : (m, d, 3 or 6) array
+    frame : (m, d, d) array
+    arm : (m, d) array
+        From the centroid to the point [m].
+    reach : (m,) array
+        Length that turns rotations into displacements [m].
+    """
+    d = frame.shape[-1]
+    for k in range(d):
+        for axis in range(d):  # component by component: arrays that are long along their first axis only
+            out[:, k, axis] = frame[:, k, axis]
+        turn = cross(arm, frame[:, k])
+        if d == 2:
+            np.divide(turn, reach, out=out[:, k, 2])
+        else:
+            np.divide(turn, reach[:, None], out=out[:, k, 3:])
 
 
 def rigid_operator(arm: Array, reach: Array | float) -> Array:

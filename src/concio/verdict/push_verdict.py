@@ -103,9 +103,7 @@ class Described:
     @property
     def loads(self) -> dict[str, np.ndarray]:
         """The forces of each load group (N,) [kN]."""
-        here = np.ones(len(self.model.bodies), dtype=complex)
-        every = self.reference.loads.groups
-        return {group: self.reference.loads.forces({g: float(g == group) for g in every}, here) for group in every}
+        return self.reference.described_loads
 
 
 def _outcome(found: PushResult) -> Outcome:

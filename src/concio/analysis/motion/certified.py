@@ -19,7 +19,6 @@ from concio.analysis.motion.pairs import PairMaker, assembled, no_pairs, relativ
 from concio.analysis.motion.scheme import RETURN, Drive, Scheme
 from concio.analysis.motion.state import Memory, MotionState
 from concio.analysis.motion.tie_bars import TieStep
-from concio.contact.moving.edges import as_complex, as_vectors
 from concio.contact.moving.laws import LawTable
 from concio.contact.moving.original import OriginalContacts
 from concio.contact.moving.points import MaterialPoints
@@ -27,6 +26,7 @@ from concio.contact.moving.reference import Reference
 from concio.contact.moving.rows import Rows
 from concio.contact.moving.slots import Slots
 from concio.kinematics.frames import cross, turned, turned_left
+from concio.kinematics.turns import Turns
 from concio.problem.cone import Cone
 from concio.solvers.stepping.matrix import StepMatrix
 
@@ -200,20 +200,19 @@ class Certificate:
         assert layout is not None
         velocity = np.where((self.reference.disc.shape_of == -2)[:, None], drive.velocity, state.velocity)
         centre, rotation = state.centre + 0.5 * h * velocity, state.rotation + 0.5 * h * state.spin
-        turn = np.exp(1j * rotation)
-        strain, rate = as_complex(state.strain), np.zeros(0, dtype=complex)
-        nodal = as_complex(state.nodal)
+        turn = Turns.of(rotation)
+        strain, rate, nodal = state.strain, np.zeros_like(state.strain), state.nodal
         if f.elastic:
-            rate, _, _ = f.rate(nodal, turn[f.body] * (f.arm + strain), turn)
+            rate, _, _ = f.rate(nodal, turn[f.body].apply(f.arm + strain), turn)
             strain = strain + 0.5 * h * rate
-        x0 = f.unknowns(as_complex(velocity), state.spin, nodal, turn)
-        x = f.unknowns(as_complex(new.velocity), new.spin, as_complex(new.nodal), turn)
+        x0 = f.unknowns(velocity, state.spin, nodal, turn)
+        x = f.unknowns(new.velocity, new.spin, new.nodal, turn)
         acting = f.loads(drive, turn) + f.ground(drive, turn)
         b = f.mass * x0 / h + acting
         if f.elastic:
             b = b + f.internal(state, h, rate, strain, state.spin, x0)
         force, speed = measures(self.reference, acting, x0, h)
-        slots, rows = self.original.at(layout, centre, rotation, velocity, state.spin, as_vectors(strain))
+        slots, rows = self.original.at(layout, centre, rotation, velocity, state.spin, strain)
         if not self.original.named(layout).sound:
             return float("inf")
         y0 = relative(rows.columns, rows.values, x0) + rows.imposed
@@ -222,7 +221,7 @@ class Certificate:
         data = self._returned(data, joint, returned)
         parts = [data, self._held(state, centre, rotation, h, drive)]
         if len(self.maker.ties):
-            tie, gap = self.ties(state, centre, rotation, as_vectors(strain))
+            tie, gap = self.ties(state, centre, rotation, strain)
             y0_tie = relative(tie.columns, tie.values, x0)[:, 0]
             parts.append(TieStep.of(self.maker.ties, state.ties, tie, gap, y0_tie, h, self.scheme).data)
         p = assembled(matrix, b, parts, force, speed)
@@ -278,21 +277,20 @@ class Certificate:
         if not len(self.maker.held):
             return no_pairs()
         off = self._place(self.maker.held.points, state.centre, state.rotation, state.strain)
-        return self._glued(state.rotation, off - as_vectors(self.maker.held.target(factors)))
+        return self._glued(state.rotation, off - self.maker.held.target(factors))
 
     def _held(self, state: MotionState, centre: Array, rotation: Array, h: float, drive: Drive) -> PairData:
         """Return the pairs of supports of a step, in velocities."""
         if not len(self.maker.held):
             return no_pairs()
         here = self._place(self.maker.held.points, state.centre, state.rotation, state.strain)
-        off = here - as_vectors(self.maker.held.target(drive.factors)) - [drive.moved.real, drive.moved.imag]
+        off = here - self.maker.held.target(drive.factors) - drive.moved
         return self._glued(rotation, RETURN / h * off - drive.velocity)
 
     def _glued(self, rotation: Array, off: Array) -> PairData:
         """Return the pairs of supports that are off by (k, 2)."""
         held, k = self.maker.held, len(self.maker.held)
-        normal = as_vectors(held.normal)
-        ways = (normal, turned_left(normal))
+        ways = (held.normal, turned_left(held.normal))
         zero, inf = np.zeros(k), np.full(k, np.inf)
         return PairData(
             held.points.columns, np.stack([_rows(held.points, way, rotation) for way in ways], axis=1),
@@ -318,7 +316,7 @@ class Certificate:
 
     def _place(self, points: MaterialPoints, centre: Array, rotation: Array, strain: Array) -> Array:
         """Return where points are (k, 2) [m]."""
-        arm, body = as_vectors(points.arm), np.maximum(points.body, 0)
+        arm, body = points.arm, np.maximum(points.body, 0)
         if points.node.shape[1]:
             arm = arm + (points.weight[:, :, None] * np.vstack([strain, np.zeros((1, 2))])[points.node]).sum(axis=1)
         return np.where((points.body >= 0)[:, None], centre[body] + turned(arm, rotation[body]), arm)
@@ -335,7 +333,7 @@ def measures(reference: Reference, acting: Array, x0: Array, h: float) -> tuple[
 def _rows(points: MaterialPoints, way: Array, rotation: Array) -> Array:
     """Return the displacements (k, w) of points along directions (k, 2) from their unknowns."""
     body = np.maximum(points.body, 0)
-    arm, local = turned(as_vectors(points.arm), rotation[body]), turned(way, -rotation[body])
+    arm, local = turned(points.arm, rotation[body]), turned(way, -rotation[body])
     values = np.zeros(points.columns.shape)
     values[:, :2] = way
     values[:, 2] = cross(arm, way) / points.reach

@@ -292,7 +292,7 @@ class _Run:
     def drive(self, time: float, h: float) -> Drive:
         """Return what is imposed in a step."""
         if self.base == "moving":
-            moved = complex(*self.ground.displacement(np.array(time)))
+            moved = np.asarray(self.ground.displacement(np.array(time)), dtype=float).reshape(-1)
             return Drive(np.zeros(2), self.ground.mean_velocity(time, time + h), self.factors, moved)
         return Drive(self.ground.mean_acceleration(time, time + h), np.zeros(2), self.factors)
 

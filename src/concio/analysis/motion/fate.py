@@ -104,8 +104,7 @@ class Watch:
     def calm(self, state: MotionState) -> bool:
         """Return whether nothing has seemed to move for a while; to be asked after every step."""
         f = self.observer.frames
-        x = f.unknowns(state.velocity[:, 0] + 1j * state.velocity[:, 1], state.spin, state.nodal @ [1, 1j],
-                       np.exp(1j * state.rotation))  # fmt: skip
+        x = f.unknowns(state.velocity, state.spin, state.nodal, state.placement.turns)
         if f.kinetic_energy(x) > self.still:
             self.calm_since = None
         elif self.calm_since is None:

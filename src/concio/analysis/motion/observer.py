@@ -9,7 +9,6 @@ import numpy as np
 from concio.analysis.motion.frames import Frames
 from concio.analysis.motion.pairs import PairMaker
 from concio.analysis.motion.state import MotionState
-from concio.contact.moving.edges import as_complex, as_vectors
 from concio.contact.moving.points import MaterialPoints
 from concio.contact.moving.reference import Reference
 from concio.contact.moving.rows import Rows
@@ -67,16 +66,14 @@ class Observer:
         self._joint = {key: k for k, key in enumerate(reference.drawn)}
         self._reacting: tuple[Array, Array, Array, Array] | None = None
         self._known: tuple[Array, Array, Array] | None = None
-        self.rest = as_complex(reference.disc.centroids)
-        self.node_rest = frames.arm + self.rest[frames.body] if frames.elastic else frames.arm
+        self.rest = reference.disc.centroids
+        self.node_rest = frames.arm + self.rest[frames.body]
 
     def positions(self, state: MotionState) -> Array:
         """Return where the points are (p, d) [m]."""
         if not len(self.points):
             return np.zeros((0, 2))
-        turn = np.exp(1j * state.rotation)
-        strain = np.append(as_complex(state.strain), 0.0)
-        return as_vectors(self.points.positions(as_complex(state.centre), turn, strain))
+        return self.points.positions(state.placement, state.strain)
 
     def reactions(self, force: Array, pairs: int, normal: Array) -> Array:
         """Return the force of each fixed body and support on the structure (r, d) [kN].
@@ -98,8 +95,7 @@ class Observer:
             total[:, 1] = np.bincount(row, t[:, 0] * n[:, 1] + t[:, 1] * n[:, 0], count)
         held = self.maker.held
         for k in range(len(held)):
-            vector = (force[pairs + k, 0] + 1j * force[pairs + k, 1]) * held.normal[k]
-            total[self._held_row[int(held.support[k])]] += vector.real, vector.imag
+            total[self._held_row[int(held.support[k])]] += force[pairs + k] @ np.stack([way[k] for way in held.ways])
         return total
 
     def _of_fixed(self) -> tuple[Array, Array, Array]:
@@ -114,11 +110,8 @@ class Observer:
 
     def rows(self, state: MotionState) -> Rows:
         """Return the contact rows where the bodies stand, in the present layout."""
-        zero = np.zeros(len(state.rotation))
-        return self.maker.search.rows(
-            as_complex(state.centre), np.exp(1j * state.rotation), zero.astype(complex), zero,
-            np.append(as_complex(state.strain), 0.0), turning=False,
-        )  # fmt: skip
+        still = np.zeros_like(state.centre), np.zeros_like(state.spin)
+        return self.maker.search.rows(state.placement, *still, state.strain, turning=False)
 
     def joint_motion(self, state: MotionState) -> tuple[Array, Array]:
         """Return the largest opening and the plastic slip of each joint that was there in the beginning (f,) [m]."""
@@ -148,11 +141,10 @@ class Observer:
     def energies(self, state: MotionState, sums: Mapping[str, float]) -> dict[str, float]:
         """Return the energies of a state, with the sums collected so far [kN m]."""
         f, reference = self.frames, self.reference
-        turn = np.exp(1j * state.rotation)
-        centre, strain = as_complex(state.centre), as_complex(state.strain)
-        x = f.unknowns(as_complex(state.velocity), state.spin, as_complex(state.nodal), turn)
-        nodes = reference.node_place(centre, turn, strain) - self.node_rest if f.elastic else strain
-        potential = reference.loads.potential(self.factors, centre - self.rest, state.rotation, nodes)
+        here, strain = state.placement, state.strain
+        x = f.unknowns(state.velocity, state.spin, state.nodal, here.turns)
+        nodes = reference.node_place(here, strain) - self.node_rest if f.elastic else strain
+        potential = reference.loads.potential(self.factors, here.centre - self.rest, state.rotation, nodes)
         stored = f.strain_energy(strain) + self._springs(state)
         return {"kinetic": f.kinetic_energy(x), "strain": stored, "potential": potential, **sums}
 

@@ -11,11 +11,13 @@ from concio.analysis.motion.joints import SAG, Joints
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.state import Memory, TieMemory
 from concio.contact.moving.attachments import Held, Ties
-from concio.contact.moving.edges import dot
 from concio.contact.moving.reference import Reference
 from concio.contact.moving.rows import Rows
 from concio.contact.moving.search import ContactSearch
 from concio.contact.moving.slots import Slots
+from concio.kinematics.frames import dot
+from concio.kinematics.placement import Placement
+from concio.kinematics.turns import Turns
 from concio.problem.cone import Cone
 from concio.solvers.stepping.matrix import StepMatrix
 from concio.solvers.stepping.problem import StepProblem
@@ -59,35 +61,33 @@ class PairMaker:
         return self.search.layout.slots
 
     def contacts(
-        self, memory: Memory, centre: Array, turn: Array, velocity: Array, spin: Array, strain: Array
+        self, memory: Memory, placement: Placement, velocity: Array, spin: Array, strain: Array
     ) -> tuple[Memory, Rows, bool]:
-        """Return what pairs remember, their rows, and whether their layout is new, for complex placements."""
+        """Return what pairs remember, their rows, and whether their layout is new, where bodies stand and move so."""
         search = self.search
-        new = search.update(search.edges.placed_by(centre, turn))
+        new = search.update(search.edges.placed(placement))
         key = self.slots.key
         if memory.key is not key:
             memory = memory.carried_to(key)
-        rows = search.rows(centre, turn, velocity, spin, np.append(strain, 0.0) if len(strain) else strain)
-        return memory, rows, new
+        return memory, search.rows(placement, velocity, spin, strain), new
 
-    def supports(self, turn: Array, shift: Array) -> PairData:
-        """Return the pairs of supports; ``shift`` complex (k,): how far or fast they are from their places."""
+    def supports(self, turn: Turns, shift: Array) -> PairData:
+        """Return the pairs of supports; ``shift`` (k, 2): how far or fast they are from their places."""
         held, k = self.held, len(self.held)
         if not k:
             return self.nothing
         zero, inf = np.zeros(k), np.full(k, np.inf)
-        off = np.stack([dot(shift, held.normal), dot(shift, 1j * held.normal)], axis=1)
+        off = np.stack([dot(shift, way) for way in held.ways], axis=1)
         return PairData(
             held.points.columns, held.values(turn), off, Cone(zero, np.where(held.both, np.inf, 0.0), inf, inf), zero,
             zero, zero, np.ones(k, dtype=bool),
         )  # fmt: skip
 
-    def off_support(self, centre: Array, turn: Array, strain: Array, factors: Mapping[str, float]) -> Array:
-        """Return how far held points are from where supports want them, complex (k,) [m]."""
-        here = self.held.points.positions(centre, turn, np.append(strain, 0.0))
-        return np.asarray(here - self.held.target(factors))
+    def off_support(self, placement: Placement, strain: Array, factors: Mapping[str, float]) -> Array:
+        """Return how far held points are from where supports want them (k, 2) [m]."""
+        return np.asarray(self.held.points.positions(placement, strain) - self.held.target(factors))
 
-    def tie_pairs(self, centre: Array, turn: Array, strain: Array, tied: TieMemory) -> tuple[PairData, Array, PairData]:
+    def tie_pairs(self, placement: Placement, strain: Array, tied: TieMemory) -> tuple[PairData, Array, PairData]:
         """Return the pairs of ties in terms of displacements, their gaps (k,) [m], and the pairs of their swinging.
 
         A tight tie resists being swung by its tension over its length: nothing where the bodies stand, but without it
@@ -96,7 +96,7 @@ class PairMaker:
         ties, k = self.ties, len(self.ties)
         if not k:
             return self.nothing, np.zeros(0), self.nothing
-        values, across, gap, length = ties.rows(centre, turn, np.append(strain, 0.0))
+        values, across, gap, length = ties.rows(placement, strain)
         gap = gap + tied.plastic
         zero, every, inf = np.zeros(k), np.ones(k, dtype=bool), np.full(k, np.inf)
         data = PairData(
@@ -111,13 +111,13 @@ class PairMaker:
         )  # fmt: skip
         return data, gap, swing
 
-    def tie_turning(self, centre: Array, turn: Array, strain: Array, tied: TieMemory, gap: Array, n: int) -> Array:
+    def tie_turning(self, placement: Placement, strain: Array, tied: TieMemory, gap: Array, n: int) -> Array:
         """Return the stiffness with which tight ties resist that rigid bodies turn, on the diagonal (n,) [kN/m].
 
         Nothing where the bodies stand either; without it iterations swing about the equilibrium of a body that hangs.
         """
         tension = self._tension(gap, tied)
-        columns, stiffness = self.ties.turning(centre, turn, np.append(strain, 0.0), tension)
+        columns, stiffness = self.ties.turning(placement, strain, tension)
         return np.bincount(columns, stiffness, n + 1)[:n]
 
     def _tension(self, gap: Array, tied: TieMemory) -> Array:

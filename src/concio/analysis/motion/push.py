@@ -32,7 +32,6 @@ from concio.analysis.motion.stepper import at_rest
 from concio.arguments import strict
 from concio.contact.applied import free_group, pushed
 from concio.contact.assembly import assemble
-from concio.contact.moving.edges import as_complex, as_vectors
 from concio.contact.moving.points import Followed
 from concio.contact.moving.reference import Reference
 from concio.errors import InputError, NoEquilibriumError
@@ -167,7 +166,7 @@ def push(
     else:
         step = STEP * statics.width if step is None else positive(step, "step")
     until = np.inf if until is None else positive(until, "until")
-    unit = statics.unit(np.ones(len(model.bodies), dtype=complex))
+    unit = statics.unit(reference.at_rest().placement.turns)
     if not unit.any():
         msg = "what is to be multiplied has no force: there is nothing to push with"
         raise InputError(msg, hint="give materials a unit_weight, or name the groups to multiply (live)")
@@ -186,14 +185,13 @@ def push(
     run.keep(start, 0.0)
     with Interruption() as run.interruption:
         ending = run.by_load() if by_load else run.by_displacement()
-    at = np.concatenate([statics.frames.x, statics.frames.node_x])
     return PushResult(
         model=model, gravity=gravity, ending=ending, displacement=np.array(run.displacement),
         multiplier=np.array(run.multiplier), residual=np.array(run.residual),
         centre=np.array([s.centre for s in run.states]), rotation=np.array([s.rotation for s in run.states]),
         strain=np.array([s.strain for s in run.states]), reaction=np.array(run.reactions),
         reactions_of=run.observer.names, events=tuple(run.events), live=stated, direction=along,
-        force=np.array([unit[at].sum(), unit[at + 1].sum()]), factors=chosen, control=point, points=tuple(points),
+        force=unit[statics.frames.places].sum(axis=0), factors=chosen, control=point, points=tuple(points),
         notes=tuple(run.notes), seconds=clock.perf_counter() - clock_begun,
         lent_compliance=statics.maker.joints.lent if len(reference.rigid) else 0.0, end=run.states[-1],
         until=until if np.isfinite(until) else None, by_load=by_load, reversed=sign < 0,
@@ -287,8 +285,7 @@ class _Push:
 
     def _tie_ends(self, state: MotionState) -> Array:
         """Return where the first ends of the ties are (k, 2) [m]."""
-        ties, strain = self.statics.maker.ties, np.append(as_complex(state.strain), 0.0)
-        return as_vectors(ties.a.positions(as_complex(state.centre), np.exp(1j * state.rotation), strain))
+        return self.statics.maker.ties.a.positions(state.placement, state.strain)
 
     def _meeting(self, before: MotionState, after: MotionState) -> set[frozenset[int]]:
         """Return the pairs of bodies that begin or cease to touch between two equilibria; each is located once."""

@@ -94,11 +94,9 @@ def side_asked(
     """Return the sign with which load groups grow, so that they push along a direction that was asked for."""
     if along is None or not groups:
         return 1.0
-    here = np.ones(len(reference.model.bodies), dtype=complex)
     only = {g: load_factor(factors, g) if g in groups else 0.0 for g in reference.loads.groups}
-    unit, frames = reference.loads.forces(only, here), Frames(reference, Scheme())
-    at = np.concatenate([frames.x, frames.node_x])
-    force = np.array([unit[at].sum(), unit[at + 1].sum()])
+    unit = reference.loads.forces(only, reference.at_rest().placement.turns)
+    force = unit[Frames(reference, Scheme()).places].sum(axis=0)
     part = float(force @ along)
     if abs(part) <= ASIDE * float(np.linalg.norm(force)) or not part:
         msg = f"the loads of {', '.join(groups)} have no resultant along the direction ({along[0]:g}, {along[1]:g})"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -63,11 +63,11 @@ class Drive:
         Mean velocity of the fixed bodies, where these are moved [m/s].
     factors : mapping of str to float
         Load factors.
-    moved : complex
+    moved : (d,) array
         How far the fixed bodies, and what supports hold, were moved before [m].
     """
 
     ground: Array
     velocity: Array
     factors: Mapping[str, float]
-    moved: complex = 0j
+    moved: Array = field(default_factory=lambda: np.zeros(2))

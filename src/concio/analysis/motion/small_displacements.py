@@ -23,9 +23,11 @@ from concio.analysis.motion.resistance import RESISTANCE
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import Memory, MotionState
 from concio.contact.factors import load_factor
-from concio.contact.moving.edges import as_complex, as_vectors, dot
 from concio.contact.moving.points import Followed
 from concio.contact.moving.reference import Reference
+from concio.kinematics.frames import dot, norm, turned_left
+from concio.kinematics.rigid import swept
+from concio.kinematics.turns import Turns
 from concio.model.stages import ControlPoint
 from concio.solvers.stepping.matrix import StepMatrix
 from concio.solvers.stepping.problem import StepProblem
@@ -39,9 +41,9 @@ class Look:
 
     Parameters
     ----------
-    turn : (B,) complex array
+    turn : Turns
         Rotations of the bodies.
-    strain : (nodes,) complex array
+    strain : (nodes, 2) array
         Displacements of nodes in the frames of their bodies [m].
     memory : Memory
         With the keys of the pairs found.
@@ -63,7 +65,7 @@ class Look:
         Of the contact pairs.
     """
 
-    turn: Array
+    turn: Turns
     strain: Array
     memory: Memory
     new: bool
@@ -109,7 +111,7 @@ class SmallDisplacements:
         self.control = None if control is None else Followed.of(reference, control)
         self.width, self.gravity = self.maker.width, reference.gravity
         self.no_spin = np.zeros(len(reference.model.bodies))
-        self.no_velocity = self.no_spin.astype(complex)
+        self.no_velocity = np.zeros((len(self.no_spin), reference.disc.dim))
         self._matrices = [self._stiffness(share * self.gravity / self.width) for share in RESISTANCE]
         self._bare = self._stiffness(0.0)
 
@@ -123,19 +125,19 @@ class SmallDisplacements:
     def look(self, state: MotionState, memory: Memory, moved: Array, multiplier: float) -> Look:
         """Return pairs and forces where the bodies stand."""
         f, maker = self.frames, self.maker
-        centre, turn = as_complex(state.centre), np.exp(1j * state.rotation)
-        strain = as_complex(state.strain)
-        memory, rows, new = maker.contacts(memory, centre, turn, self.no_velocity, self.no_spin, strain)
+        here, strain = state.placement, state.strain
+        turn = here.turns
+        memory, rows, new = maker.contacts(memory, here, self.no_velocity, self.no_spin, strain)
         slid = moved if len(moved) == len(memory.key) else np.zeros(len(memory.key))
         data, joint = maker.joints.resting(rows, maker.slots, memory, slid, maker.search.skin)
         factors = self.factors_at(multiplier)
-        off = maker.off_support(centre, turn, strain, factors) if len(maker.held) else np.zeros(0, dtype=complex)
+        off = maker.off_support(here, strain, factors) if len(maker.held) else np.zeros((0, 2))
         dead = f.loads(Drive(np.zeros(2), np.zeros(2), {**self.factors, **dict.fromkeys(self.live, 0.0)}), turn)
         unit = self.unit(turn)
         internal = -f.stiffness(strain) - f.turned(f.stiffness(strain), strain) if f.elastic else np.zeros(f.n)
         supports = maker.supports(turn, off)
-        ties, gap, swings = maker.tie_pairs(centre, turn, strain, state.ties)
-        turning = maker.tie_turning(centre, turn, strain, state.ties, gap, f.n) if len(maker.ties) else np.zeros(0)
+        ties, gap, swings = maker.tie_pairs(here, strain, state.ties)
+        turning = maker.tie_turning(here, strain, state.ties, gap, f.n) if len(maker.ties) else np.zeros(0)
         measure = self.mean(unit) if self.control is None else self.control.rate(f.n, turn)
         return Look(
             turn, strain, memory, new, data, joint, dead, unit, measure, internal, (data, supports, ties, swings),
@@ -160,27 +162,24 @@ class SmallDisplacements:
         u, w = f.rigid_part(x, self.no_velocity, self.no_spin)
         strain = look.strain
         if f.elastic:
-            place = look.turn[f.body] * (f.arm + strain)
+            place = look.turn[f.body].apply(f.arm + strain)
             rate, v, spin = f.rate(f.nodal(x, look.turn), place, look.turn)
             u[f.meshed], w[f.meshed] = v[f.meshed], spin[f.meshed]
             strain = strain + rate
-        return replace(
-            state,
-            centre=as_vectors(as_complex(state.centre) + u),
-            rotation=state.rotation + w,
-            strain=as_vectors(strain),
-        )
+        there = state.placement.moved(u, w)
+        return replace(state, centre=there.centre, rotation=there.rotation, strain=strain)
 
     def swung(self, look: Look, before: MotionState, after: MotionState) -> Array:
         """Return what finite rotations add to the slips of an iteration, known to first order by the rows (m,)."""
         w = after.rotation - before.rotation
         if not w.any():
             return np.zeros(len(look.memory.key))
-        slots, point, centre = self.maker.slots, as_complex(look.point), as_complex(before.centre)
-        beyond = np.exp(1j * w) - 1.0 - 1j * w
-        a, b = slots.body_a, slots.body_b
-        moved = beyond[b] * (point - centre[b]) - beyond[a] * (point - centre[a])
-        return dot(1j * as_complex(look.normal), moved)
+        slots, turn = self.maker.slots, Turns.of(w)
+        moved = np.zeros_like(look.point)
+        for body, sign in ((slots.body_b, 1.0), (slots.body_a, -1.0)):
+            arm = look.point - before.centre[body]
+            moved += sign * (turn[body].apply(arm) - arm - swept(w[body], arm))
+        return dot(turned_left(look.normal), moved)
 
     def controlled_at(self, state: MotionState) -> float:
         """Return the displacement of the point that controls the load [m]."""
@@ -191,8 +190,7 @@ class SmallDisplacements:
     def mean(self, unit: Array) -> Array:
         """Return the rate of the displacement on which a load works: its work over its size (N,)."""
         f = self.frames
-        at = np.concatenate([f.x, f.node_x])
-        size = float(np.hypot(unit[at], unit[at + 1]).sum())
+        size = float(norm(unit[f.places]).sum())
         return unit / size if size > 0 else unit
 
     def factors_at(self, multiplier: float) -> dict[str, float]:
@@ -208,7 +206,7 @@ class SmallDisplacements:
         total = look.internal + (loads.forces(self.factors_at(multiplier), look.turn) if loads.groups else 0.0)
         return np.asarray(total)
 
-    def unit(self, turn: Array) -> Array:
+    def unit(self, turn: Turns) -> Array:
         """Return the load of a multiplier of one (N,) [kN]."""
         if not self.live:
             return np.zeros(self.frames.n)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -158,6 +159,11 @@ class MotionState:
     memory: Memory
     ties: TieMemory
 
+    @cached_property
+    def placement(self) -> Placement:
+        """Where the frames of the bodies are."""
+        return Placement(self.centre, self.rotation)
+
     def configuration(self, reference: Reference) -> Configuration:
         """Return where the bodies stand."""
-        return Configuration(reference, Placement(self.centre, self.rotation), self.strain)
+        return Configuration(reference, self.placement, self.strain)

@@ -23,6 +23,7 @@ from concio.analysis.motion.small_displacements import Look, SmallDisplacements
 from concio.analysis.motion.state import Memory, MotionState
 from concio.analysis.motion.tie_bars import settled_ties
 from concio.contact.moving.reference import Reference
+from concio.kinematics.turns import Turns
 from concio.model.stages import ControlPoint
 from concio.problem.contact_problem import Engine
 from concio.problem.pair_state import PairStates
@@ -121,7 +122,7 @@ class Statics(SmallDisplacements):
 
     def work_displacement(self, before: MotionState, found: Balanced) -> float:
         """Return the mean displacement on which the load worked between two equilibria [m]."""
-        turn = np.exp(0.5j * (before.rotation + found.state.rotation))
+        turn = Turns.of(0.5 * (before.rotation + found.state.rotation))
         return float(self.mean(self.unit(turn)) @ found.moved)
 
     def balance(

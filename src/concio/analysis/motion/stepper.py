@@ -31,9 +31,10 @@ from concio.analysis.motion.state import Memory, MotionState, TieMemory
 from concio.analysis.motion.sunk import moved_apart
 from concio.analysis.motion.tie_bars import TieStep
 from concio.contact.moving.attachments import Ties
-from concio.contact.moving.edges import as_complex, as_vectors
 from concio.contact.moving.reference import Reference
 from concio.contact.moving.rows import Rows
+from concio.kinematics.placement import Placement
+from concio.kinematics.turns import Turns
 from concio.problem.contact_problem import Engine
 from concio.problem.tolerances import CERTIFIED
 from concio.solvers.stepping.matrix import StepMatrix
@@ -112,8 +113,7 @@ class Stepper:
             matrices = self.reference.matrices
             rows, columns, values = matrices.entries(1.0 / h, h * s.theta**2 + s.stiffness_damping * s.theta)
             if s.mass_damping:
-                for at in (f.node_x, f.node_y):
-                    values[at] += s.mass_damping * s.theta * f.node_mass
+                values[f.nodes] += s.mass_damping * s.theta * f.node_mass[:, None]
             A = sp.csr_array((values, (rows, columns)), shape=(n, n))
             A.sum_duplicates()
             if len(self._matrices) > 20:
@@ -123,11 +123,8 @@ class Stepper:
 
     def located(self, state: MotionState) -> MotionState:
         """Return a state whose joints are those found where its bodies stand."""
-        still = np.zeros(len(state.spin))
-        memory, _, new = self.maker.contacts(
-            state.memory, as_complex(state.centre), np.exp(1j * state.rotation), still.astype(complex), still,
-            as_complex(state.strain),
-        )  # fmt: skip
+        still = np.zeros_like(state.centre), np.zeros_like(state.spin)
+        memory, _, new = self.maker.contacts(state.memory, state.placement, *still, state.strain)
         if new:
             self.solver.new_layout()
         return replace(state, memory=memory)
@@ -135,16 +132,15 @@ class Stepper:
     def step(self, state: MotionState, h: float, drive: Drive) -> tuple[MotionState, StepReport]:
         """Return the state after a step of length h, and what the step did."""
         f = self.frames
-        centre, velocity, spin = as_complex(state.centre), as_complex(state.velocity), state.spin
+        velocity, spin, strain, nodal = state.velocity, state.spin, state.strain, state.nodal
         if len(self.fixed):
             velocity = velocity.copy()
-            velocity[self.fixed] = complex(*drive.velocity)
-        middle, turn = centre + 0.5 * h * velocity, np.exp(1j * (state.rotation + 0.5 * h * spin))
-        strain, rate, nodal = np.zeros(0, dtype=complex), np.zeros(0, dtype=complex), as_complex(state.nodal)
+            velocity[self.fixed] = drive.velocity
+        middle = state.placement.moved(0.5 * h * velocity, 0.5 * h * spin)
+        turn, rate = middle.turns, np.zeros_like(strain)
         if f.elastic:
-            d = as_complex(state.strain)
-            rate, _, _ = f.rate(nodal, turn[f.body] * (f.arm + d), turn)
-            strain = d + 0.5 * h * rate
+            rate, _, _ = f.rate(nodal, turn[f.body].apply(f.arm + strain), turn)
+            strain = strain + 0.5 * h * rate
         x0 = f.unknowns(velocity, spin, nodal, turn)
         loads, ground = f.loads(drive, turn), f.ground(drive, turn)
         b = f.mass * x0 / h + loads + ground
@@ -152,14 +148,14 @@ class Stepper:
             b += f.internal(state, h, rate, strain, spin, x0)
         force, speed = measures(self.reference, loads + ground, x0, h)
         maker = self.maker
-        memory, rows, layout_is_new = maker.contacts(state.memory, middle, turn, velocity, spin, strain)
+        memory, rows, layout_is_new = maker.contacts(state.memory, middle, velocity, spin, strain)
         if layout_is_new:
             self.solver.new_layout()
         slots = maker.slots
         y0 = relative(rows.columns, rows.values, x0) + rows.imposed
         data, joint = maker.joints.pairs(rows, slots, memory, y0, h, speed, self._give(rows, h))
         held = self._held(state, turn, h, drive)
-        ties = self._ties(state, middle, turn, strain, x0, h)
+        ties = self._ties(state, middle, strain, x0, h)
         parts = [data, held] if ties is None else [data, held, ties.data]
         problem = assembled(self.matrix(h), b, parts, force, speed)
         m, count = len(memory.key), problem.pairs
@@ -227,64 +223,61 @@ class Stepper:
         flexible: Array = h * (rows.values[:, 0] ** 2 * self._inverse_mass[rows.columns]).sum(axis=1)
         return flexible
 
-    def _held(self, state: MotionState, turn: Array, h: float, drive: Drive) -> PairData:
+    def _held(self, state: MotionState, turn: Turns, h: float, drive: Drive) -> PairData:
         """Return the pairs of supports."""
         maker = self.maker
         if not len(maker.held):
             return maker.nothing
-        centre, here = as_complex(state.centre), np.exp(1j * state.rotation)
-        drift = maker.off_support(centre, here, as_complex(state.strain), drive.factors) - drive.moved
-        return maker.supports(turn, RETURN / h * drift - complex(*drive.velocity))
+        drift = maker.off_support(state.placement, state.strain, drive.factors) - drive.moved
+        return maker.supports(turn, RETURN / h * drift - drive.velocity)
 
     def _ties(
-        self, state: MotionState, centre: Array, turn: Array, strain: Array, x0: Array, h: float
+        self, state: MotionState, middle: Placement, strain: Array, x0: Array, h: float
     ) -> TieStep | None:
         """Return the ties of a step whose bodies stand so in its middle; None where there are none."""
         if not len(self.maker.ties):
             return None
-        data, gap, _ = self.maker.tie_pairs(centre, turn, strain, state.ties)
+        data, gap, _ = self.maker.tie_pairs(middle, strain, state.ties)
         y0 = relative(data.columns, data.values, x0)[:, 0]
         return TieStep.of(self.maker.ties, state.ties, data, gap, y0, h, self.scheme)
 
-    def _damping(self, x: Array, jump: Array, turn: Array, strain: Array, h: float) -> float:
+    def _damping(self, x: Array, jump: Array, turn: Turns, strain: Array, h: float) -> float:
         """Return what Rayleigh's damping took, and what theta above one half did of kinetic energy [kN m]."""
         f, s = self.frames, self.scheme
         lost = (2 * s.theta - 1) * f.kinetic_energy(jump)
         if not f.elastic:
             return lost
         if s.theta > 0.5:
-            rate, _, _ = f.rate(f.nodal(x, turn), turn[f.body] * (f.arm + strain), turn)
+            rate, _, _ = f.rate(f.nodal(x, turn), turn[f.body].apply(f.arm + strain), turn)
             lost += (2 * s.theta - 1) * f.strain_energy(h * rate)
         if s.stiffness_damping:
-            rate, _, _ = f.rate(f.nodal(x, turn), turn[f.body] * (f.arm + strain), turn)
+            rate, _, _ = f.rate(f.nodal(x, turn), turn[f.body].apply(f.arm + strain), turn)
             lost += 2.0 * h * s.stiffness_damping * f.strain_energy(rate)
         if s.mass_damping:
-            speed = x[f.node_x] ** 2 + x[f.node_y] ** 2
-            lost += h * s.mass_damping * float(f.node_mass @ speed)
+            lost += h * s.mass_damping * float(f.node_mass @ (x[f.nodes] ** 2).sum(axis=1))
         return lost
 
     def _moved(
-        self, state: MotionState, x1: Array, x: Array, apart: Array, turn: Array, strain: Array, h: float,
+        self, state: MotionState, x1: Array, x: Array, apart: Array, turn: Turns, strain: Array, h: float,
         velocity: Array, memory: Memory, ties: TieMemory,
     ) -> MotionState:  # fmt: skip
         """Return the state that velocities x in the step and x1 at its end, and displacements ``apart``, lead to."""
         f = self.frames
         v_mean, w_mean = f.rigid_part(x + apart / h, velocity, state.spin)
         v_end, w_end = f.rigid_part(x1, velocity, state.spin)
-        new_strain, nodal = as_complex(state.strain), as_complex(state.nodal)
+        new_strain, nodal = state.strain, state.nodal
         if f.elastic:
-            place = turn[f.body] * (f.arm + strain)
+            place = turn[f.body].apply(f.arm + strain)
             rate, v, w = f.rate(f.nodal(x, turn), place, turn)
             v_mean[f.meshed], w_mean[f.meshed] = v[f.meshed], w[f.meshed]
             new_strain = new_strain + h * rate
             nodal = f.nodal(x1, turn)
             v, w = f.fit(nodal, place)
             v_end[f.meshed], w_end[f.meshed] = v[f.meshed], w[f.meshed]
-        centre = as_complex(state.centre) + h * v_mean
         w_mean[self.fixed] = 0.0
+        there = state.placement.moved(h * v_mean, h * w_mean)
         return MotionState(
-            state.time + h, as_vectors(centre), state.rotation + h * w_mean, as_vectors(v_end), w_end,
-            as_vectors(new_strain), as_vectors(nodal), memory, ties,
+            state.time + h, there.centre, there.rotation, v_end, w_end, new_strain, nodal, memory, ties
         )  # fmt: skip
 
 

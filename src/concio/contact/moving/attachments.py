@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.contact.factors import load_factor
-from concio.contact.moving.edges import as_complex, dot
 from concio.contact.moving.points import NOWHERE, MaterialPoints
 from concio.contact.supports import points_held
 from concio.fem.discretisation import FIXED
+from concio.kinematics.frames import dot, norm, turned_left
+from concio.kinematics.placement import Placement
+from concio.kinematics.turns import Turns
 
 if TYPE_CHECKING:
     from concio.contact.moving.reference import Reference
@@ -32,15 +34,15 @@ class Held:
     ----------
     points : MaterialPoints
         k of them.
-    start : (k,) complex array
+    start : (k, 2) array
         Where they were described [m].
-    motion : (k,) complex array
+    motion : (k, 2) array
         Displacement imposed by a load factor of one [m].
     support : (k,) integer array
         Number in the model.
     group : tuple of str
         Load group of each point.
-    normal : (k,) complex array
+    normal : (k, 2) array
         Direction held: x, or y where only that is held.
     both : (k,) boolean array
         Whether y is held beside x.
@@ -77,20 +79,24 @@ class Held:
         place = np.concatenate([*places, np.zeros((0, 2))])
         points = MaterialPoints.of(disc, bodies, place, reference.first_node, reference.node_column)
         return cls(
-            points, as_complex(place), as_complex(np.concatenate([*motions, np.zeros((0, 2))])),
-            np.array(supports, dtype=int), tuple(groups),
-            np.array([1.0 if 0 in a else 1j for a in axes], dtype=complex),
+            points, place, np.concatenate([*motions, np.zeros((0, 2))]), np.array(supports, dtype=int), tuple(groups),
+            np.eye(2)[[0 if 0 in a else 1 for a in axes]].reshape(-1, 2),
             np.array([len(a) == 2 for a in axes], dtype=bool),
         )  # fmt: skip
 
     def target(self, factors: Mapping[str, float]) -> Array:
-        """Return where the points are wanted under load factors, complex (k,) [m]."""
+        """Return where the points are wanted under load factors (k, 2) [m]."""
         factor = np.array([load_factor(factors, g) for g in self.group])
-        return np.asarray(self.start + factor * self.motion)
+        return np.asarray(self.start + factor[:, None] * self.motion)
 
-    def values(self, turn: Array) -> Array:
+    @property
+    def ways(self) -> tuple[Array, Array]:
+        """Directions (k, 2): the one held, and the one turned left, held where both are."""
+        return self.normal, turned_left(self.normal)
+
+    def values(self, turn: Turns) -> Array:
         """Return the rows (k, 2, w) along the directions held."""
-        return np.stack([self.points.rows(self.normal, turn), self.points.rows(1j * self.normal, turn)], axis=1)
+        return np.stack([self.points.rows(way, turn) for way in self.ways], axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,29 +157,34 @@ class Ties:
         """Unknowns of the rows (k, w)."""
         return np.concatenate([self.a.columns, self.b.columns], axis=1)
 
-    def rows(self, centre: Array, turn: Array, strain: Array) -> tuple[Array, Array, Array, Array]:
+    def span(self, placement: Placement, strain: Array) -> tuple[Array, Array]:
+        """Return the vectors (k, 2) from their first ends to their second ones, and their lengths (k,) [m]."""
+        vector = self.b.positions(placement, strain) - self.a.positions(placement, strain)
+        return vector, norm(vector)
+
+    def rows(self, placement: Placement, strain: Array) -> tuple[Array, Array, Array, Array]:
         """Return the rows (k, 2, w) of -elongation, those of swinging, the gaps (k,) and the lengths (k,) [m]."""
-        span = self.b.positions(centre, turn, strain) - self.a.positions(centre, turn, strain)
-        length = np.abs(span)
-        direction = self.sign * span / np.where(length > 0, length, 1.0)
+        span, length = self.span(placement, strain)
+        direction = self.sign[:, None] * span / np.where(length > 0, length, 1.0)[:, None]
+        turn = placement.turns
         row, across = (
-            np.concatenate([self.a.rows(v, turn), -self.b.rows(v, turn)], axis=1) for v in (direction, 1j * direction)
+            np.concatenate([self.a.rows(v, turn), -self.b.rows(v, turn)], axis=1)
+            for v in (direction, turned_left(direction))
         )
         gap = -self.prestress / self.stiffness - self.sign * (length - self.length)
         nothing = np.zeros_like(row)
         return np.stack([row, nothing], axis=1), np.stack([across, nothing], axis=1), gap, length
 
-    def turning(self, centre: Array, turn: Array, strain: Array, tension: Array) -> tuple[Array, Array]:
+    def turning(self, placement: Placement, strain: Array, tension: Array) -> tuple[Array, Array]:
         """Return unknowns (2k,) and stiffness (2k,) with which tight ties resist that rigid bodies turn [kN/m].
 
         Tension T at an arm r from the centroid has the moment r x T, which grows by r . T as the body turns away.
         """
-        span = self.b.positions(centre, turn, strain) - self.a.positions(centre, turn, strain)
-        length = np.abs(span)
-        force = self.sign * tension * span / np.where(length > 0, length, 1.0)
+        span, length = self.span(placement, strain)
+        force = (self.sign * tension)[:, None] * span / np.where(length > 0, length, 1.0)[:, None]
         columns, stiffness = [], []
         for end, pull in ((self.a, force), (self.b, -force)):
-            arm = turn[np.maximum(end.body, 0)] * end.arm
+            arm = placement.turns[np.maximum(end.body, 0)].apply(end.arm)
             columns.append(end.columns[:, 2])
             stiffness.append(np.maximum(dot(arm, pull), 0.0) / np.where(end.reach > 0, end.reach, 1.0) ** 2)
         return np.concatenate(columns), np.concatenate(stiffness)

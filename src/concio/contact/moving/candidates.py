@@ -15,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from concio.contact.moving.edges import MovingEdges, PlacedEdges, as_vectors, dot
+from concio.contact.moving.edges import MovingEdges, PlacedEdges
+from concio.kinematics.frames import dot, turned_right
 from concio.model.interfaces.facing import facing_pairs
 
 Array = np.ndarray
@@ -72,14 +73,13 @@ def find_candidates(edges: MovingEdges, placed: PlacedEdges, skin: float, throug
 def _corners(edges: MovingEdges, placed: PlacedEdges, skin: float, a: Array, b: Array) -> tuple[Array, Array]:
     """Return corners near edges that neither of their own edges faces."""
     corners = np.flatnonzero(edges.convex)
-    low = np.minimum(as_vectors(placed.start), as_vectors(placed.end)) - skin
-    high = np.maximum(as_vectors(placed.start), as_vectors(placed.end)) + skin
-    points = shapely.points(as_vectors(placed.start[corners]))
+    low, high = np.minimum(placed.start, placed.end) - skin, np.maximum(placed.start, placed.end) + skin
+    points = shapely.points(placed.start[corners])
     found, near = shapely.STRtree(shapely.box(*low.T, *high.T)).query(points)
     corner, edge = corners[found], near
     keep = (edges.body[corner] != edges.body[edge]) & ~(edges.fixed[corner] & edges.fixed[edge])
     corner, edge = corner[keep], edge[keep]
-    outward = -1j * placed.tangent[edge]
+    outward = turned_right(placed.tangent[edge])
     distance = dot(placed.start[corner] - placed.start[edge], outward)
     back, ahead = -placed.tangent[edges.before[corner]], placed.tangent[corner]
     faces = (dot(back, outward) > -0.1) & (dot(ahead, outward) > -0.1) & (np.abs(distance) <= 2 * skin)

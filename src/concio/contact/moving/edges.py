@@ -1,7 +1,6 @@
 """The outlines of all bodies as flat arrays that move with them.
 
-Plane vectors are complex numbers here: a rotation is one product, ``1j`` turns left, and what is evaluated in every
-step of a motion is a handful of array operations. The exterior is to the right of every edge.
+What is evaluated in every step of a motion is a handful of array operations. The exterior is to the right of edges.
 """
 
 from __future__ import annotations
@@ -19,25 +18,9 @@ from concio.model.model import Body
 Array = np.ndarray
 
 
-def as_complex(v: Array) -> Array:
-    """Return plane vectors (..., 2) as complex numbers (...)."""
-    v = np.ascontiguousarray(v, dtype=float)
-    return v.view(complex)[..., 0]
-
-
-def as_vectors(z: Array) -> Array:
-    """Return complex numbers (...) as plane vectors (..., 2)."""
-    return np.ascontiguousarray(z).view(float).reshape(*z.shape, 2)
-
-
-def dot(p: Array, q: Array) -> Array:
-    """Return the scalar product of complex vectors."""
-    return np.asarray(p.real * q.real + p.imag * q.imag)
-
-
 @dataclass(frozen=True, eq=False)
 class PlacedEdges:
-    """Edges where they are: ends and unit tangent of each, complex (e,)."""
+    """Edges where they are: ends and unit tangent of each (e, 2)."""
 
     start: Array
     end: Array
@@ -53,7 +36,7 @@ class MovingEdges:
     body : (e,) integer array
     number : (e,) integer array
         Number of each edge in its outline.
-    start, end, tangent : (e,) complex arrays
+    start, end, tangent : (e, 2) arrays
         Relative to the centroid, as described.
     length : (e,) array
         [m].
@@ -91,22 +74,15 @@ class MovingEdges:
         width = 2 * np.array([b.area for b in bodies]) / around
         arm = centroid[edges.body]
         return cls(
-            edges.body, edges.number, as_complex(edges.start - arm), as_complex(edges.end - arm),
-            as_complex(edges.tangent), length, before, convex, edges.fixed, width,
+            edges.body, edges.number, edges.start - arm, edges.end - arm, edges.tangent, length, before, convex,
+            edges.fixed, width,
         )  # fmt: skip
 
     def placed(self, placement: Placement) -> PlacedEdges:
         """Return the edges of bodies that stand elsewhere."""
-        return self.placed_by(as_complex(placement.centre), np.exp(1j * placement.rotation))
-
-    def placed_by(self, centre: Array, turn: Array) -> PlacedEdges:
-        """Return the edges for complex centroids (B,) and complex rotations e^(i angle) (B,)."""
-        c, t = centre[self.body], turn[self.body]
-        return PlacedEdges(c + t * self.start, c + t * self.end, t * self.tangent)
+        c, turn = placement.centre[self.body], placement.turns[self.body]
+        return PlacedEdges(c + turn.apply(self.start), c + turn.apply(self.end), turn.apply(self.tangent))
 
     def as_edges(self, placed: PlacedEdges) -> Edges:
         """Return placed edges in the form in which interfaces are looked for."""
-        return Edges(
-            as_vectors(placed.start), as_vectors(placed.end), as_vectors(placed.tangent),
-            self.body, self.number, self.fixed,
-        )  # fmt: skip
+        return Edges(placed.start, placed.end, placed.tangent, self.body, self.number, self.fixed)

@@ -16,6 +16,7 @@ from concio.contact.factors import load_factor
 from concio.contact.loads import load_vectors
 from concio.fem.discretisation import RIGID, Discretisation
 from concio.kinematics.frames import turned_right
+from concio.kinematics.turns import Turns
 from concio.model.model import Load
 
 Array = np.ndarray
@@ -68,16 +69,19 @@ class MovingLoads:
         counts = np.diff(disc.offsets)[meshed] // 2
         self.body_of_node = np.repeat(meshed, counts)
         starts = [np.arange(disc.offsets[b], disc.offsets[b + 1], 2) for b in meshed]
-        self.x_of_node = np.concatenate([*starts, np.zeros(0, dtype=int)]).astype(int)
+        x = np.concatenate([*starts, np.zeros(0, dtype=int)]).astype(int)
+        self.of_centre, self.of_node = self.first[:, None] + np.arange(2), x[:, None] + np.arange(2)
+        """Unknowns of the centroids of rigid bodies (R, 2), and of the nodes of meshed ones (nodes, 2)."""
 
-    def forces(self, factors: Mapping[str, float], turn: Array) -> Array:
-        """Return the forces (N,) on the unknowns under load factors, for complex rotations (B,).
+    def forces(self, factors: Mapping[str, float], turn: Turns) -> Array:
+        """Return the forces (N,) on the unknowns under load factors, for rotations of the bodies.
 
         Parameters
         ----------
         factors : mapping of str to float
             Groups not named have factor 1.
-        turn : (B,) complex array
+        turn : Turns
+            Of all bodies.
         """
         size = [load_factor(factors, g) for g in self.groups]
         parts = list(self.groups.values())
@@ -87,36 +91,28 @@ class MovingLoads:
         moment = self.first + 2
         if self._across:
             across = _sum(size, [p.across for p in parts])
-            f[moment] = t.real * dead[moment] + t.imag * across[moment]
+            f[moment] = t.cosine * dead[moment] + t.sine * across[moment]
         else:
-            f[moment] = t.real * dead[moment]
-        if self.followers:
-            follower = _sum(size, [p.follower for p in parts])
-            turned = t * (follower[self.first] + 1j * follower[self.first + 1])
-            f[self.first] += turned.real
-            f[self.first + 1] += turned.imag
+            f[moment] = t.cosine * dead[moment]
+        follower = _sum(size, [p.follower for p in parts]) if self.followers else None
+        if follower is not None:
+            f[self.of_centre] += t.apply(follower[self.of_centre])
             f[moment] += follower[moment]
-        else:
-            follower = None
-        if len(self.x_of_node):
-            x = self.x_of_node
-            local = np.conj(turn[self.body_of_node]) * (dead[x] + 1j * dead[x + 1])
-            f[x], f[x + 1] = local.real, local.imag
+        if len(self.of_node):
+            f[self.of_node] = turn[self.body_of_node].undo(dead[self.of_node])
             if follower is not None:
-                f[x] += follower[x]
-                f[x + 1] += follower[x + 1]
+                f[self.of_node] += follower[self.of_node]
         return f
 
-    def following(self, factors: Mapping[str, float], turn: Array) -> Array:
+    def following(self, factors: Mapping[str, float], turn: Turns) -> Array:
         """Return the part (N,) of the forces that turns with its bodies: it has no potential [kN]."""
         f = np.zeros(len(next(iter(self.groups.values())).dead)) if self.groups else np.zeros(0)
         if not self.followers:
             return f
         follower = _sum([load_factor(factors, g) for g in self.groups], [p.follower for p in self.groups.values()])
-        turned = turn[self.rigid] * (follower[self.first] + 1j * follower[self.first + 1])
-        f[self.first], f[self.first + 1] = turned.real, turned.imag
+        f[self.of_centre] = turn[self.rigid].apply(follower[self.of_centre])
         f[self.first + 2] = follower[self.first + 2]
-        f[self.x_of_node], f[self.x_of_node + 1] = follower[self.x_of_node], follower[self.x_of_node + 1]
+        f[self.of_node] = follower[self.of_node]
         return f
 
     def potential(self, factors: Mapping[str, float], moved: Array, rotation: Array, nodes: Array) -> float:
@@ -125,11 +121,11 @@ class MovingLoads:
         Parameters
         ----------
         factors : mapping of str to float
-        moved : (B,) complex array
+        moved : (B, 2) array
             Displacements of the centroids [m].
         rotation : (B,) array
             [rad].
-        nodes : (nodes,) complex array
+        nodes : (nodes, 2) array
             Displacements of the nodes of meshed bodies [m].
         """
         if not self.groups:
@@ -138,10 +134,10 @@ class MovingLoads:
         dead = _sum(size, [p.dead for p in self.groups.values()])
         across = _sum(size, [p.across for p in self.groups.values()])
         u, angle, x = moved[self.rigid], rotation[self.rigid], self.first
-        work = float(dead[x] @ u.real + dead[x + 1] @ u.imag)
+        work = float(dead[x] @ u[:, 0] + dead[x + 1] @ u[:, 1])
         work += float(dead[x + 2] @ (self.reach * np.sin(angle)) + across[x + 2] @ (self.reach * (1 - np.cos(angle))))
-        if len(self.x_of_node):
-            work += float(dead[self.x_of_node] @ nodes.real + dead[self.x_of_node + 1] @ nodes.imag)
+        if len(self.of_node):
+            work += float((dead[self.of_node] * nodes).sum())
         return -work
 
 

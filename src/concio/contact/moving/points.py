@@ -9,9 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.arguments import closest
-from concio.contact.moving.edges import as_complex, as_vectors, dot
 from concio.errors import InputError
 from concio.fem.discretisation import RIGID, Discretisation
+from concio.kinematics.frames import dot, norm
+from concio.kinematics.placement import Placement
+from concio.kinematics.rigid import motions, rigid_row, swept
+from concio.kinematics.turns import Turns
 from concio.model.stages import ControlPoint
 
 if TYPE_CHECKING:
@@ -31,12 +34,12 @@ class MaterialPoints:
     ----------
     body : (k,) integer array
         ``NOWHERE`` for points fixed in space.
-    arm : (k,) complex array
+    arm : (k, d) array
         From the centroid, as described; the position itself of a point fixed in space [m].
     node : (k, w) integer array
         Nodes that carry a point of a meshed body, one past the last where there is none.
     weight : (k, w) array
-    columns : (k, 3 + 2 w) integer array
+    columns : (k, 3 + 2 w) integer array, in space (k, 6 + 3 w)
         Unknowns: rigid motion, then nodes; one past the last where there is none.
     reach : (k,) array
         [m].
@@ -53,14 +56,14 @@ class MaterialPoints:
     def of(
         cls, disc: Discretisation, bodies: Sequence[int], points: Array, first_node: Array, node_column: Array
     ) -> MaterialPoints:
-        """Return points (k, 2) of bodies, given where the bodies were described [m].
+        """Return points (k, d) of bodies, given where the bodies were described [m].
 
         Raises
         ------
         InputError
             A point of a meshed body lies outside it.
         """
-        k, n, nodes = len(bodies), disc.unknowns, len(node_column) - 1
+        k, n, nodes, d = len(bodies), disc.unknowns, len(node_column) - 1, disc.dim
         body = np.array(bodies, dtype=int).reshape(k)
         found: list[tuple[Array, Array]] = []
         for b, point in zip(body.tolist(), points, strict=True):
@@ -68,7 +71,7 @@ class MaterialPoints:
                 found.append((np.zeros(0, dtype=int), np.zeros(0)))
                 continue
             unknowns, rows = disc.point_operator(b, point)
-            found.append((first_node[b] + (unknowns[::2] - disc.offsets[b]) // 2, rows[0, ::2]))
+            found.append((first_node[b] + (unknowns[::d] - disc.offsets[b]) // d, rows[0, ::d]))
         wide = max((len(v[0]) for v in found), default=0)
         node, weight = np.full((k, wide), nodes), np.zeros((k, wide))
         for i, (own, values) in enumerate(found):
@@ -76,44 +79,41 @@ class MaterialPoints:
         at_body = np.where(body >= 0, body, 0)
         free = (body >= 0) & (disc.shape_of[at_body] == RIGID)
         first = np.where(free, disc.offsets[:-1][at_body], n)
-        rigid = np.where(free[:, None], first[:, None] + np.arange(3), n)
-        columns = np.concatenate([rigid, node_column[node].reshape(k, 2 * wide)], axis=1)
+        rigid = np.where(free[:, None], first[:, None] + np.arange(motions(d)), n)
+        columns = np.concatenate([rigid, node_column[node].reshape(k, d * wide)], axis=1)
         centroid = np.where((body >= 0)[:, None], disc.centroids[at_body], 0.0)
-        arm = as_complex(np.asarray(points, dtype=float).reshape(k, 2) - centroid)
+        arm = np.asarray(points, dtype=float).reshape(k, d) - centroid
         return cls(body, arm, node, weight, columns, disc.reach[at_body])
 
     def __len__(self) -> int:
         return len(self.body)
 
-    def positions(self, centre: Array, turn: Array, strain: Array) -> Array:
-        """Return where the points are, complex (k,) [m]; ``strain`` complex (nodes + 1,), in the frames of bodies."""
+    def positions(self, placement: Placement, strain: Array) -> Array:
+        """Return where the points are (k, d) [m], for strains (nodes, d) in the frames of bodies."""
         b, fast = np.maximum(self.body, 0), self.body >= 0
-        inner = self.arm + (self.weight * strain[self.node]).sum(1) if self.node.shape[1] else self.arm
-        return np.where(fast, centre[b] + turn[b] * inner, self.arm)
+        inner = self.arm + self._mean(strain) if self.node.shape[1] else self.arm
+        return np.where(fast[:, None], placement.points(b, inner), self.arm)
 
-    def velocities(self, turn: Array, velocity: Array, spin: Array, nodal: Array) -> Array:
-        """Return the velocities of the points, complex (k,) [m/s]; ``nodal`` (nodes + 1,) those of nodes."""
+    def velocities(self, placement: Placement, velocity: Array, spin: Array, nodal: Array) -> Array:
+        """Return the velocities of the points (k, d) [m/s], for those of centroids (B, d) and nodes (nodes, d)."""
         b, fast = np.maximum(self.body, 0), self.body >= 0
-        rigid = velocity[b] + 1j * spin[b] * turn[b] * self.arm
+        rigid = velocity[b] + swept(spin[b], placement.turns[b].apply(self.arm))
         if self.node.shape[1]:
-            rigid = np.where(self.weight.any(1), (self.weight * nodal[self.node]).sum(1), rigid)
-        return np.where(fast, rigid, 0.0)
+            meshed = (self.weight != 0).any(1, keepdims=True)
+            rigid = np.where(meshed, self._mean(nodal), rigid)
+        return np.where(fast[:, None], rigid, 0.0)
 
-    def rows(self, direction: Array, turn: Array) -> Array:
-        """Return the displacements (k, 3 + 2 w) along unit directions, complex (k,), from the unknowns ``columns``."""
-        b = np.maximum(self.body, 0)
-        arm = turn[b] * self.arm
-        values = np.zeros(self.columns.shape)
-        values[:, 0], values[:, 1] = direction.real, direction.imag
-        values[:, 2] = (arm.real * direction.imag - arm.imag * direction.real) / self.reach
-        local = np.conj(turn[b]) * direction
-        values[:, 3::2] = self.weight * local.real[:, None]
-        values[:, 4::2] = self.weight * local.imag[:, None]
-        return values
+    def rows(self, direction: Array, turn: Turns) -> Array:
+        """Return the displacements (k, 3 + 2 w) along unit directions (k, d), from the unknowns ``columns``."""
+        own = turn[np.maximum(self.body, 0)]
+        rigid = rigid_row(direction, own.apply(self.arm), self.reach)
+        local = self.weight[:, :, None] * own.undo(direction)[:, None]
+        return np.concatenate([rigid, local.reshape(len(rigid), -1)], axis=1)
 
-    def along(self, displacement: Array, direction: Array) -> Array:
-        """Return the components of complex displacements along complex directions."""
-        return dot(displacement, direction)
+    def _mean(self, nodal: Array) -> Array:
+        """Return the means (k, d) of nodal vectors (nodes, d) that the points have."""
+        padded = np.concatenate([nodal, np.zeros((1, nodal.shape[1]))])
+        return np.asarray((self.weight[:, :, None] * padded[self.node]).sum(1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,9 +123,9 @@ class Followed:
     Parameters
     ----------
     points : MaterialPoints
-    start : (p,) complex array
+    start : (p, d) array
         Where they were described [m].
-    direction : (p,) complex array
+    direction : (p, d) array
         Unit vectors.
     """
 
@@ -151,27 +151,25 @@ class Followed:
             if not 0 < float(np.linalg.norm(point.direction)) < np.inf:
                 msg = f"direction {point.direction} has no length"
                 raise InputError(msg, where="control point", hint="for example (1, 0)")
-        place = np.array([p.at for p in wanted], dtype=float).reshape(-1, 2)
+        place = np.array([p.at for p in wanted], dtype=float).reshape(-1, reference.model.dim)
         bodies = [names.index(p.body) for p in wanted]
         points = MaterialPoints.of(reference.disc, bodies, place, reference.first_node, reference.node_column)
-        along = as_complex(np.array([p.direction for p in wanted], dtype=float).reshape(-1, 2))
-        return cls(points, as_complex(place), along / np.abs(along))
+        along = np.array([p.direction for p in wanted], dtype=float).reshape(place.shape)
+        return cls(points, place, along / norm(along)[:, None])
 
     def __len__(self) -> int:
         return len(self.start)
 
     def positions(self, centre: Array, rotation: Array, strain: Array) -> Array:
-        """Return where the points are (p, 2) [m], for placements (B, 2), (B,) and strains (nodes, 2)."""
-        inner = np.append(as_complex(strain), 0.0)
-        return as_vectors(self.points.positions(as_complex(centre), np.exp(1j * rotation), inner))
+        """Return where the points are (p, d) [m], for placements (B, d), (B,) and strains (nodes, d)."""
+        return self.points.positions(Placement(centre, rotation), strain)
 
     def displacement(self, centre: Array, rotation: Array, strain: Array) -> Array:
         """Return the displacements of the points along their directions (p,) [m]."""
-        here = as_complex(self.positions(centre, rotation, strain))
-        return dot(here - self.start, self.direction)
+        return dot(self.positions(centre, rotation, strain) - self.start, self.direction)
 
-    def rate(self, n: int, turn: Array) -> Array:
-        """Return the sum of their displacements as a row (N,) of n unknowns, for complex rotations (B,)."""
+    def rate(self, n: int, turn: Turns) -> Array:
+        """Return the sum of their displacements as a row (N,) of n unknowns, for rotations (B,)."""
         row = np.zeros(n + 1)
         np.add.at(row, self.points.columns, self.points.rows(self.direction, turn))
         return row[:n]

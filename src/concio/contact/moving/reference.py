@@ -113,11 +113,9 @@ class Reference:
         arms = [self.disc.nodes(b) - self.disc.centroids[b] for b in self.meshed.tolist()]
         return np.concatenate([*arms, np.zeros((0, 2))])
 
-    def node_place(self, centre: Array, turn: Array, strain: Array) -> Array:
-        """Return where the nodes of meshed bodies are, complex (nodes,), for complex placements and strains [m]."""
-        b = self.body_of_node
-        arm = self.node_arm[:, 0] + 1j * self.node_arm[:, 1]
-        return np.asarray(centre[b] + turn[b] * (arm + strain))
+    def node_place(self, placement: Placement, strain: Array) -> Array:
+        """Return where the nodes of meshed bodies are (nodes, d), for strains (nodes, d) [m]."""
+        return placement.points(self.body_of_node, self.node_arm + strain)
 
     @cached_property
     def node_column(self) -> Array:
@@ -159,9 +157,7 @@ class Reference:
         mean = float(self.body_mass[self.free].mean())
         if mean > 0 or not self.loads.groups:
             return mean
-        here = np.ones(len(self.model.bodies), dtype=complex)
-        acting = sum(float(np.abs(self.loads.forces({g: float(g == group) for g in self.loads.groups}, here)).sum())
-                     for group in self.loads.groups)  # fmt: skip
+        acting = sum(float(np.abs(force).sum()) for force in self.described_loads.values())
         return acting / (self.gravity * len(self.free))
 
     @cached_property
@@ -199,6 +195,12 @@ class Reference:
     def loads(self) -> MovingLoads:
         """The loads."""
         return MovingLoads(self.disc)
+
+    @cached_property
+    def described_loads(self) -> dict[str, Array]:
+        """Forces of each load group (N,) where the bodies were described [kN]."""
+        here, groups = self.at_rest().placement.turns, self.loads.groups
+        return {group: self.loads.forces({g: float(g == group) for g in groups}, here) for group in groups}
 
     @cached_property
     def tolerance(self) -> float:

@@ -11,10 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from concio.contact.moving.edges import as_vectors, dot
 from concio.contact.moving.slots import MeshedSide, Slots
 from concio.contact.moving.touch import Touch, Toucher
 from concio.fem.discretisation import RIGID, Discretisation
+from concio.kinematics.frames import components, dot, frames, norm
+from concio.kinematics.placement import Placement
+from concio.kinematics.rigid import motions, write_rigid_rows
+from concio.kinematics.turns import Turns
 
 Array = np.ndarray
 
@@ -69,7 +72,8 @@ class RowMaker:
         n = disc.unknowns
         rigid = disc.shape_of == RIGID
         first = np.where(rigid, disc.offsets[:-1], n)
-        columns = np.where(rigid[:, None], first[:, None] + np.arange(3), n)
+        self.dim, self.rigid_motions = disc.dim, motions(disc.dim)
+        columns = np.where(rigid[:, None], first[:, None] + np.arange(self.rigid_motions), n)
         a, b = slots.body_a, slots.body_b
         self.reach_a, self.reach_b = disc.reach[a], disc.reach[b]
         self.moved = ~rigid & (disc.shape_of < 0)  # bodies that are moved, not free
@@ -82,30 +86,25 @@ class RowMaker:
                 parts.append(node_column[side.node].reshape(len(slots), -1))
         self.columns = np.concatenate(parts, axis=1)
         if slots.side_a is not None and slots.side_b is not None:
-            self.columns[slots.side_a.meshed, :3] = n
-            self.columns[slots.side_b.meshed, 3:6] = n
+            k = self.rigid_motions
+            self.columns[slots.side_a.meshed, :k] = n
+            self.columns[slots.side_b.meshed, k : 2 * k] = n
 
     def rows(
-        self,
-        touch: Touch,
-        centre: Array,
-        turn: Array,
-        velocity: Array,
-        spin: Array,
-        strain: Array | None,
-        *,
-        turning: bool = True,
+        self, touch: Touch, placement: Placement, velocity: Array, spin: Array, strain: Array, *, turning: bool = True
     ) -> Rows:
         """Return the rows of a placement.
 
         Parameters
         ----------
         touch : Touch
-        centre, turn, velocity : (B,) complex arrays
-            Centroids, rotations e^(i angle), velocities of the centroids.
-        spin : (B,) array
-        strain : (nodes + 1,) complex array or None
-            Displacements of nodes in the frames of their bodies, the last one zero.
+        placement : Placement
+        velocity : (B, d) array
+            Of the centroids [m/s].
+        spin : (B,) array in the plane, (B, 3) in space
+            [rad/s].
+        strain : (nodes, d) array
+            Displacements of nodes in the frames of their bodies [m].
         turning : bool
             Whether what turning adds is wanted.
         """
@@ -116,70 +115,50 @@ class RowMaker:
             valid = touch.valid[pick]
         else:
             s, low, high = slots.fraction, slots.low, slots.high
-            point = (1 - s) * touch.point[low] + s * touch.point[high]
-            normal = (1 - s) * touch.normal[low] + s * touch.normal[high]
-            normal /= np.abs(normal)
+            point, normal = self._between(touch.point), self._between(touch.normal)
+            normal /= norm(normal)[:, None]
             gap = (1 - s) * touch.gap[low] + s * touch.gap[high] + slots.opening
             valid = touch.valid[low] & touch.valid[high]
         a, b = slots.body_a, slots.body_b
-        m, w = self.columns.shape
-        values = np.zeros((m, 2, w))
-        x, y = normal.real, normal.imag
-        arm_a, arm_b = point - centre[a], point - centre[b]
-        values[:, 0, 0], values[:, 0, 1] = -x, -y
-        values[:, 1, 0], values[:, 1, 1] = y, -x
-        turned = np.conj(arm_a) * normal / self.reach_a
-        values[:, 0, 2], values[:, 1, 2] = -turned.imag, -turned.real
-        values[:, 0, 3], values[:, 0, 4] = x, y
-        values[:, 1, 3], values[:, 1, 4] = -y, x
-        turned = np.conj(arm_b) * normal / self.reach_b
-        values[:, 0, 5], values[:, 1, 5] = turned.imag, turned.real
-        imposed = np.zeros((m, 2))
+        (m, w), d, k = self.columns.shape, self.dim, self.rigid_motions
+        frame = frames(normal)
+        values = np.zeros((m, d, w))
+        write_rigid_rows(values[:, :, :k], -frame, point - placement.centre[a], self.reach_a)
+        write_rigid_rows(values[:, :, k : 2 * k], frame, point - placement.centre[b], self.reach_b)
+        imposed = np.zeros((m, d))
         if velocity[self.moved].any():
             for body, sign in ((a, -1.0), (b, 1.0)):  # fixed bodies never turn
-                v = np.where(self.moved[body], velocity[body], 0.0)
-                imposed[:, 0] += sign * dot(normal, v)
-                imposed[:, 1] += sign * dot(1j * normal, v)
+                v = np.where(self.moved[body, None], velocity[body], 0.0)
+                imposed += sign * components(v, frame)
         if slots.side_a is not None and slots.side_b is not None:
-            assert strain is not None
-            at = 6
+            at, padded = 2 * k, np.concatenate([strain, np.zeros((1, d))])
             for side, body, sign in ((slots.side_a, a, -1.0), (slots.side_b, b, 1.0)):
-                at, moved = self._meshed(side, body, sign, turn, normal, values, at, strain)
-                gap = gap + moved
-            values[slots.side_a.meshed, :, :3] = 0.0
-            values[slots.side_b.meshed, :, 3:6] = 0.0
-        extra = np.zeros((m, 2))
+                wide = d * side.node.shape[1]
+                moved = self._meshed(side, sign, placement.turns[body], frame, values[:, :, at : at + wide], padded)
+                at, gap = at + wide, gap + moved
+            values[slots.side_a.meshed, :, :k] = 0.0
+            values[slots.side_b.meshed, :, k : 2 * k] = 0.0
+        extra = np.zeros((m, d))
         if turning and spin.any():
-            along_n, along_t = self.toucher.turning(touch, centre, velocity, spin)
+            added = self.toucher.turning(touch, placement, velocity, spin)
             if self.plain:
-                extra[:, 0], extra[:, 1] = along_n[self.end], along_t[self.end]
+                extra = components(added[self.end], frame)
             else:
-                extra[:, 0] = (1 - s) * along_n[low] + s * along_n[high]
-                extra[:, 1] = (1 - s) * along_t[low] + s * along_t[high]
+                extra = self._between(components(added, frames(touch.normal)))
         length = np.where(slots.face >= 0, touch.length[slots.face], 1.0) if len(touch.length) else 1.0
         area = slots.share * length * slots.thickness
-        return Rows(
-            self.columns, values, gap, imposed, extra, valid, area,
-            as_vectors(point), as_vectors(normal),
-        )  # fmt: skip
+        return Rows(self.columns, values, gap, imposed, extra, valid, area, point, normal)
+
+    def _between(self, ends: Array) -> Array:
+        """Return what slots (m, ...) have of vectors at the contact points, linear between two of them."""
+        s = self.slots.fraction[:, None]
+        return np.asarray((1 - s) * ends[self.slots.low] + s * ends[self.slots.high])
 
     def _meshed(
-        self,
-        side: MeshedSide,
-        body: Array,
-        sign: float,
-        turn: Array,
-        normal: Array,
-        values: Array,
-        at: int,
-        strain: Array,
-    ) -> tuple[int, Array]:
-        """Write the entries of meshed sides; return where the next begin, and the gap that strains add (m,)."""
-        k = side.node.shape[1]
-        local = np.conj(turn[body]) * normal
-        weight = sign * side.weight
-        for axis, (n_part, t_part) in enumerate(((local.real, -local.imag), (local.imag, local.real))):
-            values[:, 0, at + axis : at + 2 * k : 2] = weight * n_part[:, None]
-            values[:, 1, at + axis : at + 2 * k : 2] = weight * t_part[:, None]
-        moved = (weight * dot(local[:, None], strain[side.node])).sum(1)
-        return at + 2 * k, moved
+        self, side: MeshedSide, sign: float, turn: Turns, frame: Array, values: Array, strain: Array
+    ) -> Array:
+        """Write the entries of meshed sides into ``values`` (m, d, d k); return the gap that strains add (m,)."""
+        local, weight = turn.undo(frame), sign * side.weight
+        m, d = frame.shape[:2]
+        values[:] = (weight[:, None, :, None] * local[:, :, None]).reshape(m, d, -1)
+        return np.asarray((weight * dot(local[:, :1], strain[side.node])).sum(1))

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.contact.moving.candidates import CRUSHED, THROUGH, find_candidates
-from concio.contact.moving.edges import PlacedEdges, as_complex
+from concio.contact.moving.edges import PlacedEdges
 from concio.contact.moving.rows import RowMaker, Rows
 from concio.contact.moving.slots import SlotMaker, Slots
 from concio.contact.moving.touch import Touch, Toucher
+from concio.kinematics.frames import norm
+from concio.kinematics.placement import Placement
 from concio.model.interfaces.detect import SLIVER_SHARE
 
 if TYPE_CHECKING:
@@ -35,7 +37,7 @@ class Layout:
     slots : Slots
     toucher : Toucher
     maker : RowMaker
-    start : (e,) complex array
+    start : (e, 2) array
         Where the edges began when the layout was made.
     along : (f,) array
         Position of the bodies along their joints then [m].
@@ -86,7 +88,7 @@ class ContactSearch:
         return True
 
     def _due(self, layout: Layout, placed: PlacedEdges) -> bool:
-        moved = np.abs(placed.start - layout.start)
+        moved = norm(placed.start - layout.start)
         if moved.max(initial=0.0) > 0.5 * self.skin:
             return True
         if layout.slots.side_a is None:
@@ -100,15 +102,9 @@ class ContactSearch:
         return self.layout.toucher.touch(placed)
 
     def rows(
-        self, centre: Array, turn: Array, velocity: Array, spin: Array, strain: Array, *, turning: bool = True
+        self, placement: Placement, velocity: Array, spin: Array, strain: Array, *, turning: bool = True
     ) -> Rows:
-        """Return the rows of bodies placed by complex centroids and rotations, after :meth:`update`."""
+        """Return the rows of bodies placed so, after :meth:`update`; see :meth:`RowMaker.rows`."""
         assert self.layout is not None
-        placed = self.edges.placed_by(centre, turn)
-        touch = self.layout.toucher.touch(placed)
-        return self.layout.maker.rows(touch, centre, turn, velocity, spin, strain, turning=turning)
-
-
-def padded(nodal: Array) -> Array:
-    """Return nodal vectors (nodes, 2) as complex numbers with a zero behind (nodes + 1,)."""
-    return np.concatenate([as_complex(nodal), [0.0]])
+        touch = self.layout.toucher.touch(self.edges.placed(placement))
+        return self.layout.maker.rows(touch, placement, velocity, spin, strain, turning=turning)

@@ -14,10 +14,11 @@ import numpy as np
 from concio.contact.coupling import Coupling, Line, Side, couple
 from concio.contact.joint_points import joint_rule
 from concio.contact.moving.candidates import Candidates
-from concio.contact.moving.edges import MovingEdges, PlacedEdges, dot
+from concio.contact.moving.edges import MovingEdges, PlacedEdges
 from concio.contact.moving.laws import LawTable, RuleBook
 from concio.contact.moving.touch import Touch, Toucher
 from concio.fem.discretisation import Discretisation
+from concio.kinematics.frames import dot, norm
 
 Array = np.ndarray
 
@@ -182,7 +183,7 @@ class SlotMaker:
         for i in faces.tolist():
             a, b = int(found.edge_a[i]), int(found.edge_b[i])
             t = placed.tangent[a] - placed.tangent[b]
-            t /= abs(t)
+            t /= norm(t)
             start, length = touch.point[i], float(touch.length[i])
             if length <= 0.0:
                 length = 1e-9 * float(self.edges.length[a])
@@ -202,7 +203,7 @@ class SlotMaker:
         nodes = self.disc.shapes[self.disc.shape_of[b]].edges[int(self.edges.number[corner])]
         return self.first_node[b] + nodes.nodes[:1], np.ones(1)
 
-    def _on_edge(self, edge: int, point: complex, placed: PlacedEdges) -> tuple[Array, Array] | None:
+    def _on_edge(self, edge: int, point: Array, placed: PlacedEdges) -> tuple[Array, Array] | None:
         """Return nodes and linear weights of a point on an edge; None where its body is not meshed."""
         b = int(self.edges.body[edge])
         if not self.meshed[b]:

@@ -17,7 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.contact.moving.candidates import Candidates
-from concio.contact.moving.edges import MovingEdges, PlacedEdges, dot
+from concio.contact.moving.edges import MovingEdges, PlacedEdges
+from concio.kinematics.frames import dot, norm, turned_left, turned_right
+from concio.kinematics.placement import Placement
+from concio.kinematics.rigid import swept
 
 Array = np.ndarray
 
@@ -28,13 +31,13 @@ SAME = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Touch:
-    """Contact points, complex vectors: the lower ends of common lengths, their upper ends, and single corners.
+    """Contact points: the lower ends of common lengths, their upper ends, and single corners.
 
     Parameters
     ----------
-    point : (2 f + q,) array
+    point : (2 f + q, d) array
         The corner.
-    normal : (2 f + q,) array
+    normal : (2 f + q, d) array
         Unit normal from body a to body b.
     gap : (2 f + q,) array
         [m].
@@ -107,7 +110,7 @@ class Toucher:
         if not len(self.corner):
             return faces
         x, t = placed.start[self.edge], placed.tangent[self.edge]
-        point, normal = placed.start[self.corner], -1j * t
+        point, normal = placed.start[self.corner], turned_right(t)
         away = point - x
         gap, along = dot(normal, away), dot(t, away)
         valid = (along >= -self.slack) & (along <= self.length_edge + self.slack)
@@ -121,7 +124,7 @@ class Toucher:
         t_a, t_b = placed.tangent[self.a], placed.tangent[self.b]
         p, q_far = placed.start[self.a], placed.start[self.b]
         t = t_a - t_b
-        t /= np.abs(t)
+        t /= norm(t)[:, None]
         corner_a = np.array([p, placed.end[self.a]])
         corner_b = np.array([placed.end[self.b], q_far])
         away = corner_b - p
@@ -130,30 +133,33 @@ class Toucher:
         inside[1] = end - inside[1]
         inner = np.where(np.abs(inside) > SAME * self.length_a, inside > 0.0, self.inner)  # ends that are corners of b
         self.inner[:] = inner
-        normal_a, normal_b = -1j * t_a, 1j * t_b  # both from a to b
+        normal_a, normal_b = turned_right(t_a), turned_left(t_b)  # both from a to b
         gap = np.where(inner, dot(normal_a, away), dot(normal_b, q_far - corner_a))
         length = end - np.where(inner, inside, 0.0).sum(axis=0)
-        valid = np.tile(length > self.shortest, 2)
+        valid, pick = np.tile(length > self.shortest, 2), inner[:, :, None]
         return Touch(
-            np.where(inner, corner_b, corner_a).ravel(), np.where(inner, normal_a, normal_b).ravel(), gap.ravel(),
-            inner.ravel(), length, valid,
+            np.where(pick, corner_b, corner_a).reshape(-1, 2), np.where(pick, normal_a, normal_b).reshape(-1, 2),
+            gap.ravel(), inner.ravel(), length, valid,
         )  # fmt: skip
 
-    def turning(self, touch: Touch, centre: Array, velocity: Array, spin: Array) -> tuple[Array, Array]:
-        """Return what turning adds to the rates of gap and slip, per time (2 f + q,) each [m/s2].
+    def turning(self, touch: Touch, placement: Placement, velocity: Array, spin: Array) -> Array:
+        """Return the relative accelerations (2 f + q, d) that turning adds, b seen from a [m/s2].
 
         Parameters
         ----------
         touch : Touch
-        centre, velocity : (B,) complex arrays
+        placement : Placement
+        velocity : (B, d) array
             Of the centroids.
-        spin : (B,) array
+        spin : (B,) array in the plane, (B, 3) in space
             [rad/s].
         """
+        centre = placement.centre
         master = np.where(touch.on_a, self.body_a, self.body_b)
         slave = np.where(touch.on_a, self.body_b, self.body_a)
         u, r = touch.point - centre[master], touch.point - centre[slave]
         w_m, w_s = spin[master], spin[slave]
-        moved = velocity[slave] + 1j * w_s * r - velocity[master]
-        w = np.where(touch.on_a, 1.0, -1.0) * (-(w_s**2) * r - 2j * w_m * moved - w_m**2 * u)
-        return dot(touch.normal, w), dot(1j * touch.normal, w)
+        swung = swept(w_s, r)
+        moved = velocity[slave] + swung - velocity[master]
+        seen = swept(w_s, swung) + swept(w_m, swept(w_m, u) - 2.0 * moved)
+        return np.asarray(np.where(touch.on_a, 1.0, -1.0)[:, None] * seen)
