@@ -3,7 +3,7 @@
     python benchmarks/corpus.py [--count 504] [--seed 0] [--first 0] [--list]
 
 Walls and panels of random bond, shape, friction, load share (0 to 1.3 times the associated limit), gaps, materials,
-supports; rigid blocks are lent the compliance that ``concio.solve`` lends them. For each: the verdict of ``auto``, its
+supports; rigid blocks are given the compliance that ``concio.solve`` lends them. For each: the verdict of ``auto``, its
 proof recomputed here from the original arrays, and the reason where there is none. Prints a table by family, one by
 strategy (how often it was tried and decided, its processor time) and the undecided problems with what was tried.
 """

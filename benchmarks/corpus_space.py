@@ -155,7 +155,7 @@ def main() -> None:
     """Run the corpus and print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=300)
-    parser.add_argument("--seed", type=int, nargs="+", default=[0], help="one or more, each drawn anew")
+    parser.add_argument("--seed", type=int, nargs="+", default=[0], help="one or more, each drawn again")
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--list", action="store_true", help="print every problem")
     parser.add_argument("--markdown", action="store_true", help="the tables for the documentation")

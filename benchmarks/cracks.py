@@ -1,4 +1,4 @@
-"""Random synthetic cracks: how often the cause is found, whether intervals hold, what is told as ambiguous.
+"""Random synthetic cracks: how often the cause is found, whether intervals hold, what is reported as ambiguous.
 
     python benchmarks/cracks.py [--cases 200] [--seed 0] [--first 0] [--wrong] [--minutes 60]
 

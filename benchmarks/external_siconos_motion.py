@@ -8,7 +8,7 @@ step (n,); writes the coordinates (x, y, angle) of all blocks (n, k, 3) at the e
 
 The scheme is Siconos' own Moreau-Jean time stepping with theta = 1/2; contact is Coulomb friction in the plane with
 Newton's impact law, e = 0, solved by its Lemke method. Each block touches what is below it with its two lower corners;
-their gaps and slips are linear relations that this script writes anew before every step, half a step ahead. (Relations
+their gaps and slips are linear relations that this script writes again before every step, half a step ahead. (Relations
 that Python classes evaluate end in a segmentation fault in Siconos 4.4.0 as Debian builds it.)
 """
 
@@ -23,7 +23,7 @@ import siconos.numerics as sn
 class Corner:
     """Gap and slip of a lower corner over the ground, or over the upper side of another block: y = C q + e.
 
-    C and e are those of the geometry half a step ahead, written anew before every step.
+    C and e are those of the geometry half a step ahead, written again before every step.
     """
 
     def __init__(self, block, arm, below=None, top=0.0):

@@ -29,7 +29,7 @@ def small_panel() -> ContactProblem:
 
 
 def large_wall() -> ContactProblem:
-    """Thirty units by fourteen courses, dry, own weight and 0.3 of it sideways (427 blocks)."""
+    """Thirty units by fourteen courses, dry, self-weight and 0.3 of it sideways (427 blocks)."""
     return _leaning(14, 30, 0.30)
 
 

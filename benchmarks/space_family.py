@@ -4,7 +4,7 @@
                                       [--shares S ...] [--markdown]
     python benchmarks/space_family.py --limits [--clarabel] [--large] [--only NAME] [--blocks N ...] [--markdown]
 
-Blocks of running bond, domes and barrels (tests/space_problems.py), friction 0.6, own weight and a share of the
+Blocks of running bond, domes and barrels (tests/space_problems.py), friction 0.6, self-weight and a share of the
 associated limit of a horizontal load. Rigid blocks have joints with stiffness; elastic ones 2 x 2 x 2 hexahedra.
 Times are CPU seconds; the yardstick is one factorisation of K + C'DC of the same problem on the engine's own ordering,
 so that ratios do not depend on the machine. The growth exponent is that of CPU time over the number of blocks from one

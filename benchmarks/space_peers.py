@@ -7,7 +7,7 @@ Siconos (Debian's ``python3-siconos``, under ``/usr/bin/python3``) run as proces
 ``--limit`` CPU seconds; Clarabel is a package of this environment. What is missing is said, with what to install.
 Nothing of this belongs to concio or to what it needs. CPU seconds, one thread, reading and writing not included.
 
-What is compared is told on the page that ``--write`` makes, ``docs/research/peers-in-space.md``.
+What is compared is reported on the page that ``--write`` makes, ``docs/research/peers-in-space.md``.
 """
 
 from __future__ import annotations
@@ -370,7 +370,7 @@ COMPAS = """compas_cra {version} (MIT, with IPOPT in its wheel) on its own sampl
 of its examples, and on walls of boxes 1 x 1/2 x 1/2 in running bond, friction 0.6, the lowest course fixed: upright,
 and tilted in their plane to shares of what the associated limit allows (beyond it no equilibrium exists). It finds its
 interfaces itself (not counted in its seconds), and its answer is checked here from interfaces, forces and
-displacements, blocks weighed anew: what the forces leave of the weights, how far they lie outside the round cones
+displacements, blocks weighed again: what the forces leave of the weights, how far they lie outside the round cones
 (those of the package have eight sides, whose corners lie outside), both over the total load, and "law": the worst of
 penetration, complementarity and the rule that friction opposes slip and is full where there is slip, at its
 displacements and its contact distance. Beside it are the verdict of `auto` on the very same contact points (rigid

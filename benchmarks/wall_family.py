@@ -4,7 +4,7 @@
     python benchmarks/wall_family.py --huge [--fast]
     python benchmarks/wall_family.py --wall UNITS COURSES SHARE [--fast]
 
-Walls: running bond of dry elastic blocks 2:1, 2 x 2 elements, friction 0.6, own weight and a horizontal share alpha of
+Walls: running bond of dry elastic blocks 2:1, 2 x 2 elements, friction 0.6, self-weight and a horizontal share alpha of
 it. Head joints are coupled at the inner nodes of a block's end, bed joints at every node. Panels: 0.2 x 0.1 m blocks,
 4 x 2 elements, between rigid walls on a full base, 10 kN/m2 on top.
 

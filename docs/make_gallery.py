@@ -33,7 +33,7 @@ def as_typed(path: Path) -> str:
     """Return the code of an example as one would type it: the body of its ``main``, without what serves the tests.
 
     What only tests need is its last statement, the numbers returned; figures are drawn, not saved into a name given,
-    and the other arguments of ``main`` are what they are unless told otherwise.
+    and the other arguments of ``main`` are what they are unless stated otherwise.
     """
     source = path.read_text(encoding="utf-8")
     tree = ast.parse(source)

@@ -3,7 +3,7 @@
 A study draws 300 half-sine pulses of many amplitudes and frequencies and shakes a block 0.2 x 1.5 m with each. The full
 line is the closed form of the linear equation of rocking, in which a block overturns without an impact if and only if
 its state lies above a ray when the pulse ends; the dotted one is Housner's well-known shortcut, up to 55 % higher;
-below an amplitude of g alpha nothing lifts. Nothing of rocking is told to the program: it knows two corners with
+below an amplitude of g alpha nothing lifts. The program has no model of rocking: it knows two corners with
 friction.
 """
 

@@ -16,7 +16,7 @@ import samples
 def pytest_configure(config: pytest.Config) -> None:
     """Draw fewer cases where the long tests are left out: the quick suite."""
     samples.whole = "not long" not in config.getoption("markexpr").replace("long or not long", "")
-    settings.register_profile("untimed", deadline=None)  # a busy machine is no fault of what is tested
+    settings.register_profile("untimed", deadline=None)  # a busy machine is not a fault of what is tested
     settings.load_profile("untimed")
 
 

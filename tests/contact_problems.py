@@ -70,7 +70,7 @@ def wall(
     soil: float = 0.0,
     fine: int = 1,
 ) -> ContactProblem:
-    """Running-bond wall under own weight (1 a block), ``alpha`` of it sideways and ``top`` a unit length.
+    """Running-bond wall under self-weight (1 a block), ``alpha`` of it sideways and ``top`` a unit length.
 
     ``soil`` > 0 adds soft springs to every unknown: no body floats.
     """

@@ -3,7 +3,7 @@
 python tests/mutants.py [--count 60] [--seed 0] [--jobs 2] [--only PATH] [--named] [--minutes M]
 
 Each mutant changes one operator, comparison, constant or function of one line (a minus for a plus, a
-maximum for a minimum, a factor of two where a number is no threshold: between
+maximum for a minimum, a factor of two where a number is not a threshold: between
 a thousandth and a million); the tests of its room are run on a copy of the
 package that holds it, until one fails. A test that fails without the mutant, too, has killed nothing: the run ends, and
 says which. Survivors are defects of the tests, or mutants that change nothing: those stand

@@ -1,4 +1,4 @@
-"""Load paths of the rigid assemblies in ``rigid_walls``: rest, own weight, then a second load."""
+"""Load paths of the rigid assemblies in ``rigid_walls``: rest, self-weight, then a second load."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def at_rest(path: LinearPath, parameter: float = 0.0) -> PathState:
 def weight_then(
     assembly: Assembly, mu, load, *, compliance=1e-4, ratio=2.0, until=1.0, control=None, **laws
 ) -> tuple[LinearPath, EventPath]:
-    """Rigid blocks on compliant joints (a_n = compliance, a_t = ratio a_n): own weight, then ``load``."""
+    """Rigid blocks on compliant joints (a_n = compliance, a_t = ratio a_n): self-weight, then ``load``."""
     given = {"normal_compliance": compliance, "tangential_compliance": ratio * compliance, **laws}
     dead = LinearPath(assembly.problem(mu, assembly.load(0, 0), **given), assembly.load(0, -1))
     weight = follow(dead, at_rest(dead), until=1.0)
@@ -53,7 +53,7 @@ def energy_turned_over(path: LinearPath, found: EventPath) -> float:
 
 
 def energy_error(path: LinearPath, found: EventPath) -> float:
-    """Largest |work - stored - dissipated| over the corners, relative to the energy turned over."""
+    """Largest |work - stored - dissipated| over the corners, relative to the energy exchanged."""
     first = found.states[0]
     kept = [s.work - first.work - s.dissipation + first.dissipation for s in found.states]
     stored = [elastic_energy(path.problem, s) for s in found.states]
@@ -62,6 +62,6 @@ def energy_error(path: LinearPath, found: EventPath) -> float:
 
 
 def least_dissipation(path: LinearPath, found: EventPath) -> float:
-    """Smallest dissipation of a corner's step, relative to the energy turned over."""
+    """Smallest dissipation of a corner's step, relative to the energy exchanged."""
     falls = min(b.dissipation - a.dissipation for a, b in pairwise(found.states))
     return falls / (energy_turned_over(path, found) or 1.0)

@@ -1,8 +1,9 @@
 """What arguments must be: numbers, texts, sequences, or objects of the project, as their annotations say.
 
-``Load("pressure", 20.0)``, ``concio.solve("wall.toml")`` or ``concio.thrust_line(model)`` are told what was expected in
-words, before something deep inside stumbles over them. Only what annotations say for sure is checked: numbers, texts,
-sequences and mappings of them, and the classes in :data:`CLASSES`; an alternative not known here lets everything pass.
+``Load("pressure", 20.0)``, ``concio.solve("wall.toml")`` or ``concio.thrust_line(model)`` raise an
+error that says what was expected, before they fail deep inside. Only what annotations say for sure is checked: numbers,
+texts, sequences and mappings of them, and the classes in :data:`CLASSES`; an alternative not known here lets everything
+pass.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ CLASSES = {
         "Polyhedron", "Result", "Rigid", "Stage", "Stop", "Support", "Temperature", "Tie", "Units",
     )
 }  # fmt: skip
-"""Classes of the project that are told from each other by their names."""
+"""Classes of the project that are distinguished from each other by their names."""
 
 SEQUENCES, MAPPINGS = ("Sequence", "tuple", "list", "Iterable"), ("Mapping", "dict")
 

@@ -18,10 +18,10 @@ DUST = 1e-6
 """Share of the size of a set of numbers below which one of them is written as 0."""
 
 STRESS_MPA, STRESS_GPA = 1e3, 1e6
-"""Stresses from which on they are told in MPa and moduli in GPa [kN/m2]."""
+"""Stresses from which on they are reported in MPa and moduli in GPa [kN/m2]."""
 
 SHORT = 0.01
-"""Lengths in m below this are told in mm [m]."""
+"""Lengths in m below this are reported in mm [m]."""
 
 CHOICES: dict[str, tuple[str, ...]] = {
     "force": ("kN", "N", "MN", "kgf", "tf"),
@@ -67,7 +67,7 @@ def counted(count: int, one: str, several: str | None = None) -> str:
 @strict_class
 @dataclass(frozen=True)
 class Units:
-    """Units in which people are told quantities.
+    """Units in which quantities are reported.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ class Units:
         Raises
         ------
         InputError
-            A part of it is no unit of a force, a length or a stress.
+            A part of it is not a unit of a force, a length or a stress.
         """
         found: dict[str, str] = {}
         for part in filter(None, (p.strip() for p in text.split(","))):

@@ -70,7 +70,7 @@ def read_text(
     Raises
     ------
     InputError
-        It is no file, cannot be read, is too large, or is not UTF-8.
+        It is not a file, cannot be read, is too large, or is not UTF-8.
     """
     where = str(path)
     size = check_regular(path, hint=hint, pipes=pipes)

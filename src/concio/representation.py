@@ -107,7 +107,7 @@ def _cut(text: str) -> str:
 
 
 def _default(field: dataclasses.Field[Any], value: object) -> bool:
-    """Return whether a field has its default, as far as that can be told without comparing arrays."""
+    """Return whether a field has its default, as far as that can be seen without comparing arrays."""
     default = field.default
     if default is dataclasses.MISSING:
         return isinstance(value, Mapping | tuple | list) and not value

@@ -1,6 +1,6 @@
 """Other words for what has a name here: of other programs, of the literature, in symbols and in Italian.
 
-They are not accepted, so that every file says one thing in one way; whoever types one is told the word that is meant.
+They are not accepted, so that every file says one thing in one way; whoever types one is shown the word that is meant.
 """
 
 from __future__ import annotations

@@ -70,7 +70,7 @@ _ATOM = re.compile(r"^([A-Za-z]+)(?:\^|\*\*)?([23])?$")
 
 GRAVITY = 9.80665
 """Standard gravity [m/s2]."""
-DECIMAL_COMMA = "decimals are set off by a point, not by a comma: 1.5, not 1,5"
+DECIMAL_COMMA = "the decimal separator is a point, not a comma: 1.5, not 1,5"
 """What to do about ``1,5``."""
 
 
@@ -205,7 +205,7 @@ def _kelvin(unit: str, kind: str, value: float | str, where: str | None) -> floa
 
 def _tangent(angle: float, value: str, where: str | None) -> float:
     if not 0 <= angle < math.pi / 2:
-        msg = f"'{_short(value)}' is no angle of friction"
+        msg = f"'{_short(value)}' is not an angle of friction"
         raise InputError(msg, where=where, hint="it lies between 0 and 90 degrees; stones have some 30 to 40")
     return math.tan(angle)
 

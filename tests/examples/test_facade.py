@@ -41,7 +41,7 @@ def test_it_is_read_as_the_wall_it_means():
     assert len(model.free_bodies) == len(walls) + len(lintels)
     area = 1e-6 * sum((b - a) * (d - c) for a, b, c, d in [*walls, *lintels])
     assert sum(b.area for b in model.free_bodies) == pytest.approx(area, rel=1e-4)
-    # the interfaces of the mended drawing are those of the wall as it was meant
+    # the interfaces of the repaired drawing are those of the wall as it was meant
     meant = [
         concio.Body(f"b{k}", 1e-3 * np.array([(a, c), (b, c), (b, d), (a, d)]))
         for k, (a, b, c, d) in enumerate([*walls, *lintels])

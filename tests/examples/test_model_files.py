@@ -127,7 +127,7 @@ def test_the_stages_are_followed_in_their_order() -> None:
     """All four are reached; the neighbour props the wall against the wind, and then lets go."""
     path = concio.run_path(concio.load(FOLDER / "load_stages.toml"))
     data = json.loads(json.dumps(path_facts(path, most_moving(path)), allow_nan=False))
-    names = ["own weight", "floor", "wind", "settlement"]
+    names = ["self-weight", "floor", "wind", "settlement"]
     assert [(s["name"], s["outcome"]) for s in data["stages"]] == [(name, "reached") for name in names]
     assert data["certificate"]["worst"] <= 1e-9
     assert data["energy_error"] <= 1e-9

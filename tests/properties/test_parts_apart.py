@@ -215,7 +215,7 @@ def bodies_of(assembly):
 
 
 def test_rigid_joints_beside_a_soft_ground():
-    """Hard joints are lent a compliance that is vanishing beside the ground's, and the block still falls."""
+    """Hard joints are given a compliance that is vanishing beside the ground's, and the block still falls."""
     for soil in (1e3, 1e5):
         for block in (0.03, 0.3):
             assert concio.solve(towers(soil, JointLaw(0.6), block), on_failure="return").status in FALLS, (soil, block)

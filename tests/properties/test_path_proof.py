@@ -44,7 +44,7 @@ def random_stages(rng, groups):
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_every_state_obeys_the_original_equations(seed):
-    """Equilibrium and the cone of every state, in the problem of the assembly at its factors, made anew here."""
+    """Equilibrium and the cone of every state, in the problem of the assembly at its factors, made again here."""
     rng = np.random.default_rng(seed)
     model = random_wall(rng)
     found = run_path(model, random_stages(rng, ["dead", "live", "top", "settlement"]))
@@ -116,7 +116,7 @@ def test_prestressed_ties_are_put_on_with_the_first_stage(seed):
     for step in found.steps:
         *pressed, tension = step.state.normal_force
         assert sum(pressed) == pytest.approx(weight * step.factors["dead"] + tension, rel=1e-9, abs=1e-12)
-        assert tension == pytest.approx(pull * step.factors[PRESTRESS], rel=1e-2)  # hard joints were lent compliance
+        assert tension == pytest.approx(pull * step.factors[PRESTRESS], rel=1e-2)  # hard joints were given a compliance
     assert found.steps[-1].factors[PRESTRESS] == 1.0
     named = run_path(model, [Stage("weight", {"dead": 1.0}), Stage("tension", {PRESTRESS: 0.5})])
     assert named.steps[-1].state.normal_force[-1] == pytest.approx(0.5 * pull, rel=1e-2)

@@ -111,11 +111,11 @@ def test_without_its_weight_a_structure_is_not_shown_to_stand(seed):
     found = run_path(model, stages)
     assert found.outcomes[-1].name == "REACHED"
     assert found.verdict.outcome is Outcome.INCOMPLETE
-    assert "own weight" in found.sentence
+    assert "self-weight" in found.sentence
     assert "'dead'" in found.sentence
-    late = run_path(model, [*stages, DEAD])  # put on at last: every load acts in the end, in an order that is told
+    late = run_path(model, [*stages, DEAD])  # put on at last: every load acts in the end, in an order that is reported
     assert late.verdict.outcome is Outcome.HOLDS
-    assert any("without own weight" in line for line in late.verdict.limits)
+    assert any("without self-weight" in line for line in late.verdict.limits)
     assert "load group 'live'" in late.sentence  # never applied
 
 
@@ -128,7 +128,7 @@ def test_a_group_that_no_stage_applies_is_named():
 
 @pytest.mark.parametrize("order", [("live", "dead"), ("dead", "live")])
 def test_the_order_of_the_file_does_not_decide(order, tmp_path):
-    """Without stages own weight comes first, wherever it stands in the file."""
+    """Without stages self-weight comes first, wherever it stands in the file."""
     loads = {"dead": "value = [0, -1]", "live": "value = [0.1, 0]"}
     text = '[materials.stone]\nkind = "rigid"\nunit_weight = 20\n[joints.dry]\nfriction = 0.7\n'
     text += '[[blocks]]\nname = "floor"\n'
@@ -144,7 +144,7 @@ def test_the_order_of_the_file_does_not_decide(order, tmp_path):
     assert told["verdict"]["outcome"] == "holds"
     light = CliRunner().invoke(app, ["path", str(file), "--stage", "live=0"])
     assert light.exit_code == 4
-    assert "own weight" in light.stdout
+    assert "self-weight" in light.stdout
 
 
 def test_every_view_of_a_path_says_the_same(tmp_path):

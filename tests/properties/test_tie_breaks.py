@@ -130,7 +130,7 @@ def test_a_tie_that_a_moving_support_stretches_breaks_in_time(seed, method):
     (load,) = found.group_loads()
     assert found.certified
     (breaks,) = [e for e in found.events if e.kind == "breaks"]
-    assert breaks.parameter * times == pytest.approx(1.0, rel=1e-3)  # hard joints were lent compliance
+    assert breaks.parameter * times == pytest.approx(1.0, rel=1e-3)  # hard joints were given a compliance
     assert found.result(breaks.step).ties.tension[0] == pytest.approx(k * far, rel=1e-5)
     assert [name for name, _ in found.broken_ties] == ["rod"]
     assert load.end == 1.0, "friction holds the block without it, and the path goes on"
@@ -186,7 +186,7 @@ def test_under_the_motion_of_a_point_the_load_falls_and_the_path_goes_on(seed):
 
 @pytest.mark.parametrize("power", range(-1, 8))
 def test_a_soft_tie_beside_hard_joints_is_followed_corner_by_corner(power):
-    """All that holds the sliding block is the tie, much softer than the compliance lent to the joints: no restarts."""
+    """All that holds the sliding block is the tie, much softer than the compliance added to the joints: no restarts."""
     model, friction, _, _ = drawn(np.random.default_rng(0))
     k = 10.0**power
     loose = replace(model, ties=(replace(model.ties[0], stiffness=k, break_elongation=None),))
@@ -203,7 +203,7 @@ def test_ties_break_one_after_the_other():
     ties = tuple(replace(model.ties[0], name=f"t{i}", break_elongation=(1 + 0.1 * i) * far) for i in range(3))
     most = friction + 3 * k * far
     found = run_path(replace(model, ties=ties), [DEAD, Stage("pull", {"live": 2.0 * most})])
-    assert [name for name, _ in found.broken_ties] == ["t0"], "what follows is no equilibrium nearby"
+    assert [name for name, _ in found.broken_ties] == ["t0"], "what follows is not an equilibrium nearby"
     assert found.group_loads()[0].end == pytest.approx(most, rel=1e-6)
     strong = replace(ties[2], stiffness=9 * k, break_elongation=None)
     load = friction + 30 * k * far

@@ -1,4 +1,4 @@
-"""Where bodies touch, a joint is made or the place is told: tilted feet, knife edges, corners, rough tolerances."""
+"""Where bodies touch, a joint is made or the place is reported: tilted feet, knife edges, corners, rough tolerances."""
 
 from __future__ import annotations
 
@@ -158,7 +158,7 @@ def test_a_foot_that_has_no_joint_is_named_though_another_of_the_same_body_has()
 
 
 def test_a_prop_in_the_corner_of_floor_and_wall_bears_on_the_floor() -> None:
-    """Its face lies on the wall, which joins it to the floor at that very place; its corner on the floor is told."""
+    """Its face lies on the wall, which joins it to the floor at that place; its corner on the floor is reported."""
     wall = Body("wall", [(-1, 0), (0, 0), (0, 2), (-1, 2)], kind="fixed")
     floor = Body("floor", [(-2, -1), (3, -1), (3, 0), (-2, 0)], kind="fixed")
     prop = Body("prop", [(0, 0), (0.3, 0.2), (0.3, 1), (0, 1)], kind="rigid")

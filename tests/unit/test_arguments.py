@@ -190,7 +190,7 @@ WRONG_KINDS: dict[str, tuple[Callable[[concio.Model], object], str]] = {
     "a factor for factors": (lambda m: concio.solve(m, factors=0.5), "0.5 must be a mapping of names to numbers"),
     "a text for a factor": (lambda m: concio.solve(m, factors={"live": "x"}), "must be a mapping of names to numbers"),
     "a number for a method": (lambda m: concio.solve(m, method=3), "method = 3 must be a text"),
-    "a text for an outline": (lambda _: concio.Body("a", "square"), "is no list of points"),
+    "a text for an outline": (lambda _: concio.Body("a", "square"), "is not a list of points"),
     "a body that is not there": (lambda m: pushed(m).nodes(99), "there is no body 99"),
 }  # fmt: skip
 

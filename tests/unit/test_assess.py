@@ -261,7 +261,7 @@ def test_a_wall_alone_topples_at_its_slenderness(height: float, thickness: float
         ({"knowledge": "LC4"}, "no level of knowledge 'LC4'"),
         ({"confidence": 0.9}, "at least 1"),
         ({"direction": "up"}, "no direction 'up'"),
-        ({"mechanisms": {"roof": ["tiles"]}}, "'tiles' is no body"),
+        ({"mechanisms": {"roof": ["tiles"]}}, "'tiles' is not a body"),
         ({"mechanisms": {"roof": {"above": 9.0}}}, "no body that can move lies there"),
         ({"limits": {"SLC": 0.0}}, "must be positive"),
         ({"live": "wind"}, "no load group 'wind'"),

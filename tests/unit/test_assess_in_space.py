@@ -81,7 +81,7 @@ def test_a_load_of_the_model_says_which_way() -> None:
     ("more", "said"),
     [
         ({"direction": "up"}, "no direction 'up'"),
-        ({"direction": (0.0, 0.0)}, "is no direction"),
+        ({"direction": (0.0, 0.0)}, "is not a direction"),
         ({"control": ("wall", (0.0, 6.0))}, "lies outside 'wall'"),
         ({"mechanisms": {"roof": {"above": 9.0}}}, "no body that can move lies there"),
     ],

@@ -1,4 +1,4 @@
-"""The one list of what is odd about a model: each finding once, nothing of a sound model."""
+"""The one list of what is suspicious about a model: each finding once, nothing of a sound model."""
 
 from __future__ import annotations
 
@@ -61,12 +61,12 @@ def lifted(by: float) -> Model:
 
 
 CASES: dict[str, tuple[Callable[[], Model], str]] = {
-    "forgotten loads": (lambda: stack(loads=()), "own weight does not act: 2 blocks have a unit weight"),
+    "forgotten loads": (lambda: stack(loads=()), "self-weight does not act: 2 blocks have a unit weight"),
     "nothing at all": (lambda: stack(loads=(), materials={"block": Rigid()}), "nothing acts: there are no loads"),
     "one material without weight": (light, "'b' has no unit weight, the other 1 have one"),
     "weight of some": (
         lambda: stack(loads=(Load("weight", (0, -1), bodies=("a",)),)),
-        "own weight does not act on 'b'",
+        "self-weight does not act on 'b'",
     ),
     "gravity in m/s2": (lambda: stack(loads=(Load("weight", (0, -9.81)),)), "acts 9.81 times downwards"),
     "weight twice": (
@@ -90,9 +90,9 @@ CASES: dict[str, tuple[Callable[[], Model], str]] = {
     ),
     "nearly touching": (
         lambda: lifted(0.01),
-        "1 joint nearly made, and not made or made in part: 'a' and 'b' at (0.5, 1",
+        "1 joint almost made, but not made or made only in part: 'a' and 'b' at (0.5, 1",
     ),
-    "touching nothing": (lambda: lifted(3.0), "'b' touches nothing that stands"),
+    "touching nothing": (lambda: lifted(3.0), "'b' is not connected to any support"),
     "large settlement": (
         lambda: stack(supports=(Support("s", "ground", displacement=(0.0, -0.5)),)),
         "support 's' moves 'ground' by 500 mm",
@@ -165,4 +165,4 @@ def test_forces_that_balance_are_not_told_as_none() -> None:
 def test_a_structure_without_any_load_is_told_so() -> None:
     result = concio.solve(stack(loads=()))
     assert "In equilibrium under no load at all" in result.sentence
-    assert "Own weight does not act" in result.sentence
+    assert "Self-weight does not act" in result.sentence

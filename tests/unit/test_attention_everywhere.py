@@ -56,7 +56,7 @@ ASKS: dict[str, tuple[str, tuple[object, ...]]] = {
     "cell": (CELL, ("--no-strength",)),
     "continuum": (WALL, ("--no-strength", "--mesh-size", "0.4")),
 }
-"""A model whose friction is hardly meant, asked by every command that takes a model."""
+"""A model with an implausible friction, given to every command that takes a model."""
 WRONG: dict[str, tuple[str, tuple[object, ...]]] = {
     "run": (ODD, ("--method", "none")),
     "path": (ODD, ("--stage", "none=1")),

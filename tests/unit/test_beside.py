@@ -1,4 +1,4 @@
-"""Work in a second thread: its result, what it raises, and that it stops when it is told to."""
+"""Work in a second thread: its result, what it raises, and that it stops when asked to."""
 
 from __future__ import annotations
 

@@ -116,7 +116,7 @@ def test_the_verdict_names_vehicle_kilonewtons_and_what_it_rests_on(assessed: co
 
 
 def test_an_answer_that_rests_on_the_soil_says_so() -> None:
-    """Between the bound with and without the pressure of the soil the answer is another one, and is told to be."""
+    """Between the bound with and without the pressure of the soil the answer is another one, and is reported to be."""
     found = concio.assess_bridge(small(), step=0.3, fine=0.05, worst=1, checked=0, sensitivity=False)
     assert found.without_soil is not None
     between = 0.5 * (found.worst.multiplier + found.without_soil.multiplier)

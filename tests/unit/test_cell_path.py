@@ -90,7 +90,7 @@ def test_rigid_blocks_on_hard_joints_take_stresses_but_no_strains():
     cell = concio.cell(block="rigid", friction=0.6)
     path = concio.strain_path(cell, [{"stress yy": -100.0}, {"stress xy": 100.0}])
     assert path.stress[-1, 2] == pytest.approx(37.5)  # f k + f^2 over k + f, k = 1
-    assert "lent a compliance" in path.notes[0]
+    assert "given a compliance" in path.notes[0]
     with pytest.raises(InputError, match="does not determine"):
         concio.strain_path(cell, [{"strain yy": -1e-4}])
 

@@ -184,7 +184,7 @@ def test_rounding_excuses_what_rounding_does_and_no_more():
 
 
 def test_imposed_displacements_are_no_loads():
-    """The springs that push a stiff body where it must go are no measure of the forces that hold it."""
+    """The springs that push a stiff body where it must go are not a measure of the forces that hold it."""
     block = Body("block", np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 0.5), (0.0, 0.5)]), "stone")
     top = Body("top", np.array([(0.0, 0.5), (1.0, 0.5), (1.0, 1.0), (0.0, 1.0)]), "stone")
     model = Model(

@@ -257,7 +257,7 @@ def test_run_tells_of_joints_that_were_nearly_made(tmp_path: Path) -> None:
     text = "[column]\nwidth=1\nheight=1\nblocks=1\n[[blocks]]\nname='floating'\nrectangle=[[-0.5,1.001],[0.5,2]]\n"
     path.write_text(text)
     code, out, _ = run("run", path)
-    assert "attention    1 joint nearly made, and not made or made in part: 'b01' and 'floating' at" in out
+    assert "attention    1 joint almost made, but not made or made only in part: 'b01' and 'floating' at" in out
     assert "with the joints that were made" in out
     path.write_text(text.replace("1.001", "1.0"))
     code, out, _ = run("run", path)
@@ -297,7 +297,7 @@ def test_run_tells_of_blocks_that_a_drawing_lost(tmp_path: Path) -> None:
     )
     code, out, err = run("run", path)
     assert (code, err) == (0, "")
-    assert "attention    the drawing: 1 fault mended or left out, first: " in out
+    assert "attention    the drawing: 1 fault repaired or left out, first: " in out
 
 
 def test_faults_of_a_drawing_and_the_remedy_are_printed_without_a_gap(capsys: pytest.CaptureFixture[str]) -> None:
@@ -354,7 +354,7 @@ def test_version_and_help() -> None:
         (KeyboardInterrupt(), 130, "stopped on request"),
         (MemoryError(), 4, "does not fit into memory"),
         (OSError(errno.ENOSPC, "No space left on device"), 1, "the disk is full"),
-        (ValueError("surprise"), 1, "this is a fault of concio: ValueError: surprise"),
+        (ValueError("surprise"), 1, "this is a bug in concio: ValueError: surprise"),
     ],
 )
 def test_accidents(panel: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException, code: int, said: str) -> None:

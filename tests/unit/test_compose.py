@@ -92,7 +92,7 @@ def test_any_rotation_in_space_where_nothing_is_held_in_part() -> None:
 
 
 def test_a_roller_cannot_stand_askew() -> None:
-    with pytest.raises(InputError, match=r"holds 'x' alone, which is no direction of the axes after turning"):
+    with pytest.raises(InputError, match=r"holds 'x' alone, which is not a direction of the axes after turning"):
         concio.place(structure(), turn=30.0)
 
 

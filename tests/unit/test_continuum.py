@@ -85,7 +85,7 @@ def test_bonded_blocks_come_to_the_continuum_in_proportion_to_their_size():
     assert (apart[1:] / apart[:-1] < 0.65).all()
     assert (apart[1:] / apart[:-1] > 0.4).all()
     assert apart[-1] < 0.04
-    assert (table["difference_blocks"] > 0.5).all(), "joints that slip along the side walls are no moduli"
+    assert (table["difference_blocks"] > 0.5).all(), "joints that slip along the side walls are not moduli"
     assert found.comparisons[0].strength is None
     assert np.isnan(found.bracket).all()
     hung = found.comparisons[2].elastic

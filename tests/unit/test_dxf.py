@@ -168,7 +168,7 @@ def test_supports_loads_and_names_by_layers(tmp_path):
             lambda s: s.space.add_line((9, 9), (8, 9), dxfattribs={"layer": "CONCIO_SUPPORT_X"}),
             "support lies on no",
         ),
-        (lambda s: s.space.add_point((2, 0), dxfattribs={"layer": "CONCIO_LOAD_PRESSURE_3"}), "wants a LINE, not"),
+        (lambda s: s.space.add_point((2, 0), dxfattribs={"layer": "CONCIO_LOAD_PRESSURE_3"}), "takes a LINE, not"),
         (lambda s: s.space.add_point((2, 0), dxfattribs={"layer": "CONCIO_LOAD_FX_ten"}), "'TEN' is not a number"),
         (lambda s: s.space.add_line((2, 0), (3, 0), dxfattribs={"layer": "CONCIO_SUPPORT_Z"}), "not CONCIO_SUPPORT_X"),
         (lambda s: s.space.add_text("x", dxfattribs={"layer": "CONCIO_NAMES", "insert": (9, 9)}), "stands in no block"),

@@ -208,7 +208,7 @@ def test_polylines_and_points_carry_loads_and_supports(tmp_path):
 
 
 def jittered_wall(seed, slip, tolerance):
-    """Corners of a running bond of 12 x 6 stones, each off by up to ``slip``; mended."""
+    """Corners of a running bond of 12 x 6 stones, each off by up to ``slip``; repaired."""
     random = np.random.default_rng(seed)
     outlines = []
     for course in range(6):
@@ -260,5 +260,5 @@ def test_mending_that_would_swallow_blocks_is_refused(tmp_path):
     options = {"materials": {"stone": STONE, "granite": GRANITE}, "layers": LAYERS}
     with pytest.raises(InputError, match=r"mend = 5 m would swallow 4 of 4 outlines .the thinnest, entity"):
         model_from_dxf(path, mend="5 m", **options)
-    with pytest.raises(GeometryError, match=r"layer 'ARCHITRAVI'.* only some 400 mm wide.* would swallow it"):
+    with pytest.raises(GeometryError, match=r"layer 'ARCHITRAVI'.* only some 400 mm wide.* would remove it"):
         model_from_dxf(path, mend="0.22 m", **options)

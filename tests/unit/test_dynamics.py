@@ -36,7 +36,7 @@ def test_sliding_block_stops_where_it_should():
     model = standing(height=0.4, friction=0.3)
     found = concio.dynamics(model, duration=1.0, step=1e-3, gravity=G, velocities={"block": (2.0, 0.0)})
     assert found.end.centre[1, 0] == pytest.approx(2.0**2 / (2 * 0.3 * G), rel=5e-6)
-    assert np.abs(found.end.velocity[1]).max() < 1e-7  # g h is 1e-2: what is left sinks into the lent compliance
+    assert np.abs(found.end.velocity[1]).max() < 1e-7  # g h is 1e-2: what is left sinks into the added compliance
     assert found.certified
     assert found.energy.error < 1e-9
 

@@ -139,7 +139,7 @@ def changed(made: dict[str, Any], place: tuple[Any, ...], text: str) -> dict[str
 
 
 def test_every_digit_of_a_certificate_is_looked_at() -> None:
-    """Any digit changed is refused; forces and lower bound are refused even where the digest is made anew."""
+    """Any digit changed is refused; forces and lower bound are refused even where the digest is made again."""
     made = prove_limit(concio.assemble(concio.loads(pillar(sideways(1.0)))))
     assert "is balanced" in verify.check(made)
     tried = 0

@@ -285,7 +285,7 @@ def test_solids_are_written_where_the_result_has_them(rigid: bool, tmp_path: Pat
 
 
 def test_a_joint_that_carries_nothing_has_its_resultant_in_the_middle() -> None:
-    """Rounding of forces that are none is no centre of pressure: blocks side by side, joined and not pressed."""
+    """Rounding of forces that are none is not a centre of pressure: blocks side by side, joined and not pressed."""
     ground = Body("ground", [(-1, -1), (2, -1), (2, 0), (-1, 0)], kind="fixed")
     corners = np.array([(0.0, 0.0), (0.4, 0.0), (0.4, 0.3), (0.0, 0.3)])
     blocks = [Body(f"b{k}", corners + np.array([0.4 * k, 0.0]), kind="rigid") for k in range(2)]

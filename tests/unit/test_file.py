@@ -332,7 +332,7 @@ WRONG = {
     "a word for true": ("[panel]\nside_walls = 'yes'", "[panel], side_walls: 'yes' must be true or false"),
     "not a choice": ("[panel]\nbase = 'half'", "[panel], base: 'half' is not one of 'full', 'bearings', 'none'"),
     "one number too few": ("[panel]\nblock_size = [0.2]", "[panel], block_size: value 2 is missing"),
-    "no size": ("[arch]\nspan=1e-200\nring=1\nvoussoirs=5", "[arch], span: 1e-200 m is no size of a structure"),
+    "no size": ("[arch]\nspan=1e-200\nring=1\nvoussoirs=5", "[arch], span: 1e-200 m is not a size of a structure"),
     "key left out": ("[arch]\nspan = 3", "[arch]: 'ring' is missing"),
     "two generators": ("[panel]\n[arch]\nspan=3\nring=0.3\nvoussoirs=7", "more than one of [panel], [arch]"),
     "no blocks": ("[joints.a]\nfriction = 1", "the file describes no blocks (add [[blocks]], blocks_file"),

@@ -115,7 +115,7 @@ def test_an_element_so_soft_that_it_stays_elastic_is_secant_to_its_branch() -> N
     [
         ({"chimney": {"kind": "cantilever", "E": E}}, "no mechanism 'chimney'"),
         ({"weakest of all": {"kind": "canteliver", "E": E}}, "no kind 'canteliver'"),
-        ({"weakest of all": {"kind": "cantilever", "E": 900.0}}, "no modulus of masonry"),
+        ({"weakest of all": {"kind": "cantilever", "E": 900.0}}, "not a modulus of masonry"),
         ({"weakest of all": {"kind": "cantilever", "E": E, "length": -1.0}}, "must be positive"),
         ({"weakest of all": {"kind": "cantilever", "E": E, "t": 0.3}}, "'t'"),
         ({"weakest of all": {"kind": "cantilever"}}, "E"),

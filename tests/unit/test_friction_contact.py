@@ -100,7 +100,7 @@ def test_hundreds_of_sliding_contacts_and_thousands_at_rest(blocks: int, courses
         ({"W": np.triu(np.ones((4, 4)))}, "not symmetric"),
         ({"W": np.zeros((4, 4))}, "must be positive"),
         ({"W": np.full((4, 4), np.nan)}, "not finite"),
-        ({"q": np.ones(3)}, "are no problem"),
+        ({"q": np.ones(3)}, "are not a problem"),
         ({"mu": np.ones(3)}, "one for each of 2"),
         ({"mu": -0.1}, "none negative"),
         ({"dim": 4}, "must be 2 or 3"),

@@ -28,9 +28,9 @@ TEXTS = {
     "a table of 5,000 parts": (f"[{'.'.join('a' * 5000)}]\nx = 1", "nested more than 40 deep"),
     "brackets": (f"x = {'[' * 5000}{']' * 5000}", "nested too deeply"),
     "inline tables": ("x = " + "{a = " * 60 + "1" + "}" * 60, "nested more than 40 deep"),
-    "a decimal comma": ("[joints.j]\nfriction = 0,6", "decimals are set off by a point"),
-    "a decimal comma in a text": ("[joints.j]\nfriction = '0,6'", "decimals are set off by a point"),
-    "a comma first": ("[joints.j]\nfriction = ',6'", "decimals are set off by a point"),
+    "a decimal comma": ("[joints.j]\nfriction = 0,6", "the decimal separator is a point"),
+    "a decimal comma in a text": ("[joints.j]\nfriction = '0,6'", "the decimal separator is a point"),
+    "a comma first": ("[joints.j]\nfriction = ',6'", "the decimal separator is a point"),
     "a text of a million letters": (f"[panel]\njoint = '{'x' * 1_000_000}'", "is not a number with a unit"),
     "a number beyond all numbers": ("[panel]\njoint = 1e400", "not finite"),
     "a text beyond all numbers": ("[panel]\njoint = '1e400 m'", "is not a finite number"),
@@ -54,7 +54,7 @@ TABLES = {
     "a cell of 131,073 letters": ("b.csv", f"name,outline\n{'x' * 131_073},0 0\n", "field larger than field limit"),
     "a column twice": ("b.csv", "name,outline,name\na,0 0; 1 0; 1 1,b\n", "column 'name' twice"),
     "semicolons": ("b.csv", "name;outline\na;0 0\n", "columns are separated by commas"),
-    "decimal commas": ("b.csv", 'name,outline\na,"0,5 0; 1 0; 1 1"\n', "decimals are set off by a point"),
+    "decimal commas": ("b.csv", 'name,outline\na,"0,5 0; 1 0; 1 1"\n', "the decimal separator is a point"),
     "brackets": ("b.json", "[" * 100_000, "nested too deeply"),
     "digits": ("b.json", "[" + "9" * 5000 + "]", "too many digits"),
     "a large whole number": ("b.json", f'[{{"name": "a", "outline": [[{10**400}, 0], [1, 0], [1, 1]]}}]', "vertices"),
@@ -148,7 +148,7 @@ def test_friction_as_an_angle_and_weights_as_masses() -> None:
     assert stone.unit_weight == pytest.approx(2.1 * 9.80665, rel=1e-14)
     assert concio.Rigid("2.1 t/m3").unit_weight == stone.unit_weight
     for bad in ("90 deg", "-5 deg", "120 deg"):
-        with pytest.raises(InputError, match="no angle of friction"):
+        with pytest.raises(InputError, match="not an angle of friction"):
             concio.JointLaw(bad)
     with pytest.raises(InputError, match="must be a plain number"):
         concio.Elastic(E=1e6, nu="31 deg")
@@ -225,7 +225,7 @@ def test_a_drawing_given_as_a_model_file_is_told_where_to_go(tmp_path, name, key
 
 @pytest.mark.parametrize("options", [{"workers": 0}, {"workers": -2}, {"executor": "procesess"}, {"executor": 3}])
 def test_a_study_that_cannot_run_leaves_no_directory(tmp_path, options):
-    """The next study into that place would have been told that there is one already."""
+    """The next study into that place would have been reported that there is one already."""
     place = tmp_path / "study"
     mu = concio.variable("mu", "uniform", keys="arch.friction", low=0.3, high=0.7)
     with pytest.raises(InputError):

@@ -247,8 +247,8 @@ FILES = {
     "zip": (lambda _: "PK\3\4\33[2J" + "x" * 90, r"does not begin with .* with 'PK\?\?\?\[2Jx"),
     "other schema": (lambda t: t.replace("'IFC4'", "'AUTOMOTIVE_DESIGN'"), "'AUTOMOTIVE_DESIGN', not IFC"),
     "twice": (lambda t: t.replace("#7=", "#6="), "line 14: #6 is given twice"),
-    "garbled": (lambda t: t.replace("#7= IFC", "#7: IFC"), "line 14 is no instance: '#7: IFC"),
-    "quote": (lambda t: t.replace("'Level 1'", "'Level 1"), "is no instance|cannot be read|cut off"),
+    "garbled": (lambda t: t.replace("#7= IFC", "#7: IFC"), "line 14 is not an instance: '#7: IFC"),
+    "quote": (lambda t: t.replace("'Level 1'", "'Level 1"), "is not an instance|cannot be read|cut off"),
     "digits": (lambda t: t.replace("(1.0,1.0,1.0)", f"(1.0,1.0,{'9' * 5000})"), "something else than numbers"),
     "empty": (lambda t: re.sub(r"#\d+= IFCBUILDINGELEMENTPROXY.*\n", "", t), "holds no blocks"),
 }
@@ -283,5 +283,5 @@ def test_other_ways_to_write_it(tmp_path: Path) -> None:
         (tmp_path / "m.ifc").write_bytes(raw)
         assert concio.model_from_solids(tmp_path / "m.ifc", block="rigid").bodies[0].volume == pytest.approx(1.0)
     assert decoded(r"\X2\03B103B2\X0\-\X\E9-\S\i-''-\\") == "αβ-é-é-'-\\"
-    with pytest.raises(InputError, match=r"'.ifczip' is no format.*save it as .ifc"):
+    with pytest.raises(InputError, match=r"'.ifczip' is not a format.*save it as .ifc"):
         concio.model_from_solids(tmp_path / "m.ifczip", block="rigid")

@@ -253,10 +253,10 @@ def test_earlier_result_is_replaced_and_other_files_are_not(panel: Result, tmp_p
     assert (target / "notes.txt").read_text() == "what I thought of it"
     other = tmp_path / "thesis"
     other.mkdir()
-    (other / "chapter.txt").write_text("years of work")
+    (other / "chapter.txt").write_text("years of computing time")
     with pytest.raises(InputError, match="other things"):
         write_result(panel, other)
-    assert (other / "chapter.txt").read_text() == "years of work"
+    assert (other / "chapter.txt").read_text() == "years of computing time"
     with pytest.raises(InputError, match="this is a file"):
         write_result(panel, other / "chapter.txt")
 

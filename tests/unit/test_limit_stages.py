@@ -45,7 +45,7 @@ def test_numbers_come_one_by_one_and_each_keeps_those_before(wall: concio.Model,
     assert last.associated is first.associated
     assert last.friction is not None
     assert last.path is None
-    assert "not followed unasked" in last.path_note
+    assert "not followed by default" in last.path_note
     low, high = last.bracket
     assert 0 < low <= high
     assert last.carried == last.steps.carried
@@ -58,7 +58,7 @@ def test_large_models_in_space_are_searched_on_request_only(monkeypatch) -> None
     monkeypatch.setattr(limits, "UNASKED_IN_SPACE", 0)
     plane = concio.column(width=0.5, height=1.0, blocks=2, block="rigid", friction=0.6, horizontal=0.1)
     model = concio.extrude(plane, 0.4)
-    assert "not tried unasked" in limits.limit(model, steps=False).search
+    assert "not tried by default" in limits.limit(model, steps=False).search
     asked = limits.limit(model, steps=False, search=True)
     assert "not tried" not in asked.search
     assert asked.collapse_state is not None
@@ -77,13 +77,13 @@ def test_a_collapse_state_is_not_told_as_what_is_carried() -> None:
     found = limits.limit(slender)
     text = "\n".join(limit_lines(found))
     assert "Design with 1 times 'live' (5 kN) at most: as the load grows it is carried up to there" in text
-    assert "Nothing is in equilibrium beyond it either" in text
+    assert "No equilibrium exists beyond it" in text
     state = found.collapse_state
     assert state is not None
     lower = replace(found, collapse_state=replace(state, multiplier=0.5)).verdict.sentence
     assert "Design with 0.5 times" in lower
     assert "lets the structure begin to move, though 1 is carried where the load grows from rest" in lower
-    assert "1 times is an upper bound only: nothing is in equilibrium beyond it" in lower
+    assert "1 times is an upper bound only: no equilibrium exists beyond it" in lower
     unknown = replace(found, collapse_state=None).verdict.sentence
     assert "Design with 1 times" in unknown
     assert "there it collapses" in unknown
@@ -153,7 +153,7 @@ def test_what_has_a_size_of_its_own_is_no_ray(wall: concio.Model) -> None:
     [
         (4.77, "21 % of that bound: it could grow 4.77 times at most"),
         (1 / 1.648, "1.65 times that bound: only 60.7 % of it can be carried at most"),
-        (0.0, "not carried, nor is any part of it"),
+        (0.0, "not carried, nor is any fraction of it"),
     ],
 )
 def test_what_the_load_as_given_is_beside_the_bound(multiplier: float, said: str) -> None:

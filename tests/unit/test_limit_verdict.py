@@ -64,7 +64,7 @@ def test_what_falls_out_of_a_slot_is_not_carried_though_its_bound_is_locked(kind
 
 
 def test_a_load_that_nothing_carries_is_not_carried_at_any_multiple() -> None:
-    """Without own weight all multiples are alike: one proof is that of every other."""
+    """Without self-weight all multiples are alike: one proof is that of every other."""
     model = replace(slot(), loads=(slot().loads[1],))
     found = concio.limit(model, search=False, path=False, steps=True)
     assert found.associated.locked
@@ -168,7 +168,7 @@ def test_a_footing_that_twists_is_designed_with_an_even_pressure_whatever_its_po
 
 @pytest.mark.parametrize("points", ["corners", 4, 6, 8, 12][: sample(2, 5)])
 def test_the_headline_of_a_twisted_footing_lies_within_a_thousandth_of_even_pressure(points: str | int) -> None:
-    """It went 1.503, 1.547, 1.503 with the grid, steps being a hundredth of a bound of 2.83; both ends are told now."""
+    """It went 1.503, 1.547, 1.503 with the grid, steps being a hundredth of a bound of 2.83; now both are given."""
     found = concio.limit(footing(points), search=False)
     assert found.spread is not None
     assert found.design == found.spread.carried
@@ -277,7 +277,7 @@ def test_ties_that_break_one_after_the_other_are_not_added_up() -> None:
     assert found.untied is not None
     assert found.untied.multiplier == pytest.approx(3.2, rel=1e-6)
     assert found.design == pytest.approx(3.2 + 1.5 * 1.01, rel=1e-3)
-    assert "while every tie is whole; then one breaks" in found.verdict.sentence
+    assert "with all ties intact; then one breaks" in found.verdict.sentence
     assert any("2 ties that can break" in line and "the first breaks at" in line for line in found.verdict.limits)
     unknown = concio.limit(tied(stiff, soft), path=False)
     assert unknown.design <= 3.2 * (1 + 1e-9)

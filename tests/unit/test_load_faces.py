@@ -62,7 +62,7 @@ def test_naming_one_side_is_asking_too():
 
 def test_an_upright_joint_has_no_lower_face():
     edge = ((1.3, 0.0), (1.3, 1.0))
-    with pytest.raises(InputError, match=r"in an upright joint, which has two faces .*'left', 'right' or 'both'"):
+    with pytest.raises(InputError, match=r"in a vertical joint, which has two faces .*'left', 'right' or 'both'"):
         assemble(two_courses(Load("pressure", (4.0,), edge=edge)))
     assert pushed(two_courses(Load("pressure", (4.0,), edge=edge, face="left"))) == {"left": [-4, 0]}
     assert pushed(two_courses(Load("pressure", (4.0,), edge=edge, face="right"))) == {"right": [4, 0]}

@@ -77,7 +77,7 @@ def test_what_a_step_left_of_overlap_in_a_contact_without_force_does_not_end_the
 
 @pytest.mark.parametrize("seed", range(sample(4, 40)))
 def test_a_search_that_ends_early_without_forces_agrees_with_one_that_does_not(seed: int) -> None:
-    """Where no forces balance the loads, the bound of the motions falls without end; elsewhere nothing changes."""
+    """Where no forces balance the loads, the bound of the motions falls without bound; elsewhere nothing changes."""
     rng = np.random.default_rng(seed)
     bodies = (Polyhedron.box("g", (-1, -1, -0.2), (2, 2, 0), kind="fixed"),
               Polyhedron.box("b", (0, 0, 0), rng.uniform(0.3, 1.0, 3), kind="rigid"))  # fmt: skip

@@ -166,12 +166,12 @@ def test_push_and_shake_from_the_command_line(tmp_path):
     ("arguments", "words"),
     [
         (("push", "--film", "gif"), "needs a directory"),
-        (("push", "--film", "avi", "--out", "o"), "'avi' is no film"),
+        (("push", "--film", "avi", "--out", "o"), "'avi' is not a film"),
         (("push", "--load", "--point", "pillar,0,1"), "either the load grows or a point moves"),
         (("shake", "--motion", "nowhere.at2"), "there is no such file"),
-        (("shake", "--pulse", "half sine"), "is no pulse"),
-        (("shake", "--pulse", "half sine,0.4 feet,1 s"), "is no acceleration"),
-        (("shake", "--duration", "10 parsecs"), "is no time"),
+        (("shake", "--pulse", "half sine"), "is not a pulse"),
+        (("shake", "--pulse", "half sine,0.4 feet,1 s"), "is not an acceleration"),
+        (("shake", "--duration", "10 parsecs"), "is not a time"),
         (("shake", "--from", "nowhere.npz"), "there is no such file"),
     ],
 )
@@ -187,7 +187,7 @@ def test_bad_options(tmp_path, monkeypatch, arguments, words):
     ("old", "new", "words"),
     [
         ('duration = "300 ms"', "durration = 1.0", "did you mean 'duration'"),
-        ('duration = "300 ms"', 'duration = "soon"', "is no time"),
+        ('duration = "300 ms"', 'duration = "soon"', "is not a time"),
         ('shape = "sine"', 'shape = "sin"', "shape"),
     ],
 )
@@ -229,7 +229,7 @@ main()
 
 
 def damaged(path, change) -> None:
-    """Write a motion anew with its head and arrays changed."""
+    """Write a motion again with its head and arrays changed."""
     with np.load(path) as archive:
         head = json.loads(str(archive["head"]))
         arrays = {name: archive[name] for name in archive.files if name != "head"}

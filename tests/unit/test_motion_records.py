@@ -42,7 +42,7 @@ def test_text_of_two_columns_and_of_one(tmp_path):
     ("text", "words"),
     [
         ("0.0 1\n0.1 2\n0.3 1\n0.4 1\n", "the record has a gap: 0.2 s between 0.1 s and 0.3 s"),
-        ("0.0 1\n0.1 2\nlost\n0.2 1\n", "line 3 is no number: the record has a gap"),
+        ("0.0 1\n0.1 2\nlost\n0.2 1\n", "line 3 is not a number: the record has a gap"),
         ("1.0 0.0\n2.0 0.1\n1.5 0.2\n", "the two columns are swapped"),
         ("0.0 1\n0.2 2\n0.1 1\n", "time does not rise: after 0.2 s comes 0.1 s"),
         ("1\n2\n3\n", "the time between samples is not known"),
@@ -115,7 +115,7 @@ def test_velocities_and_displacements_of_peer_are_read_in_cm(tmp_path, suffix, q
     [
         (".at2", "VELOCITY TIME SERIES IN UNITS OF CM/S", "3", "0.01", "in cm/s, the name of the file acceleration"),
         (".vt2", "VELOCITY TIME SERIES IN UNITS OF FURLONG", "3", "0.01", "'FURLONG', which is not known"),
-        (".at2", "ACCELERATION TIME SERIES IN UNITS OF G", "9" * 5000, "0.01", "the head has no 'NPTS"),
+        (".at2", "ACCELERATION TIME SERIES IN UNITS OF G", "9" * 5000, "0.01", "the header has no 'NPTS"),
         (".at2", "ACCELERATION TIME SERIES IN UNITS OF G", "3", "1e308", "at most 60 s"),
     ],
 )  # fmt: skip
@@ -130,5 +130,5 @@ def test_a_file_too_large_for_a_record(tmp_path):
     path = tmp_path / "record.txt"
     with path.open("wb") as file:
         file.truncate(300_000_000)
-    with pytest.raises(concio.InputError, match="300 MB: that is no record"):
+    with pytest.raises(concio.InputError, match="300 MB: that is not a record"):
         concio.read_record(path)

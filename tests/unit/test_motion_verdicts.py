@@ -167,7 +167,7 @@ def test_a_push_that_ends_before_its_peak_shows_no_peak(tmp_path):
 
 
 def test_a_push_says_what_it_multiplies_and_what_acts_beside():
-    """Weights are multiplied, loads from above too; a group called live acts as it is, sideways it is no weight."""
+    """Weights are multiplied, loads from above too; a group called live acts as it is, sideways it is not a weight."""
     live = concio.Load("point", (-0.5, -3.0), bodies=("block",), at=(0.0, 1.2), group="live")
     model = standing()
     model = replace(model, loads=(*model.loads, live))

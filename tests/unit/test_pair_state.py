@@ -25,7 +25,7 @@ def test_codes_and_views() -> None:
     other = PairStates.plane([0, 1, 1, 1, 2, 2, 0], [0, 0, 1, 1, 0, -1, 1])
     np.testing.assert_array_equal(np.flatnonzero(states.differ(other)), [3])
     assert states.key() != other.key()
-    assert states.key() == PairStates(states.normal, -1.0 * -states.direction).key()  # -0.0 is no direction
+    assert states.key() == PairStates(states.normal, -1.0 * -states.direction).key()  # -0.0 is not a direction
 
 
 def test_read_off_a_pushed_wall_with_a_cap() -> None:

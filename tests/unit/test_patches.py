@@ -167,7 +167,7 @@ def test_a_bar_through_a_body_of_too_many_pieces_overlaps_it(monkeypatch: pytest
 
 
 def test_overlaps_are_found_among_bodies_of_several_shapes() -> None:
-    """Two of each shape, turned about: a pair is told whichever of them comes first."""
+    """Two of each shape, turned about: a pair is reported whichever of them comes first."""
     post = tetrahedron("post", np.array([[0.2, 0.2, 0.5], [0.6, 0.2, 0.5], [0.2, 0.5, 0.5], [0.3, 0.3, 1.5]]))
     bar = box("bar", (0.9, 0.3, 0.2), (1.3, 0.7, 0.6))
     far = l_block("far", low=0.2)

@@ -217,7 +217,7 @@ def test_rigid_blocks_on_hard_joints_borrow_a_compliance():
     model = wall(length=1.0, height=0.5, horizontal=1.0, friction=0.6, block="rigid")
     found = run_path(model, [WEIGHT, Stage("push", {"live": 0.3})])
     assert found.complete
-    assert "lent a compliance" in found.notes[0]
+    assert "given a compliance" in found.notes[0]
     assert found.certificate <= 1e-9
     assert found.energy_error <= 1e-9
     reaction = found.result().reactions["ground"]

@@ -1,4 +1,4 @@
-"""How a load path is told: report, exit code and terminal say the same, with the multiplier on the axis."""
+"""How a load path is reported: report, exit code and terminal say the same, with the multiplier on the axis."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_a_path_that_ends_in_collapse_says_so_everywhere(tmp_path: Path, kind: s
         assert "The structure collapses on this path." in text
         assert facts["sentence"].replace("'", "&#x27;" if text is report else "'") in text
         assert "The loads are carried" not in text
-        assert ("were lent a compliance" in text) == (kind == "rigid")
+        assert ("were given a compliance" in text) == (kind == "rigid")
     assert "Collapses in stage '2: live = 1': it carries no more than live = " in facts["sentence"]
     assert not (out / "end" / "report.html").exists()  # a report of the last state alone would say that it is carried
 

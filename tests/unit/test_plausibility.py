@@ -1,4 +1,4 @@
-"""Numbers that are hardly meant are told by check, run and the report, with what to write; others are not."""
+"""Numbers that are implausible are reported by check, run and the report, with what to write; others are not."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Polyhedra: closed forms, what is refused and how it is told."""
+"""Polyhedra: closed forms, what is refused and how it is reported."""
 
 from __future__ import annotations
 

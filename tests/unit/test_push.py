@@ -159,7 +159,7 @@ def test_what_does_not_stand_is_refused():
         ({"factors": {"daed": 2.0}}, "did you mean 'dead'"),
         ({"step": -1.0}, "step = -1 must be positive"),
         ({"until": 0.0}, "until = 0 must be positive"),
-        ({"direction": (0.0, 0.0)}, "is no direction"),
+        ({"direction": (0.0, 0.0)}, "is not a direction"),
         ({"gravity": 0.0}, "gravity = 0 must be positive"),
     ],
 )

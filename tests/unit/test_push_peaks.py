@@ -80,7 +80,7 @@ def test_a_peak_is_as_hand_statics_says_but_for_what_joints_give_way():
 def test_bodies_meet_where_they_do(seed):
     """The top corner of a pillar that turns about its toe has moved by the gap; nothing is carried across before.
 
-    The toe of a hard joint gives way by what is lent to it, half a micrometre here, whatever the gap.
+    The toe of a hard joint gives way by what is added to it, half a micrometre here, whatever the gap.
     """
     rng = np.random.default_rng(seed)
     gap = rng.uniform(2e-3, 2e-2)
@@ -97,7 +97,7 @@ def test_bodies_meet_where_they_do(seed):
 
 
 def test_stacks_are_followed_until_nothing_is_carried():
-    """Slips that iterations sum along the tangents they pass are no fault: they differ to the third order."""
+    """Slips that iterations sum along the tangents they pass are not errors: they differ to the third order."""
     found = concio.push(concio.column(width=0.4, height=1.2, blocks=3, block="rigid", friction=0.5))
     assert found.ending is PushEnding.LOST
     assert found.displacement[-1] == pytest.approx(0.2, rel=1e-3)

@@ -132,7 +132,7 @@ def test_a_push_of_the_weights_has_the_multiplier_of_an_assessment():
     model = pillar(loads=(load,))
     own = 20.0 * B * H
     wanted = (own + floor) * B / 2 / (own * H / 2 + floor * H)
-    assert wanted < 0.9 * B / H  # own weights alone would carry more
+    assert wanted < 0.9 * B / H  # self-weights alone would carry more
     found = concio.push(model, live=())
     assert found.peak == pytest.approx(wanted, rel=3e-4)
     (weights,) = [a for a in found.verdict.question.acting if a.role == "multiplied"]

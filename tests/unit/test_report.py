@@ -297,8 +297,8 @@ def test_collapse_opens_without_errors(sliding: Result, tmp_path: Path) -> None:
 def test_joints_that_were_nearly_made_come_first_of_what_to_do_next() -> None:
     text = "[column]\nwidth=1\nheight=1\nblocks=1\n[[blocks]]\nname='floating'\nrectangle=[[-0.5,1.001],[0.5,2]]\n"
     fallen = concio.solve(concio.loads(text), on_failure="return")
-    assert verdict(fallen).next_steps[0].startswith("1 joint nearly made, and not made")
-    assert "1 joint nearly made, and not made" in report_html(fallen)
+    assert verdict(fallen).next_steps[0].startswith("1 joint almost made, but not made")
+    assert "1 joint almost made, but not made" in report_html(fallen)
     touching = concio.solve(concio.loads(text.replace("1.001", "1.0")), on_failure="return")
-    assert not any("nearly made" in line for line in (*verdict(touching).limits, *verdict(touching).attention))
+    assert not any("almost made" in line for line in (*verdict(touching).limits, *verdict(touching).attention))
     assert verdict(touching).headline == VERDICTS[touching.status].headline

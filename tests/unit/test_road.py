@@ -196,7 +196,7 @@ def test_numbers_in_other_units_are_told(change: tuple[str, str], words: str) ->
     )
     assert not implausible(concio.loads(text))
     assert words in " ".join(implausible(concio.loads(text.replace(*change))))
-    for unit, value in (("t/m3", 1.9), ("kg/m3", 1900)):  # what is told to write can be read
+    for unit, value in (("t/m3", 1.9), ("kg/m3", 1900)):  # what the message suggests can be read
         read = concio.loads(text.replace("unit_weight = 19.0", f"unit_weight = '{value} {unit}'"))
         assert read.fill is not None
         assert read.fill.unit_weight == pytest.approx(1.9 * 9.80665, rel=1e-3)

@@ -59,8 +59,8 @@ def by_events(seed, factor=1.0):
 def check(seed, step=1e-3):
     """Hold one case against events: how long it takes to fall, or its peak if that is not chaotic, and its first arc.
 
-    The compliance lent to joints lets a block tilt before it lifts off: by what its weight gives way on one corner over
-    its width, a hundred thousandth. An arc that the ground motion amplifies more than tenfold is held to that.
+    The compliance added to joints lets a block tilt before it lifts off: by what its weight gives way on one corner
+    over its width, a hundred thousandth. An arc that the ground motion amplifies more than tenfold is held to that.
     """
     half, high, ground, end, _ = drawn(seed)
     alpha = np.arctan(half / high)

@@ -1,4 +1,4 @@
-"""Rules of joints: one that names nothing is refused, one that decides nothing is told."""
+"""Rules of joints: one that names nothing is refused, one that decides nothing is reported."""
 
 from __future__ import annotations
 

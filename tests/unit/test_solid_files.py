@@ -137,7 +137,7 @@ def test_ply_and_off(tmp_path: Path, name: str) -> None:
     ]
     assert [p.area for p in detect(model).patches] == [pytest.approx(1.0)]
     (tmp_path / name).write_bytes(SURFACES[name][: -60 if name[-1] == "y" else -150])
-    with pytest.raises(InputError, match=r"the file ends before|is no row of 'face'"):
+    with pytest.raises(InputError, match=r"the file ends before|is not a row of 'face'"):
         concio.model_from_solids(tmp_path / name, block="rigid")
 
 
@@ -333,7 +333,7 @@ def test_a_block_that_touches_nothing_is_told(tmp_path: Path) -> None:
     path.write_text(path.read_text().replace("[materials", "[solids]\nground = true\n[materials"))
     code, out, _ = run("check", path)
     assert code == 0
-    assert "attention    'high' touches nothing that stands: it falls" in out
+    assert "attention    'high' is not connected to any support: it falls" in out
     assert "'c' touches" not in out
 
 
@@ -367,10 +367,10 @@ yield_force = 30
 SOUND = ("height = 1, lintel = 0.25", "[0.5, 0.25, 0.25]", "[0.5, 1.1, 1.5]", "1.4")
 MISTAKES = {
     "none": ({}, 0, ""),
-    "no lintel": ({0: "height = 1"}, 0, "'wall-w2-c05-b04' has nothing under it: only friction"),
+    "no lintel": ({0: "height = 1"}, 0, "'wall-w2-c05-b04' has no block or support below: only friction"),
     "millimetres": ({1: "[500, 250, 250]"}, 2, "the wall is 2 m long and 250 m thick -> .*is block_size in mm"),
     "elsewhere": ({2: "[0.5, 1.1, 9]"}, 0, "blocks are in 2 groups that do not touch: 'wall-w1-c01-b01' and 63 more"),
-    "hanging": ({2: "[0.5, 1.6, 1.5]"}, 0, "'vault-v07-b01'.* have nothing under them: .*a pier missing"),
+    "hanging": ({2: "[0.5, 1.6, 1.5]"}, 0, "'vault-v07-b01'.* have no block or support below: .*a pier missing"),
     "tie": ({3: "4.1"}, 0, "tie 'bar' ends at .1, 0, 4.1. m, 2.6 m outside 'wall-w1-c06-b02'"),
 }  # fmt: skip
 

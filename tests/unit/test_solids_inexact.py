@@ -22,7 +22,7 @@ def rounded(model: Model, path: Path, digits: int) -> Path:
 
 
 def test_blocks_rounded_to_a_tenth_of_a_millimetre_are_snapped_and_joined(tmp_path: Path) -> None:
-    """Vertices move into the planes of their faces by no more than the accuracy; what was moved how far is told."""
+    """Vertices move into the planes of their faces by no more than the accuracy; what was moved how far is reported."""
     exact = concio.dome(span=4, ring=0.3, courses=3, blocks=8, block="rigid", friction=0.7, oculus=0.8)
     exact = concio.place(exact, turn=17, axis=(1, 2, 3))
     path = rounded(exact, tmp_path / "dome.obj", 4)

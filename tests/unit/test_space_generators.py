@@ -286,7 +286,7 @@ def test_horizontal_shares_have_a_direction() -> None:
         (lambda: concio.dome(span=8, ring=0.5, courses=3, blocks=8, ocullus=1), "did you mean 'oculus'"),
         (lambda: concio.cross_vault(span=5, ring=0.3, courses=7, block_length=0.7, springing=5), "springing = 5"),
         (lambda: concio.drums(diameter=1, height=2, drums=2, eccentricity=(1, 0)), "lies outside the head"),
-        (lambda: concio.drums(diameter=1, height=2, drums=2, towards=(0, 0)), "is no direction"),
+        (lambda: concio.drums(diameter=1, height=2, drums=2, towards=(0, 0)), "is not a direction"),
         (lambda: concio.arch_on_piers(span=3, ring=1.2, voussoirs=9, pier_width=1, pier_height=2, pier_courses=4),
          "thicker at its springing than the pier"),
     ],

@@ -194,8 +194,8 @@ sd = 0.05
         ("loads[3].value", "no entry [3] among 1", "from 1 to 1"),
         ("loads.value", "no keys below a list", "brackets"),
         ("arch[1]", "there is no list", "brackets"),
-        ("arch..friction", "is no path", "write for example"),
-        ("", "is no path", "write for example"),
+        ("arch..friction", "is not a path", "write for example"),
+        ("", "is not a path", "write for example"),
     ],
 )
 def test_wrong_paths_are_told(path: str, said: str, hint: str) -> None:

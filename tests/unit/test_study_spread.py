@@ -193,7 +193,7 @@ def test_friction_is_asked_without_a_live_group(tmp_path: Path) -> None:
     code, out, _ = run("study", path, "--out", tmp_path / "s", "--no-figures", "--json")
     told = json.loads(out)
     assert (code, told["status"], told["verdict"]["outcome"]) == (0, "done", "holds")
-    assert set(told["verdicts"]) == {"solved", "no_equilibrium"}, "collapses that are shown are no missing answers"
+    assert set(told["verdicts"]) == {"solved", "no_equilibrium"}, "collapses that are shown are not missing answers"
     again = concio.load_study(tmp_path / "s")
     assert again.verdict == concio.study(path).verdict
     assert again.spread("friction_factor").endless == told["verdicts"]["no_equilibrium"]
@@ -222,7 +222,7 @@ def test_one_output_that_fails_takes_nothing_from_the_others() -> None:
 
 def test_a_row_survives_being_stored() -> None:
     row = Row(3, "solved", "x", {"a": math.nan, "b": math.inf}, 0.5, ("a",), {"b": "raised: x"},
-              {"dead": {"what": "own weight", "force": [0.0, -1.0], "size": 1.0}}, ("odd",))  # fmt: skip
+              {"dead": {"what": "self-weight", "force": [0.0, -1.0], "size": 1.0}}, ("odd",))  # fmt: skip
     again = Row.from_dict(json.loads(json.dumps(row.as_dict())))
     assert repr(again) == repr(row)
 
@@ -243,8 +243,8 @@ def test_a_correlation_may_be_a_matrix(given: Any) -> None:
         ([[1.0, 0.5], [0.4, 1.0]], "symmetric"),
         ([[2.0, 0.5], [0.5, 1.0]], "ones on its diagonal"),
         ([[1.0, math.nan], [math.nan, 1.0]], "finite"),
-        ("mu", "is no mapping of pairs"),
-        ({"mu": 0.5}, "is no pair"),
+        ("mu", "is not a mapping of pairs"),
+        ({"mu": 0.5}, "is not a pair"),
         ([[1.0, 1.5], [1.5, 1.0]], "must lie between"),
     ],
 )

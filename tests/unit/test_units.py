@@ -54,7 +54,7 @@ def test_a_bare_number_is_in_kn_and_m_already(kind: str) -> None:
         ("5 m", "number", "'5 m' must be a plain number"),
         ("5 furlongs", "length", "unknown unit 'furlongs'"),
         ("thick", "length", "'thick' is not a number with a unit"),
-        ("1,5 m", "length", "unknown unit ',5 m' in '1,5 m' (decimals are set off by a point"),
+        ("1,5 m", "length", "unknown unit ',5 m' in '1,5 m' (the decimal separator is a point"),
         ("half", "number", "'half' is not a number with a unit (write for example 1.5)"),
         (math.nan, "length", "NaN"),
         ("nan", "length", "NaN"),

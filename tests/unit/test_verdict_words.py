@@ -20,17 +20,16 @@ KEPT = {
     ("problem/solution.py", "No equilibrium is possible with the joints"): "the same",
     ("problem/solution.py", "Collapses with the joints that were made"): "the same",
     ("model/solids/ifc_geometry.py", "carried out"): "an operation of a drawing program",
-    ("analysis/seismic/curve.py", "come to the end of their way"): "a joint at the end of its sliding",
+    ("analysis/seismic/curve.py", "reach the end of their travel"): "a joint at the end of its sliding",
     ("cli/limit.py", "Also bisect load and friction with solved load steps"): "help of an option",
     ("report/page.py", "solved by"): "heads the name of the method",
-    ("report/motion_page.py", "What solved the steps"): "heads the share of each method",
     ("plot/convergence.py", "o solved, x not"): "the legend of a figure of methods",
 }
 """Texts with such a word that claim nothing of a structure, and why."""
 
 
 def texts(path: Path) -> Iterator[tuple[int, str]]:
-    """Yield the string literals of a file that are no docstrings and no single words, which are keys."""
+    """Yield the string literals of a file that are not docstrings and no single words, which are keys."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     bare = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
     for node in ast.walk(tree):

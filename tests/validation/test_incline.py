@@ -56,7 +56,7 @@ def test_load_path_of_a_rigid_block(mu, width, height):
 
 @pytest.mark.parametrize(("mu", "width", "height"), CASES)
 def test_load_path_of_an_elastic_block(mu, width, height):
-    """An elastic block is no weaker: it slides or turns about its last corner."""
+    """An elastic block is not a weaker: it slides or turns about its last corner."""
     column = concio.column(
         width=width, height=height, blocks=1, friction=mu, unit_weight=20, mesh_size=min(width, height) / 2
     )

@@ -1,7 +1,7 @@
 """Associated limit multipliers of walls 1 to 3 of Ferris and Tin-Loi.
 
 Source: M. C. Ferris and F. Tin-Loi, Limit analysis of frictional block assemblies as a mathematical program with
-complementarity constraints, Int. J. Mech. Sci. 43 (2001) 209-224. Rigid blocks 0.4 x 0.175, friction 0.65, own weight
+complementarity constraints, Int. J. Mech. Sci. 43 (2001) 209-224. Rigid blocks 0.4 x 0.175, friction 0.65, self-weight
 and a horizontal force lambda times the weight on each block. Values to the five digits that are quoted.
 """
 

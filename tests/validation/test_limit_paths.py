@@ -1,8 +1,8 @@
 """Load paths of the Ferris and Tin-Loi walls to collapse, against the limit multipliers.
 
-Rigid blocks on compliant joints (a_t = 2 a_n; the multipliers do not depend on the size of the compliance), own weight,
-then a horizontal share of it, controlled by the work-conjugate displacement. Associated dilatancy must end at the limit
-multiplier, found by a linear programme that knows nothing of paths; Coulomb friction at or below it.
+Rigid blocks on compliant joints (a_t = 2 a_n; the multipliers do not depend on the size of the compliance),
+self-weight, then a horizontal share of it, controlled by the work-conjugate displacement. Associated dilatancy must end
+at the limit multiplier, found by a linear programme that knows nothing of paths; Coulomb friction at or below it.
 Walls: M. C. Ferris and F. Tin-Loi, Int. J. Mech. Sci. 43 (2001) 209-224.
 """
 

@@ -34,7 +34,7 @@ class Beside(Generic[T]):
         self.future = self.pool.submit(work, self.note)
 
     def note(self, state: Progress) -> bool:
-        """Keep what is told; return whether to stop."""
+        """Keep what is reported; return whether to stop."""
         self.told = state
         return self.asked.is_set()
 

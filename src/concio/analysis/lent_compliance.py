@@ -3,7 +3,7 @@ r"""Rigid blocks are the limit of stiff joints: a vanishing compliance for hard 
 Between bodies that do not deform, joined by hard joints, forces are not determined, and Coulomb's law is void: slip is
 opposed by friction only where it is known which way a pair would slip, and without displacements no pair does. Any
 forces within the cones would pass for a solution: a block squeezed between two faces would hang there, though nothing
-ever squeezed it. So such joints are lent a compliance, and everybody who solves, follows a path or asks for a margin
+ever squeezed it. So such joints are given a compliance, and everybody who solves, follows a path or asks for a margin
 lends the same and says so. It is spread like that of a thin layer, in proportion to one over the area of a pair, and
 is tangentially :data:`SHEAR_TO_NORMAL` times the normal one.
 
@@ -25,7 +25,7 @@ from concio.model.model import Model
 from concio.problem.contact_problem import Array, ContactProblem, Laws
 
 SHEAR_TO_NORMAL = 2.5
-"""Tangential over normal compliance lent: that of an elastic layer with Poisson's ratio 0.25."""
+"""Tangential over normal compliance added: that of an elastic layer with Poisson's ratio 0.25."""
 
 CLOSING = 1e-9
 """Closing of a pair of mean area under the heaviest nodal load of its connected part [m]..."""
@@ -46,13 +46,13 @@ def lend(assembly: Assembly) -> Assembly:
     Parameters
     ----------
     assembly : Assembly
-        One to which compliance was lent already is returned as it is.
+        One to which compliance was given already is returned as it is.
 
     Returns
     -------
     Assembly
         Its ``lent_compliance`` says how much [m/kN, a pair of mean area], 0 where none was needed, and the most where
-        connected parts, each by its own loads and areas, were lent different ones.
+        connected parts, each by its own loads and areas, were given different ones.
     """
     pairs, law = assembly.pairs, assembly.laws
     if assembly.lent_compliance or not len(pairs):
@@ -79,7 +79,7 @@ def lend(assembly: Assembly) -> Assembly:
 
 
 def stiffened(lent: Assembly, hard: Assembly, left: Array) -> Assembly:
-    """Return the assembly that keeps the compliance lent to some pairs only, and says how much if to any.
+    """Return the assembly that keeps the compliance added to some pairs only, and says how much if to any.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def with_compliance(problem: ContactProblem, live: Array) -> tuple[ContactProble
     ContactProblem
         The problem itself where something deforms, or no pair is hard.
     float
-        Normal compliance of a pair of mean area [m/kN], 0 where none was lent.
+        Normal compliance of a pair of mean area [m/kN], 0 where none was given.
     """
     law = problem.laws
     hard = (law.normal_compliance == 0) | (law.tangential_compliance == 0)
@@ -144,7 +144,7 @@ def with_compliance(problem: ContactProblem, live: Array) -> tuple[ContactProble
 
 
 def _softer(law: Laws, area: Array, where: Array, lent: Array | float, part: Array) -> Laws:
-    """Return the laws with compliance lent to the hard pairs among ``where`` (m,), in proportion to 1 / area.
+    """Return the laws with compliance added to the hard pairs among ``where`` (m,), in proportion to 1 / area.
 
     ``lent`` (m,) belongs to a pair of the mean area of its ``part`` (m,).
     """

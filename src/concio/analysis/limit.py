@@ -9,7 +9,7 @@ certified Coulomb *collapse state* (:mod:`concio.solvers.statics.collapse_state`
 there may be several. None is passed off as another. How far the given load is from all this:
 :mod:`concio.analysis.margins`.
 
-Rigid blocks on hard joints have no unique path; their joints are lent a compliance
+Rigid blocks on hard joints have no unique path; their joints are given a compliance
 (:mod:`concio.analysis.lent_compliance`).
 """
 
@@ -58,7 +58,7 @@ LIVE = "live"
 """Load group that is multiplied unless another is named; generators put their horizontal load there."""
 
 LARGEST_PATH = 400
-"""Up to this number of pairs the exact path is followed unasked: some five events a pair, each a linear system."""
+"""Up to this number of pairs the exact path is followed by default: some five events a pair, each a linear system."""
 
 LARGEST_SEARCH = 15_000
 """Collapse states are searched for in problems of up to this number of pairs: about a minute there."""
@@ -67,8 +67,8 @@ UNASKED_WORK = 40_000
 """Linear programmes times pairs of that search where it is not asked for: some five seconds."""
 
 UNASKED_IN_SPACE = 1_500
-"""Up to this number of pairs in space collapse states are searched for unasked, and the least load that was not reached
-is put on in one step: beyond, the few programmes of some seconds end far from a state."""
+"""Up to this number of pairs in space collapse states are searched for by default, and the least load that was not
+reached is applied in one step: beyond, the few programmes of some seconds end far from a state."""
 
 Found = Literal["bound", "friction", "steps", "collapse state", "in one step", "spread", "path"]
 """The numbers of a limit load, in the order in which they are found: the quick ones first."""
@@ -98,7 +98,7 @@ def limit(
         (:data:`LARGEST_PATH`).
     steps : bool, optional
         Whether the load grows in certified Coulomb steps; by default where ``path`` was left open and is not followed.
-        In space the least load that they did not reach is then put on in one step, unasked up to
+        In space the least load that they did not reach is then applied in one step, by default up to
         :data:`UNASKED_IN_SPACE` pairs: a motion may prove that it is not carried.
     search : bool, optional
         Whether collapse states are searched for; by default where ``path`` is not False, and then only as long as the
@@ -177,7 +177,7 @@ def limit_stages(
     quick = dead.dim == 2 or dead.pairs <= UNASKED_IN_SPACE
     searched, top = bool(search) or (search is None and path is not False and quick), found.associated
     if search is None and path is not False and not quick:
-        found = replace(found, search=f"not tried unasked: {dead.pairs:,} contact pairs in space; ask for the search")
+        found = replace(found, search=f"not tried by default: {dead.pairs:,} contact pairs in space; request it")
 
     def seek(note: ProgressCallback) -> tuple[CollapseState | None, str]:
         work = WORK_OF_ALL if search else UNASKED_WORK
@@ -221,7 +221,7 @@ def limit_stages(
             found = _with_steps(found, dead, load, progress)
             yield "steps", found
     elif path is None:
-        many = f"not followed unasked: {dead.pairs:,} contact pairs"
+        many = f"not followed by default: {dead.pairs:,} contact pairs"
         found = replace(found, path_note=many if dead.dim == 2 else "not tried: exact paths are plane")
     yield "path", found
 

@@ -58,7 +58,7 @@ class LimitResult(Shown):
     friction : FrictionBounds or None
         Smallest friction with which admissible forces carry the load as given; None where that was not asked for.
     lent_compliance : float
-        Normal compliance lent to hard joints of rigid blocks [m/kN]; 0 where none was needed.
+        Normal compliance added to hard joints of rigid blocks [m/kN]; 0 where none was needed.
     dead : Status or None
         What Coulomb friction says of all other loads alone; None where neither path nor steps asked.
     twisting : int
@@ -137,7 +137,7 @@ class LimitResult(Shown):
         """Whether the collapse state says something of the structure, and not of the contact points of its joints.
 
         In a joint stated at points over its patch a state that twists it finds the points nearest to the middle: its
-        multiplier falls without end as points are added (:mod:`concio.analysis.limit_torsion`).
+        multiplier falls without bound as points are added (:mod:`concio.analysis.limit_torsion`).
         """
         if self.collapse_state is None:
             return False
@@ -150,7 +150,7 @@ class LimitResult(Shown):
     def design(self) -> float:
         """Multiplier to design with: the least of what path, steps and collapse state say; ``nan`` where none does.
 
-        ``inf`` where certified steps grow without end; 0 where all other loads alone are not carried.
+        ``inf`` where certified steps grow without bound; 0 where all other loads alone are not carried.
         """
         if self.dead in PROVEN_FAILURES:
             return 0.0

@@ -10,7 +10,7 @@ middle is larger than that of the patch, by 2.3 % with 4 x 4 and by 0.5 % with 6
 and the least that they did not reach, are divided by that ratio, and the steps are finer; an even pressure is between.
 
 A collapse state leaves open where in a joint the pressure stands. Of a joint that twists it finds the place with the
-least arm, the middle, and its multiplier falls without end as points are added there: such a state says nothing.
+least arm, the middle, and its multiplier falls without bound as points are added there: such a state says nothing.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ the associated bound. What was reached is carried, by forces that obey every law
 The exact path (:mod:`concio.solvers.path.event_path`) follows every event and can show collapse, at a price that grows
 with the square of the number of pairs; these are some ten load steps, whatever the size.
 
-In space there are no exact paths. There the least multiplier that found no certified state is put on in one step
+In space there are no exact paths. There the least multiplier that found no certified state is applied in one step
 (:func:`in_one_step`): where the structure moves away, a motion proves that, and the two multipliers bracket collapse
 under Coulomb friction.
 """
@@ -36,7 +36,7 @@ SMALLEST = 0.01
 """Step that is too small to be tried, as a share of what is carried already, or of the bound where that is less."""
 
 NOTHING = 1 / 8
-"""Share of the bound below which what is carried already is no measure of steps: they would shrink without end."""
+"""Share of the bound below which what is carried already is not a measure of steps: they would shrink without bound."""
 
 FAR = 1e6
 """Where there is no bound, loads grow to this multiple of the dead load."""
@@ -71,7 +71,7 @@ class LoadSteps:
     dead : Status
         Outcome of the dead load in one step.
     outcome : Status or None
-        What comes of ``failed`` put on in one step (:func:`in_one_step`); None where that was not tried.
+        Outcome of ``failed`` applied in one step (:func:`in_one_step`); None where that was not tried.
     endless : float
         Where the associated bound is locked, the largest certificate entry of further steps in the direction of the
         last one, up to a million times as long; ``nan`` where that was not tried or is not certified.

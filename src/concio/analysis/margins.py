@@ -50,7 +50,7 @@ class Margin(Shown):
     ----------
     holds : float
         Factor with a certified Coulomb equilibrium, closest to the limit of those tried; ``nan`` where none was found,
-        ``inf`` where the load can grow without end.
+        ``inf`` where the load can grow without bound.
     fails : float
         Factor without one, closest to ``holds``; ``nan`` where none was tried.
     outcome : Status or None

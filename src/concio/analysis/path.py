@@ -1,6 +1,6 @@
 """Load paths of a model: stages of load groups, followed event by event or in steps.
 
-Friction depends on history: own weight first, then vertical load, then horizontal load or a settlement. A *stage*
+Friction depends on history: self-weight first, then vertical load, then horizontal load or a settlement. A *stage*
 carries the factors of some load groups from where they are to new values, in proportion; all groups begin at zero.
 Within a stage slip is measured from the last converged state (10, 11).
 
@@ -108,8 +108,8 @@ def run_path(
     notes: list[str] = []
     if lent := assembly.lent_compliance:
         notes.append(
-            f"hard joints between rigid blocks were lent a compliance of {lent:.3g} m/kN, {SHEAR_TO_NORMAL:g} times as "
-            "much along the joint: without it their forces are not determined"
+            f"hard joints between rigid blocks were given a compliance of {lent:.3g} m/kN, {SHEAR_TO_NORMAL:g} times "
+            "as much along the joint: without it their forces are not determined"
         )
     direction = np.zeros(assembly.supported.T.shape[1])
     for number, stage in enumerate(stages):

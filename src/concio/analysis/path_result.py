@@ -188,7 +188,7 @@ class PathResult(Shown):
 
     @property
     def weightless_stages(self) -> tuple[int, ...]:
-        """Stages that were begun and end with loads but without any own weight, though the model has some."""
+        """Stages that were begun and end with loads but without any self-weight, though the model has some."""
         groups = weight_groups(self.assembly.model)
         ends = {step.stage: step.factors for step in self.steps}
         without = (k for k, factors in ends.items() if set(weightless(self.assembly.model, factors)) == set(groups))
@@ -222,7 +222,7 @@ class PathResult(Shown):
 
     @cached_property
     def energy_error(self) -> float:
-        """Largest |work - stored - dissipated| of all steps, relative to the energy turned over.
+        """Largest |work - stored - dissipated| of all steps, relative to the energy exchanged.
 
         That is the largest of work, stored energy and |f| . |u|: a settlement lifts and lowers weights whose work
         nearly cancels that of the moving support.

@@ -111,7 +111,7 @@ def _located(
 ) -> PathState | None:
     """Return the state between two, by load steps from the first, in which a tie reaches where it breaks; or None.
 
-    Forces are no straight lines within a step: the load is looked for by bisection where secants do not close in.
+    Forces are not straight lines within a step: the load is looked for by bisection where secants do not close in.
     """
     low, high, best = before.parameter, after.parameter, None
     a, b = float(share(before).max()), float(share(after).max())

@@ -348,7 +348,7 @@ class Result(Shown):
 
     @cached_property
     def verdict(self) -> Verdict:
-        """The answer with its question: what acts, what proves it, what limits it, what is odd about the model."""
+        """The answer with its question: what acts, its proof, its limits, what is suspicious about the model."""
         return step_verdict(self)
 
     @property
@@ -358,7 +358,7 @@ class Result(Shown):
 
     @property
     def attention(self) -> tuple[str, ...]:
-        """What asks for attention, a sentence each: joints not made, numbers hardly meant, large motions and forces."""
+        """What asks for attention, a sentence each: joints not made, implausible numbers, large motions and forces."""
         return self.verdict.attention
 
     @cached_property

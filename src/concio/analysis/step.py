@@ -61,7 +61,7 @@ def solve(
     InputError
         The model cannot be used as it is, or the method has no option of a name that was given.
     NoEquilibriumError
-        A mechanism, a motion without end or the exclusion of all joint states proves that the loads are not carried.
+        A mechanism, an unbounded motion or the exclusion of all joint states proves that the loads are not carried.
     SolverError
         The solver stopped without an answer.
     """

@@ -16,17 +16,17 @@ from concio.cli.progress import progress_bar
 @guarded
 def bridge(
     file: File,
-    required: Annotated[float, typer.Option("--required", help="Load factor that is asked for.")] = 1.0,
+    required: Annotated[float, typer.Option("--required", help="Required load factor.")] = 1.0,
     step: Annotated[
-        str | None, typer.Option("--step", help="Distance of positions: '0.2 m'; by default a 40th of a span.")
+        str | None, typer.Option("--step", help="Spacing of positions: '0.2 m'; default a 40th of a span.")
     ] = None,
-    fine: Annotated[str, typer.Option("--fine", help="Distance to which the worst position is refined.")] = "10 mm",
-    worst: Annotated[int, typer.Option("--worst", help="Worst positions that get a Coulomb bracket.")] = 3,
+    fine: Annotated[str, typer.Option("--fine", help="Spacing of positions near the worst one.")] = "10 mm",
+    worst: Annotated[int, typer.Option("--worst", help="Number of worst positions with a Coulomb bracket.")] = 3,
     checked: Annotated[
-        int, typer.Option("--checked", help="Positions at which a Coulomb state is found; 0 leaves the answer open.")
+        int, typer.Option("--checked", help="Positions checked with a Coulomb state; 0 leaves the answer open.")
     ] = 40,
     vehicle: Annotated[
-        list[str] | None, typer.Option("--vehicle", "-v", help="Another vehicle of the library (repeatable).")
+        list[str] | None, typer.Option("--vehicle", "-v", help="Additional vehicle from the library (repeatable).")
     ] = None,
     settle: Annotated[
         list[str] | None, typer.Option("--settle", help="A fixed block that settles: 'pier1 ground=10 mm'.")
@@ -37,7 +37,7 @@ def bridge(
     mexe_factor: Annotated[
         float | None, typer.Option("--mexe-factor", help="Span/rise factor of MEXE for flat arches.")
     ] = None,
-    language: Annotated[Literal["en", "it"], typer.Option("--language", help="Of the report.")] = "en",
+    language: Annotated[Literal["en", "it"], typer.Option("--language", help="Language of the report.")] = "en",
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for report, curve and figures.")] = None,
     engine: EngineOf = None,
     units: UnitsOf = None,

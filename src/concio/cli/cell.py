@@ -28,17 +28,17 @@ def cell(
         typer.Option("--direction", "-d", help="Direction of stress: xx=1,yy=-1 (repeatable)."),
     ] = None,
     stress: Annotated[
-        str | None, typer.Option("--stress", help="Stress the directions begin from: yy=-100 [kN/m2].")
+        str | None, typer.Option("--stress", help="Stress from which the directions start: yy=-100 [kN/m2].")
     ] = None,
     stage: Annotated[
         list[str] | None,
         typer.Option("--stage", help="Stage of a path: 'stress yy=-100,strain xy=1e-3' (repeatable, in order)."),
     ] = None,
-    strength: Annotated[bool, typer.Option("--strength/--no-strength", help="Find the strength domain.")] = True,
+    strength: Annotated[bool, typer.Option("--strength/--no-strength", help="Compute the strength domain.")] = True,
     coulomb: Annotated[
         bool, typer.Option("--coulomb/--no-coulomb", help="Coulomb path and collapse state in each direction.")
     ] = True,
-    programmes: Annotated[int, typer.Option("--programmes", help="Linear programmes for the domain at most.")] = 400,
+    programmes: Annotated[int, typer.Option("--programmes", help="Maximum number of linear programmes.")] = 400,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for tables and figures.")] = None,
     engine: EngineOf = None,
     units: UnitsOf = None,
@@ -67,7 +67,7 @@ def cell(
     base = components(stress, "--stress") if stress is not None else (0.0, 0.0, 0.0)
     model = loaded(file, units, engine)
     if model.periods is None:
-        msg = "this model is no periodic cell"
+        msg = "this model is not a periodic cell"
         hint = "start from: concio new cell; or give the blocks of a model periods = [[x1, y1], [x2, y2]]"
         raise InputError(msg, where=str(file), hint=hint)
     asked = [stage_of(text, k) for k, text in enumerate(stage or (), 1)] or list(model.stages)
@@ -123,7 +123,7 @@ def components(text: str, where: str) -> tuple[float, float, float]:
     for part in text.split(","):
         name, sign, value = part.partition("=")
         if not sign or name.strip() not in COMPONENTS:
-            msg = f"'{part}' is no component of a stress"
+            msg = f"'{part}' is not a component of a stress"
             raise InputError(msg, where=where, hint=f"write for example {where} xx=1,yy=-0.5; components xx, yy, xy")
         values[name.strip()] = quantity(value.strip(), "stress", where=where)
     return values["xx"], values["yy"], values["xy"]

@@ -54,7 +54,7 @@ def check_lines(
     every : bool
         Whether all bodies and findings are listed, however many.
     fault : str
-        The error that will be told after these lines; an overlap that it names is not listed.
+        The error that will be reported after these lines; an overlap that it names is not listed.
     """
     units = model.report
     scale, symbol = units.factor("length")

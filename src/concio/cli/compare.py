@@ -60,5 +60,6 @@ def compare(
         for line in (verdict.sentence, *verdict.lines(model.report), "", format_table(table)):
             say(line)
         if lent.lent_compliance:
-            say(f"  lent: {lent.lent_compliance:.3g} m/kN to hard joints between rigid blocks, as 'concio run' does")
+            say(f"  compliance of {lent.lent_compliance:.3g} m/kN added to hard joints between rigid blocks, as in "
+            "'concio run'")
     return table.verdict.exit_code

@@ -1,4 +1,4 @@
-"""``concio continuum FILE``: a wall block by block beside its homogenised continuum, side by side."""
+"""``concio continuum FILE``: a wall of blocks compared with its homogenised continuum, side by side."""
 
 from __future__ import annotations
 
@@ -17,17 +17,18 @@ from concio.cli.progress import progress_bar
 def continuum(
     file: File,
     cell: Annotated[
-        Path | None, typer.Option("--cell", "-c", help="File of the cell; by default that of the wall's bond.")
+        Path | None, typer.Option("--cell", "-c", help="File of the cell; by default the cell of the wall's bond.")
     ] = None,
     group: Annotated[
         list[str] | None, typer.Option("--group", "-g", help="Load group that grows (repeatable); by default live.")
     ] = None,
     halve: Annotated[int, typer.Option("--halve", help="Halve the blocks this many times at fixed outline.")] = 0,
     mesh_size: Annotated[
-        str | None, typer.Option("--mesh-size", help="Of the continuum: '0.2 m'; by default an eighth of the wall.")
+        str | None, typer.Option("--mesh-size", help="Mesh size of the continuum: '0.2 m'; default an eighth of the "
+        "wall.")
     ] = None,
     factor: Factors = None,
-    elastic: Annotated[bool, typer.Option("--elastic/--no-elastic", help="Compare elastic answers.")] = True,
+    elastic: Annotated[bool, typer.Option("--elastic/--no-elastic", help="Compare elastic solutions.")] = True,
     strength: Annotated[bool, typer.Option("--strength/--no-strength", help="Compare limit loads.")] = True,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for tables and figures.")] = None,
     engine: EngineOf = None,

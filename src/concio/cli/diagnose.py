@@ -27,8 +27,8 @@ def diagnose(
     language: Annotated[
         str | None, typer.Option("--language", "-l", help="Language of text and report, en or it; else the file's.")
     ] = None,
-    most: Annotated[int | None, typer.Option("--most", help="Motions that are tried together at most.")] = None,
-    steps: Annotated[int | None, typer.Option("--steps", help="Steps of a path that is walked in steps.")] = None,
+    most: Annotated[int | None, typer.Option("--most", help="Maximum number of motions tried together.")] = None,
+    steps: Annotated[int | None, typer.Option("--steps", help="Load steps, if the path is followed in steps.")] = None,
     engine: EngineOf = None,
     units: UnitsOf = None,
     json: Json = False,

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from concio.analysis.limit import LimitResult
 
 LARGEST_MARGIN = 10_000
-"""Up to this number of pairs the friction margin is found unasked: it takes some twenty linear programmes."""
+"""Up to this number of pairs the friction margin is found by default: it takes some twenty linear programmes."""
 
 
 @guarded
@@ -32,7 +32,7 @@ def limit(
     ] = None,
     steps: Annotated[
         bool | None,
-        typer.Option("--steps/--no-steps", help="Grow the load in certified steps; by default where no path is."),
+        typer.Option("--steps/--no-steps", help="Grow the load in certified steps; by default if no path is followed."),
     ] = None,
     friction: Annotated[
         bool | None,
@@ -45,7 +45,7 @@ def limit(
         typer.Option("--search/--no-search", help="Search Coulomb collapse states; by default unless --no-path."),
     ] = None,
     solves: Annotated[
-        bool, typer.Option("--solves", help="Also bisect load and friction with solved load steps (some twenty).")
+        bool, typer.Option("--solves", help="Also bisect load and friction with solved load steps (about twenty).")
     ] = False,
     quick: Annotated[
         bool, typer.Option("--quick", help="The upper bound alone: no path, no steps, no search, no friction margin.")

@@ -1,8 +1,8 @@
 """Memory that a command has given back is kept for its next factorisation.
 
-The C library of Linux returns every large array to the system and fetches its pages anew for the next one: a limit load
-of 1,934 pairs, some thousand factorisations of the same size, spends a tenth of its time in that. Other systems, and
-other C libraries, are left as they are.
+The C library of Linux returns every large array to the system and fetches its pages again for the next one: a limit
+load of 1,934 pairs, some thousand factorisations of the same size, spends a tenth of its time in that. Other systems,
+and other C libraries, are left as they are.
 """
 
 from __future__ import annotations

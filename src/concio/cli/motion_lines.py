@@ -16,14 +16,14 @@ from concio.io.csv_table import write_csv
 from concio.io.motion_file import save_motion
 from concio.io.motion_series import write_motion_series
 from concio.plot.motion_figure import plot_capacity, plot_energy, plot_ground, plot_history, write_film
-from concio.report.motion_page import write_motion_report
+from concio.report.motion_page import HOW, write_motion_report
 from concio.units import GRAVITY
 
 MOST_LINES = 6
 """Lines of one kind in a short text."""
 
 EVENTS = 12
-"""Events listed unasked."""
+"""Events listed by default."""
 
 
 def push_lines(result: PushResult, *, every: bool = False) -> list[str]:
@@ -42,7 +42,7 @@ def push_lines(result: PushResult, *, every: bool = False) -> list[str]:
         f"  certificate  {result.certificate:.1e} (worst of {len(result)} points, where the bodies stand)",
     ]
     if result.lent_compliance:
-        lines.append(f"  lent         {result.lent_compliance:.1e} m/kN to each contact point of hard joints")
+        lines.append(f"  compliance   {result.lent_compliance:.1e} m/kN added to each contact point of hard joints")
     shown = result.events if every else result.events[:EVENTS]
     for e in shown:
         at = f"{units.text('motion', float(d[e.step]))}, {number(float(load[e.step]), 4)}"
@@ -56,7 +56,7 @@ def shake_lines(result: DynamicsResult) -> list[str]:
     """Return what a motion comes to."""
     units = result.model.report
     name, turned = result.largest_rotation
-    shares = ", ".join(f"{word} {100 * share:.1f} %" for word, share in result.steps.shares().items())
+    shares = ", ".join(f"{HOW.get(how, how)} in {100 * s:.1f} %" for how, s in result.steps.shares().items())
     told = result.summary()
     verdict = result.verdict
     return [
@@ -68,14 +68,14 @@ def shake_lines(result: DynamicsResult) -> list[str]:
         ),
         *verdict.lines(units, most=MOST_LINES),
         f"  time         {number(float(result.end.time), 6)} s in {len(result.steps):,} steps, "
-        f"{result.seconds:.1f} s of work",
+        f"{result.seconds:.1f} s of computing time",
         f"  turned most  {name}: {number(float(np.rad2deg(turned)), 4)} degrees",
         f"  joints       open by {units.text('motion', told['largest_opening'])} at most, "
         f"slip by {units.text('motion', told['largest_slip'])}",
         f"  certificate  {result.certificate:.1e} (worst of all steps)",
-        f"  energy       closes to {result.energy.error:.1e} of {number(result.energy.turned_over, 4)} kN m turned "
-        "over",
-        f"  steps by     {shares}; {float(result.steps.factorisations.mean()):.2f} factorisations a step",
+        f"  energy       balance closes to {result.energy.error:.1e} of {number(result.energy.turned_over, 4)} kN m "
+        "exchanged",
+        f"  steps        {shares} of steps; {float(result.steps.factorisations.mean()):.2f} factorisations per step",
     ]
 
 

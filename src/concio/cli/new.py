@@ -18,7 +18,7 @@ Kind = Literal[
 
 @guarded
 def new(
-    kind: Annotated[Kind, typer.Argument(help="What to start from.", show_default=False)],
+    kind: Annotated[Kind, typer.Argument(help="Kind of structure.", show_default=False)],
     file: Annotated[
         Path | None, typer.Argument(help="File to write; by default KIND.toml.", show_default=False)
     ] = None,

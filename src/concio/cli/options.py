@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 File = Annotated[Path, typer.Argument(help="Model file (TOML); - reads standard input.", show_default=False)]
 Out = Annotated[Path | None, typer.Option("--out", "-o", help="Directory for figures, report and numbers.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print no text; the exit code tells.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing; only the exit code is set.")]
 UnitsOf = Annotated[
     str | None,
     typer.Option("--units", help="Units of texts, figures and reports: 'N, mm, MPa'; by default those of the file."),
 ]
 EngineOf = Annotated[
     Literal["superlu", "pardiso"] | None,
-    typer.Option("--engine", help="Engine of linear systems: superlu or pardiso; by default that of the file."),
+    typer.Option("--engine", help="Solver of linear systems: superlu or pardiso; by default that of the file."),
 ]
 Factors = Annotated[
     list[str] | None, typer.Option("--factor", "-f", help="Factor of a load group: live=1.5 (repeatable).")
@@ -34,7 +34,7 @@ def loaded(file: Path, units: str | None = None, engine: Engine | None = None) -
     Raises
     ------
     InputError
-        The file is no model, or an option says nothing.
+        The file is not a model, or an option says nothing.
     """
     from dataclasses import replace
 
@@ -50,7 +50,7 @@ def in_units(model: Model, units: str | None) -> Model:
     Raises
     ------
     InputError
-        A part of the text is no unit.
+        A part of the text is not a unit.
     """
     from dataclasses import replace
 

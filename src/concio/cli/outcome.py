@@ -70,7 +70,7 @@ def guarded(command: Callable[P, int]) -> Callable[P, None]:
 
 
 def _with_attention(told: dict[str, Any], file: object) -> dict[str, Any]:
-    """Return what to say of an exception with what is odd about its model, where the file holds one."""
+    """Return what to say of an exception with what is suspicious about its model, where the file holds one."""
     from concio.errors import ConcioError
 
     if "verdict" in told or not isinstance(file, Path):
@@ -133,7 +133,7 @@ def _told(error: Exception) -> tuple[dict[str, Any], int]:
         while frame.tb_next is not None:
             frame = frame.tb_next
         where = f"{frame.tb_frame.f_code.co_filename}, line {frame.tb_lineno}"
-    what = f"this is a fault of concio: {type(error).__name__}: {error}"
+    what = f"this is a bug in concio: {type(error).__name__}: {error}"
     return {"kind": "InternalError", "what": what, "where": where, "hint": f"{DEBUG}=1 shows the traceback"}, INTERNAL
 
 

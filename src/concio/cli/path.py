@@ -30,15 +30,15 @@ def path(
         Literal["x", "y", "z", "-x", "-y", "-z"], typer.Option("--along", help="Direction of its motion.")
     ] = "x",
     until: Annotated[
-        str | None, typer.Option("--until", help="Motion of the point that ends the last stage: 0.02 or '20 mm'.")
+        str | None, typer.Option("--until", help="Displacement of the point at which to stop: 0.02 or '20 mm'.")
     ] = None,
     method: Annotated[
         Literal["events", "steps"] | None,
-        typer.Option("--method", "-m", help="Exact (by default, in the plane), or in steps (always so in space)."),
+        typer.Option("--method", "-m", help="events (exact, plane models, default) or steps (always in space)."),
     ] = None,
-    steps: Annotated[int, typer.Option("--steps", help="Steps of a stage that is walked in steps.")] = 20,
+    steps: Annotated[int, typer.Option("--steps", help="Number of load steps of a stage, with --method steps.")] = 20,
     brittle: Annotated[
-        bool, typer.Option("--brittle", help="Joints lose tension and cohesion once exceeded (with --method steps).")
+        bool, typer.Option("--brittle", help="Joints lose tension and cohesion once exceeded (--method steps).")
     ] = False,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for curve, events and last state.")] = None,
     every: Annotated[bool, typer.Option("--all", help="List every event.")] = False,
@@ -53,7 +53,7 @@ def path(
     weight first, then the others in the order of the file.
 
     The exit code is 0 where every stage reached its load, 3 where the structure is shown to carry no more before that,
-    4 where something asked for was not reached, where own weight never acts, or where the path was lost.
+    4 where something asked for was not reached, where self-weight never acts, or where the path was lost.
 
     Example: concio path wall.toml --stage dead=1 --stage live=5 --point c10-b05,2.0,2.5 --until "20 mm"
     """

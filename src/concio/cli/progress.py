@@ -18,7 +18,7 @@ TARGET = 1e-6
 """Residual at which the bar is full: where the exact finish begins, at the latest."""
 
 SOON = 5.0
-"""Seconds after which the time left is told."""
+"""Seconds after which the time left is reported."""
 
 
 @contextmanager

@@ -17,7 +17,7 @@ from concio.cli.output import check_file, replaced_file
 def prove(
     file: File,
     claim: Annotated[
-        Literal["limit", "collapse", "balance"], typer.Option("--claim", help="What to prove of the loads.")
+        Literal["limit", "collapse", "balance"], typer.Option("--claim", help="Claim to prove.")
     ] = "limit",
     group: Annotated[
         list[str] | None,
@@ -26,7 +26,7 @@ def prove(
     factor: Factors = None,
     numbers: Annotated[
         Literal["binary", "decimal"],
-        typer.Option("--numbers", help="Numbers as the computer holds them, or to twelve decimal digits."),
+        typer.Option("--numbers", help="Numbers as stored (binary), or rounded to twelve decimal digits."),
     ] = "binary",
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Certificate to write; by default FILE.proof.json.")

@@ -31,7 +31,7 @@ def check_out(out: Path | None, film: list[str] | None, series: bool) -> None:
         raise InputError(msg, where="--film, --vtu", hint="add --out DIRECTORY")
     for form in film or ():
         if form not in ("gif", "mp4"):
-            msg = f"'{form}' is no film"
+            msg = f"'{form}' is not a film"
             raise InputError(msg, where="--film", hint="gif or mp4")
 
 
@@ -43,17 +43,17 @@ def push(
         typer.Option("--group", "-g", help="Load group that grows (repeatable); by default live, or else the weights."),
     ] = None,
     weights: Annotated[
-        bool, typer.Option("--weights", help="Multiply all weights, vertical loads too, as assess does.")
+        bool, typer.Option("--weights", help="Multiply all weights, with vertical loads, as assess does.")
     ] = False,
     direction: Annotated[
         Literal["x", "-x", "y", "-y"] | None,
-        typer.Option("--direction", "-d", help="Side to which the load pushes; of a share of the weights, x."),
+        typer.Option("--direction", "-d", help="Direction of the load; default x for a share of the weights."),
     ] = None,
     point: Annotated[str | None, typer.Option("--point", "-p", help="Control point: BODY,X,Y.")] = None,
     along: Annotated[Literal["x", "y", "-x", "-y"], typer.Option("--along", help="Direction of its motion.")] = "x",
-    load: Annotated[bool, typer.Option("--load", help="Let the load grow instead of a displacement.")] = False,
+    load: Annotated[bool, typer.Option("--load", help="Control the load instead of a displacement.")] = False,
     step: Annotated[str | None, typer.Option("--step", help="Largest step: '5 mm', or a multiplier.")] = None,
-    until: Annotated[str | None, typer.Option("--until", help="Displacement (or multiplier) that ends it.")] = None,
+    until: Annotated[str | None, typer.Option("--until", help="Displacement (or multiplier) at which to stop.")] = None,
     smallest: Annotated[float, typer.Option("--smallest", help="Multiplier at which the strength is lost.")] = 0.0,
     factor: Factors = None,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for curve, report and film.")] = None,
@@ -68,7 +68,7 @@ def push(
     """Push a structure over: equilibria where the bodies stand, past the peak, until nothing is carried any more.
 
     What is multiplied is the load group "live", other groups by --group, or a horizontal share of all weights
-    that the structure carries: own weights and loads from above, as in "concio assess".
+    that the structure carries: self-weights and loads from above, as in "concio assess".
 
     The exit code is 0 where the curve was followed to its end, 3 where the structure does not stand to begin with, 4
     where the curve was lost or stopped before its end.

@@ -29,16 +29,16 @@ def shake(
     ] = None,
     scale: Annotated[float | None, typer.Option("--scale", help="Factor of the ground motion.")] = None,
     record_unit: Annotated[str | None, typer.Option("--record-unit", help="g, m/s2, cm/s2, m/s, m...")] = None,
-    record_step: Annotated[str | None, typer.Option("--record-step", help="Time between samples: '10 ms'.")] = None,
-    duration: Annotated[str | None, typer.Option("--duration", help="Time to compute: '10 s'.")] = None,
-    step: Annotated[str | None, typer.Option("--step", help="Largest step of time: '2 ms'.")] = None,
+    record_step: Annotated[str | None, typer.Option("--record-step", help="Sampling interval: '10 ms'.")] = None,
+    duration: Annotated[str | None, typer.Option("--duration", help="Duration of the analysis: '10 s'.")] = None,
+    step: Annotated[str | None, typer.Option("--step", help="Largest time step: '2 ms'.")] = None,
     restitution: Annotated[
-        float | None, typer.Option("--restitution", help="Share of a velocity that comes back from an impact.")
+        float | None, typer.Option("--restitution", help="Coefficient of restitution of impacts, from 0 to 1.")
     ] = None,
     point: Annotated[
         list[str] | None, typer.Option("--point", "-p", help="Point to follow along x: BODY,X,Y (repeatable).")
     ] = None,
-    start: Annotated[Path | None, typer.Option("--from", help="Go on from where an earlier motion.npz ended.")] = None,
+    start: Annotated[Path | None, typer.Option("--from", help="Continue from the end of a motion.npz.")] = None,
     factor: Factors = None,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for histories, report and film.")] = None,
     film: Film = None,
@@ -138,7 +138,7 @@ def _pulse(text: str) -> Any:
 
     parts = [p.strip() for p in text.split(",")]
     if len(parts) not in (3, 4):
-        msg = f"'{text}' is no pulse"
+        msg = f"'{text}' is not a pulse"
         raise InputError(msg, where="--pulse", hint="write for example 'half sine,0.4 g,0.5 s'")
     try:
         cycles = float(parts[3]) if len(parts) == 4 else 1.0

@@ -30,11 +30,11 @@ def study(
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Directory for rows and report; by default FILE-study.")
     ] = None,
-    workers: Annotated[int | None, typer.Option("--workers", "-w", help="Processes that make the runs.")] = None,
+    workers: Annotated[int | None, typer.Option("--workers", "-w", help="Number of worker processes.")] = None,
     scheduler: Annotated[
         str | None, typer.Option("--scheduler", help="Address of a Dask scheduler, tcp://HOST:PORT, or 'local'.")
     ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with the study that --out holds.")] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Resume the study in --out.")] = False,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw figures into the report.")] = True,
     json: Json = False,
     quiet: Quiet = False,
@@ -86,7 +86,7 @@ def study_lines(found: StudyResult, directory: Path) -> list[str]:
     lines = [f"{len(found)}{of} runs, {found.sample.design} sample, seed {found.sample.seed}", verdict.headline]
     lines += [f"  {line}" for line in verdict.lines(indent="")]
     if found.stopped:
-        lines.append("  stopped early: enough was known")
+        lines.append("  stopped early: the stopping criterion was met")
     lines += [f"  {WORDS.get(word, word.replace('_', ' ')):22s} {n}" for word, n in found.verdicts.items()]
     lines += [f"  {o.name:22s} {output_words(found, o)}" for o in found.outputs]
     failed = found.failures

@@ -20,7 +20,7 @@ def verify(
 ) -> int:
     """Recompute an exact certificate with Python's own fractions; exit code 2 where it proves nothing.
 
-    What is odd about the model is told as 'concio prove' wrote it down.
+    What is suspicious about the model is printed as 'concio prove' wrote it down.
 
     The program that does it is one short file without imports from concio, src/concio/proof/verify.py, and runs alone.
 

@@ -29,5 +29,5 @@ def view(
         raise InputError(msg, where=str(directory), hint="write one with: concio run FILE --out DIR")
     say(str(report))
     if show and not webbrowser.open(report.absolute().as_uri()):
-        say("No browser could be started; open this file in one.")
+        say("No browser could be started; open this file in a browser.")
     return 0

@@ -30,7 +30,7 @@ from concio.representation import short_repr
 Array = np.ndarray
 
 PRESTRESS = "prestress"
-"""Name of the factor of the prestress of ties, which is no load group: 1 but where a path puts it on."""
+"""Name of the factor of the prestress of ties, which is not a load group: 1 but where a path puts it on."""
 
 TIE = CONTACT_MODELS.index("tie")
 
@@ -58,7 +58,7 @@ class Assembly:
     expands : dict of (N_all,) arrays
         Displacements of elastic bodies that expand freely, for each group that changes temperatures [m].
     lent_compliance : float
-        Normal compliance lent to hard joints between bodies that do not deform, a pair of mean area [m/kN]; 0 where
+        Normal compliance added to hard joints between bodies that do not deform, a pair of mean area [m/kN]; 0 where
         none was (:mod:`concio.analysis.lent_compliance`).
     """
 
@@ -270,7 +270,7 @@ def assemble(model: Model) -> Assembly:
     GeometryError
         Bodies overlap.
     InputError
-        What is given is no model (the name of a file, for example); nothing holds the model; no two bodies touch and
+        What is given is not a model (the name of a file, for example); nothing holds the model; no two bodies touch and
         no support or tie holds a block; a load or support is not usable.
     """
     require_model(model)

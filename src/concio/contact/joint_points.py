@@ -6,14 +6,14 @@ of the width 2 d at the edge (for d below w/2). Points equally far from each oth
 wider than their distance: 9 of them carry 0.67 to 1.24 times as much for d/w between 0.1 and 0.02.
 
 So the shares c_i grow from the edge inwards by one ratio r. A number of full shares, C = c_0 + ... + c_k, carries
-exactly C p, and is told exactly where :math:`\sum c_i d_i = C^2/2`. Between two full shares less is carried, by at most
+exactly C p, and is exact where :math:`\sum c_i d_i = C^2/2`. Between two full shares less is carried, by at most
 :math:`(r-1)^2/4r` (where the share begun is filled to 1/(1+r)). The points are moved outwards by half of that,
 
 .. math:: \sum_{i \le k} c_i d_i = \tfrac{1}{2} C^2 (1 - \varepsilon), \qquad \varepsilon = \frac{(r-1)^2}{8 r},
 
 so that the strength is at most :math:`\varepsilon` above or below; the innermost point stands where second moments are
 exact, which costs another half of that. The first point is the edge itself, or no hinge would lie there, and the second
-has the same share, with which the strength is told exactly where both are full. There the rule ends: of forces nearer
+has the same share, with which the strength is exact where both are full. There the rule ends: of forces nearer
 to the edge than the first share, c_0 of the length, the strength is too large, by at most c_0 of that of the whole
 joint.
 """

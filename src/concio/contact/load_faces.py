@@ -165,7 +165,7 @@ def prefers(load: Load, outward: Array, what: str, where: str) -> bool:
     rise = abs(float(outward[-1]))
     named = load.face or ("lower" if rise >= UPRIGHT else "")
     if not named:
-        msg = f"the {what} lies in an upright joint, which has two faces"
+        msg = f"the {what} lies in a vertical joint, which has two faces"
         raise InputError(msg, where=where, hint="say which with face = 'left', 'right' or 'both', or name one body")
     component, sign = SIDES[named]
     if abs(float(outward[component])) < UPRIGHT:

@@ -5,7 +5,7 @@
 2. Interior points begin as a triangular grid. Then circumcentres of triangles that are too large or too sharp are
    added, as in Ruppert's refinement (J. Algorithms 18, 1995), but only where they lie in no side's diametral circle:
    the sides stay whole, so that contact is found where the model put it. Each round adds the worst ones that stand
-   clear of each other, and triangulates anew.
+   clear of each other, and triangulates again.
 3. Interior points move to the mean of their neighbours where that makes the worst triangle around them no worse.
 
 Work is done in coordinates of order one. The result covers the polygon exactly: it is a triangulation of the given
@@ -163,7 +163,7 @@ class _Flips:
             if t is None or s is None:
                 raise _cannot(np.array(self.xy[i]))
             k, m = sum(self.cells[t]) - p - q, sum(self.cells[s]) - p - q
-            if self._turn(k, p, m) <= _FLAT or self._turn(m, q, k) <= _FLAT:  # the two are no convex quadrilateral yet
+            if self._turn(k, p, m) <= _FLAT or self._turn(m, q, k) <= _FLAT:  # the two are not convex quadrilateral yet
                 queue.append((p, q))
                 continue
             self._flip(t, s, p, q, k, m)

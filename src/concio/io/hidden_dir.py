@@ -113,7 +113,7 @@ def locked(root: Path, where: str) -> Iterator[None]:
     try:
         lock.__enter__()
     except TimeoutError:
-        msg = "another run is putting its files there, and does not come to an end"
+        msg = "another run is putting its files there, and has not finished"
         raise InputError(msg, where=where, hint="wait for it, stop it, or give another directory") from None
     try:
         yield

@@ -92,7 +92,7 @@ def write_list(root: Path, hidden: Path, listing: Listing) -> None:
 
 
 def checksum_of(path: Path) -> str:
-    """Return the checksum of a file; empty for what is no file, or is none any more."""
+    """Return the checksum of a file; empty for what is not a file, or is none any more."""
     if path.is_symlink() or not path.is_file():
         return ""
     try:

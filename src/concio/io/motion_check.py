@@ -78,15 +78,15 @@ def check_array(array: object, wanted: list[str], sizes: dict[str, int], where: 
     kinds, words = KINDS[wanted[0]]
     if not isinstance(array, np.ndarray) or array.dtype.kind not in kinds:
         msg = f"damaged: '{place}' does not hold {words}"
-        raise InputError(msg, where=where, hint="write the file anew")
+        raise InputError(msg, where=where, hint="write the file again")
     shape = tuple(int(w) if w.isdigit() else sizes.get(w, -1) for w in wanted[1:])
     fits = array.ndim == len(shape) and all(n in (-1, k) for n, k in zip(shape, array.shape, strict=True))
     if not fits:
         said = ", ".join(w if n < 0 else str(n) for n, w in zip(shape, wanted[1:], strict=True))
         msg = f"damaged: '{place}' has the shape {array.shape}, not ({said})"
-        raise InputError(msg, where=where, hint="write the file anew")
+        raise InputError(msg, where=where, hint="write the file again")
     sizes.update((w, k) for w, k in zip(wanted[1:], array.shape, strict=True) if not w.isdigit())
     beyond = array.dtype.kind == "f" and not (np.abs(array.astype(float)) < LARGEST).all()
     if beyond and place.rpartition(".")[2] not in MAY_BE_INFINITE:
         msg = f"damaged: '{place}' holds what no motion has"
-        raise InputError(msg, where=where, hint="write the file anew")
+        raise InputError(msg, where=where, hint="write the file again")

@@ -70,7 +70,7 @@ PLAIN: dict[str, Callable[[object], bool]] = {
     "factors": lambda v: isinstance(v, dict) and all(isinstance(k, str) and _number(f) for k, f in v.items()),
     "steps": lambda v: isinstance(v, Steps) and _words(v.methods),
 }  # fmt: skip
-"""What is no array, and how to tell whether it is what it must be."""
+"""What is not an array, and how to tell whether it is what it must be."""
 
 UNREADABLE = (
     ValueError, KeyError, OSError, EOFError, zipfile.BadZipFile, zlib.error, NotImplementedError, RecursionError,
@@ -157,7 +157,7 @@ def load_motion(path: Path | str) -> PushResult | DynamicsResult:
         raise InputError(msg, where=str(path), hint="give a file that save_motion, push or shake wrote: motion.npz")
     if head.get("format_version") != VERSION:
         msg = f"the file has version {head.get('format_version')}, this program reads {VERSION}"
-        raise InputError(msg, where=str(path), hint="write it anew")
+        raise InputError(msg, where=str(path), hint="write it again")
     try:
         model = loads(head["model"], name=f"{path}, model")
         values = {name: _unpacked(value, arrays) for name, value in head["values"].items()}
@@ -168,7 +168,7 @@ def load_motion(path: Path | str) -> PushResult | DynamicsResult:
         raise
     except (KeyError, TypeError, AttributeError, ValueError, IndexError, RecursionError) as fault:
         msg = f"damaged: {type(fault).__name__}, {str(fault)[:100]}"
-        raise InputError(msg, where=str(path), hint="write the file anew") from None
+        raise InputError(msg, where=str(path), hint="write the file again") from None
     return made
 
 
@@ -177,33 +177,33 @@ def _check(made: PushResult | DynamicsResult, where: str) -> None:
     for name in made.__dataclass_fields__:
         if name in PLAIN and not PLAIN[name](getattr(made, name)):
             msg = f"damaged: '{name}' is not what it must be"
-            raise InputError(msg, where=where, hint="write the file anew")
+            raise InputError(msg, where=where, hint="write the file again")
     if not isinstance(made.ending, Ending if isinstance(made, DynamicsResult) else PushEnding):
         msg = "damaged: how the motion ended is not told"
-        raise InputError(msg, where=where, hint="write the file anew")
+        raise InputError(msg, where=where, hint="write the file again")
     for name, kind in (("end", MotionState), *((("shots", Shots), ("steps", Steps), ("energy", EnergyBalance))
                        if isinstance(made, DynamicsResult) else ())):  # fmt: skip
         if type(getattr(made, name)) is not kind:
             msg = f"damaged: '{name}' is missing"
-            raise InputError(msg, where=where, hint="write the file anew")
+            raise InputError(msg, where=where, hint="write the file again")
     end = made.end
     parts = type(end.memory) is Memory and type(end.ties) is TieMemory
     if not (parts and isinstance(end.time, float) and np.isfinite(end.time)):
-        msg = "damaged: the state at the end is not whole"
-        raise InputError(msg, where=where, hint="write the file anew")
+        msg = "damaged: the final state is incomplete"
+        raise InputError(msg, where=where, hint="write the file again")
     sizes = {"B": len(made.model.bodies), "reactions": len(made.reactions_of)}
     if isinstance(made, DynamicsResult):
         sizes |= {"points": len(made.points), "joints": len(made.joints)}
         steps = made.steps
         check_arrays(made, sizes, where)
         if set(made.energy.values) != set(NAMES):
-            msg = "damaged: the energy balance is not whole"
-            raise InputError(msg, where=where, hint="write the file anew")
+            msg = "damaged: the energy balance is incomplete"
+            raise InputError(msg, where=where, hint="write the file again")
         for name, energy in made.energy.values.items():
             check_array(energy, ["f", "shots"], sizes, where, f"energy.{name}")
         if len(steps.how) and not 0 <= steps.how.min() <= steps.how.max() < len(steps.methods):
             msg = "damaged: 'steps.how' names methods that are not there"
-            raise InputError(msg, where=where, hint="write the file anew")
+            raise InputError(msg, where=where, hint="write the file again")
     else:
         check_arrays(made, sizes, where)
 

@@ -73,7 +73,7 @@ def look_at(directory: Path | str) -> Place:
     Raises
     ------
     InputError
-        It is no directory; it holds other things and no list of what is concio's, or something that concio wrote was
+        It is not a directory; it holds other things and no list of what is concio's, or something that concio wrote was
         changed since.
     """
     where = str(directory)
@@ -87,7 +87,7 @@ def look_at(directory: Path | str) -> Place:
         with locked(path, where):
             return _look(path, where)
     except OSError as error:
-        msg = f"the directory cannot be looked at: {error.strerror or error}"
+        msg = f"the directory cannot be read: {error.strerror or error}"
         raise InputError(msg, where=where) from None
 
 

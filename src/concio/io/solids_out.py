@@ -64,7 +64,7 @@ def write_solids(path: str | Path, what: Model | Result, *, scale: float = 1.0) 
     path = Path(path)
     writer = WRITERS.get(path.suffix.lower())
     if writer is None:
-        msg = f"'{path.suffix}' is no format of solids"
+        msg = f"'{path.suffix}' is not a format of solids"
         raise InputError(msg, where=str(path), hint="one of " + ", ".join(WRITERS))
     blocks = _blocks(what) if isinstance(what, Model) else _displaced(what, scale)
     with whole_file(path) as fresh:

@@ -51,7 +51,7 @@ def place(
     mirror : str
         "x", "y" or "z": this coordinate changes its sign. Several letters are several mirrors.
     name : str
-        Put with a hyphen before the names of bodies, supports and ties, so that parts can be told apart.
+        Put with a hyphen before the names of bodies, supports and ties, so that parts can be distinguished.
     without : str or sequence of str
         Bodies to leave out, by name, role, layer or a pattern of names such as ``"b0*"``; with them go their supports
         and ties, and loads that name nothing else.
@@ -202,7 +202,7 @@ def _moved_support(support: Support, matrix: Array, shift: Array, label: str) ->
     axes = [AXES.index(a) for a in support.directions]
     held = np.flatnonzero(turned[:, axes].sum(1) > 1e-12)
     if len(held) != len(axes):
-        msg = f"it holds '{support.directions}' alone, which is no direction of the axes after turning"
+        msg = f"it holds '{support.directions}' alone, which is not a direction of the axes after turning"
         raise InputError(msg, where=f"support '{support.name}'", hint="turn by right angles, or hold all directions")
     sign = float(np.linalg.det(matrix))
     rotation = np.atleast_1d(np.asarray(support.rotation, dtype=float))

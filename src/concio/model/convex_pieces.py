@@ -1,8 +1,8 @@
 """A polyhedron as convex pieces, for questions that are easy to answer of convex bodies only.
 
 A block whose grid is known is its hexahedra. Any other is cut by the plane of a face out of which it stands, and what
-is left on either side again, until every piece is convex. A piece is told by its corners and its planes; corners in
-which only planes of cutting meet, inside the block, are left out, so that a piece may be told a little too small.
+is left on either side again, until every piece is convex. A piece is described by its corners and its planes; corners
+in which only planes of cutting meet, inside the block, are left out, so that a piece may come out slightly too small.
 """
 
 from __future__ import annotations

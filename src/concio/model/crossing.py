@@ -18,7 +18,7 @@ RADIANS = 1.6
 STRETCH = 1.0
 """Footprints from this length on are stretches of uniform load, of which counts what stands on the road [m]."""
 TONNES = 30.0
-"""A bare axle load below this is told as perhaps meant in tonnes [kN]."""
+"""A bare axle load below this is reported as perhaps meant in tonnes [kN]."""
 
 
 @strict_class
@@ -142,7 +142,7 @@ class Fill:
             msg = "the road line needs two points or more, each further to the right than the one before"
             raise InputError(msg, where=where, hint="for example [[-2.0, 1.9], [9.0, 1.9]]")
         if not abs(self.gradient) <= 0.5:
-            msg = f"gradient = {self.gradient:g} is no slope of a road"
+            msg = f"gradient = {self.gradient:g} is not a slope of a road"
             raise InputError(msg, where=where, hint="0.03 rises by 3 m in 100 m")
         put(self, "unit_weight", _weight(self.unit_weight, where))
         put(self, "cohesion", _not_negative("cohesion", self.cohesion, "stress", where))
@@ -235,7 +235,7 @@ class Axle:
         except InputError as error:
             if "masses" not in (error.hint or ""):
                 raise
-            hint = "a mass in tonnes is no force: write kN, or 'tf' for the weight of a tonne ('11.5 tf' is 112.8 kN)"
+            hint = "tonnes are a mass, not a force: write kN, or 'tf' for the weight of a tonne ('11.5 tf' is 112.8 kN)"
             raise InputError(error.what, where=error.where, hint=hint) from None
         if not 0 < load < math.inf or not math.isfinite(self.at):
             msg = f"load = {load:g} kN must be positive"
@@ -355,7 +355,7 @@ def _friction_angle(value: float | str, where: str) -> float:
         msg = f"friction_angle = {angle:g} degrees must lie between 0 and 60"
         raise InputError(msg, where=where, hint="fills have some 25 to 45 degrees")
     if 0 < angle <= RADIANS:
-        msg = f"friction_angle = {angle:g} degrees is hardly meant"
+        msg = f"friction_angle = {angle:g} degrees is implausible"
         hint = f"a bare number is in degrees: {math.degrees(angle):.3g}, or write '{angle:g} rad'"
         raise InputError(msg, where=where, hint=hint)
     return angle

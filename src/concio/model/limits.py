@@ -1,11 +1,11 @@
-"""How large a model may be: more than this is taken for a slip of the pen, and said before any work is done."""
+"""How large a model may be: more than this is taken for a typing error, and said before any work is done."""
 
 from __future__ import annotations
 
 LARGEST_BLOCKS = 500_000
 """Blocks that a generator makes."""
 LARGEST_COORDINATE = 1e50
-"""Coordinates [m]: products of larger ones are no numbers."""
+"""Coordinates [m]: products of larger ones are not numbers."""
 LARGEST_UNKNOWNS = 20_000_000
 """Displacements of a mesh."""
 LARGEST_REFINEMENT = 1_000

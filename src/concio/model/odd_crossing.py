@@ -16,12 +16,12 @@ NEWTONS = 1_000.0
 LIGHT, HEAVY = 5.0, 40.0
 """Unit weights of fill and road layers lie between these [kN/m3]; ballast, asphalt and concrete have 16 to 25."""
 DEEP = 20.0
-"""Larger depths of cover are told [m]."""
+"""Larger depths of cover are reported [m]."""
 WIDER = 1e-6
 
 
 def odd_crossing(model: Model) -> list[str]:
-    """Return a sentence for each number of ring, fill, road and vehicle that is hardly meant."""
+    """Return a sentence for each number of ring, fill, road and vehicle that is implausible."""
     found = _ring(model.generator)
     if model.fill is not None:
         found += _fill(model.fill)

@@ -43,7 +43,7 @@ TURNED = 0.005
 
 
 def implausible(model: Model) -> tuple[str, ...]:
-    """Return a sentence for each number of a model that is hardly meant.
+    """Return a sentence for each number of a model that is implausible.
 
     Parameters
     ----------
@@ -130,12 +130,12 @@ def _places(model: Model) -> list[str]:
 
 
 def _weights(model: Model) -> list[str]:
-    """Return a sentence where the own weight of a model in space acts along -y, as it does in the plane."""
+    """Return a sentence where the self-weight of a model in space acts along -y, as it does in the plane."""
     weights = [load.value for load in model.loads if load.kind == "weight"]
     down = any(len(v) == 3 and v[0] == 0 and v[1] < 0 for v in weights)
     if model.dim != 3 or not down or any(v[-1] != 0 for v in weights):
         return []
-    return ["own weight acts along -y and none along z: in space z points up, and gravity is [0, 0, -1]"]
+    return ["self-weight acts along -y and none along z: in space z points up, and gravity is [0, 0, -1]"]
 
 
 def _thickness(model: Model) -> list[str]:
@@ -191,13 +191,13 @@ def _sizes(model: Model) -> list[str]:
         most = max(large, key=lambda name: sizes[name])
         several = f", as are {len(large) - 1} others" if len(large) > 1 else ""
         found.append(
-            f"block '{most}' is {sizes[most]:,.4g} m long{several}, more than {LONG:g} m: is that the unit of length?"
+            f"block '{most}' is {sizes[most]:,.4g} m long{several}, more than {LONG:g} m: check the unit of length"
         )
     small = [name for name, size in sizes.items() if size < SHORT]
     if small:
         found.append(
             f"block '{small[0]}' is {sizes[small[0]]:.4g} m long{f', and {len(small) - 1} more' if small[1:] else ''}: "
-            "is that the unit of length?"
+            "check the unit of length"
         )
     usual = float(np.median(list(sizes.values()))) if sizes else 0.0
     for support in model.supports:

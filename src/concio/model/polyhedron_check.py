@@ -185,7 +185,7 @@ def _unusable(points: Array, faces: Sequence[Loop], holes: Sequence[tuple[int, L
         return fault("not finite", text, "no structure is that large: look at the number, and at its unit")
     if len(points) > MOST_VERTICES:
         text = f"{len(points):,} vertices are more than the {MOST_VERTICES:,} a block may have"
-        return fault("too many", text, "a scanned surface is no block: simplify it, or split it into blocks")
+        return fault("too many", text, "a scanned surface is not a block: simplify it, or split it into blocks")
     if len(faces) < 4:
         return fault("too few", f"{len(faces)} faces close no volume", "a polyhedron has at least 4")
     if _indices_are_right(tuple(faces), tuple(holes), len(points)):
@@ -220,7 +220,7 @@ def _indices_are_right(faces: tuple[Loop, ...], holes: tuple[tuple[int, Loop], .
 
 
 def _not_closed(points: Array, top: Topology, size: float) -> SolidFault:
-    """Return the fault of faces that do not close, told apart from vertices that were not put together."""
+    """Return the fault of faces that do not close, distinguished from vertices that were not put together."""
     assert top.fault is not None
     kind, p, q, number = top.fault
     at = 0.5 * (points[p] + points[q])

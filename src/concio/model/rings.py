@@ -18,7 +18,7 @@ def checked_ring(points: Array, what: str, where: str, *, clockwise: bool = Fals
     try:
         ring = np.array(points, dtype=float)
     except (TypeError, ValueError):
-        msg = f"{what} is no list of points (x, y)"
+        msg = f"{what} is not a list of points (x, y)"
         raise GeometryError(msg, where=where) from None
     if ring.ndim != 2 or ring.shape[1] != 2:
         msg = f"{what} has shape {ring.shape}, expected (n, 2)"

@@ -53,7 +53,7 @@ def plot_cell_state(path: CellPath, step: int = -1, ax: Axes | None = None, *, s
     pairs = chosen.state.states
     state = np.where(pairs.open, 0, np.where(pairs.slips, 2, 1))
     words = ", ".join(f"{v:+.3g}" for v in chosen.stress)
-    title = f"{path.stages[chosen.stage].name}, at {chosen.parameter:.3g} of its way"
+    title = f"{path.stages[chosen.stage].name}, at {chosen.parameter:.3g} of its stage"
     return _draw(
         result, result.displacement, chosen.strain, state, ax, scale, title, f"stress xx, yy, xy: {words} kN/m2"
     )

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-"""Okabe and Ito's colours, told apart by the colour-blind; yellow left out, too light for lines."""
+"""Okabe and Ito's colours, distinguished by the colour-blind; yellow left out, too light for lines."""
 
 DASHES: tuple[Any, ...] = ("-", "--", ":", "-.")
 

@@ -26,7 +26,7 @@ Array = np.ndarray
 
 @strict
 def plot_deformed(result: Result, ax: Axes | None = None, *, scale: float | None = None) -> Axes:
-    """Draw the deformed shape; joints are told apart as open, sticking, slipping.
+    """Draw the deformed shape; joints are distinguished as open, sticking, slipping.
 
     Parameters
     ----------

@@ -37,7 +37,7 @@ class LimitPlots:
         """Draw the associated mechanism."""
         bound = self.found.associated
         if bound.mechanism is None:
-            msg = "there is no mechanism to draw: no load is the last"
+            msg = "there is no mechanism to draw: no load bounds it"
             raise InputError(msg)
         return self._draw(
             ax, bound.mechanism.velocity, f"Associated mechanism at {bound.multiplier:.6g} times {self._load}",

@@ -96,7 +96,7 @@ def plot_model(model: Model, ax: Axes | None = None, *, names: bool | None = Non
     if _loads(ax, model, size):
         handles.append(style.handle(style.LOAD, "load"))
     count = f"{len(free)} bodies" + (f", {len(fixed)} fixed" if fixed else "")
-    count += " repeat without end" if model.periods is not None else ""
+    count += " repeated periodically" if model.periods is not None else ""
     count += f"; plane {model.plane}, element {model.element}"
     style.dress(ax, box, model.title or "model", count, units=model.report)
     style.legend(ax, handles, 6)
@@ -159,7 +159,7 @@ def _support(ax: Axes, model: Model, support: Any, size: float) -> None:
 
 
 def _loads(ax: Axes, model: Model, size: float) -> bool:
-    """Draw edge and point loads as arrows; own weight is told in words. True where there was anything to draw."""
+    """Draw edge and point loads as arrows; self-weight is reported in words. True where there was anything to draw."""
     drawn = False
     own = {part.group for part in (model.fill, model.vehicle) if part is not None}
     for load in model.loads:

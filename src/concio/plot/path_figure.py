@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 Array = np.ndarray
 
 SMALL = 0.1
-"""Motions that all stay below this are told in mm [m]."""
+"""Motions that all stay below this are reported in mm [m]."""
 
 
 class PathEvent(Protocol):
@@ -98,7 +98,7 @@ def plot_path(
     bound : float, optional
         A bound on the load factor to draw beside it, such as the associated limit.
     unit : str
-        Of the load, where it is no factor.
+        Of the load, where it is not a factor.
 
     Returns
     -------

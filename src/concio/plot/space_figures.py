@@ -64,7 +64,7 @@ def directions(view: View | tuple[float, float]) -> tuple[Array, Array, Array]:
 def plot_space_model(
     model: Model, ax: Axes | None = None, *, view: View = "axonometry", names: bool | None = None
 ) -> Axes:
-    """Draw the blocks, ties and loads of a model in space, as it is described; own weight is not drawn.
+    """Draw the blocks, ties and loads of a model in space, as it is described; self-weight is not drawn.
 
     Parameters
     ----------

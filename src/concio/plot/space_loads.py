@@ -25,7 +25,7 @@ WRITTEN = 12
 
 
 def draw_loads(ax: Axes, model: Model, axes: Array) -> None:
-    """Draw point loads and loads on faces; own weight is told in words.
+    """Draw point loads and loads on faces; self-weight is reported in words.
 
     Parameters
     ----------

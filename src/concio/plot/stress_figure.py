@@ -27,7 +27,7 @@ def plot_principal(
     shade: bool = True,
     scale: float | None = None,
 ) -> Axes:
-    """Draw mean principal stresses as crosses, compression and tension told apart by colour and by dash.
+    """Draw mean principal stresses as crosses, compression and tension distinguished by colour and by dash.
 
     Parameters
     ----------

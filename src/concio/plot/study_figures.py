@@ -23,7 +23,7 @@ SIZE = (6.4, 4.2)
 """Width and height of a new figure [in]."""
 
 JITTER = 0.04
-"""Height by which points of yes and no are spread, so that they can be told apart."""
+"""Height by which points of yes and no are spread, so that they can be distinguished."""
 
 
 @dataclass(frozen=True, eq=False)

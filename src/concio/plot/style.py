@@ -1,6 +1,6 @@
 """One look for all figures: what each colour, dash and hatch means, axes, legends and scale bars.
 
-Colours are those of Okabe and Ito, told apart by the colour-blind; every meaning is carried a second time by dash,
+Colours are those of Okabe and Ito, distinguished by the colour-blind; every meaning is carried a second time by dash,
 width or hatch, so that a grey copy reads as well.
 """
 

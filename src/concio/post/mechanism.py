@@ -1,7 +1,7 @@
 """What each joint does in a collapse mechanism.
 
 The mechanism that proves a collapse obeys ``y_n >= mu |y_t|`` (theory page, section 6): a joint that only slides also
-opens by mu times its slip. Such a joint is told apart from one that opens further. In a motion without end the joints
+opens by mu times its slip. Such a joint is distinguished from one that opens further. In an unbounded motion the joints
 that slide stay closed, as they do in reality.
 """
 

@@ -20,7 +20,7 @@ def mechanism_states_in_space(result: Result, faces: JointFaces, tolerance: floa
     """Return the state (T,) of each joint piece in a mechanism, codes of :class:`.PairState`.
 
     As in the plane: in the mechanism that proves a collapse a joint that only slides also opens by mu times its slip,
-    which is told apart from one that opens further.
+    which is distinguished from one that opens further.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 r"""How forces flow through a body: struts and ties between the points where its joints and its loads push.
 
-The resultants of a body's joints and what else acts on it (own weight, loads, supports) are in balance. Between their
+The resultants of a body's joints and what else acts on it (self-weight, loads, supports) are in balance. Between their
 points of application a truss holds them: every two points joined by a bar with the force s, compression positive,
 
 .. math:: \min \sum_{ij} l_{ij}\,(s_{ij}^+ + \beta\,s_{ij}^-), \qquad

@@ -16,7 +16,7 @@ here: the certificate, the engine, the programmes of statics, the iterative meth
 in closed form. ``e`` is the slip (times a stiffness), so ``kappa`` is the dilatancy:
 
 * ``kappa = 0``: normal force first, then friction on the disc of that normal force. This is the map of the augmented
-  Lagrangian of Alart and Curnier (Comput. Methods Appl. Mech. Engrg. 92, 1991, 353-375); it is no projection, its
+  Lagrangian of Alart and Curnier (Comput. Methods Appl. Mech. Engrg. 92, 1991, 353-375); it is not a projection, its
   derivative is not symmetric: Coulomb friction has no energy.
 * ``kappa = mu``: the Euclidean projection onto ``S``, which the bipotential of De Saxcé and Feng (Mech. Struct. Mach.
   19, 1991, 301-325) uses after shifting the gap by ``mu |y_t|``.

@@ -65,7 +65,7 @@ def local_problem(W: Any, q: Array, mu: Array | float, *, dim: int = 3) -> Conta
     W = sp.csr_array(W)
     n = q.size
     if q.ndim != 1 or n % dim or not n or W.shape != (n, n):
-        msg = f"W of shape {W.shape} and q of shape {q.shape} are no problem of contacts with {dim} components"
+        msg = f"W of shape {W.shape} and q of shape {q.shape} are not a problem of contacts with {dim} components"
         raise InputError(msg, hint="both have d rows for each contact")
     scale = float(abs(W).max()) or 1.0
     if not math.isfinite(scale) or abs(W - W.T).max() > 1e-9 * scale:

@@ -14,9 +14,9 @@ Without the second, forces of stiff joints could be chosen at will wherever some
 they would close is little beside that. Where nothing moves and no joint gives way, U is zero, and every gap or slip
 that is not zero is wrong.
 
-Rounding is told from error: y = x + C u + a t is known to a few eps of the sizes it is summed from, and no better,
-whoever solves. :data:`ROUNDING` of these is granted, never more than :data:`GRANTED` of the unit: where displacements
-are so large beside the compliance of a joint that they do not tell its force, nothing is certified.
+Rounding is distinguished from error: y = x + C u + a t is known to a few eps of the sizes it is summed from, and no
+better, whoever solves. :data:`ROUNDING` of these is granted, never more than :data:`GRANTED` of the unit: where
+displacements are so large beside the compliance of a joint that they do not tell its force, nothing is certified.
 """
 
 from __future__ import annotations

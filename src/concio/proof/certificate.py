@@ -81,7 +81,7 @@ def prove_limit(
         parts += _first(made, upper)
     if not parts:
         msg = "no exact forces and no exact motion were found for the multiplier"
-        hint = "the loads may be carried in any multiple, or in none; 'concio limit' tells"
+        hint = "the loads may be carried in any multiple, or in none; use 'concio limit'"
         raise SolverError(msg, hint=hint)
     for part in parts:
         made.update(part)
@@ -115,7 +115,7 @@ def prove_collapse(
         if found is not None and _holds({**made, "motion": found["motion"]}):
             return sealed({**made, "motion": found["motion"]})
     msg = "no exact motion was found on which the loads do work against no resistance"
-    raise SolverError(msg, hint="forces in balance within friction may exist; 'concio run' and 'concio limit' tell")
+    raise SolverError(msg, hint="forces in balance within friction may exist; use 'concio run' and 'concio limit'")
 
 
 def prove_balance(

@@ -170,7 +170,7 @@ def _pieces(body: Body | Polyhedron) -> list[np.ndarray]:
 
 
 def _resultants(assembly: Assembly) -> list[tuple[str, int, np.ndarray, np.ndarray, np.ndarray]]:
-    """Return group, body, point, force and moment of all loads but own weight, body by body."""
+    """Return group, body, point, force and moment of all loads but self-weight, body by body."""
     disc = assembly.disc
     others = tuple(load for load in assembly.model.loads if load.kind != "weight")
     if not others:

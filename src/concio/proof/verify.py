@@ -209,7 +209,7 @@ def read(path: str) -> str:
     with open(path, encoding="ascii") as file:
         data = json.load(file)
     if not isinstance(data, dict):
-        raise ValueError("this is no certificate")
+        raise ValueError("this is not a certificate")
     return check(data)
 
 

@@ -6,7 +6,7 @@ a linear programme for the largest x, and its dual the least work of a motion th
 a basis in floating point. The basis says which p_j are not zero and which rays the motion leaves at rest: two square
 systems of fractions, solved exactly (:mod:`concio.proof.exact_solve`). In the plane the rays are the two edges of the
 cone, and both answers are one fraction. In space the cone is round: rays inside it give forces, rays round it motions,
-and what lies between the two fractions is told.
+and what lies between the two fractions is reported.
 
 Nothing that floating point says is part of the proof: what comes out is handed to :mod:`concio.proof.verify`.
 """

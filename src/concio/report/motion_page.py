@@ -28,6 +28,15 @@ LARGEST = 4_000_000
 SHOWN = 300
 """Events listed."""
 
+HOW = {
+    "same states": "contact states unchanged",
+    "active set": "active set",
+    "small problem": "small complementarity problem",
+    "interior point": "interior point",
+    "pivoting": "pivoting",
+}
+"""How a time step was solved, in words, by the names of ``solved_by``."""
+
 
 @strict
 def write_motion_report(result: PushResult | DynamicsResult, path: Path | str) -> Path:
@@ -129,11 +138,12 @@ def _events(result: PushResult) -> str:
 
 def _shares(result: DynamicsResult) -> str:
     rows = "".join(
-        f"<tr><td>{escape(name)}</td><td class=n>{100 * share:.1f} %</td></tr>"
+        f"<tr><td>{escape(HOW.get(name, name))}</td><td class=n>{100 * share:.1f} %</td></tr>"
         for name, share in result.steps.shares().items()
     )
     mean = float(result.steps.factorisations.mean()) if len(result.steps) else 0.0
     return (
-        "<h2>What solved the steps</h2><div class=scroll><table><thead><tr><th>by</th><th>share</th></tr></thead>"
-        f"<tbody>{rows}</tbody></table></div><p>{mean:.2f} factorisations a step, {result.seconds:.1f} s in all.</p>"
+        "<h2>Solution of the time steps</h2><div class=scroll><table><thead><tr><th>method</th><th>share</th></tr>"
+        f"</thead><tbody>{rows}</tbody></table></div><p>{mean:.2f} factorisations per step, "
+        f"{result.seconds:.1f} s in all.</p>"
     )

@@ -68,7 +68,7 @@ def study_html(study: StudyResult, *, title: str = "Study", figures: bool = True
 def _head(study: StudyResult) -> str:
     v = study.verdict
     rows = "".join(f"<li>{escape(line)}</li>" for line in v.lines(indent=""))
-    early = " It stopped there because enough was known." if study.stopped else ""
+    early = " It stopped there because the stopping criterion was met." if study.stopped else ""
     counts = escape(verdict_counts(study))
     return (
         f'<div class="verdict {v.tone}"><h2>{escape(v.headline)}</h2><p>Sample: {escape(study.sample.design)}, seed '

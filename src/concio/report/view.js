@@ -68,7 +68,7 @@
     const short = Number(v.toPrecision(4));
     return size >= 1e4 ? short.toLocaleString("en", { maximumFractionDigits: 0 }) : String(short);
   };
-  /* quantities come in kN and m, and are told in the units of the report: [factor, symbol] of each kind */
+  /* quantities come in kN and m, and are reported in the units of the report: [factor, symbol] of each kind */
   const units = data.units;
   const told = (v, kind, beside = 0) => {
     const [factor, symbol] = units[kind] || [1, kind];
@@ -184,7 +184,7 @@
   };
   function middle(k, e) { const a = end(k, e, "a"), b = end(k, e, "b"); return [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2]; }
   function strokePieces(keep, colour, lineWidth, dash) {
-    const short = typical * view.zoom < 14; /* dashes cannot be told on joints this short */
+    const short = typical * view.zoom < 14; /* dashes cannot be seen on joints this short */
     pen.strokeStyle = colour; pen.lineWidth = lineWidth; pen.setLineDash(short ? [] : dash); pen.beginPath();
     for (let k = 0; k < pieceCount; k++) if (keep(k)) {
       const p = middle(k, 0), q = middle(k, 1);

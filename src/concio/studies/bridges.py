@@ -35,7 +35,7 @@ def variables_of_salib(problem: Mapping[str, Any], keys: Mapping[str, str] | Non
         names, bounds = [str(n) for n in problem["names"]], [list(map(float, b)) for b in problem["bounds"]]
         dists = list(problem.get("dists") or ["unif"] * len(names))
     except (KeyError, TypeError, ValueError) as error:
-        msg = f"this is no problem dictionary of SALib: {error!r}"
+        msg = f"this is not a problem dictionary of SALib: {error!r}"
         raise InputError(msg, hint="it has num_vars, names and bounds") from None
     if not len(names) == len(bounds) == len(dists) == problem.get("num_vars", len(names)):
         msg = "num_vars, names, bounds and dists of the problem differ in number"

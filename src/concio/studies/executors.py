@@ -101,7 +101,7 @@ def check_executor(executor: Any, workers: int | None) -> None:
         msg = f"there is no executor '{executor}'"
         raise InputError(msg, hint=closest(executor, [*NAMES, "tcp://HOST:PORT of a Dask scheduler"]))
     if not (executor is None or isinstance(executor, str) or hasattr(executor, "submit")):
-        msg = f"{type(executor).__name__} is no executor: it has no 'submit'"
+        msg = f"{type(executor).__name__} is not an executor: it has no 'submit'"
         raise InputError(msg, hint="give one of " + ", ".join(NAMES) + ", or an executor of concurrent.futures")
 
 
@@ -122,7 +122,7 @@ def one_thread() -> Iterator[None]:
 
 
 def _processes(size: int) -> Executor:
-    # started anew rather than forked: threads and locks of this process stay out of them
+    # started again rather than forked: threads and locks of this process stay out of them
     return ProcessPoolExecutor(size, mp_context=multiprocessing.get_context("spawn"))
 
 

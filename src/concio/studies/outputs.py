@@ -377,7 +377,7 @@ def outputs_of(wanted: Any, *, returned: bool = False) -> tuple[Output, ...]:
     Raises
     ------
     InputError
-        A name is not known, or stands twice.
+        A name is not known, or is listed twice.
     """
     if isinstance(wanted, str | Output):
         wanted = [wanted]
@@ -385,7 +385,7 @@ def outputs_of(wanted: Any, *, returned: bool = False) -> tuple[Output, ...]:
     if isinstance(wanted, Mapping):
         for name, function in wanted.items():
             if not callable(function):
-                msg = f"output '{name}' is no function"
+                msg = f"output '{name}' is not a function"
                 raise InputError(msg, hint="give a function of the run's analyses, or the name of an output in a list")
             found.append(Output(str(name), "-", "by a function of the user's", Computed(str(name), function)))
     else:
@@ -400,7 +400,7 @@ def outputs_of(wanted: Any, *, returned: bool = False) -> tuple[Output, ...]:
         raise InputError(msg, hint="for example outputs=['stands'], or one of " + ", ".join(KNOWN))
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
-        msg = f"the output '{twice}' stands twice"
+        msg = f"the output '{twice}' is listed twice"
         raise InputError(msg)
     return tuple(found)
 

@@ -237,7 +237,7 @@ def _evaluate(task: Task, numbers: tuple[float, ...], seed: int, deadline: float
 
 
 def _analyse(analyses: Analyses, wanted: tuple[Output, ...], row: _Made) -> None:
-    """Read every output of a model, each for itself: one that cannot be had takes nothing from the others."""
+    """Read every output of a model, each for itself: one that is not available takes nothing from the others."""
     proven = first = ""
     for output in wanted:
         try:
@@ -247,7 +247,7 @@ def _analyse(analyses: Analyses, wanted: tuple[Output, ...], row: _Made) -> None
         except NoEquilibriumError as error:
             row.fails.append(output.name)
             proven = proven or str(error)
-        except Exception as error:  # what a function of the user's raises is told in the row
+        except Exception as error:  # what a function of the user's raises is reported in the row
             word, message = _fault(error)
             row.errors[output.name] = f"{word}: {message}"
             first = first or word

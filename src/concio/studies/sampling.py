@@ -26,7 +26,7 @@ Correlation = Mapping[tuple[str, str], float] | Sequence[Sequence[float]] | Arra
 
 DESIGNS = ("monte-carlo", "latin-hypercube", "sobol", "saltelli", "grid", "one-at-a-time")
 MOST = 1_000_000
-"""More runs than these are no study of one wall."""
+"""More runs than these are not plausible for one wall."""
 
 
 @short_repr
@@ -221,13 +221,13 @@ def correlations(variables: Sequence[Variable], given: Correlation | None) -> di
         pairs: Mapping[Any, float] = given
         for pair in pairs:
             if not (isinstance(pair, tuple) and len(pair) == 2):
-                msg = f"correlation: {pair!r} is no pair of variables"
+                msg = f"correlation: {pair!r} is not a pair of variables"
                 raise InputError(msg, hint=hint)
         return {(str(a), str(b)): float(value) for (a, b), value in given.items()}
     try:
         matrix = np.asarray(given, dtype=float)
     except (TypeError, ValueError):
-        msg = f"correlation: {type(given).__name__} is no mapping of pairs, and no matrix of numbers"
+        msg = f"correlation: {type(given).__name__} is not a mapping of pairs, and no matrix of numbers"
         raise InputError(msg, hint=hint) from None
     if matrix.shape != (len(names), len(names)):
         k = len(names)

@@ -237,7 +237,7 @@ def fragility(intensity: Array, failed: Array) -> Fragility:
         msg = f"all runs fail from {x[y].min():g} on and none below: no finite spread is most likely"
         raise InputError(msg, hint="more runs between, or simply that threshold")
     if x[y].max() <= x[~y].min():
-        msg = "runs fail below an intensity and hold above it: this is no fragility curve"
+        msg = "runs fail below an intensity and hold above it: this is not a fragility curve"
         raise InputError(msg, hint="is the event the other way round?")
     logs = np.log(x)
     centre, width = float(logs.mean()), float(logs.std()) or 1.0
@@ -251,7 +251,7 @@ def fragility(intensity: Array, failed: Array) -> Fragility:
 
     a, b = minimize(loss, np.array([0.0, 1.0]), jac=True, method="BFGS").x
     if not b > 0:
-        msg = "failures grow rarer with the intensity: this is no fragility curve"
+        msg = "failures grow rarer with the intensity: this is not a fragility curve"
         raise InputError(msg, hint="is the event the other way round?")
     line = a + b * t
     weight = np.exp(2.0 * norm.logpdf(line) - norm.logcdf(line) - norm.logsf(line))

@@ -2,7 +2,7 @@
 
 ``study.json`` says what the study is, with a fingerprint of everything that decides its rows; ``sample.csv`` holds the
 values; ``rows.jsonl`` one line of JSON a run. A line that was not finished when a process died is dropped when the
-study is taken up again, and its run is made anew. Nothing else in the directory is touched.
+study is taken up again, and its run is made again. Nothing else in the directory is touched.
 """
 
 from __future__ import annotations

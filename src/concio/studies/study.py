@@ -228,7 +228,7 @@ def study(
     if stop is None and given.stop is not None:
         stop = Stop(**given.stop.model_dump())
     if stop is not None and stop.output not in [o.name for o in wanted]:
-        msg = f"'{stop.output}' is no output of the study"
+        msg = f"'{stop.output}' is not an output of the study"
         raise InputError(msg, where="stop", hint="outputs: " + ", ".join(o.name for o in wanted))
     path = None if directory is None else Path(directory)
     return _run(task, made, path, resume, stop, progress, executor, workers)
@@ -292,7 +292,7 @@ def _source(model: Any) -> tuple[Any, StudyTable | None]:
         return {k: v for k, v in model.items() if k != "study"}, study_table(model, "model")
     if callable(model):
         return model, None
-    msg = f"{type(model).__name__} is no model"
+    msg = f"{type(model).__name__} is not a model"
     raise InputError(msg, hint="give the name of a model file, a concio.Model, or a function of a run's values")
 
 
@@ -332,7 +332,7 @@ def _variables(given: Any) -> tuple[Variable, ...]:
     found = tuple(given)
     for v in found:
         if not isinstance(v, Variable):
-            msg = f"{v!r} is no variable"
+            msg = f"{v!r} is not a variable"
             raise InputError(msg, hint='make one: concio.variable("mu", low=0.3, high=0.7, keys="wall.friction")')
     return found
 

@@ -60,7 +60,7 @@ class StudyResult(Shown):
     directory : Path or None
         Where rows are kept.
     stopped : bool
-        Whether it stopped before the end of the sample because enough was known.
+        Whether it stopped before the end of the sample because the stopping criterion was met.
     settings : Settings or None
         Load factors and multiplied groups of the analyses.
     """
@@ -78,7 +78,7 @@ class StudyResult(Shown):
 
     def __repr__(self) -> str:
         head = f"StudyResult: {len(self)} of {len(self.sample)} runs, {self.sample.design} sample"
-        lines = [head + (", stopped early: enough was known" if self.stopped else "")]
+        lines = [head + (", stopped early: the stopping criterion was met" if self.stopped else "")]
         lines += [f"  {v.name}: {v.describe()}" for v in self.sample.variables[:4]]
         lines += [f"  {word}: {count}" for word, count in self.verdicts.items()]
         lines += [f"  {o.name} [{o.unit}]: {output_words(self, o)}" for o in self.outputs[:4]]
@@ -171,7 +171,7 @@ class StudyResult(Shown):
         Raises
         ------
         InputError
-            The runs are no random sample.
+            The runs are not a random sample.
         """
         if self.sample.design in ("grid", "one-at-a-time", "saltelli"):
             msg = f"a {self.sample.design} sample has no probabilities"

@@ -106,7 +106,7 @@ class Variable:
         if self.weights and (
             len(self.weights) != len(self.values) or min(self.weights) < 0 or not sum(self.weights) > 0
         ):
-            msg = f"{len(self.values)} values want as many weights, none negative and not all zero"
+            msg = f"{len(self.values)} values need as many weights, none negative and not all zero"
             raise InputError(msg, where=where)
 
     @property

@@ -29,7 +29,7 @@ APART = 0.01
 """Relative difference of zeta_E and capacity over demand above which a sentence says why."""
 
 CUT = {
-    "joints end": "its joints come to the end of their way",
+    "joints end": "its joints reach the end of their travel",
     "joint opens": "a joint opens, or a tie goes slack or yields",
     "several motions": "its joints leave more than one way to move, or none",
     "no forces": "its joints carry no forces in equilibrium",
@@ -90,7 +90,7 @@ def check_words(check: Check, language: str = "en", *, decides: bool = True, wri
 
 
 def ratio_words(ratio: float, holds: bool, language: str = "en", write: Write = number) -> str:
-    """Return whether a ratio that is no line of a mechanism is enough."""
+    """Return whether a ratio that is not a line of a mechanism is enough."""
     return WORDS[language]["row_holds" if holds else "row_fails"].format(ratio=write(ratio, 4))
 
 

@@ -19,7 +19,7 @@ EN = {
     "fails": "That is less than 1.",
     "fails_other": "At {level} it is {zeta}, less than 1.",
     "holds": "All limit states asked for are met.",
-    "incomplete": "Nothing that was checked fails, but not everything was checked: this is no verification.",
+    "incomplete": "Nothing that was checked fails, but not everything was checked: this is not a verification.",
     "none": "'{name}', push {way}: {why}",
     "locked": "locked: friction and geometry carry any push, so that no mechanism forms",
     "large": "no mechanism below {largest} g: the least multiplier is {alpha}",
@@ -54,15 +54,15 @@ EN = {
     "nothing beyond",
     "elsewhere": "left to the author, who answers for it: {items}",
     "open_levels": "{levels}: no hazard is given (or say which limit states are asked for)",
-    "open_hazard": "{numbers} of {level} were not given: the spectrum was made with numbers of no site",
+    "open_hazard": "{numbers} of {level} were not given: the spectrum uses default values that belong to no site",
     "open_height": "the amplification at height of {names}: give [site.building]",
     "open_out of plane": "the facade out of its plane: the model is wider than it is thick, and moves in its plane "
     "alone",
-    "open_curve": "'{name}', push {way}, at {levels}: its curve does not tell ({reason})",
+    "open_curve": "'{name}', push {way}, at {levels}: its curve is not conclusive ({reason})",
     "open_bound": "whether '{name}', push {way}, begins to move below {alpha}, which is an upper bound only",
     "open_tie": "tie '{tie}', which has no yield force: it was taken to pull with up to {force} kN",
     "open_unseen": "whether anything holds {names}: the loads there are less than {share} of those of the structure "
-    "around, which is as far as residuals tell",
+    "around, below the resolution of the residuals",
     "open_locked": "'{name}', push {way}: with joints that open as they slide it is locked, with Coulomb friction "
     "that is no answer, and no collapse state was found",
     "high": "'{name}' (z = {z} m)",
@@ -71,7 +71,7 @@ EN = {
     "row_fails": "not verified, {ratio}",
     "row_rest": "verified: it does not begin to move below a_g = {least} g",
     "row_beside": "{word} (the check in displacements decides)",
-    "meaning": "Of the mechanisms that the model can show; what the model does not hold cannot fail in it.",
+    "meaning": "Of the mechanisms that the model can show; what is not in the model cannot fail in it.",
 }
 
 IT = {

@@ -1,7 +1,7 @@
 """What is odd about a model: one list, which every command, result, exception, ``--json`` and report carries.
 
 Nothing here is refused. Each finding is a sentence for a person: joints that were not made, blocks that touch nothing,
-loads or parts of them that act nowhere, weights that are missing or act twice, and numbers that are hardly meant
+loads or parts of them that act nowhere, weights that are missing or act twice, and implausible numbers
 (:mod:`concio.model.plausibility`).
 """
 
@@ -42,7 +42,7 @@ class HasDetection(Protocol):
 
 
 def attention(found: HasDetection) -> tuple[str, ...]:
-    """Return what is odd about a model, a sentence each.
+    """Return what is suspicious about a model, a sentence each.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def attention(found: HasDetection) -> tuple[str, ...]:
 
 
 def attention_of(model: Model, detection: Detection) -> tuple[str, ...]:
-    """Return what is odd about a model whose interfaces were detected, a sentence each.
+    """Return what is suspicious about a model whose interfaces were detected, a sentence each.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def attention_of(model: Model, detection: Detection) -> tuple[str, ...]:
     """
     drawn = tuple(
         f"the drawing: {counted(len(noted(model, key)), one)} {words}left out, first: {noted(model, key)[0]}"
-        for key, one, words in (("faults", "fault", "mended or "), ("left_out", "thing", ""))
+        for key, one, words in (("faults", "fault", "repaired or "), ("left_out", "thing", ""))
         if noted(model, key)
     )
     found = (
@@ -98,7 +98,7 @@ def joints_not_made(detection: Detection) -> tuple[str, ...]:
     more = f" and {len(misses) - len(places):,} more" if len(misses) > len(places) else ""
     sorts = "" if len(kinds) == 1 else " (" + ", ".join(f"{n:,} {kind}" for kind, n in kinds.items()) + ")"
     return (
-        f"{counted(len(misses), 'joint')} nearly made, and not made or made in part{sorts}: "
+        f"{counted(len(misses), 'joint')} almost made, but not made or made only in part{sorts}: "
         f"{'; '.join(places)}{more}: 'concio check --all' names each",
     )
 

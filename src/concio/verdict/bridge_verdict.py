@@ -134,7 +134,7 @@ def _service(found: BridgeResult, *, settled: bool = False) -> str:
     if _crush(found):
         told.append(f"{state.crushed} contact points crush")
     told.append(
-        "a joint pressed at its edge alone" if math.isinf(state.largest_pressure)
+        "a joint compressed at its edge only" if math.isinf(state.largest_pressure)
         else f"pressure up to {units.text('stress', state.largest_pressure, 4)}"
     )  # fmt: skip
     told.append(

@@ -23,7 +23,7 @@ ENGLISH: Mapping[str, str] = {
     "head_open": "Whether the vehicle is carried is open.",
     "fails": "{required} times the vehicle is not carried at x = {x}, travelling to the {way}: nothing is in "
     "equilibrium beyond {upper} times.",
-    "fails_coulomb": "{required} times the vehicle is not carried at x = {x}, travelling to the {way}: put on in one "
+    "fails_coulomb": "{required} times the vehicle is not carried at x = {x}, travelling to the {way}: applied in one "
     "step with Coulomb friction, the structure moves away.",
     "holds": "{required} times the vehicle is carried at each of {count} positions: a certified Coulomb state "
     "was found "
@@ -37,10 +37,10 @@ ENGLISH: Mapping[str, str] = {
     "there ({bound_axle}); what Coulomb friction carries of that was not found.",
     "no_soil": "Without the pressure of the soil the bound is {multiplier} times, at x = {x}.",
     "no_soil_none": "Without the pressure of the soil the bridge does not stand even without a vehicle.",
-    "rests": "the answer rests on the pressure of the soil: without it nothing is in equilibrium beyond {multiplier} "
+    "rests": "the answer rests on the pressure of the soil: without it no equilibrium exists beyond {multiplier} "
     "times the vehicle, less than the {required} asked for",
     "rests_none": "the answer rests on the pressure of the soil: without it the bridge does not stand",
-    "shares": "of the bound at the worst position {soil} % is owed to the pressure of the soil and {spread} % to the "
+    "shares": "of the bound at the worst position {soil} % is due to the pressure of the soil and {spread} % to the "
     "spread of the load through the fill",
     "width": "a strip of {width} carries the vehicle: {by}",
     "grid": "positions are {step} apart, at the worst {fine}; between them nothing was looked at",
@@ -59,7 +59,7 @@ ENGLISH: Mapping[str, str] = {
     "{violation}, "
     "their multipliers {gap} apart; {count} Coulomb states, each certified by the equations of the model",
     "meaning": "A load factor multiplies the vehicle where it stands. The associated bound lies above what Coulomb "
-    "friction carries, and is never what to design with.",
+    "friction carries, and is never the design value.",
     "elsewhere": "at the worst position {load} of the vehicle reaches fixed blocks or stands beyond the bridge",
     "right": "right", "left": "left",
 }  # fmt: skip
@@ -141,7 +141,7 @@ class Words:
     ----------
     language : {"en", "it"}
     units : Units
-        In which quantities are told.
+        In which quantities are reported.
     """
 
     def __init__(self, language: Language, units: Units) -> None:

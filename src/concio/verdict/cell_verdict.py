@@ -42,7 +42,7 @@ def cell_verdict(
     status = {Outcome.HOLDS: "solved"}.get(outcome, "incomplete")
     headline = {
         Outcome.HOLDS: "Everything that was asked of the cell has its answer.",
-        Outcome.FAILS: "The path ends before its last stage: the cell takes no more.",
+        Outcome.FAILS: "The path ends before its last stage: the cell carries no more.",
     }
     return Verdict(
         outcome=outcome,
@@ -125,7 +125,7 @@ def domain_words(domain: StrengthDomain) -> str:
             "exactly" if found.exact else f"within it by at most {100 * found.shortfall:.2g} % of the way to a corner"
         )
         return f"the stresses that associated friction bears are those with, {part}"
-    return "" if domain.rays else "no stress is borne with something to spare: there is no domain"
+    return "" if domain.rays else "no stress is carried with a margin: there is no domain"
 
 
 def _path(path: CellPath | None) -> list[str]:

@@ -50,7 +50,7 @@ def comparison_verdict(table: ComparisonTable) -> Verdict:
     limits = _several(met)
     open_rows = [row.method for row in table.rows if row.outcome in ("gave up", "too slow", "cancelled")]
     if open_rows:
-        limits = (*limits, f"{', '.join(open_rows)} came to no answer, which says nothing of the structure")
+        limits = (*limits, f"{', '.join(open_rows)} gave no answer, which says nothing about the structure")
     if table.decided is None:
         return Verdict(
             outcome=Outcome.HOLDS if met else Outcome.UNDECIDED,

@@ -29,8 +29,9 @@ def apart(model: Model, detection: Detection) -> list[str]:
     loose = [body.name for k, body in enumerate(model.bodies) if part[k] != part[ground]]
     found = []
     if loose:
-        words = ("touches nothing that stands: it falls", "touch nothing that stands: they fall")[len(loose) > 1]
-        found.append(f"{_first(loose)} {words}; are all of them where they should be?")
+        one, many = "is not connected to any support: it falls", "are not connected to any support: they fall"
+        words = many if len(loose) > 1 else one
+        found.append(f"{_first(loose)} {words}; check that all of them are in the right place")
     if model.dim == 2:
         return found
     free = [k for k, body in enumerate(model.bodies) if body.kind != "fixed" and part[k] == part[ground]]
@@ -41,7 +42,7 @@ def apart(model: Model, detection: Detection) -> list[str]:
     if len(groups) > 1:
         shown = sorted(groups.values(), key=len, reverse=True)
         words = ", ".join(_first(names, 1) for names in shown[:3]) + (", ..." if len(shown) > 3 else "")
-        found.append(f"the blocks are in {len(shown):,} groups that do not touch: {words}; is that meant?")
+        found.append(f"the blocks are in {len(shown):,} groups that do not touch: {words}; is this intended?")
     return found + _hanging(model, detection)
 
 
@@ -67,5 +68,5 @@ def _hanging(model: Model, detection: Detection) -> list[str]:
     names = [b.name for b in bodies if b.kind != "fixed" and b.name not in held]
     if not names or not any(load.kind == "weight" for load in model.loads):
         return []
-    words = ("has nothing under it", "have nothing under them")[len(names) > 1]
+    words = ("has no block or support below", "have no block or support below")[len(names) > 1]
     return [f"{_first(names)} {words}: only friction at the sides can hold that; is a lintel or a pier missing?"]

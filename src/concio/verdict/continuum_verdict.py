@@ -36,13 +36,13 @@ def continuum_verdict(found: ContinuumComparison, halving: BlockHalving | None =
     live = found.strength.live if found.strength is not None else ()
     factors = found.elastic.blocks.factors if found.elastic is not None else None
     question = question_of(
-        "a wall block by block beside its homogenised continuum", found.assembly, factors, multiplied=live
+        "a wall of blocks compared with its homogenised continuum", found.assembly, factors, multiplied=live
     )
     return Verdict(
         outcome=Outcome.HOLDS if done else Outcome.INCOMPLETE,
         status="solved" if done else "incomplete",
         question=question,
-        headline="Blocks and continuum side by side." if done else "Not everything has its proof.",
+        headline="Blocks and continuum compared." if done else "Some results are not proven.",
         answer=" ".join([*_elastic(found.elastic), *_strength(found.strength), *(f"{n.capitalize()}." for n in notes)]),
         proof=_proof(found),
         meaning="The continuum has the moduli and the strength of the cell. It has no lintels, no edges and no arch: "

@@ -52,7 +52,7 @@ def cause_words(found: Diagnosis, cause: Cause, language: str = "en", *, write: 
 
 
 def doubt_words(found: Diagnosis, doubt: Doubt, language: str = "en", *, write: Write = number) -> str:
-    """Return what is odd about a measurement, in a sentence."""
+    """Return what is suspicious about a measurement, in a sentence."""
     return _Words(found, language, write).doubt(doubt)
 
 
@@ -194,7 +194,7 @@ class _Words:
         return f"{self.write(factor * value, 3)} {symbol}"
 
     def doubt(self, doubt: Doubt) -> str:
-        """Return what is odd about a measurement, in sentences."""
+        """Return what is suspicious about a measurement, in sentences."""
         kind = self.found.measurements[doubt.number].quantity
         size = max(abs(doubt.predicted), abs(doubt.measured))
         return self.say(

@@ -25,15 +25,16 @@ CLOSES = 1e-3
 """Error of the energy balance, over what was turned over, beyond which it is pointed out."""
 
 HEADLINES = {
-    Outcome.HOLDS: "The structure stands the motion and comes to rest.",
+    Outcome.HOLDS: "The structure withstands the motion and comes to rest.",
     Outcome.FAILS: "The structure falls.",
     Outcome.MOVING: "The structure still moves where the calculation ends.",
-    Outcome.UNDECIDED: "The motion was lost before its end.",
+    Outcome.UNDECIDED: "The motion could not be continued to its end.",
     Outcome.INCOMPLETE: "The motion was not followed to its end.",
 }
 SHORT = "no equilibrium was found from where its supports have moved"
 """Begins the note of a motion whose supports did not get to where they were asked to be."""
-SENSITIVE = "rocking depends on small things: another step, restitution or record may decide otherwise near the limit"
+SENSITIVE = "rocking is sensitive to details: near the limit another step, restitution or record may give another "
+"outcome"
 
 
 def dynamics_verdict(found: DynamicsResult) -> Verdict:
@@ -56,8 +57,8 @@ def dynamics_verdict(found: DynamicsResult) -> Verdict:
         answer=_answer(found, outcome),
         proof=_proof(found),
         meaning=(
-            "Every step satisfies the equations of motion with contact and friction. An earthquake that is a little "
-            "different may end otherwise; what was not computed is not known."
+            "Every step satisfies the equations of motion with contact and friction. A slightly different earthquake "
+            "may give another outcome."
         ),
         limits=(*joints_not_made(reference.detection), SENSITIVE),
         unchecked=(*_unchecked(found, outcome), *small),
@@ -68,7 +69,7 @@ def dynamics_verdict(found: DynamicsResult) -> Verdict:
 
 def _headline(found: DynamicsResult, outcome: Outcome) -> str:
     if outcome is Outcome.INCOMPLETE and found.ending.name != "STOPPED":
-        return "What becomes of some bodies was not seen."
+        return "What happens to some bodies could not be resolved."
     return HEADLINES[outcome] if found.stands is not False else "The structure does not stand at the start."
 
 
@@ -125,8 +126,8 @@ def _answer(found: DynamicsResult, outcome: Outcome) -> str:
         told.append(f"It was stopped on request at {time}.")
     elif found.stands is False and any(note.startswith(SHORT) for note in found.notes):
         told.append(
-            f"Its supports stand where they had moved to when it was lost, short of what was asked: what it does there "
-            f"until {time} says nothing of what was asked."
+            "Its supports stopped short of the positions asked for, because no equilibrium was found further on: what "
+            f"it does from there until {time} is not the motion that was asked for."
         )
     elif found.rests:
         told.append(f"It has come to rest at {time}, in an equilibrium that was found where it stands.")
@@ -140,8 +141,8 @@ def _answer(found: DynamicsResult, outcome: Outcome) -> str:
 def _proof(found: DynamicsResult) -> str:
     return (
         f"Certified in each of {len(found.steps):,} steps: momentum of every body, contact, cone and slip, to "
-        f"{found.certificate:.1e} (relative; {CERTIFIED:.0e} is allowed). The energies of the whole, from places "
-        f"and velocities, balance to {found.energy.error:.1e} of what was turned over."
+        f"{found.certificate:.1e} (relative; {CERTIFIED:.0e} is allowed). The total energy, from positions "
+        f"and velocities, is constant to {found.energy.error:.1e} of the energy exchanged."
     )
 
 
@@ -158,5 +159,5 @@ def _unchecked(found: DynamicsResult, outcome: Outcome) -> tuple[str, ...]:
 def _noticed(found: DynamicsResult) -> tuple[str, ...]:
     """Return what asks for attention in the motion itself."""
     error = found.energy.error
-    odd = (f"the energy balance is off by {error:.1e} of what was turned over: take a smaller step",)
+    odd = (f"the energy balance is off by {error:.1e} of the energy exchanged: take a smaller step",)
     return (*found.notes, *(odd if error > CLOSES else ()))

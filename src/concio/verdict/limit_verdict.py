@@ -31,8 +31,8 @@ SAME = 1e-6
 """Multipliers closer than this, relative, are one number in words."""
 
 LOCKED = (
-    "the bound of associated friction is locked, which says nothing of Coulomb friction: there sliding joints do "
-    "not wedge"
+    "the bound of associated friction is locked, which says nothing about Coulomb friction: there sliding joints "
+    "do not wedge"
 )
 
 
@@ -55,9 +55,10 @@ def limit_verdict(found: LimitResult) -> Verdict:
         headline=headline,
         answer=_answer(found, question),
         proof=_proof(found),
-        meaning="What to design with is the least multiplier that Coulomb friction gives, on the way on which the load "
-        "grew, by a certified state at which the structure can begin to move, or with pressure spread over joints that "
-        "twist. The associated bound lies above all of them: it is never what to design with.",
+        meaning="The design value is the least of the multipliers found with Coulomb friction: along the load history, "
+        "at a "
+        "certified state in which the structure can begin to move, or with the pressure spread over joints in torsion. "
+        "The associated bound is larger than all of them and is never the design value.",
         limits=_limits(found),
         unchecked=open_,
         attention=attention(found.assembly),
@@ -68,7 +69,7 @@ def limit_question(found: LimitResult) -> Question:
     """Return what is multiplied, by how many kN at 1, and what acts constantly."""
     reached = found.design if math.isfinite(found.design) else math.nan
     return question_of(
-        f"the largest multiple of {named(found)} that is carried while all other loads act once",
+        f"the largest multiple of {named(found)} that is carried while all other loads act with factor 1",
         found.assembly,
         multiplied=dict.fromkeys(found.groups, reached),
     )
@@ -88,16 +89,16 @@ def _outcome(found: LimitResult) -> tuple[Outcome, str]:
     if found.dead is not None and found.dead is not Status.SOLVED:
         return Outcome.UNDECIDED, "It is not known whether the loads that stay constant are carried alone."
     if found.endless:
-        return Outcome.HOLDS, "The load can grow without end."
+        return Outcome.HOLDS, "The load can grow without bound."
     if found.none_of_it:
         return Outcome.FAILS, f"No multiple of {named(found)} is carried."
     if not math.isnan(found.design):
         return Outcome.HOLDS, f"Design with {max(found.design, 0.0):.6g} times {named(found)} at most."
     if found.associated.locked:
-        return Outcome.INCOMPLETE, "Nothing bounds the load, and nothing shows what is carried."
+        return Outcome.INCOMPLETE, "Neither an upper bound nor a carried load was found."
     if found.steps is None and found.path is None and found.path_note.startswith("not asked"):
         top = f"{found.associated.multiplier:.6g} times {named(found)}"
-        return Outcome.HOLDS, f"Nothing is in equilibrium beyond {top}."
+        return Outcome.HOLDS, f"No equilibrium exists beyond {top}."
     return Outcome.INCOMPLETE, "Only an upper bound was found."
 
 
@@ -132,7 +133,7 @@ def _design(found: LimitResult, question: Question) -> str:
     low, groups = found.design, named(found)
     if found.dead is not None and found.dead is not Status.SOLVED:
         return (
-            f"Design with nothing yet: the loads that stay constant came alone to no certified state "
+            f"No design value: under the constant loads alone no certified state was found "
             f"({found.dead.name.lower()})."
         )
     steps = found.steps
@@ -141,21 +142,25 @@ def _design(found: LimitResult, question: Question) -> str:
         return (
             f"No multiple of {groups} is carried: with it as given, {said[0].lower()}{said[1:]}; nothing else "
             f"acts, and all "
-            "multiples are alike."
+            "multiples are equal."
         )
     if steps is not None and found.endless and steps.state is None:
-        return f"{groups} can grow without end: it is carried as given, nothing else acts, and all multiples are alike."
+        return (
+            f"{groups} can grow without bound: it is carried as given, nothing else acts, and all multiples "
+            "are equal."
+        )
     if found.endless:
         assert found.steps is not None
         return (
-            f"{groups} can grow without end: certified Coulomb states carry {found.steps.carried:.3g} times it, "
+            f"{groups} can grow without bound: certified Coulomb states carry {found.steps.carried:.3g} times it, "
             f"and one "
-            "further step in the same direction is certified at any length, since no joint changes its state any more."
+            "further step in the same direction is certified at any length, since no joint changes its state any "
+            "longer."
         )
     if math.isnan(low):
-        return f"What Coulomb friction carries of {groups} is not known: nothing to design with was found."
+        return f"What Coulomb friction carries of {groups} is not known: no design value was found."
     if not low > 0:
-        text = f"Design with none of {groups}: a certified state lets the structure begin to move without it"
+        text = f"The design value of {groups} is zero: a certified state lets the structure begin to move without it"
         if math.isnan(found.carried):
             return f"{text}."
         return f"{text}, though {found.carried:.6g} is carried where the load grows from rest."
@@ -164,7 +169,7 @@ def _design(found: LimitResult, question: Question) -> str:
 
 
 def _why(found: LimitResult) -> str:
-    """Return what makes the number to design with."""
+    """Return what makes the design value."""
     low, carried = found.design, found.coulomb if found.collapse_shown else found.carried
     state = found.collapse_state
     spread = found.spread is not None and found.spread.steps.multipliers and found.spread.carried <= low
@@ -174,14 +179,14 @@ def _why(found: LimitResult) -> str:
         if not n:
             return (
                 f"certified load steps carry {found.spread.steps.carried:.6g}, less {too} by which the contact points "
-                f"of joints that twist resist torsion better than an even pressure{_spread_next(found)}"
+                f"of joints that twist resist torsion better than a uniform pressure{_spread_next(found)}"
             )
         return (
             f"certified load steps carry it with the pressure of each joint spread over {n} x {n} points; at the "
             f"corners "
             f"of the joints alone, {counted(found.twisting, 'joint')} of which "
             f"{_verb(found.twisting, 'twists', 'twist')}, they "
-            f"would seem to carry {carried:.6g} ({too} are taken off, by which these points resist torsion too well"
+            f"would seem to carry {carried:.6g} ({too} are subtracted: these points overestimate torsion by as much"
             f"{_spread_next(found)})"
         )
     if state is not None and found.state_counts and state.multiplier <= low:
@@ -194,10 +199,10 @@ def _why(found: LimitResult) -> str:
             )
         return (
             f"from there on a certified state of the joints lets the structure begin to move, though {carried:.6g} is "
-            "carried where the load grows from rest; which of them is met depends on settlements and on earlier loads"
+            "carried where the load grows from rest; which of them occurs depends on settlements and on earlier loads"
         )
     if found.ties_whole <= low:
-        return "as the load grows it is carried up to there while every tie is whole; then one breaks"
+        return "as the load grows it is carried up to there with all ties intact; then one breaks"
     if found.collapse_shown:
         return "as the load grows it is carried up to there, and there it collapses"
     return f"certified Coulomb states carry it as the load grows from rest{_next(found)}"
@@ -216,12 +221,11 @@ def _next(found: LimitResult) -> str:
     if steps is None or math.isnan(steps.failed) or steps.failed <= found.design:
         return ""
     if steps.outcome in PROVEN_FAILURES:
-        return f"; {steps.failed:.6g} is not carried, put on in one step"
+        return f"; {steps.failed:.6g} is not carried, applied in one step"
     if steps.outcome is Status.SOLVED:
         return (
-            f"; {steps.failed:.6g} has an equilibrium too where it is put on in one step, but the growing load "
-            f"did not come "
-            "to it"
+            f"; {steps.failed:.6g} also has an equilibrium if applied in one step, but the growing load "
+            f"did not reach it"
         )
     return f"; {steps.failed:.6g} was tried and not reached"
 
@@ -230,17 +234,17 @@ def _upper(found: LimitResult) -> str:
     """Return what is an upper bound only, in one sentence."""
     bound, low = found.associated, found.design
     if found.endless:
-        return "The bound of associated friction is locked, and rightly so."
+        return "The bound of associated friction is locked, and the load is in fact unbounded."
     if bound.locked:
         return f"There is no upper bound: {LOCKED}."
     if math.isnan(bound.multiplier):
         return "There is no upper bound: no multiple of the load is in balance."
     top = bound.multiplier if bound.checked else bound.upper
     if math.isclose(top, low, rel_tol=SAME):
-        return "Nothing is in equilibrium beyond it either: a mechanism proves that."
+        return "No equilibrium exists beyond it: a mechanism proves that."
     why = "a mechanism proves that" if bound.checked or bound.bounds_hold else "that is not checked"
-    between = ", and what lies between is open" if not math.isnan(low) else ""
-    return f"{top:.6g} times is an upper bound only: nothing is in equilibrium beyond it ({why}){between}."
+    between = ", and the range in between is open" if not math.isnan(low) else ""
+    return f"{top:.6g} times is an upper bound only: no equilibrium exists beyond it ({why}){between}."
 
 
 def _forces(question: Question, factor: float, units: Units) -> str:
@@ -266,7 +270,7 @@ def _proof(found: LimitResult) -> str:
         violation = bound.mechanism.violation if bound.mechanism else math.nan
         told.append(
             f"the bound: forces in balance with the loads to {bound.residual:.0e}, a mechanism without overlap to "
-            f"{violation:.0e}, their multipliers {bound.gap:.0e} apart"
+            f"{violation:.0e}, a difference of their multipliers of {bound.gap:.0e}"
         )
     if found.steps is not None and found.steps.multipliers and found.steps.worst > 0:
         told.append(
@@ -312,23 +316,25 @@ def _breakable(found: LimitResult) -> tuple[str, ...]:
     names = ", ".join(f"'{t.name}'" for t in ties[:MOST_TIES]) + (" ..." if len(ties) > MOST_TIES else "")
     yields = ""
     if found.path is None:
-        yields = "; no path says how far they stretch, and the number to design with is not above the bound without"
+        yields = "; no path was followed to see how far they stretch, and the design value is at most the bound "
+        "without them"
     elif not math.isnan(found.ties_whole):
         yields = f"; on the path the first breaks at {found.ties_whole:.6g} or beyond that"
     less = found.untied.multiplier
     alone = "no multiple is in balance" if math.isnan(less) else f"the bound is {less:.6g} times {named(found)}"
     return (
-        f"{counted(len(ties), 'tie')} that can break ({names}): the most they carry as they break counts{yields}; "
+        f"{counted(len(ties), 'tie')} that can break ({names}): their force at break is counted{yields}; "
         f"once they are broken, {alone}, with them {found.associated.multiplier:.6g}",
     )
 
 
 def _torsion(found: LimitResult) -> str:
-    joints = f"{counted(found.twisting, 'joint')} stated at corners {_verb(found.twisting, 'twists', 'twist')}"
+    joints = f"{counted(found.twisting, 'joint')} with contact at their corners "
+    f"{_verb(found.twisting, 'twists', 'twist')}"
     strong = f"friction resists torsion there up to {MOTION_TURNED:g} times better than under uniform pressure"
     if found.spread is None:
-        return f"{joints} as the structure begins to move: {strong}, and all numbers are too large by up to that"
-    return f"{joints} as the structure begins to move: {strong}; the number to design with is without that"
+        return f"{joints} as the structure begins to move: {strong}, and all numbers may be too large by that factor"
+    return f"{joints} as the structure begins to move: {strong}; the design value does not include that"
 
 
 def _unchecked(found: LimitResult, outcome: Outcome) -> tuple[str, ...]:

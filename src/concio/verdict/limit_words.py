@@ -1,4 +1,4 @@
-"""What a limit load is told as: each number with what it is and how it was checked."""
+"""What a limit load is reported as: each number with what it is and how it was checked."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 NOT_ASKED = "not asked for"
 
 REST = " " * 23
-"""Where a number is told on."""
+"""Where a number is reported on."""
 
 
 def question_lines(found: LimitResult) -> list[str]:
@@ -82,7 +82,7 @@ def bound_lines(found: LimitResult) -> list[str]:
     """Return the associated bound, and what the load as given is beside it."""
     bound = found.associated
     if math.isinf(bound.multiplier):
-        return ["  associated bound     locked, which bounds nothing: Coulomb friction does not wedge as it does"]
+        return ["  associated bound     locked, so that it bounds nothing: Coulomb friction does not wedge in that way"]
     if math.isnan(bound.multiplier):
         return ["  associated bound     none: no multiple of the load is in balance"]
     violation = bound.mechanism.violation if bound.mechanism else math.nan
@@ -111,13 +111,13 @@ def as_given(multiplier: float) -> str:
     if multiplier > 1:
         return f"{number(100 / multiplier)} % of that bound: it could grow {number(multiplier)} times at most"
     if multiplier == 1:
-        return "just that bound"
+        return "equal to that bound"
     if multiplier > 0:
         return (
             f"{number(1 / multiplier)} times that bound: only {number(100 * multiplier)} % of it can be carried "
             f"at most"
         )
-    return "not carried, nor is any part of it"
+    return "not carried, nor is any fraction of it"
 
 
 def margin_line(margin: FrictionBounds) -> str:
@@ -130,7 +130,7 @@ def margin_line(margin: FrictionBounds) -> str:
         return f"{head}no friction carries the load as given" if shown else f"{head}undecided: no factor could be shown"
     if not margin.settled:
         low = f"{margin.below:.6g} is shown to be too little" if margin.below > 0 else "none is shown to be too little"
-        return f"{head}{margin.factor:.6g} times the coefficients given is shown to do, {low}: undecided between"
+        return f"{head}{margin.factor:.6g} times the coefficients given is shown to suffice, {low}: undecided between"
     return f"{head}the load as given needs at least {margin.factor:.6g} times the coefficients given"
 
 
@@ -140,7 +140,7 @@ def solving_line(name: str, margin: Margin) -> str:
     if margin.holds != margin.holds:
         return f"{head}no equilibrium was found with {'friction' if name == 'friction' else 'dead load'} as given"
     if margin.holds == float("inf"):
-        return f"{head}no load is the last"
+        return f"{head}no load bounds it"
     found = f"{head}a certified Coulomb equilibrium at {margin.holds:.6g} times what is given"
     return found if margin.fails != margin.fails else f"{found}, none found at {margin.fails:.6g}"
 
@@ -152,14 +152,14 @@ def step_lines(found: LimitResult) -> list[str]:
     head = "  Coulomb load steps   "
     if not steps.multipliers:
         alone = found.dead or steps.dead
-        said = "is not carried" if alone in PROVEN_FAILURES else "came to no certified state"
+        said = "is not carried" if alone in PROVEN_FAILURES else "reached no certified state"
         return [f"{head}none: the dead load alone {said} ({alone.name.lower()})"]
     if found.associated.locked and steps.state is None:
         said = (
             "is carried, and so is every other" if found.endless else "is not carried "
             f"({one_word(steps.outcome)}), nor is any other"
         )
-        return [f"{head}1 times it {said}: nothing else acts, and all multiples are alike"]
+        return [f"{head}1 times it {said}: nothing else acts, and all multiples are equal"]
     tried = "" if math.isnan(steps.failed) else f"; none found at {steps.failed:.6g}"
     count = f"{len(steps.multipliers)} certified states from the dead load on"
     return [f"{head}carried up to {steps.carried:.6g} at least: {count}{tried}"]
@@ -171,15 +171,15 @@ def one_word(outcome: Status | None) -> str:
 
 
 def one_step_lines(found: LimitResult) -> list[str]:
-    """Return what comes in space of the least load that the steps did not reach, put on in one step."""
+    """Return what comes in space of the least load that the steps did not reach, applied in one step."""
     steps = found.steps
     if steps is None or found.assembly.model.dim == 2 or not steps.failed < found.associated.multiplier:
         return []
     head = f"  in one step          {steps.failed:.6g} "
     if steps.outcome is None:
-        return [f"{head}was not tried unasked (--steps tries it)"]
+        return [f"{head}was not tried by default (--steps tries it)"]
     if steps.outcome is Status.SOLVED:
-        return [f"{head}has an equilibrium, too, which the growing load did not come to"]
+        return [f"{head}also has an equilibrium, which the growing load did not reach"]
     said = steps.outcome.value[0].lower() + steps.outcome.value[1:]
     proven = steps.outcome in PROVEN_FAILURES
     return [f"{head}is not carried: {said}" if proven else f"{head}is left open: {said}"]
@@ -196,10 +196,10 @@ def spread_lines(found: LimitResult) -> list[str]:
         "certified state"
     )
     if not n:
-        return [f"  pressure spread      {said}, in finer steps, less what joints that twist resist too well"]
+        return [f"  pressure spread      {said}, in finer steps, less the overestimate in joints that twist"]
     return [
-        f"  pressure spread      {said}, with {n} x {n} points in each joint: some twist, for which corners are "
-        f"too strong"
+        f"  pressure spread      {said}, with {n} x {n} points in each joint: some twist, and contact at corners "
+        "overestimates their strength"
     ]
 
 
@@ -211,7 +211,7 @@ def collapse_lines(found: LimitResult) -> list[str]:
     value = found.collapse_state.multiplier
     if not found.state_counts:
         return [
-            f"{head}{value:.6g} is not counted: it rests on where in a joint that twists the pressure stands "
+            f"{head}{value:.6g} is not counted: it depends on where the pressure acts in a joint that twists "
             f"({found.search})"
         ]
     return [f"{head}{value:.6g}: there Coulomb friction lets it begin to move ({found.search})"]
@@ -224,13 +224,13 @@ def path_lines(found: LimitResult) -> list[str]:
         ask = " (--path follows it)" if "unasked" in found.path_note else ""
         return [] if found.path_note == NOT_ASKED else [f"{head}{found.path_note}{ask}"]
     end = {
-        "REACHED": "followed on, its load no longer growing, until it had moved far" if found.collapse_shown
+        "REACHED": "continued under constant load until it had moved far" if found.collapse_shown
         else "followed no further",
-        "MECHANISM": "a mechanism has formed that moves on without change of load",
+        "MECHANISM": "a mechanism has formed that moves without change of load",
         "LIMIT": "no certified state carries more, and the structure can move at that load or provably not carry it",
         "CANCELLED": "stopped on request",
         "TOO_MANY": "stopped after more events than allowed",
-    }.get(path.outcome.name, "lost: no certified state was found further on")
+    }.get(path.outcome.name, "could not be continued: no certified state was found further on")
     if found.collapse_shown:
         lines = [f"{head}collapses at {found.coulomb:.6g}, {len(path.events):,} events"]
     else:

@@ -11,7 +11,7 @@ from concio.errors import InputError
 from concio.model.model import Load, Model
 
 LOST = 0.005
-"""Share of a load's length or area that may lie off the blocks before it is told."""
+"""Share of a load's length or area that may lie off the blocks before it is reported."""
 
 
 def lost_loads(model: Model) -> tuple[str, ...]:
@@ -35,7 +35,7 @@ def lost_loads(model: Model) -> tuple[str, ...]:
 
 
 def load_words(load: Load) -> str:
-    """Return a load along a line in words, without what becomes of it."""
+    """Return a load along a line in words, without what happens to it."""
     assert load.edge is not None
     (x0, y0), (x1, y1) = load.edge
     value = ", ".join(f"{v:g}" for v in load.value)

@@ -83,7 +83,7 @@ def _verdict(
     of: MarginOf | None, outcome: Outcome, status: str, question: Question, answer: str, proof: str,
     limits: tuple[str, ...],
 ) -> Verdict:  # fmt: skip
-    """Return the verdict of either margin, with what is odd about its model."""
+    """Return the verdict of either margin, with what is suspicious about its model."""
     odd = attention(of.assembly) if of is not None else ()
     not_made = joints_not_made(of.assembly.detection) if of is not None else ()
     left_out = [f"{line[0].upper()}{line[1:]}." for line in not_made]
@@ -111,7 +111,8 @@ def _question(of: MarginOf | None, reached: float) -> Question:
     groups = "'" + "' and '".join(of.live) + "'"
     if of.what == LOAD:
         known = reached if math.isfinite(reached) else math.nan
-        asked = f"the largest multiple of {groups} with an equilibrium in one step from rest, all other loads once"
+        asked = f"the largest multiple of {groups} with an equilibrium in one step from rest, all other loads with "
+        "factor 1"
         return question_of(asked, of.assembly, multiplied=dict.fromkeys(of.live, known))
     asked = "the smallest common factor of all friction coefficients with which the loads that act are carried"
     return question_of(asked, of.assembly, dict.fromkeys(of.live, of.factor))

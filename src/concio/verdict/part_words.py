@@ -28,7 +28,7 @@ def parts_told(result: Result) -> tuple[str, ...]:
 
 
 def regularised(result: Result) -> str:
-    """Return what an exclusion of joint states is about where joints were lent a compliance, else nothing."""
+    """Return what an exclusion of joint states is about where joints were given a compliance, else nothing."""
     if result.status is not Status.NO_COULOMB_STATE or not result.lent_compliance:
         return ""
     return (

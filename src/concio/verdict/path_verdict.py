@@ -24,14 +24,14 @@ MOST_STAGES = 8
 HEADLINES: dict[Outcome, str] = {
     Outcome.HOLDS: "The loads are carried to the end of the path.",
     Outcome.FAILS: "The structure collapses on this path.",
-    Outcome.INCOMPLETE: "Not all that was asked of the path was reached.",
-    Outcome.UNDECIDED: "The path was lost before its end.",
+    Outcome.INCOMPLETE: "Part of the requested path was not reached.",
+    Outcome.UNDECIDED: "The path could not be continued to its end.",
 }
 """The answer in a few words."""
 
-HISTORY = "with Coulomb friction the order of the stages counts: another history may end elsewhere"
-SUDDEN = "a tie that breaks lets its force go at once: what that does to masses is not followed"
-QUASI_STATIC = "masses are not accelerated: what a sudden load, a fall or an impact does is not followed"
+HISTORY = "with Coulomb friction the order of the stages matters: another load history may end in another state"
+SUDDEN = "a tie that breaks loses its force at once: the dynamic effect is not computed"
+QUASI_STATIC = "inertia is neglected: the effects of sudden loads, falls and impacts are not computed"
 
 
 def path_verdict(found: PathResult) -> Verdict:
@@ -158,11 +158,11 @@ def _ending(found: PathResult, outcome: Outcome) -> str:
         if found.short:
             return ""
         whole = "The stage is" if len(found.stages) == 1 else f"All {len(found.stages)} stages are"
-        light = ", without own weight" if found.steps and len(found.stages) - 1 in found.weightless_stages else ""
+        light = ", without self-weight" if found.steps and len(found.stages) - 1 in found.weightless_stages else ""
         return f"{whole} carried to the end{light}."
     stage, most = found.stages[len(found.outcomes) - 1].name, _most(found)
     if outcome is Outcome.FAILS:
-        light = ", without own weight" if len(found.outcomes) - 1 in found.weightless_stages else ""
+        light = ", without self-weight" if len(found.outcomes) - 1 in found.weightless_stages else ""
         return f"Collapses in stage '{stage}': it carries no more than {most}{light}."
     if found.outcomes[-1] is Ended.LOST:
         return f"Lost in stage '{stage}': at least {most} is carried, and what follows is not known."
@@ -200,7 +200,7 @@ def _most(found: PathResult) -> str:
 
 
 def _idle(found: PathResult) -> tuple[str, ...]:
-    """Return the load groups without own weight that act in no stage."""
+    """Return the load groups without self-weight that act in no stage."""
     weights = weight_groups(found.assembly.model)
     return tuple(f"load group '{group}'" for group in found.never_applied if group not in weights)
 
@@ -227,7 +227,7 @@ def _limits(found: PathResult) -> tuple[str, ...]:
     if alone := found.weightless_stages:
         names = " and ".join(f"'{found.stages[k].name}'" for k in alone)
         groups = ", ".join(f"'{g}'" for g in weight_groups(found.assembly.model))
-        lines.append(f"without own weight (load group {groups}) the structure was followed in {names}")
+        lines.append(f"without self-weight (load group {groups}) the structure was followed in {names}")
     for k, ended in enumerate(found.outcomes):
         for load in found.group_loads(k):
             if (
@@ -278,27 +278,27 @@ def _next_steps(found: PathResult, outcome: Outcome) -> tuple[str, ...]:
         )
     if found.short:
         return (
-            "Ask without a control point whether the load itself is reached: the path then ends where it is not.",
+            "Without a control point the path ends where the load itself is not reached: run it that way to see.",
             "'concio limit' gives a bound that needs no path.",
         )
     if found.outcomes[-1] is Ended.BROKEN:
         return (
-            "Put the load on under the motion of a point ('--point', '--until'): the load may fall as the tie breaks.",
+            "Apply the load under displacement control ('--point', '--until'): the load may fall as the tie breaks.",
             "Delete the tie from the model and follow the path again: what remains has to carry the loads alone.",
             "'concio push' follows the motion past the break.",
         )
     if outcome is not Outcome.HOLDS and found.complete and found.certified:
         return (
-            "Put the own weight on in the first stage: --stage dead=1, or [[stages]] with factors = { dead = 1.0 }.",
+            "Apply the self-weight in the first stage: --stage dead=1, or [[stages]] with factors = { dead = 1.0 }.",
         )
     if outcome is not Outcome.HOLDS:
         return (
-            "Follow it again in steps ('--method steps'), or under the motion of a point ('--point', '--until').",
+            "Follow it again in steps ('--method steps'), or under displacement control ('--point', '--until').",
             "'concio limit' gives a bound that needs no path.",
         )
     return (
-        "This says that the structure stands all along this history, not how far it is from collapse: go on with "
-        "another stage of growing load, or ask 'concio limit'.",
+        "This says that the structure stands throughout this load history, not how far it is from collapse: add a "
+        "stage of growing load, or use 'concio limit'.",
     )
 
 
@@ -341,7 +341,7 @@ def _capital(text: str) -> str:
 def path_proof(found: PathResult) -> str:
     """Return what was checked, in one sentence."""
     worst, count = found.certificate, counted(len(found.steps), "state")
-    kept = f"work, stored energy and dissipation agree to {found.energy_error:.1e}"
+    kept = f"the balance of work, stored energy and dissipation closes to {found.energy_error:.1e}"
     where = f"of {count}, each put into the model's equations at its own load factors and support positions, is"
     if found.certified:
         passed = f"the largest error in any equation {where} {worst:.1e} ({CERTIFIED:.0e} is allowed)"

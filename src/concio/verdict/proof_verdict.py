@@ -22,7 +22,7 @@ DILATES = "friction that dilates: forces in balance are necessary for Coulomb fr
 
 
 def with_attention(made: Mapping[str, Any], assembly: Assembly) -> dict[str, Any]:
-    """Return a certificate that also tells what is odd about its model, sealed again.
+    """Return a certificate that also tells what is suspicious about its model, sealed again.
 
     Parameters
     ----------

@@ -64,7 +64,7 @@ def push_verdict(found: PushResult) -> Verdict:
         attention=attention_of(found.model, reference.detection),
         next_steps=(
             "Look at the events: where joints open, slip or close, and where ties yield or break.",
-            "'concio shake' tells what a motion of the ground does; a push is no motion in time.",
+            "'concio shake' tells what a motion of the ground does; a push is not a motion in time.",
         ),
     )
 
@@ -147,11 +147,11 @@ def _answer(found: PushResult) -> str:
         told = f"The multiplier still grows where the curve ends, {number(found.peak, 6)} at {at}: no peak was reached."
     endings = {
         "LOST": f"The strength is lost at {end}.",
-        "REACHED": f"What was asked for was reached, {end}; the multiplier is {now} there.",
+        "REACHED": f"The requested end was reached, {end}; the multiplier is {now} there.",
         "NO_EQUILIBRIUM": f"No equilibrium beyond {end} could be followed, where the multiplier is {now}: there may be "
         "another one there, or none.",
         "NO_LARGER_LOAD": "No equilibrium nearby carries more: a growing load ends at the peak.",
-        "LOCKED": "The structure locks: the multiplier grows without end.",
+        "LOCKED": "The structure locks: the multiplier grows without bound.",
         "STOPPED": f"It was stopped on request at {end}, where the multiplier is {now}.",
     }
     return f"{told} {endings[found.ending.name]}"
@@ -165,7 +165,7 @@ def _turned(found: PushResult) -> str:
     words = ", ".join(
         f"{group} {number(load_factor(found.factors, group) * size, 4)} kN" for group, (_, size) in forces.items()
     )
-    return f"weights and what loads bodies from above, turned to the side: {words}"
+    return f"weights and what loads bodies from above, applied horizontally: {words}"
 
 
 def _proof(found: PushResult) -> str:

@@ -31,7 +31,7 @@ class Acting:
     ----------
     group : str
     what : str
-        What belongs to it, such as ``"own weight of 12 blocks, 1 pressure"``.
+        What belongs to it, such as ``"self-weight of 12 blocks, 1 pressure"``.
     force : tuple of float
         Resultant at factor 1 [kN].
     size : float
@@ -130,7 +130,7 @@ class Question:
 
 
 class Loaded(Protocol):
-    """An assembly, or anything else whose loads can be told."""
+    """An assembly, or anything else whose loads can be reported."""
 
     @property
     def model(self) -> Model:
@@ -198,9 +198,9 @@ def acting_groups(assembly: Loaded) -> tuple[Acting, ...]:
 
 
 def group_words(model: Model, group: str) -> str:
-    """Return what belongs to a load group, such as ``"own weight, 2 pressures, 1 support moved"``."""
+    """Return what belongs to a load group, such as ``"self-weight, 2 pressures, 1 support moved"``."""
     kinds = Counter(load.kind for load in model.loads if load.group == group)
-    words = ["own weight"] if kinds.pop("weight", 0) else []
+    words = ["self-weight"] if kinds.pop("weight", 0) else []
     words += [f"{count} {kind} load{'s' * (count > 1)}" for kind, count in kinds.items()]
     moved = sum(s.moves for s in model.supports if s.group == group)
     words += [f"{moved} support{'s' * (moved > 1)} moved"] if moved else []

@@ -28,8 +28,8 @@ MUCH = 1000.0
 """Forces of a joint this many times all loads are pointed out."""
 
 FORCED = 1e-2
-"""Share of the largest displacement that a lent compliance takes up where rigid blocks are forced together; of blocks
-that can move aside it takes up a share that falls with the compliance lent, some 1e-4."""
+"""Share of the largest displacement that an added compliance takes up where rigid blocks are forced together; of blocks
+that can move aside it takes up a share that falls with the compliance added, some 1e-4."""
 
 MOST_REACTIONS = 4
 """More reactions than this are counted in a short text."""
@@ -38,11 +38,12 @@ LARGEST = 20_000
 """Largest number of pairs for which the forces that could hold a structure are worked out (a linear programme)."""
 
 SEVERAL = (
-    "Coulomb friction can have several equilibria under the same loads: this is one of them, and the history of "
-    "loading chooses among them"
+    "Coulomb friction can have several equilibria under the same loads: this is one of them, and the load history "
+    "decides which one is reached"
 )
 REGULARISED = (
-    "joints between rigid blocks were decided with a vanishing compliance, as the limit of stiff joints: without it "
+    "contact states between rigid blocks were found with a vanishing compliance, as the limit of stiff joints: without "
+    "it "
     "their forces would not be determined"
 )
 
@@ -101,7 +102,7 @@ def broken_words(result: Result) -> tuple[str, ...]:
     units = result.model.report
     return tuple(
         f"tie '{name}' breaks: with it, it would be stretched by {units.text('motion', far, 4)}, and the answer is "
-        "without it; what its sudden break does is not followed"
+        "without it; the dynamic effect of its break is not computed"
         for name, far in result.broken_ties
     )
 
@@ -145,23 +146,23 @@ def _noticed(result: Result) -> tuple[str, ...]:
     if not result.solved:
         return ()
     moved = result.joint_motion
-    found = [f"{moved.sentence}; read it as a warning, not as a place of rest"] if moved.large else []
+    found = [f"{moved.sentence}; treat it as a warning, not as a state of rest"] if moved.large else []
     return (*found, *_not_rigid(result), *_heavy(result))
 
 
 def _not_rigid(result: Result) -> tuple[str, ...]:
-    """Return a sentence on an answer that still has the compliance lent to joints of rigid blocks, else none."""
+    """Return a sentence on an answer that still has the compliance added to joints of rigid blocks, else none."""
     if not (result.lent_compliance and result.assembly.lent_compliance):
         return ()
     answer, size = result.solution, f"{result.lent_compliance:.3g} m/kN"
     closing = float((result.assembly.laws.normal_compliance * answer.normal_force).max(initial=0.0))
     if closing > FORCED * float(np.abs(answer.displacement).max(initial=0.0)):
         return (
-            "blocks that cannot yield are forced together: the forces between them grow without end as joints become "
+            "blocks that cannot yield are forced together: the forces between them grow without bound as joints become "
             f"stiffer, and those given belong to a compliance of {size}",
         )
     return (
-        f"joints between rigid blocks keep the compliance of {size} that was lent to them: no answer without it was "
+        f"joints between rigid blocks keep the compliance of {size} that was added to them: no answer without it was "
         "certified, since which way they slip depends on it a little",
     )
 
@@ -221,10 +222,10 @@ def checks(result: Result) -> list[Check]:
     """Return the certificate line by line: relative residuals, 0 is perfect."""
     c = result.certificate
     lines = (
-        ("Forces balance on every block (share of the total load)", c.equilibrium),
-        ("No two blocks overlap (share of the largest displacement)", c.penetration),
-        ("Friction and strength are nowhere exceeded (share of the total load)", c.cone),
-        ("Sliding joints are held back by full friction (relative)", c.slip_direction),
+        ("Forces are in equilibrium on every block (relative to the total load)", c.equilibrium),
+        ("No two blocks overlap (relative to the largest displacement)", c.penetration),
+        ("Friction and strength are nowhere exceeded (relative to the total load)", c.cone),
+        ("Sliding joints are resisted by full friction (relative)", c.slip_direction),
         ("Open joints carry no force (relative)", c.complementarity),
     )
     return [Check(what, value, value <= CERTIFIED) for what, value in lines]
@@ -238,13 +239,15 @@ def proof(result: Result) -> str:
     if result.mechanism is not None and result.status is Status.COLLAPSES:
         m = result.mechanism
         return (
-            f"Proven: along this motion {power_words(m.power, result.model.report)}, more than friction takes; motion, "
+            f"Proven: along this motion {power_words(m.power, result.model.report)}, more than friction dissipates; "
+            "motion, "
             f"forces and masses satisfy every equation to {m.violation:.1e} (relative)."
         )
     if result.mechanism is not None:
         m = result.mechanism
         return (
-            f"Proven: {power_words(m.power, result.model.report)}, less what the joints absorb, and it violates the "
+            f"Proven: {power_words(m.power, result.model.report)}, less what the joints absorb; the motion violates "
+            "the "
             f"joints by no more than {m.violation:.1e} (relative)."
         )
     if result.status is Status.NO_COULOMB_STATE:
@@ -258,4 +261,4 @@ def proof(result: Result) -> str:
 
 def power_words(power: float, units: Units) -> str:
     """Return the work of the loads along a mechanism, scaled to a largest velocity of 1: a force [kN] in words."""
-    return f"the loads do {units.text('moment', power, 4)} of work on each metre of it"
+    return f"the loads do {units.text('moment', power, 4)} of work per metre of the largest displacement"

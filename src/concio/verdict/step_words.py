@@ -41,15 +41,15 @@ WORDS: dict[Status, Words] = {
         "overlaps, and friction is nowhere exceeded. The residuals below were computed from the original equations, "
         "not from what the solver kept.",
         (
-            "Look where joints are open or slip: these are the places that give way first.",
+            "Check where joints are open or slip: these places fail first.",
             "This says that the structure stands under these loads, not how far it is from collapse; "
             "'concio limit' gives the margin.",
-            "'concio path' follows the history of loading, which chooses among several equilibria.",
+            "'concio path' follows the history of loading, which selects one of several equilibria.",
         ),
     ),
     Status.NO_EQUILIBRIUM: Words(
         "The loads cannot be carried.",
-        "No set of joint forces whatsoever balances these loads within the strength of the joints. The proof is a "
+        "No set of joint forces balances these loads within the strength of the joints. The proof is a "
         "motion of the blocks in which no joint overlaps and the loads do more work than the joints can absorb: the "
         "mechanism drawn below. There are therefore no stresses and no displacements to report.",
         (
@@ -57,7 +57,7 @@ WORDS: dict[Status, Words] = {
             "motion a joint that slides also opens a little; it is a proof, not a forecast of the fall.",
             "Check that supports, side walls and joints are where you meant them ('concio check'); a block that "
             "touches nothing falls.",
-            "'concio limit' tells what share of the load can be carried.",
+            "'concio limit' gives the share of the load that can be carried.",
         ),
     ),
     Status.COLLAPSES: Words(
@@ -65,22 +65,22 @@ WORDS: dict[Status, Words] = {
         "Forces that balance the loads within the strength of the joints exist, but no state was found in which "
         "sliding also obeys Coulomb's law; and released at rest the structure accelerates along the motion drawn "
         "below and does not come to rest. During this motion the forces are constant: closed joints press, sliding "
-        "joints are held back by full friction, and what is left of the loads accelerates the masses. There are "
+        "joints are resisted by full friction, and what is left of the loads accelerates the masses. There are "
         "therefore no stresses and no displacements to report.",
         (
-            "Look at the motion: joints that slide want more friction or more weight on top, blocks that turn want a "
+            "Look at the motion: joints that slide need more friction or more weight on top, blocks that turn need a "
             "support or a tie.",
             "That it moves away from rest does not exclude an equilibrium reached by another history, for example "
             "with wedges driven in or after the joints were pressed together; 'concio path' follows a history.",
-            "'concio limit' tells what share of the load can be carried.",
+            "'concio limit' gives the share of the load that can be carried.",
         ),
     ),
     Status.NO_COULOMB_STATE: Words(
         "The loads cannot be carried with Coulomb friction.",
         "Forces that balance the loads within the strength of the joints exist, but in every combination of open, "
-        "sticking and sliding joints some condition fails: sliding joints would have to be held back by more or less "
-        "than friction gives. All combinations were excluded, each by a linear programme whose proof was recomputed "
-        "from the original equations. Unlike a mechanism this is no single motion that could be drawn. There are "
+        "sticking and sliding joints some condition fails: sliding joints would have to be resisted by more or less "
+        "than friction provides. All combinations were excluded, each by a linear programme whose proof was recomputed "
+        "from the original equations. Unlike a mechanism this is not a single motion that could be drawn. There are "
         "therefore no stresses and no displacements to report.",
         (
             "Follow the loads from zero with 'concio path': the path shows where equilibrium is lost.",
@@ -91,7 +91,7 @@ WORDS: dict[Status, Words] = {
         "It is not known whether the loads are carried.",
         "Forces that balance the loads within the strength of the joints exist, so a collapse cannot be proven. But no "
         "state was found in which sliding also obeys Coulomb's law, and none was shown to be impossible. This happens "
-        "near collapse, and where blocks jam. Nothing below is an answer.",
+        "near collapse, and where blocks jam. The numbers below are not an answer.",
         (
             "Do not rely on this structure under these loads: treat it as one that may slide.",
             "'concio limit' bounds them from both sides: what certified load steps carry, and what nothing carries.",
@@ -101,17 +101,17 @@ WORDS: dict[Status, Words] = {
     ),
     Status.GAVE_UP: Words(
         "The solver stopped without an answer.",
-        "It neither found an equilibrium that passes the check nor a proof that there is none. Nothing below is an "
-        "answer, and nothing follows from it about the structure.",
+        "It neither found an equilibrium that passes the check nor a proof that there is none. The numbers below are "
+        "not an answer, and nothing follows from them about the structure.",
         (
-            "Look at what was tried, at the end of this report.",
+            "Read what was tried, at the end of this report.",
             "Solve with another method, for example --method lemke or --method interior-point.",
             "Look for stiffnesses or sizes that differ by many powers of ten: a wrong unit is the usual reason.",
         ),
     ),
     Status.CANCELLED: Words(
         "The calculation was stopped on request.",
-        "It had not ended. Nothing below is an answer.",
-        ("Run it again, and let it end.",),
+        "It was not complete. Nothing below is an answer.",
+        ("Run it again to the end.",),
     ),
 }

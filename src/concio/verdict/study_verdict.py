@@ -45,7 +45,7 @@ def study_verdict(study: StudyResult) -> Verdict:
     done = not unchecked
     runs = f"{len(study)} of {len(study.sample)} runs" if len(study) < len(study.sample) else f"{len(study)} runs"
     answers = " ".join(f"{o.name}: {output_words(study, o)}." for o in study.outputs)
-    early = " It stopped early: enough was known." if study.stopped else ""
+    early = " It stopped early: the stopping criterion was met." if study.stopped else ""
     return Verdict(
         outcome=Outcome.HOLDS if done else Outcome.INCOMPLETE,
         status="done" if done else "incomplete",
@@ -53,8 +53,9 @@ def study_verdict(study: StudyResult) -> Verdict:
         headline=f"{runs}, each with an answer." if done else f"{runs}, not all of which have an answer.",
         answer=f"{runs}: {verdict_counts(study)}.{early} {answers}",
         proof="each row has the verdict of its own analyses; nothing is added to it",
-        meaning="Every run is a row, whatever came of it. A structure that is proven not to stand counts as worse than "
-        "any number; a run without an answer counts against both ends.",
+        meaning="Every run is a row, whatever its outcome. A structure that is proven not to stand counts as worse "
+        "than any "
+        "number; a run without an answer widens the interval on both sides.",
         limits=_bounds(study),
         unchecked=tuple(unchecked),
         attention=(*_mixed(study), *_odd(study)),
@@ -119,7 +120,7 @@ def _counted(study: StudyResult, output: Output) -> str:
 
 
 def _left(unanswered: int, n: int) -> str:
-    return f"; {unanswered} of {n} have no answer and count against both ends" if unanswered else ""
+    return f"; {unanswered} of {n} have no answer and widen the interval on both sides" if unanswered else ""
 
 
 def _unanswered(study: StudyResult) -> list[str]:
@@ -192,7 +193,7 @@ def _mixed(study: StudyResult) -> tuple[str, ...]:
     group = live[0]
     factor = load_factor(study.settings.factors, group)
     hint = (
-        f"; nothing says so in the study: factors = {{ {group} = 0 }} asks without it"
+        f"; the study does not state this: factors = {{ {group} = 0 }} asks without it"
         if group not in study.settings.factors
         else ""
     )
@@ -203,7 +204,7 @@ def _mixed(study: StudyResult) -> tuple[str, ...]:
 
 
 def _odd(study: StudyResult) -> tuple[str, ...]:
-    """Return what is odd about the models of the runs, with how many of them it is said of."""
+    """Return what is suspicious about the models of the runs, with how many of them it is said of."""
     said = Counter(line for row in study.rows for line in row.attention)
     runs = len(study)
     found = [

@@ -1,4 +1,4 @@
-"""The verdict of an exception that ends an analysis: what was asked of which loads, and what is odd about the model.
+"""The verdict of an exception that ends an analysis: its question, its loads, what is suspicious about the model.
 
 Exceptions are raised deep in a solver, where nobody knows the question. On its way out of the analysis each gets the
 verdict that a result would have had.
@@ -20,8 +20,8 @@ from concio.verdict.verdict import Outcome, Verdict
 
 ASKED = {
     "solve": "equilibrium under the loads that act, in one step from rest",
-    "limit": "the largest multiple of the live load that is carried while all other loads act once",
-    "limit_stages": "the largest multiple of the live load that is carried while all other loads act once",
+    "limit": "the largest multiple of the live load that is carried while all other loads act with factor 1",
+    "limit_stages": "the largest multiple of the live load that is carried while all other loads act with factor 1",
     "load_margin": "the largest multiple of the live load with an equilibrium in one step from rest",
     "friction_margin": "the least friction with which forces balance the loads",
     "friction_by_solving": "the least friction with which the loads are carried",
@@ -31,7 +31,7 @@ ASKED = {
     "homogenise": "the moduli of a periodic cell",
     "strength": "the strength of a periodic cell",
     "strain_path": "a path of strains and stresses of a periodic cell",
-    "compare_with_continuum": "a wall block by block beside its homogenised continuum",
+    "compare_with_continuum": "a wall of blocks compared with its homogenised continuum",
     "diagnose": "which motions explain what was measured",
     "assess_bridge": "the load factor of a vehicle at every position on a bridge",
     "assess": "an assessment of local mechanisms under an earthquake",

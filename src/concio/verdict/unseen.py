@@ -27,7 +27,7 @@ NAMED = 5
 
 
 class LoadedJoints(Loaded, Protocol):
-    """Something whose loads can be told, with its interfaces."""
+    """Something whose loads can be reported, with its interfaces."""
 
     @property
     def detection(self) -> Detection:
@@ -50,7 +50,7 @@ def unseen(loaded: LoadedJoints, *factors: Mapping[str, float] | None) -> tuple[
     verb = "is" if len(names) == 1 else "are"
     return (
         f"whether {listed(names)} {verb} held: the loads there are less than {SEEN:.0e} of those of the structure "
-        "around, which is as far as residuals tell",
+        "around, below the resolution of the residuals",
     )
 
 

@@ -27,7 +27,7 @@ class _Down:
 
 
 def odd_weights(model: Model) -> tuple[str, ...]:
-    """Return a sentence for each way in which the own weight of blocks is missing or not what it usually is.
+    """Return a sentence for each way in which the self-weight of blocks is missing or not what it usually is.
 
     Parameters
     ----------
@@ -44,11 +44,11 @@ def odd_weights(model: Model) -> tuple[str, ...]:
     found = []
     if weightless and heavy:
         found.append(
-            f"{_first(weightless)} {_has(weightless)} no unit weight, the other {heavy:,} have one: is it forgotten?"
+            f"{_first(weightless)} {_has(weightless)} no unit weight, the other {heavy:,} have one: was it forgotten?"
         )
     left = [body.name for b, body in free.items() if b not in acting and body.name not in weightless]
     if left:
-        found.append(f"own weight does not act on {_first(left)}: loads of kind weight name other blocks")
+        found.append(f"self-weight does not act on {_first(left)}: loads of kind weight name other blocks")
     return (*found, *_factors(model, acting))
 
 
@@ -93,9 +93,9 @@ def _factors(model: Model, acting: dict[int, _Down]) -> tuple[str, ...]:
             if len(groups) > 1
             else ""
         )
-        text = f"the own weight {whose} acts {factor:g} times downwards{several}, with every load factor 1"
+        text = f"the self-weight {whose} acts {factor:g} times downwards{several}, with every load factor 1"
         if factor < 0:
-            text = f"the own weight {whose} acts upwards ({-factor:g} times){several}"
+            text = f"the self-weight {whose} acts upwards ({-factor:g} times){several}"
         elif any(EARTH[0] <= np.abs(factor / max(n, 1)) <= EARTH[1] for n in (1, len(groups))):
             text += ": the value of a weight is a multiple of the unit weight, (0, -1) is gravity, not (0, -9.81)"
         found.append(text)

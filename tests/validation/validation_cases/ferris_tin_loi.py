@@ -1,6 +1,6 @@
 """Associated limit multipliers of walls 1 to 3, the walls built as models of rigid and of elastic blocks.
 
-Blocks 0.4 x 0.175 m, friction 0.65, own weight and a horizontal force lambda times the weight on every block. The
+Blocks 0.4 x 0.175 m, friction 0.65, self-weight and a horizontal force lambda times the weight on every block. The
 associated multiplier does not depend on elasticity; the walls of elastic blocks carry three other rigid motions each,
 and a contact point at each node.
 """
@@ -90,7 +90,7 @@ def rows() -> list[Row]:
             ground = gravity(name, stiff).reactions["ground"]
             found.append(
                 Row(
-                    f"{name}: base reaction under own weight, {'elastic' if stiff else 'rigid'} blocks",
+                    f"{name}: base reaction under self-weight, {'elastic' if stiff else 'rigid'} blocks",
                     weight,
                     ground[1],
                     1e-9,

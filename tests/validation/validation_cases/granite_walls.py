@@ -4,7 +4,7 @@ Walls 1.0 m long, 1.2 m high, 0.2 m thick of sawn granite blocks 0.2 x 0.15 x 0.
 constant vertical load N on a stiff beam. Peak horizontal forces of the monotonic tests on dry sawn walls: 16.1, 37.0,
 63.2 and 85.9 kN at N = 40, 100, 175 and 250 kN. Rocking of a rigid wall without weight about its toe: N L / (2 H).
 
-What the models say. A rigid wall with infinitely strong edges turns about the very toe: an upper limit. Own weight
+What the models say. A rigid wall with infinitely strong edges turns about the very toe: an upper limit. Self-weight
 (26 kN/m3) adds to it; steps along the joints, which let a corner of the wall stay behind, take away. The measured peaks
 lie below, the more the higher N: 4 % below N L / 2H at 40 kN, 18 % at 250 kN, because real contact at the toe has a
 width: with stress f there the lever arm shrinks by N / (2 f t). A compressive cap on the joints is that effect; its

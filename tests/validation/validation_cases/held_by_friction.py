@@ -106,7 +106,7 @@ def rows() -> list[Row]:
         tangent = float(np.tan(np.radians(lean)))
         found.append(
             Row(f"least friction of a block between plates that lean in by {lean:g} degrees", tangent, friction, 1e-4,
-                "there forces grow without end, and proofs end", absolute=True)
+                "there forces grow without bound, and proofs end", absolute=True)
         )  # fmt: skip
     held = between_plates(0.0)
     result = concio.solve(held, on_failure="return")

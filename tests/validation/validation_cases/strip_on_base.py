@@ -8,7 +8,7 @@ each unit of length. Pulled with F it slips over a length l and sticks beyond:
   beta = sqrt(k / EA). The slip zone has the length s = F / tau - 1 / beta, its front moves by tau / k, and the end by
   u = tau / k + (tau / beta) s / EA + tau s^2 / (2 EA).
 
-The strip is thin (a fiftieth of the slip length) and nu = 0, so that stresses are uniform across it. Own weight plays
+The strip is thin (a fiftieth of the slip length) and nu = 0, so that stresses are uniform across it. Self-weight plays
 no part; the pressure comes from the upper plate, which is lowered.
 """
 

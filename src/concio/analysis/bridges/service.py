@@ -16,9 +16,9 @@ from concio.problem.solution import Status
 from concio.representation import short_repr
 
 OPEN = 1e-3
-"""A joint is told to be open where more than this share of its length is."""
+"""A joint is reported to be open where more than this share of its length is."""
 CLEAR = 1e-6
-"""Openings and slips of rigid blocks below this are those of vanishing compliance, and are told as none [m]."""
+"""Openings and slips of rigid blocks below this are those of vanishing compliance, and are reported as none [m]."""
 
 
 EDGE = 0.01
@@ -102,7 +102,7 @@ def with_settlement(model: Model, settled: Mapping[str, float]) -> Model:
     fixed = {b.name for b in model.bodies if b.kind == "fixed"}
     for name in settled:
         if name not in fixed:
-            msg = f"'{name}' is no fixed body that could settle"
+            msg = f"'{name}' is not a fixed body that could settle"
             raise InputError(msg, hint="one of " + ", ".join(sorted(fixed)))
     moved = tuple(
         Support(f"{name} settles", name, displacement=(0.0, -float(d)), group="settlement")

@@ -32,7 +32,7 @@ FINE = 0.01
 MOST = 4_000
 """Largest number of positions."""
 APART = 0.05
-"""Worst positions are told apart where they are further from each other than this share of the road."""
+"""Worst positions are distinguished where they are further from each other than this share of the road."""
 
 
 @short_repr
@@ -158,7 +158,7 @@ def grid(sweep: Sweep, step: float | None = None) -> list[tuple[float, str]]:
     for way in sweep.directions:
         low, high = sweep.reach(way)
         if not width > 0 or (high - low) / width > MOST:
-            msg = f"a step of {width:g} m is no distance of positions on a bridge of {high - low:.4g} m"
+            msg = f"a step of {width:g} m is not a distance of positions on a bridge of {high - low:.4g} m"
             raise InputError(msg, hint=f"at most {MOST:,} positions")
         count = max(2, int(np.ceil((high - low) / width)) + 1)
         found += [(float(x), way) for x in np.linspace(low, high, count)]

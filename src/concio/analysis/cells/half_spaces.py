@@ -2,7 +2,7 @@ r"""Convex polyhedra of macroscopic stresses, as half-spaces :math:`n_i \cdot \S
 
 Redundant half-spaces are found by duality: with a point p inside, the half-spaces that matter are the vertices of the
 convex hull of the points n_i / (h_i - n_i . p), and its facets are the vertices of the polyhedron. What is unbounded is
-closed by a distant box, whose faces are told apart from those of the polyhedron.
+closed by a distant box, whose faces are distinguished from those of the polyhedron.
 """
 
 from __future__ import annotations

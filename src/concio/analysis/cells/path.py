@@ -96,7 +96,7 @@ def strain_path(
     Raises
     ------
     InputError
-        The model is no cell, a stage names what is no component, or a strain is imposed on rigid blocks with hard
+        The model is not a cell, a stage names what is not a component, or a strain is imposed on rigid blocks with hard
         joints, whose forces it does not determine.
     """
     own = PeriodicCell.of(cell)
@@ -123,7 +123,7 @@ def strain_path(
         compliance = compliance or lent
         if compliance and not lent:
             notes.append(
-                f"hard joints between rigid blocks were lent a compliance of {compliance:.3g} m/kN, "
+                f"hard joints between rigid blocks were given a compliance of {compliance:.3g} m/kN, "
                 f"{SHEAR_TO_NORMAL:g} times as much along the joint: without it their forces are not determined"
             )
         lent, laws = compliance, path.problem.laws
@@ -149,7 +149,7 @@ def strain_path(
         strain, state = steps[-1].strain, steps[-1].state
         if found.outcome is not Outcome.REACHED:
             at = found.states[-1].parameter
-            notes.append(f"stage '{stage.name}' ended at {at:.6g} of its way. {found.outcome.value}")
+            notes.append(f"stage '{stage.name}' ended at {at:.6g} of its stage. {found.outcome.value}")
             break
     certified = _certified(own, laws, steps, given)
     return CellPath(own, tuple(asked), certified, tuple(events), tuple(outcomes), tuple(notes))
@@ -248,9 +248,9 @@ def _given(drive: Drive, stress: Array) -> Array:
 def _linear(
     cell: PeriodicCell, drive: Drive, strain: Array, stress: Array, laws: Laws | None
 ) -> tuple[LinearPath, float]:
-    """Return the path from the present strain and stress to what acts at the end of a stage, and the compliance lent.
+    """Return the path from the present strain and stress to what acts at the end of a stage, and the compliance added.
 
-    ``laws`` are those to which compliance was lent before, the same in all stages; then none is lent again.
+    ``laws`` are those to which compliance was given before, the same in all stages; then none is given again.
 
     Raises
     ------
@@ -298,7 +298,7 @@ def _walk(
     restarts = [e.parameter for e in exact.events if e.kind == "restarts"]
     for word, where in (("jumps", jumps), ("finite steps", restarts)):
         if where:
-            notes.append(f"stage '{stage.name}': {len(where)} {word}, the first at {where[0]:.6g} of its way")
+            notes.append(f"stage '{stage.name}': {len(where)} {word}, the first at {where[0]:.6g} of its stage")
     if exact.outcome is not Outcome.TOO_MANY:
         return StepPath(exact.states, exact.events, exact.outcome, exact.direction)
     notes.append(f"stage '{stage.name}': after {len(exact.events)} events continued in {stage.steps} steps")

@@ -60,7 +60,7 @@ class PeriodicCell:
             return cell
         assembly = cell if isinstance(cell, Assembly) else assemble(cell)
         if assembly.model.periods is None:
-            msg = "this model has no periods: it is no cell"
+            msg = "this model has no periods: it is not a cell"
             raise InputError(msg, hint="concio.cell makes one; periods = [[x1, y1], [x2, y2]] make any blocks one")
         return cls(assembly)
 

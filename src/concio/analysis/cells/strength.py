@@ -248,7 +248,7 @@ def strength(
     Raises
     ------
     InputError
-        The model is no cell, or a direction is none.
+        The model is not a cell, or a direction is none.
     NoEquilibriumError
         The stress to begin with cannot be carried.
     """
@@ -303,7 +303,7 @@ def _directions(given: Sequence[Sequence[float]] | Array | int) -> Array:
             raise InputError(msg)
         return spread(int(given))
     if isinstance(given, str | bool | float):
-        msg = f"directions = {given!r} are no directions"
+        msg = f"directions = {given!r} are not directions"
         raise InputError(msg, hint="give a list of (xx, yy, xy), or how many")
     found = [three(d, f"direction {k}") for k, d in enumerate(given, 1)]
     for k, d in enumerate(found, 1):

@@ -38,7 +38,7 @@ REACHED = 1e-7
 """A corner counts as reached by a ray that ends within this share of its length before it."""
 
 BATCH = 12
-"""Corners that rays are shot at before the half-spaces are put together anew."""
+"""Corners that rays are shot at before the half-spaces are put together again."""
 
 INSIDE = 1e-6
 """Distance from the point inside to the boundary, in sizes of the domain, below which there is no inside."""

@@ -36,7 +36,7 @@ class StaticBound:
     Parameters
     ----------
     multiplier : float
-        ``inf`` where the load can grow without end, ``nan`` where not even the dead load is carried by such stresses.
+        ``inf`` where the load can grow without bound, ``nan`` where not even the dead load is carried by such stresses.
     wall : Continuum
         Mesh.
     stress : (e, 3, 3) array

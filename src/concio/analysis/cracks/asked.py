@@ -130,7 +130,8 @@ def _rows(text: str, where: str) -> Iterator[tuple[str, dict[str, str], dict[str
                 continue
             if len(row) != len(units):
                 msg = f"{len(units)} values were expected, {len(row)} are there"
-                raise InputError(msg, where=place, hint="decimals are set off by a point, values by commas")
+                raise InputError(msg, where=place, hint="the decimal separator is a point; values are separated by "
+                "commas")
             yield place, {k: unguarded(v.strip()) for k, v in zip(units, row, strict=True) if v.strip()}, units
     except csv.Error as error:
         msg = f"line {reader.line_num} cannot be read: {error}"

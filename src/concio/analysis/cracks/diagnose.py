@@ -39,9 +39,9 @@ FINER = 4
 WARMER = 10.0
 """Changes of temperature are expected to be of this size [K]."""
 MOST = 3
-"""Motions tried together unless told otherwise."""
+"""Motions tried together unless stated otherwise."""
 STEPS = (4, 16)
-"""Steps of a path that is walked in steps: the next number is taken where readings change too much in finer ones."""
+"""Steps of a path that is followed in steps: the next number is taken where readings change too much in finer ones."""
 CHANGED = 0.3
 """Change of a reading in finer steps, in errors, up to which steps are fine enough."""
 
@@ -73,7 +73,7 @@ def diagnose(
     measurements : sequence of Measurement
     candidates : sequence of Candidate
     most : int
-        Motions that are tried together at most.
+        Maximum number of motions tried together.
     beyond : int
         How many motions more than the simplest cause has are looked at.
     confidence : float
@@ -81,8 +81,8 @@ def diagnose(
     method : {"events", "steps"}, optional
         How paths are followed; by default event by event in the plane up to 150 contact pairs, else in steps.
     steps : int, optional
-        Steps of a path that is walked in steps. By default 4, and 16 where a best fit, followed again in four times as
-        many, changes a reading by more than 0.3 errors; what the change comes to is told.
+        Load steps, if the path is followed in steps. By default 4, and 16 where a best fit, followed again in
+        four times as many, changes a reading by more than 0.3 errors; what the change comes to is reported.
     large : bool
         Whether the simplest cause is followed at large displacements, to its limit; in the plane.
     progress : callable, optional
@@ -195,7 +195,7 @@ class _Case:
         return self.cause(min(fits, key=lambda f: f.misfit)) if fits else None
 
     def future(self, best: Cause | None, large: bool) -> Future | None:
-        """Return what becomes of the structure if the cause goes on."""
+        """Return what happens to the structure if the cause goes on."""
         return None if best is None else future_of(self.fitter.forward, best, self.candidates, large=large)
 
     def orders(self, best: Cause | None) -> float:
@@ -212,7 +212,7 @@ class _Case:
         return float(max((c.max() for c in changes), default=np.inf))
 
     def refinement(self, searched: Found) -> float:
-        """Return how much a reading changes, in errors, where the paths of the best fits are walked in finer steps.
+        """Return how much a reading changes, in errors, where the paths of the best fits are followed in finer steps.
 
         Looked at are the simplest cause and the best fit of every number of motions that is not far off: one that is
         turned down because its path was walked too coarsely is no less a fault than one that is taken.

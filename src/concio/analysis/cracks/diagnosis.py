@@ -56,12 +56,12 @@ class Diagnosis(Shown):
     places : tuple of Place
         Where to measure next.
     future : Future or None
-        What becomes of the structure if the simplest cause goes on; None where nothing moves.
+        What happens to the structure if the simplest cause goes on; None where nothing moves.
     orders : float
         Largest change of a reading of the simplest cause, in errors, where its motions come one after the other instead
         of together; 0 where there is one.
     refinement : float
-        Largest change of such a reading, in errors, where the path is walked in four times as many steps.
+        Largest change of such a reading, in errors, where the path is followed in four times as many steps.
     confidence : float
     most : int
         Largest number of motions that were tried together.

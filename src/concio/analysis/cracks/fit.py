@@ -57,7 +57,7 @@ class Fit:
     fresh : bool
         Whether the derivatives were computed from differences at the end.
     left : bool
-        Whether it is no best fit: the first state was so far from the measurements that it was followed no further.
+        Whether it is not a best fit: the first state was so far from the measurements that it was followed no further.
     """
 
     chosen: tuple[int, ...]

@@ -24,7 +24,7 @@ from concio.verdict.not_standing import not_standing
 Array = np.ndarray
 
 EXACT_PAIRS = 150
-"""Up to this number of contact pairs a path in the plane is followed event by event, unless told otherwise."""
+"""Up to this number of contact pairs a path in the plane is followed event by event, unless stated otherwise."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,7 @@ class Forward:
     readings : tuple of Reading
     method : {"events", "steps"}
     steps : int
-        Steps of a path that is walked in steps.
+        Load steps, if the path is followed in steps.
     """
 
     assembly: Assembly
@@ -86,7 +86,7 @@ class Forward:
         cls, assembly: Assembly, moved: MovedModel, found: Sequence[Reading],
         method: Literal["events", "steps"] | None, steps: int,
     ) -> Forward:  # fmt: skip
-        """Return the predictions of a model, event by event where it is plane and small unless told otherwise."""
+        """Return the predictions of a model, event by event where it is plane and small unless stated otherwise."""
         small = assembly.model.dim == 2 and len(assembly.pairs) <= EXACT_PAIRS
         return cls(assembly, moved, tuple(found), method or ("events" if small else "steps"), steps)
 

@@ -85,7 +85,7 @@ class Future:
 
 
 def future_of(forward: Forward, cause: Cause, candidates: Sequence[Candidate], *, large: bool = True) -> Future | None:
-    """Return what becomes of a structure whose supports go on moving; None where no support moves.
+    """Return what happens to a structure whose supports go on moving; None where no support moves.
 
     Parameters
     ----------

@@ -134,7 +134,7 @@ class Measurement:
         return "rotation" if self.kind in ANGLES else "motion"
 
     def rounded(self, value: float) -> float:
-        """Return a reading rounded to a tenth of the power of ten of the error, as people are told it."""
+        """Return a reading rounded to a tenth of the power of ten of the error, as it is reported."""
         return round(value, 1 - math.floor(math.log10(self.error)))
 
 

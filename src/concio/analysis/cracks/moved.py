@@ -71,7 +71,7 @@ def moved_model(model: Model, candidates: Sequence[Candidate], scale: Array) -> 
     candidates : sequence of Candidate
     scale : (k,) array
         Motions of the size that is expected, which become the units of the load groups: the compliance that hard joints
-        of rigid bodies are lent is in proportion to them [m or rad].
+        of rigid bodies are given is in proportion to them [m or rad].
 
     Raises
     ------
@@ -166,7 +166,7 @@ def _unit(vector: Sequence[float], length: int, where: str, key: str) -> Array:
     given = np.asarray(vector, dtype=float)
     size = float(np.linalg.norm(given)) if given.shape == (length,) else np.nan
     if not 0 < size < np.inf:
-        msg = f"{key} = {tuple(vector)} is no direction with {length} component{'s' * (length > 1)}"
+        msg = f"{key} = {tuple(vector)} is not a direction with {length} component{'s' * (length > 1)}"
         raise InputError(msg, where=where, hint="for example (0, -1) in the plane" if length > 1 else "1 or -1")
     unit: Array = given / size
     return unit

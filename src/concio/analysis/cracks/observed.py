@@ -149,7 +149,7 @@ def _tilt(assembly: Assembly, m: Measurement, b: int, where: str) -> Reading:
     across = turned_left(arm) if d == 2 else cross(_direction(m.direction, d, where), arm)
     size2 = float(across @ across)
     if not size2 > (1e-9 * assembly.model.size) ** 2:
-        msg = "the two points between which the tilt is measured do not tell it"
+        msg = "the two points between which the tilt is measured do not determine it"
         raise InputError(msg, where=where, hint="take points apart from each other, across the axis")
     found = _between(assembly, b, to, b, at, across / size2, where)
     return Reading(found.row, found.moved, (at + to) / 2, across / np.sqrt(size2), True, (b, -1))
@@ -233,7 +233,7 @@ def _direction(vector: Sequence[float], d: int, where: str) -> Array:
     given = np.asarray(vector, dtype=float)
     size = float(np.linalg.norm(given)) if given.shape == (d,) else np.nan
     if not 0 < size < np.inf:
-        msg = f"direction = {tuple(vector)} is no direction with {d} components"
+        msg = f"direction = {tuple(vector)} is not a direction with {d} components"
         raise InputError(msg, where=where)
     unit: Array = given / size
     return unit

@@ -125,7 +125,7 @@ def without_one(fitter: Fitter, fit: Fit, confidence: float) -> list[Fit]:
     """Return the fits within the errors that leave one measurement out which all others contradict.
 
     Which one is chosen from the misfit without it to first order, chi2 - r^2 / (1 - h) with the leverage h of the
-    measurement; the choices are then fitted anew.
+    measurement; the choices are then fitted again.
     """
     n, size = len(fit.residual), len(fit.chosen)
     if n - 1 - size < 2:

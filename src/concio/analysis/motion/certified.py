@@ -2,7 +2,7 @@
 
 Contact pairs are those of :class:`concio.contact.moving.original.OriginalContacts`; supports and ties are placed here
 from the model. Of the solution come only its answer: placements, velocities, forces, what joints remember of the step
-before, how far pairs have slid, and of an impact the restitution and the forces from which lent compliance counts.
+before, how far pairs have slid, and of an impact the restitution and the forces from which added compliance counts.
 How far pairs have slid is compared with what their material points moved.
 """
 
@@ -65,7 +65,7 @@ class Returned:
     share : float
         Of the restitution, 0 to 1.
     force : (pairs, d) array or None
-        From which the compliance lent to joints counts [kN].
+        From which the compliance added to joints counts [kN].
     """
 
     share: float = 1.0
@@ -247,7 +247,7 @@ class Certificate:
         return np.asarray(place * rate)
 
     def _returned(self, data: PairData, joint: JointStep, returned: Returned) -> PairData:
-        """Return the pairs of a step with what an impact says of restitution and lent compliance."""
+        """Return the pairs of a step with what an impact says of restitution and added compliance."""
         if not joint.impact:
             return data
         shift, struck = data.shift.copy(), joint.struck

@@ -97,7 +97,7 @@ def dynamics(
         Time to compute [s]; by default until everything rests after the ground motion, or a block has fallen, at most
         20 s after it.
     step : float, optional
-        Largest step of time [s]; default 2 ms, or what a finer record wants.
+        Largest time step [s]; default 2 ms, or that of a finer record.
     scale : float
         Factor of the ground motion.
     factors : mapping of str to float, optional

@@ -28,7 +28,7 @@ Array = np.ndarray
 
 
 class Ending(Enum):
-    """How a computation ended; what that says of the structure is told by the verdict."""
+    """How a computation ended; what that says of the structure is stated by the verdict."""
 
     COMPLETE = "the time to compute is over"
     OVERTURNED = "a block has turned by more than 60 degrees"
@@ -70,7 +70,7 @@ class DynamicsResult(Shown):
     seconds : float
         Time it took [s].
     lent_compliance : float
-        Compliance lent to hard joints of rigid bodies [m/kN].
+        Compliance added to hard joints of rigid bodies [m/kN].
     asked : str
         What moves the ground, in words.
     begun, ground_ends : float

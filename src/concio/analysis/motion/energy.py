@@ -46,7 +46,7 @@ class EnergyBalance:
 
     @property
     def error(self) -> float:
-        """Largest deviation of the balance from its beginning over the energy turned over."""
+        """Largest deviation of the balance from its beginning over the energy exchanged."""
         total = self.total
         worst = float(np.abs(total - total[0]).max()) if len(total) else 0.0
         return worst / self.turned_over if self.turned_over > 0 else 0.0

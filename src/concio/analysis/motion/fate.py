@@ -1,4 +1,4 @@
-"""What has become of the blocks of a motion: fallen, past their own equilibrium, at rest.
+"""What has happened to the blocks of a motion: fallen, past their own equilibrium, at rest.
 
 A block has fallen where it has turned by 60 degrees, or sunk by its width below where it stood: it lost its support.
 It has passed its own equilibrium where everything that touches it carries it upwards and from one side of its centroid,
@@ -44,7 +44,7 @@ NEAR = 1e-3
 
 
 class Watch:
-    """Looks at what becomes of blocks.
+    """Looks at what happens to blocks.
 
     Parameters
     ----------

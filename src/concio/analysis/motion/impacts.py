@@ -1,6 +1,6 @@
-"""Steps in which something is hit: without the compliance lent to hard joints, and without a gain of energy.
+"""Steps in which something is hit: without the compliance added to hard joints, and without a gain of energy.
 
-The compliance lent to joints of rigid blocks makes their forces unique, and would make every impact softer by as much.
+The compliance added to joints of rigid blocks makes their forces unique, and would make every impact softer by as much.
 It is taken back here: the laws are solved with a (t - t') in place of a t, t' being the forces of the solution before.
 Forces that the impulse does not decide, as those of a block on many corners, stay where they are; what the impact
 returns depends on a no more.
@@ -27,7 +27,7 @@ from concio.solvers.stepping.solver import StepSolver
 Array = np.ndarray
 
 MOST_RETURNED = 4
-"""Times at most that the compliance lent to joints is taken back in an impact."""
+"""Times at most that the compliance added to joints is taken back in an impact."""
 
 RETURNED = 1e-10
 """Share of the velocity of an impact below which what that compliance does to it is nothing."""
@@ -47,7 +47,7 @@ class Impact:
     ----------
     solver : StepSolver
     problem : StepProblem
-        With the compliance lent to joints.
+        With the compliance added to joints.
     joint : JointStep
         Of its first pairs, those of contact.
     scheme : Scheme
@@ -96,7 +96,7 @@ class Impact:
         return float(works.sum()) > NO_GAIN * float(np.abs(works).sum())
 
     def _hard(self, problem: StepProblem, found: StepSolution) -> tuple[StepSolution, Array]:
-        """Return the answer of a problem without the compliance lent to joints, and the forces it counts from."""
+        """Return the answer of a problem without the compliance added to joints, and the forces it counts from."""
         joint, m = self.joint, len(self.joint.gap)
         lent_n, lent_t = problem.a_n.copy(), problem.a_t.copy()
         lent_n[m:] = lent_t[m:] = 0.0

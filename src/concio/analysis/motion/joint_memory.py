@@ -5,7 +5,7 @@ joints that dilate and breaks brittle bonds. What presses a pair beyond its cap 
 but for what the springs store, into friction, impacts, damping and crushing.
 
 Along the normal a hard pair works where it is hit: at half of 1 - e times the velocity of the impact, which is never a
-gain. What the others work, for they sink into the compliance lent to them and turn within a step, is drift. Where
+gain. What the others work, for they sink into the compliance added to them and turn within a step, is drift. Where
 friction at what is hit turns a slip back it gives, and takes what the impact gives it.
 """
 

@@ -36,8 +36,8 @@ TOUCHING = 1e-9
 SAG = 1e-5
 """Depth over the median width of the bodies to which a body of mean weight sinks into a hard joint.
 
-That is the compliance lent to it: rigid blocks on many corners would otherwise carry themselves in infinitely many
-ways, and rounding of their places would choose among them anew in every step."""
+That is the compliance added to it: rigid blocks on many corners would otherwise carry themselves in infinitely many
+ways, and rounding of their places would choose among them again in every step."""
 
 MOST_SAG = 20.0
 """Depth over that up to which a hard joint is sunk in by force; beyond, it was an impact felt late."""
@@ -46,7 +46,7 @@ SOFT = 2e-3
 """Compliance of a hard joint in one step over what its bodies give way under a force; of an impact it is taken back."""
 
 RETURN = 0.1
-"""Share of what is sunk in more or less than the force wants that comes back in a step, at most."""
+"""Share of what is sunk in more or less than the force implies that comes back in a step, at most."""
 
 FALL = 2.0
 """A pair that carried force stays active until its gap exceeds this many times the distance fallen in a step."""
@@ -69,7 +69,7 @@ class Joints:
     reach : float
         Compliant pairs further apart than this are left out [m].
     lent : float
-        Compliance lent to hard joints of rigid bodies [m/kN].
+        Compliance added to hard joints of rigid bodies [m/kN].
     yielding : (B,) array
         That lent on behalf of each elastic body, zero for others [m/kN].
     """
@@ -212,7 +212,7 @@ class Joints:
         """Return which hard pairs (m,) are hit in a step.
 
         Where one is, those are too that come as near by the end of the step as joints may be sunk in by force: what
-        meets at one instant is not told apart by how far joints have given way.
+        meets at one instant is not distinguished by how far joints have given way.
         """
         closing = rows.valid & ~lasting & (y0[:, 0] < 0)
         if springs is not None:

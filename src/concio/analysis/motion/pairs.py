@@ -25,7 +25,7 @@ from concio.solvers.stepping.problem import StepProblem
 Array = np.ndarray
 
 YIELDING = 1e-3
-"""Compliance lent to a hard pair of an elastic body, over that of its nodes.
+"""Compliance added to a hard pair of an elastic body, over that of its nodes.
 
 Where blocks meet at corners their contacts hold each other several times over. In small displacements that does no
 harm; where they have moved, the gaps agree to second order only, and what is left would become self-stress."""

@@ -115,7 +115,7 @@ def push(
         (for a share of the weights, the mean displacement of the masses).
     live : str or sequence of str, optional
         Load groups that the multiplier scales. By default the group "live", and where a model has none a share of all
-        weights along ``direction``: own weights, and what loads bodies from above, as :func:`concio.assess` takes them.
+        weights along ``direction``: self-weights and loads from above, as in :func:`concio.assess`.
     direction : float or (x, y), optional
         Direction of that share, by default along x; 1 or -1 is along x. Of load groups that are multiplied, the side to
         which they push: where their resultant points to the other side they grow with the opposite sign.
@@ -304,7 +304,7 @@ class _Push:
         Parameters
         ----------
         located : bool
-            Whether the last point is one at which a tie gave way: what falls behind it is no top.
+            Whether the last point is one at which a tie gave way: what falls behind it is not a top.
         """
         top = len(self.multiplier) - 2
         gave, self.gave = self.gave, located

@@ -82,7 +82,7 @@ def direction_asked(direction: float | Sequence[float]) -> Array:
     given = np.array([direction, 0.0] if np.ndim(direction) == 0 else direction, dtype=float)
     size = float(np.linalg.norm(given)) if given.shape == (2,) else np.nan
     if not 0 < size < np.inf:
-        msg = f"direction = {direction} is no direction"
+        msg = f"direction = {direction} is not a direction"
         raise InputError(msg, hint="1 or -1 along x, or (x, y)")
     along: Array = given / size
     return along

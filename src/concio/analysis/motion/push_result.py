@@ -28,13 +28,13 @@ Array = np.ndarray
 
 
 class PushEnding(Enum):
-    """How pushing ended; what that says of the structure is told by the verdict."""
+    """How pushing ended; what that says of the structure is stated by the verdict."""
 
     LOST = "the multiplier fell to the smallest one"
     REACHED = "the displacement or multiplier asked for was reached"
     NO_EQUILIBRIUM = "no equilibrium at a larger displacement could be followed"
     NO_LARGER_LOAD = "no equilibrium nearby at a larger multiplier: load control ends at the peak"
-    LOCKED = "the structure locks: the multiplier grows without end"
+    LOCKED = "the structure locks: the multiplier grows without bound"
     STOPPED = "stopped on request"
 
 
@@ -76,7 +76,7 @@ class PushResult(Shown):
     notes : tuple of str
     seconds : float
     lent_compliance : float
-        Compliance lent to hard joints of rigid bodies [m/kN].
+        Compliance added to hard joints of rigid bodies [m/kN].
     end : MotionState
         State at the end.
     until : float or None

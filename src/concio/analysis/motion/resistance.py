@@ -10,8 +10,8 @@ import numpy as np
 Array = np.ndarray
 
 RESISTANCE = (2e-6, 6e-5, 2e-3, 6e-2, 2.0, 6.0, 20.0, 60.0, 200.0, 600.0)
-"""epsilon over gravity by the width of a body: :data:`USUAL`, larger ones where iterations swing to and fro, smaller
-ones where each moves as far as the last.
+"""epsilon over gravity by the width of a body: :data:`USUAL`, larger ones where iterations swing back and forth,
+smaller ones where each moves as far as the last.
 
 What hangs by a tie and turns with the load is stiffer than the rows of the first order know: with the first alone the
 iterations swing about the equilibrium and lose two to fifteen hundredths of their size each time."""

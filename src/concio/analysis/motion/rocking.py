@@ -63,7 +63,7 @@ def rock(model: Model, *, direction: float = 1.0, step: float = 0.005, smallest:
     ----------
     model : Model
         Rigid and fixed bodies, with all their loads, ties, supports and joint laws; where it has no load at all, its
-        own weight.
+        self-weight.
     direction : {1, -1}
         Side to which the share acts.
     step : float

@@ -59,7 +59,7 @@ def assess(
     site : Site
         Hazard, soil, code.
     levels : sequence of str, optional
-        Limit states; by default all that the code asks for: those without hazard are told as not checked.
+        Limit states; by default all that the code asks for: those without hazard are reported as not checked.
     mechanisms : mapping, optional
         Beside the weakest mechanism of all: for each name the bodies that move while all others stand: their names
         (``*`` stands for any letters), roles or layers, or ``{"above": 3.0}`` for those whose centroid lies there.
@@ -159,7 +159,7 @@ def assess(
 
 
 def _notes(site: Site, wanted: tuple[str, ...], knowledge: str, factor: float, reason: str) -> tuple[str, ...]:
-    """Return what is odd about the numbers of the site and of the knowledge."""
+    """Return what is suspicious about the numbers of the site and of the knowledge."""
     found = [
         f"a_g = {site.at(level).a_g:g} g on rock at {level} is more than any site in Italy has; check that g was meant"
         for level in wanted

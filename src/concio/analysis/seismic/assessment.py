@@ -53,7 +53,7 @@ class Assessment(Shown):
     sought : int
         Searches made, over all pushes.
     parts : tuple of str
-        Parts that were searched unasked.
+        Parts that were searched by default.
     places : mapping of str to (int, int)
         For "levels", "openings" (lines of them), "returns" (faces of them) and "changes" (other lines): how many were
         sought at, and how many there are, over all pushes.

@@ -8,7 +8,7 @@ times alpha. With delta the displacement of its point of application along the p
     e^* = \frac{(\sum (P+Q)\,\delta)^2}{\sum (P+Q) \sum (P+Q)\,\delta^2}, \qquad a = \frac{\alpha g}{e^* FC}, \qquad
     d = d_C \frac{\sum (P+Q)\,\delta^2}{\delta_C \sum (P+Q)\,\delta}
 
-(C8.7.1.3 to C8.7.1.5). The own weight of a macro-block acts in its centroid, distributed loads in their middle.
+(C8.7.1.3 to C8.7.1.5). The self-weight of a macro-block acts in its centroid, distributed loads in their middle.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ class Chain:
 def gathered(
     model: Model, mechanics: Mechanics, numbers: Sequence[int], origin: Mapping[int, int] | None = None
 ) -> list[tuple[str, Force]]:
-    """Return the forces of some loads on the macro-blocks; own weights of a macro-block are one force.
+    """Return the forces of some loads on the macro-blocks; self-weights of a macro-block are one force.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ FARTHEST = 2.0
 REASONS = {
     "falls": "the multiplier vanishes",
     "far": f"the control point has moved by {FARTHEST:g} times the size of the mechanism",
-    "joints end": "its joints come to the end of their way; what may stand beyond does not count",
+    "joints end": "its joints reach the end of their travel; what may stand beyond does not count",
     "joint opens": "a joint opens or a tie goes slack or yields; what may stand beyond does not count",
     "several motions": "its joints leave more than one way to move, or none",
     "no forces": "its joints carry no forces in equilibrium",

@@ -133,7 +133,7 @@ def _asked(dim: int, direction: Direction | None) -> dict[str, Array]:
         return {name: np.array(known[name]) for name in names}
     vector = np.array(direction, dtype=float)
     if dim == 2 or vector.shape != (2,) or not 0 < float(np.linalg.norm(vector)) < np.inf:
-        msg = f"{direction!r} is no direction"
+        msg = f"{direction!r} is not a direction"
         words = ", ".join((*known, *several))
         more = " or a horizontal vector (x, y)" if dim == 3 else ""
         raise InputError(msg, hint=f"one of {words}{more}")

@@ -32,7 +32,7 @@ SAME = 1e-6
 """Relative difference below which the multipliers of the limit programme and of its linkage are the same."""
 
 BARELY = 1e-3
-"""Curves that end before this share of the size of the mechanism are no curves: other joints take over at once."""
+"""Curves that end before this share of the size of the mechanism are not curves: other joints take over at once."""
 
 REACHED = 0.9
 """A curve that is cut before it comes to this share of alpha_0 is none."""

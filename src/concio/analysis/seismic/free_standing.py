@@ -71,7 +71,7 @@ class FreeStanding:
                 msg = f"{name} = {value:g} must be positive"
                 raise InputError(msg)
         if not SOFTEST <= self.E <= STIFFEST:
-            msg = f"E = {self.E:g} kN/m2 is no modulus of masonry"
+            msg = f"E = {self.E:g} kN/m2 is not a modulus of masonry"
             raise InputError(msg, hint='in kN/m2, or a text with a unit: "900 MPa"')
 
 
@@ -138,7 +138,7 @@ def elements_of(given: Mapping[str, Any], names: tuple[str, ...], rules: Code) -
     Raises
     ------
     InputError
-        There is no such mechanism; or something in it is not known, or is no number of masonry.
+        There is no such mechanism; or something in it is not known, or is not a number of masonry.
     """
     found = {}
     for name, value in given.items():

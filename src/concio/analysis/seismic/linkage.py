@@ -241,7 +241,7 @@ class Linkage:
         return total
 
     def tie_state(self, q: Array, rate: Array | None = None) -> tuple[Array, Array, Array]:
-        """Return forces (n,) [kN], elongations (n,) [m] of the ties that are no bars, and their pull (3 G,).
+        """Return forces (n,) [kN], elongations (n,) [m] of the ties that are not bars, and their pull (3 G,).
 
         Parameters
         ----------

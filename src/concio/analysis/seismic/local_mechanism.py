@@ -192,7 +192,7 @@ class LocalMechanism:
 
     @property
     def complete(self) -> bool:
-        """Whether every limit state was checked, with a multiplier that is no mere upper bound."""
+        """Whether every limit state was checked, with a multiplier that is not a mere upper bound."""
         return not self.unchecked and self.found.flow != "associated"
 
     def zeta_at(self, level: str) -> float:

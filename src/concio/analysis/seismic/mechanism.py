@@ -117,7 +117,7 @@ def chosen_bodies(model: Model, name: str, wanted: Sequence[str] | Mapping[str, 
     for word in wanted:
         fitting = [i for i in free if fnmatchcase(bodies[i].name, word) or word in (bodies[i].role, bodies[i].layer)]
         if not fitting:
-            msg = f"'{word}' is no body that can move, no role and no layer"
+            msg = f"'{word}' is not a body that can move, no role and no layer"
             known = dict.fromkeys(w for i in free for w in (bodies[i].role, bodies[i].layer, bodies[i].name) if w)
             raise InputError(msg, where=where, hint=closest(word, known))
         found |= set(fitting)
@@ -231,7 +231,7 @@ class Mechanisms:
         return Found(bound, state.multiplier, "Coulomb", velocity, forces, made)
 
     def _locked(self, columns: Array, rows: Array, problem: ContactProblem, bound: LimitLoad) -> Found:
-        """Return what becomes of a push of which the associated programme carries any multiple.
+        """Return what happens to a push of which the associated programme carries any multiple.
 
         Without friction that is the last word: no motion that joints allow gains work, with whatever friction. With
         friction it is none, for Coulomb's joints do not open as they slide; collapse states are looked for then.
@@ -258,8 +258,8 @@ class Mechanisms:
 def _quickly(problem: ContactProblem, push: Array, bound: LimitLoad, beds: Array) -> list[CollapseState | None]:
     """Return collapse states met with few programmes, from forces that hold up the weight alone.
 
-    Once as they are, and once without those of upright joints, ``beds`` (m,) being the others: courses of dry blocks
-    press on each other, not sideways, and what only the friction of upright joints holds is met from there. In the
+    Once as they are, and once without those of vertical joints, ``beds`` (m,) being the others: courses of dry blocks
+    press on each other, not sideways, and what only the friction of vertical joints holds is met from there. In the
     plane also from the forces of the associated limit.
     """
     dead = statically_admissible(problem)

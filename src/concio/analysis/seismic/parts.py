@@ -1,4 +1,4 @@
-"""Parts of a structure that mechanisms are sought in unasked: what stands above a level, what lies beyond a line.
+"""Parts of a structure that mechanisms are sought in by default: what stands above a level, what lies beyond a line.
 
 The weakest mechanism of all is sought among all motions. Where joints slide, that search ends at one of several
 collapse states, and another may be weaker; and a mechanism with a larger multiplier may be worse off in its checks, as
@@ -7,7 +7,7 @@ above every level at which courses meet, storeys, lintels and sills among them; 
 every face of a return or cross wall (:mod:`concio.analysis.seismic.layout`), on either side where it is a line across
 the push; beyond other lines along the push at which the structure changes. Where a model holds several structures that
 touch only what is fixed, each is searched for itself, so that none hides another. How many of each kind there are and
-how many were sought is told.
+how many were sought is reported.
 """
 
 from __future__ import annotations

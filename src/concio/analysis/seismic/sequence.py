@@ -2,7 +2,7 @@
 
 Where the joints of a mechanism leave more than one way to move (courses that slide over each other, wedges torn out of
 a wall), and in space, no linkage can be followed. Here the macro-blocks stay what they are at the onset, but how they
-move is found anew in each configuration: a collapse state of Coulomb friction without dilatancy
+move is found again in each configuration: a collapse state of Coulomb friction without dilatancy
 (:mod:`concio.solvers.statics.collapse_state`) gives the multiplier and the motion; the blocks are moved along it, each
 by a screw of its own, and put back where contacts that press have come apart. Contacts open, close, begin and cease to
 slide on the way. In the limit of small steps that is a quasi-static path; one block that topples is followed exactly.

@@ -19,7 +19,7 @@ from concio.errors import InputError
 from concio.units import quantity
 
 LARGEST, STRONG = 1.0, 0.5
-"""No rock shakes harder than the first [g]; more than the second is told, for m/s2 may have been meant."""
+"""No rock shakes harder than the first [g]; more than the second is reported, for m/s2 may have been meant."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Hazard:
 
     def __post_init__(self) -> None:
         if not 0 < self.a_g <= LARGEST:
-            msg = f"a_g = {self.a_g:g} g is no acceleration of a site"
+            msg = f"a_g = {self.a_g:g} g is not an acceleration of a site"
             hint = "a_g is a share of gravity" + (f"; was {self.a_g:g} m/s2 meant?" if self.a_g > LARGEST else "")
             raise InputError(msg, hint=hint)
         if not 1.0 <= self.F0 <= 5.0:
@@ -232,7 +232,7 @@ def _hazard(given: Any, where: str) -> Hazard:
     if isinstance(given, Hazard):
         return given
     if not isinstance(given, Mapping):
-        msg = f"{given!r} is no hazard"
+        msg = f"{given!r} is not a hazard"
         raise InputError(msg, where=where, hint='for example {"a_g": 0.20, "F0": 2.45, "Tc": 0.32}')
     names = {"T_R": "T_R", "a_g": "a_g", "F0": "F0", "Tc": "T_star"}
     for key in given:

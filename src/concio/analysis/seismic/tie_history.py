@@ -1,7 +1,7 @@
 """Ties on their way: what they have been through decides what they pull, and where they yield and break.
 
 A tie is elastic up to its strength, yields there, unloads parallel to its first branch, and pulls no more once it was
-longer than its elongation at break, whatever becomes of its length afterwards.
+longer than its elongation at break, whatever happens to its length afterwards.
 """
 
 from __future__ import annotations

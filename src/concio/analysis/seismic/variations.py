@@ -60,7 +60,7 @@ class TieForce:
 def tie_force(model: Model, tie: str, *, zeta: float = 1.0, largest: float | None = None, **arguments: Any) -> TieForce:
     """Return the yield force of a tie that brings the least zeta_E of all mechanisms to ``zeta``, by solving.
 
-    It is the least over all limit states asked for. Every trial searches the mechanisms anew, since the weakest one
+    It is the least over all limit states asked for. Every trial searches the mechanisms again, since the weakest one
     changes with the force. A tie that breaks before it yields has no more than its force at break, however large the
     yield force that is tried.
 

@@ -1,7 +1,7 @@
 """Candidates for contact: edges that face each other and corners near edges, looked for with a skin.
 
 The search costs about as much as there are bodies (an R-tree of the edges' boxes, grown by a skin) and holds until a
-corner has moved by half the skin; between two searches only the distances of the candidates are worked out anew.
+corner has moved by half the skin; between two searches only the distances of the candidates are worked out again.
 
 Where two edges face each other within :data:`FACING`, both ends of their common length are contact points, each of
 them a corner of one body on the edge of the other. Corners whose own edges face nothing (a block standing on its

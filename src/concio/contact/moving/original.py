@@ -2,7 +2,7 @@
 
 Nothing here is what a solve kept. Of the search it takes the names of the pairs (their two edges), and where corners
 coincide which of them touches; of elastic sides the nodes and weights of the coupling, which are checked. Placed
-outlines, normals, gaps, areas, rows and laws are worked out anew, from the model. What the search did not find shows
+outlines, normals, gaps, areas, rows and laws are worked out again, from the model. What the search did not find shows
 where a corner stands inside another body (:meth:`OriginalContacts.deepest`).
 """
 

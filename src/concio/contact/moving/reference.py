@@ -57,7 +57,7 @@ class Reference:
         Raises
         ------
         InputError
-            Gravity is not positive; what is given is no model; every body is fixed; a support is not usable.
+            Gravity is not positive; what is given is not a model; every body is fixed; a support is not usable.
         GeometryError
             Bodies overlap.
         """

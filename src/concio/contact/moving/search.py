@@ -1,4 +1,4 @@
-"""The contact search of a motion: looks for candidates anew only when something has moved by half the skin."""
+"""The contact search of a motion: looks for candidates again only when something has moved by half the skin."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ SKIN = 0.1
 """Skin over the median width of the bodies."""
 
 SHIFT = 2e-3
-"""Share of an edge by which a meshed side may slide along another before their coupling is worked out anew."""
+"""Share of an edge by which a meshed side may slide along another before their coupling is worked out again."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +76,7 @@ class ContactSearch:
         self._moved = ~self.edges.fixed
 
     def update(self, placed: PlacedEdges) -> bool:
-        """Look for candidates anew where that is due; return whether the layout has changed."""
+        """Look for candidates again where that is due; return whether the layout has changed."""
         if self.layout is not None and not self._due(self.layout, placed):
             return False
         found = find_candidates(self.edges, placed, self.skin, self.through)

@@ -1,6 +1,6 @@
 """Places for contact pairs: a fixed layout between two searches, so that states and matrices carry over.
 
-A joint of two rigid sides has a slot at each end of its common length and, where its law wants the pressure resolved,
+A joint of two rigid sides has a slot at each end of its common length and, where its law needs the pressure resolved,
 between; a joint of a meshed side has one for each node of the finer side; a corner on an edge has one. A slot that
 touches nothing at the moment stays in the layout and carries no force.
 """

@@ -1,1 +1,1 @@
-"""Drawings in DXF: read, judged, mended."""
+"""Drawings in DXF: read, judged, repaired."""

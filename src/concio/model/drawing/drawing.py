@@ -1,4 +1,4 @@
-"""From a DXF drawing to a model: faults judged and mended, blocks named, supports and loads found on their blocks."""
+"""From a DXF drawing to a model: faults judged and repaired, blocks named, supports and loads found on their blocks."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def model_from_dxf(
 
     Notes
     -----
-    ``model.generator`` keeps what was found: ``faults`` (mended or skipped), ``moved`` (every corner that mending
+    ``model.generator`` keeps what was found: ``faults`` (repaired or skipped), ``moved`` (every corner that mending
     moved), ``left_out`` (what was ignored as asked), ``metres`` (a drawing unit).
     """
     where = str(path)
@@ -116,7 +116,7 @@ def model_from_dxf(
 def usable_outlines(
     drawing: Drawing, mend: float = 0.0, close: float = 0.0, where: str = "drawing"
 ) -> tuple[list[Outline], list[DxfFault], tuple[str, ...]]:
-    """Return the outlines that can be blocks, mended within the tolerances, all faults, and the corners moved.
+    """Return the outlines that can be blocks, repaired within the tolerances, all faults, and the corners moved.
 
     Parameters
     ----------
@@ -189,16 +189,16 @@ def _wider(outlines: list[Outline], mend: float, note: Any, where: str) -> list[
         width, o = min(lost, key=lambda found: found[0])
         msg = f"mend = {mend:g} m would swallow {len(lost)} of {len(outlines)} outlines"
         at = o.points[0]
-        hint = f"the thinnest, entity {o.handle} at ({at[0]:.6g}, {at[1]:.6g}) m, is some {1e3 * width:.3g} mm wide"
+        hint = f"the thinnest, entity {o.handle} at ({at[0]:.6g}, {at[1]:.6g}) m, is about {1e3 * width:.3g} mm wide"
         raise InputError(msg, where=where, hint=hint)
     for width, o in lost:
-        text = f"this outline is only some {1e3 * width:.3g} mm wide, and mend = {1e3 * mend:.3g} mm would swallow it"
+        text = f"this outline is only about {1e3 * width:.3g} mm wide, and mend = {1e3 * mend:.3g} mm would remove it"
         note("thin", o, o.points[0], text + " (delete it, or give 'mend' a smaller length)")
     return [o for _, o in kept]
 
 
 def _without_duplicates(outlines: list[Outline], mend: float, note: Any) -> list[Outline]:
-    """Return the outlines without those drawn twice; noted as mended where mending is allowed."""
+    """Return the outlines without those drawn twice; noted as repaired where mending is allowed."""
     shapes = shapely.polygons([shapely.linearrings(o.points) for o in outlines]) if outlines else np.array([])
     drop: set[int] = set()
     if len(outlines) > 1:

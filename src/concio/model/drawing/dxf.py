@@ -32,9 +32,9 @@ What a layer means is said in a table (:mod:`concio.model.drawing.layers`), or b
 Any other layer
     Blocks; the layer's name is kept, and is the key that gives them a material.
 
-Everything that is no closed outline on a layer of blocks is left out and counted: texts, dimensions, hatches. A LINE or
-an ARC there is a fault, since blocks may have been drawn with single lines; a layer that is ignored may hold any. Every
-fault names the handle of its entity and the place.
+Everything that is not a closed outline on a layer of blocks is left out and counted: texts, dimensions, hatches. A LINE
+or an ARC there is a fault, since blocks may have been drawn with single lines; a layer that is ignored may hold any.
+Every fault names the handle of its entity and the place.
 """
 
 from __future__ import annotations
@@ -179,7 +179,7 @@ def read_drawing(
     Raises
     ------
     InputError
-        ezdxf is not installed, the file is missing or is no DXF, the drawing has no unit, or a layer that is given a
+        ezdxf is not installed, the file is missing or is not a DXF, the drawing has no unit, or a layer that is given a
         meaning is not in it.
     """
     chord = quantity(chord_tolerance, "length", where="chord_tolerance")
@@ -203,7 +203,7 @@ def read_drawing(
         if hidden or (isinstance(use, LayerUse) and use.use == "ignore"):
             ignored.setdefault((e.layer, "off or frozen" if hidden else "ignored"), Counter())[e.kind] += 1
         elif e.fault:
-            faults.append(_fault("outline", e, f"{e.fault} (draw it anew, or delete it)"))
+            faults.append(_fault("outline", e, f"{e.fault} (draw it again, or delete it)"))
         elif isinstance(use, str):
             faults.append(_fault("layer", e, use))
         elif use.use == "names":
@@ -220,7 +220,7 @@ def read_drawing(
             edges = _edges(e)
             point = use.load.kind == "point"
             if not edges or (edges[0][0] == edges[0][1]) != point:
-                wanted = f"a {use.load.kind} load wants {'a POINT' if point else 'a LINE'}, not {e.kind}"
+                wanted = f"a {use.load.kind} load takes {'a POINT' if point else 'a LINE'}, not {e.kind}"
                 faults.append(_fault("place", e, wanted))
                 continue
             loads += [(replace(use.load, **{"at": a} if point else {"edge": (a, b)}), e.handle) for a, b in edges]
@@ -246,7 +246,7 @@ def read_drawing(
 
 
 def outline_of(entity: Entity, chord: float) -> Outline | str | None:
-    """Return the outline an entity draws, a sentence on its fault, or None where it is no outline.
+    """Return the outline an entity draws, a sentence on its fault, or None where it is not an outline.
 
     Parameters
     ----------

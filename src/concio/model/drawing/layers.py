@@ -221,7 +221,7 @@ def _load(given: Mapping[str, Any], where: str) -> Load:
     kind = given["load"]
     if kind not in VALUES:
         msg = f"load = '{kind}' is not one of {', '.join(VALUES)}"
-        raise InputError(msg, where=where, hint="own weight acts by itself; other loads go into [[loads]]")
+        raise InputError(msg, where=where, hint="self-weight acts by itself; other loads go into [[loads]]")
     if "value" not in given:
         msg = "'value' is missing"
         raise InputError(msg, where=where, hint="give a number for pressure, [x, y] otherwise")

@@ -80,7 +80,7 @@ def _solid(table: BlockTable, materials: Materials) -> Polyhedron:
     """Return a block in space."""
     flat = [key for key in ("outline", "rectangle", "thickness", "grid") if getattr(table, key) is not None]
     if flat or (table.box is None) == (table.vertices is None) or (table.vertices is None) != (table.faces is None):
-        msg = f"'{flat[0]}' is no key of a block in space" if flat else "give either vertices and faces, or a box"
+        msg = f"'{flat[0]}' is not a key of a block in space" if flat else "give either vertices and faces, or a box"
         raise InputError(msg, hint="vertices = [[x, y, z], ...], faces = [[0, 2, 3, 1], ...], or box = two corners")
     kind, role = _sort(table, materials)
     words: dict[str, Any] = {

@@ -143,7 +143,7 @@ def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
 
 
 DEEPEST = 40
-"""Tables within tables within tables: more than this is no model file."""
+"""Tables within tables within tables: more than this is not a model file."""
 LARGEST_NUMBER = 2**63
 """Whole numbers of a file are below this."""
 

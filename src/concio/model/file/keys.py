@@ -123,7 +123,7 @@ def _words(text: str, where: str) -> list[tuple[str, bool]]:
             found.append((plain if quoted is None else quoted, False))
         at = match.end()
     if not found or at < len(text):
-        msg = f"'{text}' is no path of a key"
+        msg = f"'{text}' is not a path of a key"
         raise InputError(msg, where=where or None, hint="write for example wall.friction, or loads[1].value[2]")
     return found
 

@@ -30,7 +30,7 @@ def with_unit(value: Any, units: Mapping[str, float], what: str) -> Any:
     Raises
     ------
     ValueError
-        A text that is no number with such a unit.
+        A text that is not a number with such a unit.
     """
     if not isinstance(value, str):
         return value

@@ -126,7 +126,7 @@ class VehicleTable(Table):
     source: StrictStr | None = None
     assumed: StrictStr | None = None
     also: list[FollowerTable] = Field(default_factory=list)
-    applied: StrictBool = Field(default=False, description="its loads stand in the file already")
+    applied: StrictBool = Field(default=False, description="its loads are already in the file")
 
 
 def fill_of(table: FillTable) -> Fill:

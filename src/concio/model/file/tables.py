@@ -78,7 +78,7 @@ class UnitsTable(Table):
 
 
 class ReportTable(Table):
-    """Units in which people are told what was found; see :class:`concio.Units`."""
+    """Units in which results are reported; see :class:`concio.Units`."""
 
     force: Literal["kN", "N", "MN", "kgf", "tf"] = "kN"
     length: Literal["m", "cm", "mm", "ft", "in"] = "m"

@@ -117,7 +117,7 @@ SMALLEST, LARGEST = 1e-9, 1e7
 
 def _size(value: float) -> float:
     if value != 0 and not (SMALLEST <= abs(value) <= LARGEST):
-        msg = f"{value:g} m is no size of a structure"
+        msg = f"{value:g} m is not a size of a structure"
         raise _fault(msg, f"sizes lie between {SMALLEST:g} and {LARGEST:g} m")
     return value
 

@@ -34,7 +34,7 @@ class Common(TypedDict, total=False):
     thickness : float or str
         Out of plane [m]. Default 1 m.
     horizontal : float
-        Horizontal force towards +x as a share of the own weight, load group "live". Default 0.
+        Horizontal force towards +x as a share of the self-weight, load group "live". Default 0.
     plane : {"stress", "strain"}
         Plane stress or plane strain.
     element : str
@@ -116,7 +116,7 @@ def checked(where: str, options: Mapping[str, Any]) -> Checked:
         msg = f"horizontal = {horizontal} must be finite"
         raise InputError(msg, where=where)
     if horizontal and not block.unit_weight:
-        msg = "horizontal is a share of the own weight, but unit_weight is zero"
+        msg = "horizontal is a share of the self-weight, but unit_weight is zero"
         raise InputError(msg, where=where, hint="give unit_weight")
     size = options.get("mesh_size")
     return Checked(
@@ -172,7 +172,7 @@ def count(where: str, name: str, value: object, least: int = 1, most: int = LARG
     if value > most:
         shown = f"{value:,}" if value < 10**30 else "a number of more than 30 digits"
         msg = f"{name} = {shown} is more than {most:,}"
-        raise InputError(msg, where=where, hint="is that a slip of the pen?")
+        raise InputError(msg, where=where, hint="is this a typing error?")
     return int(value)
 
 
@@ -184,7 +184,7 @@ def check_blocks(where: str, number: float, hint: str) -> None:
 
 
 def check_keys(where: str, given: Iterable[str], kind: type) -> None:
-    """Refuse keys that are no fields of the dataclass ``kind``.
+    """Refuse keys that are not fields of the dataclass ``kind``.
 
     Raises
     ------

@@ -196,7 +196,7 @@ def rebuilt(model: Model, factor: float) -> tuple[Body, ...]:
     new = {body.name: body for body in bridge(**arguments).outlines}
     if set(new) != {b.name for b in model.bodies}:
         msg = "bodies were added to the bridge or taken away since it was made"
-        raise InputError(msg, hint="only a bridge as it was made can be made anew")
+        raise InputError(msg, hint="only a bridge as it was made can be made again")
     return tuple(replace(b, outline=new[b.name].outline) for b in model.outlines)
 
 

@@ -35,7 +35,7 @@ LONGEST = 60
 """Longest cell of courses that do not fit together, in block lengths."""
 
 LARGEST_CELL = 100_000
-"""More blocks than this are taken for a slip of the pen."""
+"""More blocks than this are taken for a typing error."""
 
 
 @strict_with(Common.__annotations__)
@@ -144,7 +144,7 @@ def cell(
     tall = positive(where, "block_size", two(where, "block_size", block_size)[1])
     courses = tuple(bond_courses(bond, lap)) * ny
     if head is not None and len(courses) == 1:
-        courses *= 2  # a block that stands on itself: head and bed joints could not be told apart
+        courses *= 2  # a block that stands on itself: head and bed joints could not be distinguished
     units = shortest_length(courses) * nx
     if sum(len(c.unit) * units / sum(c.unit) for c in courses) > LARGEST_CELL:
         msg = f"the cell has more than {LARGEST_CELL:,} blocks"

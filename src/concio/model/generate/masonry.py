@@ -46,7 +46,7 @@ def assemble(
     title: str,
     generator: Mapping[str, object],
 ) -> Model:
-    """Return the model of ``pieces`` on ``obstacles``: own weight in group "dead", its horizontal share in "live".
+    """Return the model of ``pieces`` on ``obstacles``: self-weight in group "dead", its horizontal share in "live".
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def joints_on(options: Checked, roles: Iterable[str]) -> tuple[dict[str, JointLa
 def own_weight(
     materials: Iterable[Elastic | Rigid], down: tuple[float, ...], sideways: tuple[float, ...]
 ) -> tuple[Load, ...]:
-    """Return own weight in group "dead" and its share ``sideways`` in "live", where anything has a weight."""
+    """Return self-weight in group "dead" and its share ``sideways`` in "live", where anything has a weight."""
     if not any(material.unit_weight for material in materials):
         return ()
     dead = Load("weight", down, group="dead")

@@ -83,7 +83,7 @@ def running_bond_panel(
     unit_weight : float or str
         Weight per volume of blocks and mortar [kN/m3], load group "dead"; 0 leaves the materials' own.
     horizontal : float
-        Horizontal force towards +x as a share of the own weight, load group "live".
+        Horizontal force towards +x as a share of the self-weight, load group "live".
     elements_per_block : (int, int)
         Elements along length and height of a whole block.
     refinement : int
@@ -177,7 +177,7 @@ def running_bond_panel(
         if horizontal:
             loads.append(Load("weight", (horizontal, 0.0), group="live"))
     elif horizontal:
-        msg = "horizontal is a share of the own weight, but unit_weight is zero"
+        msg = "horizontal is a share of the self-weight, but unit_weight is zero"
         raise InputError(msg, where=where, hint="give unit_weight")
     if pressure:
         loads.append(Load("pressure", (pressure,), edge=((0.0, top), (width, top)), group="top"))

@@ -35,7 +35,7 @@ class CommonSpace(TypedDict, total=False):
     unit_weight : float or str or None
         Weight per volume [kN/m3]; None takes the material's.
     horizontal : float
-        Horizontal force as a share of the own weight, load group "live". Default 0.
+        Horizontal force as a share of the self-weight, load group "live". Default 0.
     towards : (x, y)
         Its direction in plan; (1, 0) by default.
     element : str
@@ -90,7 +90,7 @@ def checked_space(where: str, options: Mapping[str, Any]) -> CheckedSpace:
     x, y = (float(v) for v in two(where, "towards", options.get("towards") or (1.0, 0.0)))
     length = float(np.hypot(x, y))
     if not 0 < length < np.inf:
-        msg = f"towards = ({x:g}, {y:g}) is no direction"
+        msg = f"towards = ({x:g}, {y:g}) is not a direction"
         raise InputError(msg, where=where, hint="for example (1, 0), or (1, 1) for 45 degrees")
     return CheckedSpace(
         base, (x / length, y / length), str(options.get("element") or ""), options.get("contact_points") or "auto"
@@ -155,7 +155,7 @@ def assemble_space(
     title: str,
     generator: Mapping[str, object],
 ) -> Model:
-    """Return the model of ``pieces`` on ``obstacles``: own weight in group "dead", its horizontal share in "live".
+    """Return the model of ``pieces`` on ``obstacles``: self-weight in group "dead", its horizontal share in "live".
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ from concio.model.generate.wall_panels import Bond, Panel, checked_panels
 from concio.model.materials import Elastic, Rigid
 from concio.model.model import Array, Load, Model
 
-"""More blocks than this are taken for a slip of the pen."""
+"""More blocks than this are taken for a typing error."""
 
 
 @strict_with(Common.__annotations__)

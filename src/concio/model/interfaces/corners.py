@@ -1,8 +1,8 @@
 """Corners in the plane that touch another body where no joint was made: every such place, with the bodies.
 
 Two outlines that touch do so at a corner of one of them. So every corner is looked at with the edges within its reach;
-it is told unless a joint of the same two bodies covers the place, another near miss tells of it, or it is a corner on a
-corner at which joints with other bodies connect the two (:mod:`concio.model.interfaces.meeting`).
+it is reported unless a joint of the same two bodies covers the place, another near miss tells of it, or it is a corner
+on a corner at which joints with other bodies connect the two (:mod:`concio.model.interfaces.meeting`).
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ def find_corner_touches(
     joints : FacingPairs
         The joints that were made.
     known : sequence of NearMiss
-        What was told already; a corner at such a place is not told again.
+        What was reported already; a corner at such a place is not reported again.
     overlapping : set of (int, int)
-        Pairs of bodies that overlap, of which only that is told.
+        Pairs of bodies that overlap, of which only that is reported.
     reach : (n,) array
         How far from each body another still touches it; the smaller of two counts [m].
     """
@@ -109,7 +109,7 @@ def _told(
     bodies: Sequence[Body], which: Array, pair: Array, at: Array, gap: Array, near: Array,
     known: Sequence[NearMiss], overlapping: set[tuple[int, int]],
 ) -> list[NearMiss]:  # fmt: skip
-    """Return a near miss for each place, without those told already."""
+    """Return a near miss for each place, without those reported already."""
     places: dict[tuple[int, int], list[tuple[Array, float]]] = {}
     for miss in (m for m in known if m.touches):
         places.setdefault(miss.bodies, []).append((miss.at, 0.5 * miss.length))

@@ -86,7 +86,7 @@ def find_touches(
     patches : sequence of Patch
         The joints that were made.
     known : sequence of NearMiss
-        What was told already; a place is not told twice.
+        What was reported already; a place is not reported twice.
     """
     if not len(pairs[0]):
         return []

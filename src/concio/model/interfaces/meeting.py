@@ -1,7 +1,7 @@
 """Where bodies meet without a joint of their own: what other joints at the same place already connect.
 
 Where four blocks of a stack bond meet, those across touch in a corner. They bear nothing there: each is joined to a
-block that is joined to the other, and the joints end at that very place. Such a corner is told of only where no chain
+block that is joined to the other, and the joints end at that very place. Such a corner is reported only where no chain
 of joints at the place connects the two bodies.
 """
 

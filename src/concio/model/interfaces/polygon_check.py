@@ -67,7 +67,7 @@ def check_polygon(outline: Array, name: str = "", *, tolerance: float = 0.0, sha
 
 
 def polygon_faults(outline: Array, *, tolerance: float = 0.0, sharpest: float = SHARPEST) -> tuple[Fault, ...]:
-    """Return all faults of an outline (n, 2); a closing repetition of the first vertex is no fault."""
+    """Return all faults of an outline (n, 2); a closing repetition of the first vertex is not a fault."""
     points = np.array(outline, dtype=float)
     if points.ndim != 2 or points.shape[1] != 2 or not (np.abs(points) < LARGEST_COORDINATE).all():
         return (Fault("not finite", np.full(2, np.nan), "a coordinate is missing or not finite", "give numbers in m"),)

@@ -39,7 +39,7 @@ UNEVEN = 1e-3
 """Share by which steps of time may differ."""
 
 MOST_BYTES = 200_000_000
-"""Size of a file from which on it is no record of ground motion: days of samples."""
+"""Size of a file from which on it is not a record of ground motion: days of samples."""
 
 _HEAD = re.compile(r"NPTS\s*=?\s*(\d{1,15})\s*,?\s*DT\s*=?\s*([0-9.EeDd+-]+)", re.IGNORECASE)
 _UNITS = re.compile(r"UNITS OF\s+([A-Z0-9/*^]+)", re.IGNORECASE)
@@ -72,7 +72,7 @@ def read_record(path: Path | str, *, unit: str | None = None, step: float | None
         msg = "there is no such file"
         raise InputError(msg, where=where, hint="give the path of a record, such as record.at2")
     if path.stat().st_size > MOST_BYTES:
-        msg = f"the file holds {path.stat().st_size / 1e6:,.0f} MB: that is no record of an earthquake"
+        msg = f"the file holds {path.stat().st_size / 1e6:,.0f} MB: that is not a record of an earthquake"
         raise InputError(msg, where=where, hint=f"cut it to what is needed, {MOST_BYTES / 1e6:.0f} MB at most")
     if unit is not None and unit not in UNITS:
         msg = f"unknown unit '{unit}' of a record"
@@ -106,10 +106,10 @@ def _unit_of_peer(text: str, suffix: str, where: str) -> str:
     other = {"cm/s/s": "cm/s2", "cm/sec2": "cm/s2", "cm/s**2": "cm/s2", "m/s/s": "m/s2", "cm/sec": "cm/s"}
     unit = other.get(word, word)
     if unit not in UNITS:
-        msg = f"the head names the unit '{named.group(1)}', which is not known"
+        msg = f"the header names the unit '{named.group(1)}', which is not known"
         raise InputError(msg, where=where, hint="give the unit: one of " + ", ".join(UNITS))
     if UNITS[unit][0] != UNITS[usual][0]:
-        msg = f"the head says {UNITS[unit][0]} in {unit}, the name of the file {UNITS[usual][0]}"
+        msg = f"the header says {UNITS[unit][0]} in {unit}, the name of the file {UNITS[usual][0]}"
         raise InputError(msg, where=where, hint="give the unit, or the file another name")
     return unit
 
@@ -136,15 +136,15 @@ def attention(signal: Record | Pulse) -> str | None:
 def _peer(text: str, head: re.Match[str] | None, where: str) -> tuple[Array, float]:
     """Return values and step of a PEER file."""
     if head is None:
-        msg = "the head has no 'NPTS= ..., DT= ...'"
+        msg = "the header has no 'NPTS= ..., DT= ...'"
         raise InputError(msg, where=where, hint="is it an AT2 file? A text of one or two columns must not end in .at2")
     count, step = int(head.group(1)), _float(head.group(2), where)
     body = text[head.end() :].split("\n", 1)
     words = body[1].split() if len(body) > 1 else []
     values = np.array([_float(word, where) for word in words])
     if len(values) != count:
-        msg = f"the head promises {count:,} samples, the file holds {len(values):,}"
-        raise InputError(msg, where=where, hint="the file was cut, or the head belongs to another record")
+        msg = f"the header announces {count:,} samples, the file holds {len(values):,}"
+        raise InputError(msg, where=where, hint="the file was cut, or the header belongs to another record")
     return values, step
 
 
@@ -154,7 +154,7 @@ def _columns(text: str, step: float | None, where: str) -> tuple[Array, float]:
     for number, line in enumerate(text.splitlines(), 1):
         if not _NUMBER.match(line):
             if rows and line.strip() and not line.lstrip().startswith(("#", "%", "!", "//")):
-                msg = f"line {number} is no number: the record has a gap"
+                msg = f"line {number} is not a number: the record has a gap"
                 raise InputError(msg, where=where, hint="fill the gap, or cut the record before it")
             continue
         words = [w for w in _SEPARATOR.split(line.strip()) if w]
@@ -195,7 +195,7 @@ def _timed(rows: Array, where: str) -> tuple[Array, float]:
         k = int(uneven[0])
         gap = f"{step[k]:.6g} s between {time[k]:g} s and {time[k + 1]:g} s"
         msg = f"the record has a gap: {gap}, elsewhere {usual:.6g} s"
-        raise InputError(msg, where=where, hint="fill it; samples must stand at equal steps of time")
+        raise InputError(msg, where=where, hint="fill it; samples must have a constant time step")
     return values, float((time[-1] - time[0]) / len(step))
 
 

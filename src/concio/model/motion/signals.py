@@ -1,6 +1,6 @@
 r"""Signals: one component of the motion of the ground as a function of time, with its exact integrals.
 
-A time step wants the *mean* acceleration of the ground in it, :math:`(v(t_1) - v(t_0)) / (t_1 - t_0)`: then the
+A time step needs the *mean* acceleration of the ground in it, :math:`(v(t_1) - v(t_0)) / (t_1 - t_0)`: then the
 velocity of the ground is exact whatever the step. Every signal therefore knows its velocity and displacement. Before
 time zero the ground is at rest, after the end of a signal it moves on with the velocity it has then.
 """

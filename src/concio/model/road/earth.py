@@ -64,7 +64,7 @@ def with_fill(model: Model, fill: Fill) -> Model:
     1.0
     """
     if model.fill is not None:
-        msg = "the model has fill already"
+        msg = "the model already has fill"
         raise InputError(msg, where="fill", hint="replace it before it is put on")
     if fill.group in model.load_groups:
         msg = f"the load group '{fill.group}' has loads already"
@@ -110,7 +110,7 @@ def with_vehicle(model: Model, vehicle: Vehicle, *, whole: bool = True) -> Model
     160.0
     """
     if model.fill is None:
-        msg = "the model has no fill, and nothing tells how the vehicle's load reaches the masonry"
+        msg = "the model has no fill, and no rule says how the vehicle's load reaches the masonry"
         raise InputError(msg, where="vehicle", hint="add [fill] with cover = ...")
     if model.vehicle is not None:
         model = without_vehicle(model)

@@ -1,8 +1,8 @@
 """IFC (IFC2x3 to IFC4x3, STEP physical file): each product that has a body is a block, or several.
 
 Its name is the product's, its layer the name of its material; ``layers`` of an import also chooses by class
-(``IfcWall``), storey or assembly, type and presentation layer. What cannot be read is told with its instance, and can
-be left out by name as everything else.
+(``IfcWall``), storey or assembly, type and presentation layer. What cannot be read is reported with its instance, and
+can be left out by name as everything else.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ NO_BLOCKS = {
     "IFCOPENINGELEMENT", "IFCOPENINGSTANDARDCASE", "IFCSPACE", "IFCSPATIALZONE", "IFCEXTERNALSPATIALELEMENT", "IFCGRID",
     "IFCANNOTATION", "IFCVIRTUALELEMENT", "IFCSITE", "IFCBUILDING", "IFCBUILDINGSTOREY", "IFCPORT", "IFCREFERENT",
 }  # fmt: skip
-"""Classes of products that are no bodies of their own."""
+"""Classes of products that are not bodies of their own."""
 NAMES = (
     "IfcBeam", "IfcBuildingElement", "IfcBuildingElementPart", "IfcBuildingElementProxy", "IfcColumn", "IfcCovering",
     "IfcDiscreteAccessory", "IfcDoor", "IfcElementAssembly", "IfcFooting", "IfcFurnishingElement", "IfcFurniture",
@@ -39,7 +39,7 @@ def read_ifc(path: Path) -> Scene:
     Raises
     ------
     InputError
-        The file is missing, cut off, no IFC, or its products cannot be told; the message names the instance.
+        The file is missing, cut off, no IFC, or its products cannot be identified; the message names the instance.
     """
     try:
         file = StepFile(path)

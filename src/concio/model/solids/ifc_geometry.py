@@ -114,7 +114,7 @@ def _polygonal(item: Instance) -> Iterator[Surface]:
     faces: list[Loop] = []
     for face in item.instances(2):
         if face.kind not in ("IFCINDEXEDPOLYGONALFACE", "IFCINDEXEDPOLYGONALFACEWITHVOIDS"):
-            face.refuse("is no face of a polygonal face set")
+            face.refuse("is not a face of a polygonal face set")
         loops = [face.value(0), *(face.listed(1) if face.kind.endswith("VOIDS") else ())]
         own: list[Loop] = [tuple(indices(face, renumbered(loop), len(points))) for loop in loops]
         if any(len(loop) < 3 for loop in own):
@@ -143,7 +143,7 @@ def _used(points: Array, faces: list[Loop]) -> Surface:
 def _faces_of(shell: Instance) -> Surface:
     """Return the surface of a shell of faces bounded by polygons."""
     if shell.kind not in ("IFCCLOSEDSHELL", "IFCOPENSHELL", "IFCCONNECTEDFACESET"):
-        shell.refuse("is no shell of faces")
+        shell.refuse("is not a shell of faces")
     number: dict[tuple[float, ...], int] = {}
     loops_of: list[tuple[Instance, list[Loop]]] = []
     for face in shell.instances(0):

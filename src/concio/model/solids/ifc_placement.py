@@ -51,7 +51,7 @@ def _metres(unit: Instance) -> float | None:
 def point(at: Instance, dim: int = 3) -> list[float]:
     """Return the coordinates of a point; a point in the plane stands at z = 0 in space."""
     if at.kind != "IFCCARTESIANPOINT":
-        at.refuse("is no IfcCartesianPoint")
+        at.refuse("is not an IfcCartesianPoint")
     given = at.listed(0)
     return at.checked((*given, 0.0) if dim == 3 and len(given) == 2 else given, dim, 0)
 
@@ -76,7 +76,7 @@ def axes(placement: Instance | None) -> Array:
         matrix[:3, 3] = [*point(placement.instance(0), 2), 0.0]
         return matrix
     if placement.kind != "IFCAXIS2PLACEMENT3D":
-        placement.refuse("is no placement that can be read", "place the part by IfcAxis2Placement3D")
+        placement.refuse("is not a placement that can be read", "place the part by IfcAxis2Placement3D")
     z = direction(placement.open_instance(1), (0.0, 0.0, 1.0))
     given = placement.open_instance(2)
     along = direction(given, (0.0, 1.0, 0.0) if given is None and abs(z[0]) > 1 - PARALLEL else (1.0, 0.0, 0.0))
@@ -122,7 +122,7 @@ class Placements:
 def operator(of: Instance) -> Array:
     """Return the matrix (4, 4) of a transformation operator in space: axes, origin and scales."""
     if of.kind not in ("IFCCARTESIANTRANSFORMATIONOPERATOR3D", "IFCCARTESIANTRANSFORMATIONOPERATOR3DNONUNIFORM"):
-        of.refuse("is no transformation in space that can be read")
+        of.refuse("is not a transformation in space that can be read")
     third = direction(of.open_instance(4), (0.0, 0.0, 1.0))
     first = of.open_instance(0)
     along = direction(first, (0.0, 1.0, 0.0) if first is None and abs(third[0]) > 1 - PARALLEL else (1.0, 0.0, 0.0))

@@ -134,14 +134,14 @@ def model_from_solids(
     meanings, table = dict(layers or {}), {"block": options.base.block, **(materials or {})}
     if not scene.shapes and not scene.left_out:
         msg = "the file holds no blocks"
-        raise InputError(msg, where=where, hint="export solids or meshes: lines and points are no blocks")
+        raise InputError(msg, where=where, hint="export solids or meshes: lines and points are not blocks")
     for word, meaning in meanings.items():
         if not any(s.answers(word) for s in scene.shapes):
             msg = f"there is no layer or block '{word}'"
             known = dict.fromkeys(w for s in scene.shapes for w in s.words)
             raise InputError(msg, where=where, hint=closest(word, known))
         if meaning not in ("fixed", "ignore") and meaning not in table:
-            msg = f"layer '{word}' is to be '{meaning}', which is no material"
+            msg = f"layer '{word}' is to be '{meaning}', which is not a material"
             raise InputError(msg, where=where, hint=closest(meaning, ("fixed", "ignore", *table)))
     pieces, obstacles, faults, notes, ignored = [], [], [], [], list(scene.left_out)
     names: dict[str, int] = {}
@@ -226,7 +226,7 @@ def read_scene(path: Path) -> Scene:
         ))  # fmt: skip
     reader = READERS.get(path.suffix.lower())
     if reader is None:
-        msg = f"'{path.suffix}' is no format of solids that is read"
+        msg = f"'{path.suffix}' is not a format of solids that is read"
         packed = path.suffix.lower() in (".ifczip", ".ifcxml", ".ifcjson")
         hint = "save it as .ifc (STEP physical file)" if packed else "one of " + ", ".join(READERS) + ", or a folder"
         raise InputError(msg, where=str(path), hint=hint)
@@ -310,7 +310,7 @@ def _outward(points: Array, faces: tuple[Loop, ...]) -> tuple[Array, tuple[Loop,
 
 
 def _check_unit(blocks: Sequence[Array], scene: Scene, unit: str | None, metres: float, where: str) -> None:
-    """Refuse blocks that are no blocks in the unit assumed, where nobody stated it."""
+    """Refuse blocks that are not blocks in the unit assumed, where nobody stated it."""
     sizes = [float(np.ptp(p, axis=0).max()) for p in blocks if len(p) and _usable(p)]
     if not sizes or unit is not None:
         return

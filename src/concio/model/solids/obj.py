@@ -39,7 +39,7 @@ def read_obj(path: Path) -> Scene:
                     raise InputError(msg, where=str(path))
                 if len(loop) < 3:
                     msg = f"line {number}: a face has {len(loop)} vertices, which bound nothing"
-                    raise InputError(msg, where=str(path), hint="delete the line: points and edges are no faces")
+                    raise InputError(msg, where=str(path), hint="delete the line: points and edges are not faces")
                 key = (object_name, group)
                 groups.setdefault(key, []).append([v - 1 if v > 0 else len(points) + v for v in loop])
                 layers.setdefault(key, layer)

@@ -46,7 +46,7 @@ def read_ply(path: Path) -> Scene:
     size = check_regular(path)
     if size > LARGEST:
         msg = f"the file has more than {LARGEST / 1e6:.0f} MB"
-        raise InputError(msg, where=where, hint="a scanned surface is no structure of blocks: model the blocks")
+        raise InputError(msg, where=where, hint="a scanned surface is not a structure of blocks: model the blocks")
     raw = path.read_bytes()
     order, elements, start = _header(raw, where)
     for element in elements:
@@ -61,7 +61,7 @@ def read_ply(path: Path) -> Scene:
     check_size(vertex.count, where)
     if face is None or not face.count:
         msg = f"the file holds {vertex.count:,} points and no faces"
-        raise InputError(msg, where=where, hint="a cloud of points is no structure of blocks: model the blocks")
+        raise InputError(msg, where=where, hint="a cloud of points is not a structure of blocks: model the blocks")
     indices = next((key for key in ("vertex_indices", "vertex_index") if key in face.properties), None)
     if indices is None or face.properties[indices][-1][0] == "f":
         msg = "element 'face' has no list 'vertex_indices' of whole numbers"
@@ -153,7 +153,7 @@ def _text(raw: bytes, start: int, where: str) -> Reading:
                         if length < 0 or at > len(words):
                             raise IndexError
             except (ValueError, IndexError):
-                msg = f"line {number} is no row of '{element.name}': '{' '.join(words)[:60]}'"
+                msg = f"line {number} is not a row of '{element.name}': '{' '.join(words)[:60]}'"
                 raise InputError(msg, where=where) from None
             rows.append([row[name] for name in wanted])
         return rows

@@ -61,7 +61,7 @@ def read_rhino(path: Path) -> Scene:
 
 
 def _meshes(geometry: Any, rhino3dm: Any) -> list[Any] | None:
-    """Return the meshes of an object, none where it has none, None where it is no surface."""
+    """Return the meshes of an object, none where it has none, None where it is not a surface."""
     if isinstance(geometry, rhino3dm.Mesh):
         return [geometry]
     kind = rhino3dm.MeshType.Any

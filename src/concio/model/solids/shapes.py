@@ -72,4 +72,4 @@ def check_size(count: int, where: str) -> None:
     """Refuse a file of more than :data:`MOST` vertices."""
     if count > MOST:
         msg = f"the file has more than {MOST:,} vertices"
-        raise InputError(msg, where=where, hint="a scanned surface is no structure of blocks: model the blocks")
+        raise InputError(msg, where=where, hint="a scanned surface is not a structure of blocks: model the blocks")

@@ -1,8 +1,8 @@
 """The exchange structure of ISO 10303-21 (STEP), in which IFC files are written: numbered instances with arguments.
 
 ``#12= IFCCARTESIANPOINT((0.,1.,2.5));`` is instance 12 of class IFCCARTESIANPOINT with one argument, a list of three
-numbers. Instances are told apart in one pass over the text; their arguments are read when somebody asks for them, since
-most of a building model is not geometry.
+numbers. Instances are distinguished in one pass over the text; their arguments are read when somebody asks for them,
+since most of a building model is not geometry.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Typed:
 
 @dataclass(frozen=True, eq=False)
 class Instance:
-    """One instance; what its arguments are not is told with its number and class.
+    """One instance; what its arguments are not is reported with its number and class.
 
     Parameters
     ----------
@@ -195,7 +195,7 @@ class StepFile:
             last = f" after #{next(reversed(self._raw))}" if self._raw else ""
             msg = f"the file was cut off{last} (line {line}): its section DATA has no end"
             return InputError(msg, where=self.where, hint="save it once more")
-        msg = f"line {line} is no instance: '{' '.join(rest[:60].split())}'"
+        msg = f"line {line} is not an instance: '{' '.join(rest[:60].split())}'"
         return InputError(msg, where=self.where, hint="write '#12= IFCCARTESIANPOINT((0.,0.,0.));'")
 
     def __contains__(self, number: object) -> bool:

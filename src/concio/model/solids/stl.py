@@ -25,7 +25,7 @@ def read_stl(path: Path) -> Scene:
     """
     if check_regular(path) > LARGEST:
         msg = f"the file has more than {LARGEST / 1e6:.0f} MB"
-        raise InputError(msg, where=str(path), hint="a scanned surface is no structure of blocks: model the blocks")
+        raise InputError(msg, where=str(path), hint="a scanned surface is not a structure of blocks: model the blocks")
     raw = path.read_bytes()
     if len(raw) >= 84 and len(raw) == 84 + 50 * int.from_bytes(raw[80:84], "little"):
         corners = np.frombuffer(raw, RECORD, offset=84)["corners"].astype(float)

@@ -26,7 +26,7 @@ from concio.errors import ConcioError, InputError
 from concio.problem.contact_problem import Array, Engine
 
 PIVOT = 0.01
-"""Share of the largest entry of its column down to which a diagonal entry is the pivot, unless told otherwise."""
+"""Share of the largest entry of its column down to which a diagonal entry is the pivot, unless stated otherwise."""
 
 PANEL = 8
 """Columns that SuperLU works on together; its own default of 20 is a tenth slower on walls of every size."""
@@ -89,7 +89,7 @@ def narrow_band(pattern: sp.csr_array) -> tuple[Array, int | None]:
 
 @dataclass(frozen=True, eq=False)
 class Pattern:
-    """A symmetric pattern in its fill-reducing order, compressed as an engine wants it.
+    """A symmetric pattern in its fill-reducing order, compressed as an engine needs it.
 
     Parameters
     ----------

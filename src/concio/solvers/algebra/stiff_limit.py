@@ -1,6 +1,6 @@
-r"""Taking a lent compliance out of an answer: the limit of stiff joints, reached exactly.
+r"""Taking an added compliance out of an answer: the limit of stiff joints, reached exactly.
 
-A problem whose joints are hard between bodies that do not deform is solved with a small compliance a lent to them
+A problem whose joints are hard between bodies that do not deform is solved with a small compliance an added to them
 (:mod:`concio.analysis.lent_compliance`), which tells what each pair does. With these states the equations are linear,
 
 .. math:: (M + a D)\, x = b,
@@ -12,8 +12,8 @@ K + C'(aD)^{-1}C, one factorisation for all. Of blocks that begin where they are
 displacements are in proportion to a and the forces do not depend on it: where the solves do not converge, no motion
 with the forces as they are is the other candidate.
 
-Hard pairs to which nothing was lent, those of bodies that deform, take part with the least compliance lent: it only has
-to be small beside that of their bodies, and is gone in the limit.
+Hard pairs to which nothing was given, those of bodies that deform, take part with the least compliance added: it only
+has to be small beside that of their bodies, and is gone in the limit.
 """
 
 from __future__ import annotations
@@ -49,14 +49,14 @@ def without_compliance(hard: ContactProblem, lent: ContactProblem, answer: Solut
     ----------
     hard : ContactProblem
     lent : ContactProblem
-        The same with compliance lent to some pairs.
+        The same with compliance added to some pairs.
     answer : Solution
         A certified solution of ``lent``: its states are imposed.
 
     Returns
     -------
     Solution
-        Of parts whose limit is not certified, or that were lent nothing, the answer as it is.
+        Of parts whose limit is not certified, or that were given nothing, the answer as it is.
     (m,) boolean array
         Pairs of parts whose answer is that of ``lent``.
     """
@@ -110,7 +110,7 @@ class _States:
         self.C = interleaved(hard)
         self.a = compliances(hard)
         self.added = compliances(lent) - self.a
-        if (self.added > 0).any():  # not so in a part that was lent nothing, beside one that was
+        if (self.added > 0).any():  # not so in a part that was given nothing, beside one that was
             self.added[self.a + self.added == 0] = self.added[self.added > 0].min()
         self._blocks()
 

@@ -6,7 +6,7 @@ With factors of :math:`A = K + C^T D C + \rho I` and the rows :math:`C_P` of a f
           X = A^{-1} C_P^T, \quad W = C_P X, \quad x = A^{-1} b.
 
 The columns X of a pair cost d back-substitutions, many at once much less than one by one; they are kept as long as the
-factor is, whatever becomes of the pair. Stiffness added this way loses no digits; stiffness taken away loses as many as
+factor is, whatever happens to the pair. Stiffness added this way loses no digits; stiffness taken away loses as many as
 the pair was stiffer than what is left, which refinement makes up for.
 """
 
@@ -59,7 +59,7 @@ class UpdatedBlocks:
         self.D = self.factor.D
 
     def factorise(self, D: Array, diagonal: Springs) -> None:
-        """Factorise anew; no pair differs then.
+        """Factorise again; no pair differs then.
 
         Raises
         ------

@@ -6,7 +6,7 @@ r"""A sparse factorisation that survives the replacement of single rows.
 .. math:: F^{-1} b = y - W (I + V^T W)^{-1} V^T y, \qquad y = A_0^{-1} b
 
 (the Schur-complement update of Bisschop and Meeraus, *Mathematical Programming* 13 (1977) 241-254, for rows). A
-replacement costs one pair of sparse triangular solves; after ``refresh`` different rows the matrix is factorised anew.
+replacement costs one pair of sparse triangular solves; after ``refresh`` different rows the matrix is factorised again.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ class UpdatedFactor:
         self._changes: list[Row] = []
 
     def column(self, place: int) -> Array:
-        """Return F^-1 e_place, (n,); factorises anew first where the update would cancel too many digits."""
+        """Return F^-1 e_place, (n,); factorises again first where the update would cancel too many digits."""
         base = self._base_column(place)
         column = self._correct(base.copy())
         if self._places and float(np.abs(base).max()) > CANCELLED * float(np.abs(column).max()):

@@ -1,7 +1,7 @@
 """Method ``auto``: a table of strategies, tried in a fixed order until one decides.
 
 The order is fixed, so that the same problem always goes the same way. What is proven is not searched for again: the
-first answer is the answer, be it an equilibrium, a mechanism or a motion without end. An answer is called solved by its
+first answer is the answer, be it an equilibrium, a mechanism or an unbounded motion. An answer is called solved by its
 certificate alone, a collapse by its mechanism or its motion alone; everything else is undecided, with what was tried in
 the solution's trace.
 

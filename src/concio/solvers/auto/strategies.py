@@ -101,7 +101,7 @@ def statics(run: Run) -> Solution | None:
     state = statically_admissible(problem)
     if state.exists:
         run.trace.append("statically admissible forces exist")
-        if run.scaled.deforms:  # which of them act is told by what gives way, not by a programme
+        if run.scaled.deforms:  # which of them act follows from what gives way, not by a programme
             return None
         rest = judge(
             problem, np.zeros(problem.unknowns), state.normal_force, state.friction_force, method="linear-programme"
@@ -126,7 +126,7 @@ def released_in_single_steps(run: Run) -> Solution | None:
 
 
 def released_at_rest(run: Run) -> Solution | None:
-    """Let the structure go, undeformed: it comes to rest, or a motion without end is the answer."""
+    """Let the structure go, undeformed: it comes to rest, or an unbounded motion is the answer."""
     return released(run, None)
 
 

@@ -14,7 +14,7 @@ otherwise leave only ten digits of them, and the interior point begins so far ou
 
 Where several bodies meet in a node and their meshes do not match, rows of C are nearly dependent: the couplings of two
 faces prescribe nearly the same motion of that node (decision 0185). A compliance ``delta`` in the factorised matrix
-K + C'C / delta is taken out again by repeated solves. Each leaves the share delta / (delta + a sigma^2) of what a
+K + C'C / delta is removed again by repeated solves. Each leaves the share delta / (delta + a sigma^2) of what a
 combination of rows of singular value sigma is missed by, a being the compliance of the bodies, so that delta is lowered
 until the solves converge. It is no lower than that, because rounding of gaps, over delta, is the error of forces that
 are left open.

@@ -126,7 +126,7 @@ class Stopping:
         if self.short >= self.SHORT[1]:
             return "steps became short"
         if near and merit > self.WORSE * self.best:
-            return "ran away"
+            return "diverged"
         return "no progress" if self.since >= self.PATIENCE[near] else ""
 
 
@@ -205,7 +205,7 @@ class InteriorPoint:
             residual = residuals.worst
             merit = max(residual, gap / typical)
             if not np.isfinite(merit):
-                why = "numbers ran over"
+                why = "overflow"
                 break
             if stopping.improved(merit):
                 kept = z

@@ -56,7 +56,7 @@ def find_direction(
     Rates or None
         None where no direction was found: under load control a limit point.
     array (size,) or None
-        Where none was found: the rate that ran away, if one did (the mechanism).
+        Where none was found: the rate that diverged, if one did (the mechanism).
     """
     unit = np.zeros(equations.size)
     unit[-1] = sense
@@ -102,7 +102,7 @@ def find_direction(
 
 
 def self_stress(equations: PathEquations, runaway: Array) -> Array | None:
-    """Return the self-stress (size,) in a rate that ran away, largest force 1; None where it is no self-stress."""
+    """Return the self-stress (size,) in a rate that diverged, largest force 1; None where it is not a self-stress."""
     n = equations.n
     top = float(np.abs(runaway[n:-1]).max(initial=0.0))
     if not top > 0 or float(np.abs(runaway[:n]).max(initial=0.0)) > SELF_STRESS * top:
@@ -183,7 +183,7 @@ def by_lemke(
         blocked = self_stress(equations, X[:, 0]) is not None
         if not (blocked or lent):
             return None, others, blocked
-        # the states of pairs with the compliance lent to the factors are tried
+        # the states of pairs with the compliance added to the factors are tried
         X = equations.approximate(np.column_stack([unit, B]))
     if not np.isfinite(X).all():
         return None, others, blocked

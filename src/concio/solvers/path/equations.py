@@ -34,13 +34,13 @@ from concio.solvers.path.scaling import ScaledPath
 from concio.solvers.path.state import CLOSED, CRUSHED, OPEN, STICK
 
 REGULAR = 1e-8
-"""Compliance and stiffness lent to the factors, in scaled units."""
+"""Compliance and stiffness added to the factors, in scaled units."""
 
 POOR = 1e-9
 """Residual after refinement at which factors without pivoting are given up for better ones."""
 
 UPDATES = 48
-"""Changed rows after which the matrix is factorised anew."""
+"""Changed rows after which the matrix is factorised again."""
 
 INVERSE = 4
 """Inverse iterations on a runaway rate."""
@@ -112,7 +112,7 @@ class PathEquations:
         return matrix.indices[span], matrix.data[span]
 
     def _lent(self, row: int) -> float:
-        """Return what is lent to the diagonal of a row in its present state."""
+        """Return what is added to the diagonal of a row in its present state."""
         n, m = self.n, self.m
         if row < n:
             return REGULAR
@@ -121,7 +121,7 @@ class PathEquations:
         return float(self.lent[row - n - m]) if row < n + 2 * m and self.sliding[row - n - m] == STICK else 0.0
 
     def _lent_to_all(self) -> Array:
-        """Return what is lent to the diagonals (size,) in the present states."""
+        """Return what is added to the diagonals (size,) in the present states."""
         closed, stick = self.contact == CLOSED, self.sliding == STICK
         bodies = np.full(self.n, REGULAR)
         return np.concatenate([bodies, np.where(closed, self.lent, 0.0), np.where(stick, self.lent, 0.0), [0.0]])
@@ -210,7 +210,7 @@ class PathEquations:
         return y
 
     def approximate(self, b: Array) -> Array:
-        """Solve with the matrix of the present states with the lent compliance left in; b (size,) or (size, k)."""
+        """Solve with the matrix of the present states with the added compliance left in; b (size,) or (size, k)."""
         fresh = [row for row in self.changed if row not in self.slots]
         if len(self.slots) + len(fresh) > UPDATES:
             self.factorise()
@@ -240,7 +240,7 @@ class PathEquations:
     def solve(self, b: Array, rounds: int = 8) -> tuple[Array, float]:
         """Solve with the true matrix by refinement; b (size,) or (size, k).
 
-        What the lent compliance adds to the answer is kept in ``creep`` (like b): where redundant pairs do not move at
+        What the added compliance adds to the answer is kept in ``creep`` (like b): where redundant pairs do not move at
         all, it tells which way they would, were they a little compliant.
 
         Returns
@@ -272,7 +272,7 @@ class PathEquations:
         return best, smallest
 
     def null_motion(self, runaway: Array) -> Array:
-        """Return the answer (size,) of a singular matrix cleared, by inverse iteration, of all that is no motion."""
+        """Return the answer (size,) of a singular matrix cleared, by inverse iteration, of all that is not a motion."""
         lent, x = self._lent_to_all(), runaway
         for _ in range(INVERSE):
             y = self.approximate(lent * x)

@@ -167,7 +167,7 @@ class _Follower(PathPoint):
         return float(np.abs(after.displacement).max()) <= AT_REST * most
 
     def free_motion(self, runaway: Array | None) -> Array | None:
-        """Return the rate (N,) that ran away, if the structure can move so at constant load; else None."""
+        """Return the rate (N,) that diverged, if the structure can move so at constant load; else None."""
         if runaway is None:
             return None
         v = runaway[: self.equations.n]
@@ -196,7 +196,7 @@ class _Follower(PathPoint):
         return [first, *changes(old, Moment.of(self.equations), parameter, given, step)]
 
     def direction(self, v: Values, known: Rates | None) -> tuple[Rates | None, Array | None]:
-        """Find the way on: under the control; failing that, past a snap-back, driven by a pair that wants to move.
+        """Find the way on: under the control; failing that, past a snap-back, driven by a pair that starts to move.
 
         Under displacement control the structure may snap back: no state continues the path while the control point
         advances, but one does while load and control point retreat and a pair slips or opens on. That pair's motion

@@ -34,7 +34,7 @@ from concio.solvers.states.reading import read_states
 from concio.solvers.states.settle import Settler
 
 SOFT = 1e-5
-"""The compliance lent to hard pairs of mean area, over the typical compliance of the bodies."""
+"""The compliance added to hard pairs of mean area, over the typical compliance of the bodies."""
 
 TETHER = 1e-8
 """Stiffness of the springs that hold what nothing else holds, over the typical stiffness of the bodies."""

@@ -17,7 +17,7 @@ ON_EQUATIONS = 1e-14
 """Residual of the equations of the present states, relative to their largest term, that needs no correction."""
 
 FAR = 1e5
-"""Scaled displacements above this are so large that their rounding is no rounding of forces any more."""
+"""Scaled displacements above this are so large that their rounding is not a rounding of forces any more."""
 
 DUST = 1e-16
 """ScaledPath displacements below this are rounding of zero and are recorded as zero."""
@@ -26,7 +26,7 @@ ALL_DUST = 1e-13
 """Where all scaled displacements are below this, nothing has moved."""
 
 FIRM = 1e-3
-"""Compliance lent to hard pairs while the answer of another solver is put on the equations: the rounding of its
+"""Compliance added to hard pairs while the answer of another solver is put on the equations: the rounding of its
 displacements contradicts redundant pairs, and over a small compliance it would turn into forces."""
 
 

@@ -1,7 +1,7 @@
 r"""The certificate of a step of a path, from the original problems at its two ends.
 
 A path keeps loads, obstacles and histories of its own and interpolates them. What it kept is not asked here: the state
-is put into the problems that the model gives at the factors of this state and of the state before, made anew. Two
+is put into the problems that the model gives at the factors of this state and of the state before, made again. Two
 things of the past enter. Slip is measured from where the pair was in the state before (10, 11), which follows from its
 displacements, its forces and the problem at *its* factors. Crushing and dilatant opening are an offset o that the path
 carried; it is held against the equation that defines it,

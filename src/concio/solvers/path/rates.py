@@ -73,7 +73,7 @@ class Rates:
     direction : (size,) array
         Rate of all unknowns.
     creep : (size,) array
-        What a small compliance lent to hard pairs would add to it.
+        What a small compliance added to hard pairs would add to it.
     creep_opening, creep_slip : (m,) arrays
         Rates of opening and plastic slip that it would bring where there are none; zero elsewhere.
     """

@@ -8,8 +8,8 @@ rest again). Then the path goes on from there: the one-step problem, slip measur
 * a *jump* where its distance from the point does not shrink with the increment,
 * a *restart* where it does: rates exist, though they were not found (vertices with hundreds of critical pairs).
 
-Where no increment has a certified answer the path is at its end, and why is told: a mechanism proves that the load
-beyond has no equilibrium; or the structure, let go under slightly more load, moves away without end
+Where no increment has a certified answer the path is at its end, and why is reported: a mechanism proves that the load
+beyond has no equilibrium; or the structure, let go under slightly more load, moves away without bound
 (:mod:`concio.solvers.relaxation.slow_motion`); or it can move at the very load, friction being what it is; or none of
 these is shown.
 """
@@ -43,7 +43,7 @@ NEXT = 1e-4
 """Increment up to which the proof that there is no equilibrium counts for the point itself."""
 
 SHRINKS = 0.3
-"""An answer whose distance shrinks by this factor under a tenth of the increment is no jump."""
+"""An answer whose distance shrinks by this factor under a tenth of the increment is not a jump."""
 
 FREE = 1e-6
 """Largest relative residual of a motion that needs no change of forces."""

@@ -63,9 +63,9 @@ class ScaledPath:
     def of(cls, path: LinearPath) -> ScaledPath:
         """Choose the units: a typical nodal or joint force, and the displacement it causes.
 
-        Where joints are much softer than what is typical, such as a tie beside joints of rigid blocks that were lent a
+        Where joints are much softer than what is typical, such as a tie beside joints of rigid blocks that were given a
         compliance, the unit lies between both. Else the stiffness of the tie, which may be all that holds the
-        structure as it slides, would be less than what is lent to the factors, and would pass for none.
+        structure as it slides, would be less than what is added to the factors, and would pass for none.
         """
         problem = path.problem
         loads = np.abs(np.concatenate([problem.f, path.load_rate]))

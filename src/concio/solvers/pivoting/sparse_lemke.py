@@ -68,7 +68,7 @@ ANCHOR = 1e-9
 """Stiffness of the springs that hold what is loose near a given point, in units of the typical stiffness."""
 
 AGAIN = 3
-"""Times a path that ended near the answer is followed by another from there, its springs anchored anew."""
+"""Times a path that ended near the answer is followed by another from there, its springs anchored again."""
 
 
 @dataclass(frozen=True)

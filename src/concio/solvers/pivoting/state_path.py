@@ -10,8 +10,8 @@ that belongs to the row given up. z0 may well rise in between: that is how turni
 *Why a ray means something.* Let a ray have direction (du, dt, dz0) and let the cover be a prestress (P > 0 with
 |Q| < mu P) of every pair. Along it the joint laws hold homogeneously, so each pair does the work dt.dy <= 0, and
 du'K du = sum dt.dy >= 0: du is a rigid motion, without penetration, no pair dissipates along it, and from equilibrium
-f'du > 0 unless forces grow without end among pairs that do not move. It is a way to fall, though under friction not yet
-a proof that the structure must: :mod:`concio.solvers.statics.existence` decides that.
+f'du > 0 unless forces grow without bound among pairs that do not move. It is a way to fall, though under friction not
+yet a proof that the structure must: :mod:`concio.solvers.statics.existence` decides that.
 
 The prestress is drawn at random between half and one and a half times its size (fixed seed): for a generic cover no two
 slacks vanish together while z0 > 0, which replaces the lexicographic rule.

@@ -1,4 +1,4 @@
-r"""Does the structure move away as if nothing touched it? The motion without end that needs no forces at all.
+r"""Does the structure move away as if nothing touched it? The unbounded motion that needs no forces at all.
 
 A block between walls that nothing presses falls along them: every pair touches without force. That state is the tip
 of every cone, where interior points and Newton's method have the least to hold on to, and with stiff joints they find

@@ -34,7 +34,7 @@ LONGEST = 1e-11
 
 
 def at_once(run: Run) -> Finished | Departure | None:
-    """Make single steps from rest, ever longer; return the rest or the motion without end that one shows, or None.
+    """Make single steps from rest, ever longer; return the rest or the unbounded motion that one shows, or None.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class _Single:
         Its resistance.
     last : Finished, optional
     ended : Finished or Departure, optional
-        Rest or motion without end.
+        Rest or unbounded motion.
     """
 
     before: float = np.inf

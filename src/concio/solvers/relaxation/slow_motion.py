@@ -1,4 +1,4 @@
-r"""Viscous relaxation: let the structure go and see where it ends, at rest in a Coulomb state or moving without end.
+r"""Viscous relaxation: let the structure go and see where it ends, at rest in a Coulomb state or moving without bound.
 
 Where no method finds a Coulomb state, this one follows what the structure would do in a medium that resists its motion
 in proportion to the masses M, by implicit steps

@@ -31,7 +31,7 @@ COLD = 3000
 
 WORK, MOST_WORK, LEAST_WORK = 4e6, 3000, 300
 """Factorisations times unknowns and pairs in space after which no further step is made, and the factorisations that
-are allowed at most and at least: what is undecided by then is told so. Half a minute to a minute."""
+are allowed at most and at least: what is undecided by then is reported so. Half a minute to a minute."""
 
 
 def solve_step(run: Run, step: Scaled, here: Finished | None, longer: float) -> Finished | None:

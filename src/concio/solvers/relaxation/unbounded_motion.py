@@ -149,7 +149,7 @@ def _proof(s: Scaled, a: Array, u: Array, t: Array) -> Departure | None:
 
 
 def verify_motion(problem: ContactProblem, a: Array, u: Array, t_n: Array, t_t: Array) -> Departure:
-    """Recompute every condition of a motion without end from the original arrays; none of it is taken from a solver.
+    """Recompute every condition of an unbounded motion from the original arrays; none of it is taken from a solver.
 
     Parameters
     ----------
@@ -190,7 +190,7 @@ def verify_motion(problem: ContactProblem, a: Array, u: Array, t_n: Array, t_t: 
 def without_slip_across(problem: ContactProblem, u: Array, t_t: Array, w_t: Array) -> ContactProblem:
     """Return the problem whose slips at u (N,) lie along their rates w_t (m, d-1), where these are not zero.
 
-    What a pair slipped across the direction of its motion stays bounded while the slip along it grows without end: in
+    What a pair slipped across the direction of its motion stays bounded while the slip along it grows without bound: in
     the limit the slip has the direction of its rate. In the plane there is no across.
     """
     slip = (problem.C_t @ u).reshape(t_t.shape) - problem.slip_origin

@@ -2,7 +2,7 @@
 
 The factor need not be that of the states: at the end of the interior point its last one is nearly so, and from one step
 of a motion to the next only a few pairs change. Pairs whose block is another one are updated; what remains of the
-difference, and the compliance lent to hard pairs, refinement takes out. Redundant pairs (corners) and loose bodies do
+difference, and the compliance added to hard pairs, refinement takes out. Redundant pairs (corners) and loose bodies do
 no harm: their equations are consistent, and refinement converges to the answer nearest to where it began.
 """
 

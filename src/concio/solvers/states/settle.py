@@ -38,7 +38,7 @@ PATIENCE = 2
 """Rounds in a row that leave no fewer pairs in question, more than can be decided together, before settling stops."""
 
 ANCHORS = 8
-"""Largest number of times the springs of loose unknowns are anchored anew."""
+"""Largest number of times the springs of loose unknowns are anchored again."""
 
 
 class Settler:
@@ -115,7 +115,7 @@ class Settler:
                 return
             least, late = (int(wrong.sum()), 0) if wrong.sum() < least else (least, late + 1)
             if late >= PATIENCE and wrong.sum() > TOGETHER:
-                return  # far from the answer each round contradicts half of the pairs anew
+                return  # far from the answer each round contradicts half of the pairs again
             flipped = _mixed(states, shown, wrong)
             found = None
             if (chosen | wrong).sum() <= TOGETHER:
@@ -180,7 +180,7 @@ class _Run:
         """Return the answer with the least-norm forces among those of its states, if these obey the joint laws.
 
         Refinement from pairs that carry nothing, on the factor of these very states, ends at the least norm; the
-        displacements are the same. The springs of loose unknowns are anchored anew at the answer, which takes their
+        displacements are the same. The springs of loose unknowns are anchored again at the answer, which takes their
         last influence out.
         """
         return self._from(found, self.s.unstressed, own=True) or self.near(found)

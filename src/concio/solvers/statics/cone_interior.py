@@ -60,7 +60,7 @@ class ConeAnswer:
         Largest residual of balance, of Cv = G'z and g'v = 1, and the relative duality gap.
     iterations : int
     bound : float
-        Multiplier beyond which the motion, once admissible, lets none be; falls without end where no forces exist.
+        Multiplier beyond which the motion, once admissible, lets none be; falls without bound where no forces exist.
     """
 
     t: Array

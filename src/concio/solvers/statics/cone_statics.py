@@ -26,10 +26,10 @@ from concio.solvers.statics.cone_programme import ConeProgramme, Pairs
 from concio.solvers.statics.cone_step import PROXIMAL
 
 ROUNDING = 1e-14
-"""Share of the total load that forces may leave unbalanced, or exceed strengths by, before they are balanced anew."""
+"""Share of the total load that forces may leave unbalanced, or exceed strengths by, before they are balanced again."""
 
 ENDLESS = 1e7
-"""Multiplier, in units of the programme, from which on a load may be one that can grow without end."""
+"""Multiplier, in units of the programme, from which on a load may be one that can grow without bound."""
 
 SETTLED = 1e-11
 """Residual of forces in balance, and of an admissible motion, at which a programme may stop that has its answer."""
@@ -70,7 +70,7 @@ class Bounds:
     Parameters
     ----------
     multiplier : float
-        That of the forces; inf where it seems to grow without end, -inf where there seem to be none.
+        That of the forces; inf where it seems to grow without bound, -inf where there seem to be none.
     t : (m, d) array
         Forces, normal first [kN].
     residual : float
@@ -194,7 +194,7 @@ class ConeStatics:
         live : (N,) array
         least : float
             In units of the programme. A motion that excludes all multipliers from below this on ends the search without
-            an answer, -inf: where no forces exist, the bound of the motions falls without end.
+            an answer, -inf: where no forces exist, the bound of the motions falls without bound.
         """
         it = self.programme
         e, g = self.offset(self.problem.f), self.project(live)

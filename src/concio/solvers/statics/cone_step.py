@@ -1,6 +1,6 @@
 """One step of the interior point on a cone programme of statics: Newton's equations, predictor and corrector.
 
-Where the digits are kept is told in :mod:`concio.solvers.statics.cone_interior`.
+Where the digits are kept is explained in :mod:`concio.solvers.statics.cone_interior`.
 """
 
 from __future__ import annotations

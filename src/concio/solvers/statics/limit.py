@@ -39,7 +39,7 @@ class LimitLoad:
     Parameters
     ----------
     multiplier : float
-        lambda*; ``inf`` where the load can grow without end, ``nan`` where no multiplier at all gives equilibrium.
+        lambda*; ``inf`` where the load can grow without bound, ``nan`` where no multiplier at all gives equilibrium.
     upper : float
         Multiplier of the mechanism, recomputed from its velocity: h(Cv) - f'v with g'v = 1.
     normal_force, friction_force : arrays (m,), (m, d-1)
@@ -65,7 +65,7 @@ class LimitLoad:
 
     @property
     def words(self) -> str:
-        """The multiplier, or the word for it where it is no number."""
+        """The multiplier, or the word for it where it is not a number."""
         if np.isnan(self.multiplier):
             return "none: no multiple of the load is carried"
         return "locked: any multiple of the load is carried" if self.locked else f"{self.multiplier:.6g}"
@@ -179,7 +179,7 @@ def cone_limit(problem: ContactProblem, live: Array) -> LimitLoad:
 
 
 def without_bounds(problem: ContactProblem, live: Array) -> ContactProblem:
-    """Return the problem whose forces may grow without end: a load that it carries can be added any number of times.
+    """Return the problem whose forces may grow without bound: a load that it carries can be added any number of times.
 
     Pairs with a cap are left out, strength that does not grow with the pressure is taken away.
     """

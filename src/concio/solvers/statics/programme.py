@@ -6,7 +6,7 @@ The forces a pair may carry, with friction mu, cohesion c, tensile strength T (m
 
 In the plane every point of S_k is  t_n = p + q - T,  t_t = mu (p - q) + z  with p, q >= 0, |z| <= c - mu T and
 p + q <= N + T: two rays of the cone and a segment. Equilibrium of the rigid motions, R'(f + C't) = 0, is then a
-linear programme in standard form with r rows, which the simplex method likes. Round cones of space are no polygons:
+linear programme in standard form with r rows, which the simplex method likes. Round cones of space are not polygons:
 :mod:`concio.solvers.statics.cone_statics`.
 """
 

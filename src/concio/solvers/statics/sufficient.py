@@ -23,7 +23,7 @@ class SufficientCondition:
     ----------
     margin : float
         Largest possible value of the smallest of all t_n and, where there is a cap, N - t_n [kN]; ``inf`` where it
-        can grow without end (jammed, or no floating bodies), ``-inf`` where normal forces alone cannot balance the
+        can grow without bound (jammed, or no floating bodies), ``-inf`` where normal forces alone cannot balance the
         loads.
     normal_force : (m,) array
         Normal forces that attain it (for an infinite margin: the total load), zeros where there are none [kN].

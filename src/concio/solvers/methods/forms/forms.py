@@ -79,7 +79,7 @@ class MixedForm:
         The cover shifts gaps, slips and sliding strengths. Friction then does the work dt_t dy_t <= 0 if, in the 3m
         form, the gap is shifted by more than mu times the slip. Where the force method shifts p (strength against
         pulling), the sliding strength must be shifted by more than mu times as much: true of the 4m form, and of s- in
-        the 3m form; s+ is no row of that form, so the argument has a hole there. All in the problem's own units.
+        the 3m form; s+ is not a row of that form, so the argument has a hole there. All in the problem's own units.
         """
         d = np.ones(self.size)
         m, k, mu = self.reduction.pairs, self.reduction.rough.size, self.reduction.mu

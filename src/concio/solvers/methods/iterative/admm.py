@@ -16,7 +16,7 @@ For associated joints (no shift) the problem is convex and convergence proved; w
 that works where slip is moderate.
 
 ``K + C' rho C`` is regular where pairs hold the bodies, so floating bodies are kept as they are; one factorisation
-serves until ``rho`` is balanced anew (at most ten times). Convergence is linear: expect hundreds to thousands of cheap
+serves until ``rho`` is balanced again (at most ten times). Convergence is linear: expect hundreds to thousands of cheap
 iterations, and an honest "gave up" with the accuracy reached where that is not enough (near collapse, jammed).
 
 References
