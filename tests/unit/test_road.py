@@ -148,7 +148,7 @@ def test_vehicles_carry_their_sources_and_convoys_add_up() -> None:
         ("[fill]\nroad = [[-1.0, 0.5], [4.0, 0.5]]", "road line runs from"),
         ("[fill]\nroad = [[-9.0, 0.9], [9.0, 0.9]]", "below the masonry"),
         ("[fill]\ncover = 0.3\nlayers = [{ depth = 0.4, unit_weight = 23 }]", "layers are 0.4 m deep"),
-        ("[fill]\ncover = 0.3\nfriction_angle = 0.52", "hardly meant"),
+        ("[fill]\ncover = 0.3\nfriction_angle = 0.52", "implausible"),
         ("[fill]\ncover = 0.3\nmobilised = 3.0", "between 0 and 1"),
         ("[fill]\ncover = 0.3\nspread = 'uniform 2:1'", "no spread rule"),
         ("[fill]\ncover = 0.3\nspread = { along = 1.0 }", "across"),

@@ -17,7 +17,7 @@ T = TypeVar("T")
 def entry_point(function: Callable[P, T]) -> Callable[P, T]:
     """Return a function of a model, or of its assembly, whose exceptions carry a verdict.
 
-    It says what was asked, what acts, and what is odd about the model.
+    It says what was asked, what acts, and what is suspicious about the model.
     """
 
     @functools.wraps(function)

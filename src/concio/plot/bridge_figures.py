@@ -33,14 +33,14 @@ ENGLISH = {
     "to_right": "to the right", "to_left": "to the left", "curve": "Load factor over position",
     "mechanism": "Mechanism at {factor} times the vehicle, x = {x} m", "thrust": "line of thrust",
     "crossing": "resultant of a joint", "opens": "opens", "slides": "slides",
-    "moved": "velocities to scale, forces at the bound", "bars": "Load factor where one datum changes",
-    "parts": "What the bound is built up of", "same": "no change", "decimal": ".",
+    "moved": "velocities to scale, forces at the bound", "bars": "Load factor when one datum changes",
+    "parts": "Contributions to the bound", "same": "no change", "decimal": ".",
 }  # fmt: skip
 """Words of the figures; another language gives others."""
 SHARE = 0.06
 """Size of the largest velocity as a share of the bridge."""
 SAME = 1e-6
-"""Changes below this share of the load factor are told as none."""
+"""Changes below this share of the load factor are reported as none."""
 LARGEST_SHOWN = 4.0
 """Load factors above this many times the least are cut off in the curve."""
 

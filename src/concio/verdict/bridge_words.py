@@ -12,7 +12,7 @@ Language = Literal["en", "it"]
 
 ENGLISH: Mapping[str, str] = {
     "asked": "{required} times the vehicle '{vehicle}' ({loads}) at every position on the bridge, while all other "
-    "loads act once",
+    "loads act with factor 1",
     "loads_axles": "heaviest axle {axle}, {total} in all",
     "loads_both": "heaviest axle {axle}, {total} in axles, and a uniform load of up to {uniform} along the road",
     "loads_uniform": "a uniform load of up to {uniform} along the road, no axles",
@@ -32,9 +32,9 @@ ENGLISH: Mapping[str, str] = {
     "unasked": "No mechanism refutes {required} times the vehicle at any of {all} positions; what Coulomb friction "
     "carries was not asked for.",
     "worst": "Worst is x = {x}, travelling to the {way}: Coulomb friction carries {design} times it there, {axle}, "
-    "and nothing is in equilibrium beyond {bound} times ({bound_axle}).",
-    "worst_unknown": "Worst is x = {x}, travelling to the {way}: nothing is in equilibrium beyond {bound} times it "
-    "there ({bound_axle}); what Coulomb friction carries of that was not found.",
+    "and no equilibrium exists beyond {bound} times ({bound_axle}).",
+    "worst_unknown": "Worst is x = {x}, travelling to the {way}: no equilibrium exists beyond {bound} times it "
+    "there ({bound_axle}); the part that Coulomb friction carries was not found.",
     "no_soil": "Without the pressure of the soil the bound is {multiplier} times, at x = {x}.",
     "no_soil_none": "Without the pressure of the soil the bridge does not stand even without a vehicle.",
     "rests": "the answer rests on the pressure of the soil: without it no equilibrium exists beyond {multiplier} "
@@ -127,7 +127,7 @@ WIDTHS = (
 """Phrases of how widths are found, in English and Italian."""
 ACTING = (
     ("constant; ", "costante; "), ("multiplied", "moltiplicato"), ("asked for", "chiesto"), ("reached", "raggiunto"),
-    ("at factor 1", "con fattore 1"), ("not applied", "non applicato"), ("own weight", "peso proprio"),
+    ("at factor 1", "con fattore 1"), ("not applied", "non applicato"), ("self-weight", "peso proprio"),
     ("point loads", "forze concentrate"), ("point load", "forza concentrata"), ("pressures", "pressioni"),
     ("in forces that balance", "in forze che si equilibrano"), (" along ", " lungo "),
 )  # fmt: skip

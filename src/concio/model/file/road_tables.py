@@ -86,7 +86,7 @@ class FillTable(Table):
     stiffness: JointStiffness = 20_000.0
     group: Name = "fill"
     bridge_width: Length | None = Field(None, description="of the bodies before width made them narrower")
-    applied: StrictBool = Field(default=False, description="its loads and soil elements stand in the file already")
+    applied: StrictBool = Field(default=False, description="its loads and soil elements are already in the file")
 
 
 class FollowerTable(Table):

@@ -348,7 +348,7 @@ class LoadTable(Table):
     Keys
     ----
     kind :
-        "weight": multiples of the own weight; "pressure" and "traction": on edges or faces; "point": a force; "body": a
+        "weight": multiples of self-weight; "pressure" and "traction": on edges or faces; "point": a force; "body": a
         force per volume.
     bodies :
         Names of the blocks that it acts on; none names all.
