@@ -6,7 +6,7 @@ Every case draws a structure (flat arch, round arch, portal of three piers with 
 candidate motions with random sizes, and up to eight measurements: openings at joints that are open, two joints that are
 closed, a level. The readings come from a path with twenty steps, the diagnosis takes its own; Gaussian errors of 0.5 mm
 are added. With ``--wrong`` one opening is made wrong (its unit or its place) or a level (its sign), and the share
-named is told. One line a case, the table at the end, or after so many minutes; processor seconds.
+named is reported. One line a case, the table at the end, or after so many minutes; processor seconds.
 """
 
 from __future__ import annotations

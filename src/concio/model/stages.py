@@ -97,7 +97,7 @@ def cycles(group: str, factor: float = 1.0, *, times: int = 1, back: float = 0.0
     back : float
         Its factor at the near end.
     steps : int
-        Of each of the two stages of a cycle, where they are walked in steps.
+        Of each of the two stages of a cycle, where they are followed in steps.
 
     Raises
     ------
@@ -111,7 +111,7 @@ def cycles(group: str, factor: float = 1.0, *, times: int = 1, back: float = 0.0
     [25.0, 0.0, 25.0, 0.0]
     """
     if times < 1 or factor == back:
-        msg = f"times = {times}, from {back:g} to {factor:g} and back, is no cycle"
+        msg = f"times = {times}, from {back:g} to {factor:g} and back, is not a cycle"
         raise InputError(msg, where=f"load group '{group}'", hint="give at least one cycle between two factors")
     ends = (("there", factor), ("back", back))
     return tuple(Stage(f"{group} {k} {way}", {group: f}, steps=steps) for k in range(1, times + 1) for way, f in ends)

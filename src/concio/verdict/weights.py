@@ -72,7 +72,7 @@ def _no_weight(model: Model, heavy: int) -> tuple[str, ...]:
     sideways = any(load.kind == "weight" for load in model.loads)
     if heavy and not sideways:
         words = f"{counted(heavy, 'block')} {'has' if heavy == 1 else 'have'} a unit weight"
-        return (f"own weight does not act: {words}, and there is no load of kind weight",)
+        return (f"self-weight does not act: {words}, and there is no load of kind weight",)
     acts = any(s.moves for s in model.supports) or any(t.prestress for t in model.ties)
     if not (acts or model.loads or model.temperatures):
         return ("nothing acts: there are no loads, no support is moved and no tie is prestressed",)
