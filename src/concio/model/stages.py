@@ -56,7 +56,7 @@ class Stage:
     until : float
         Displacement of the control point [m].
     steps : int
-        Steps of the stage where it is walked in steps.
+        Steps of the stage where it is followed in steps.
 
     Examples
     --------

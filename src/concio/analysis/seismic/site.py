@@ -89,7 +89,7 @@ class Site:
     Raises
     ------
     InputError
-        Something is not known to the code, or is no number of a site.
+        Something is not known to the code, or is not a number of a site.
 
     Examples
     --------
