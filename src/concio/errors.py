@@ -29,6 +29,22 @@ class ConcioError(Exception):
         What to do about it.
     verdict : Verdict, optional
         The question that was asked and what was found of it.
+
+    Examples
+    --------
+    A mistake in a model, and an arch that is too thin to stand:
+
+    >>> import concio
+    >>> try:
+    ...     concio.column(width=-0.5, height=2.0, blocks=4)
+    ... except concio.ConcioError as error:
+    ...     print(error)
+    column: width = -0.5 must be positive and finite
+    >>> try:
+    ...     concio.solve(concio.arch(span=1.9, ring=0.1, voussoirs=9, block="rigid"))
+    ... except concio.NoEquilibriumError as error:
+    ...     print(error.exit_code, error.verdict.outcome.name)
+    3 FAILS
     """
 
     exit_code = 1

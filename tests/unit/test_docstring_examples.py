@@ -1,11 +1,14 @@
-"""Examples in docstrings run and print what they say."""
+"""Examples in docstrings run and print what they say; every public function and every class that users make has one."""
 
 from __future__ import annotations
 
 import ast
 import doctest
+import inspect
 import io
+import re
 from collections.abc import Iterator
+from enum import Enum
 from pathlib import Path
 
 import pytest
@@ -13,6 +16,12 @@ import pytest
 import concio
 
 ROOT = Path(concio.__file__).parent
+RETURNED = {
+    "Assembly", "Assessment", "BridgeResult", "Diagnosis", "DynamicsResult", "PathResult", "PushResult", "Result",
+    "StudyResult", "Verdict",
+}  # fmt: skip
+"""Public classes that functions return: the examples of these functions show them."""
+SECTIONS = re.compile(r"^(\w[\w ]*)\n-{3,}$", re.MULTILINE)
 
 
 def docstrings(node: ast.AST, name: str) -> Iterator[tuple[str, int, str]]:
@@ -43,3 +52,19 @@ def test_an_example_prints_what_it_says(text: str, path: str, line: int) -> None
     result = doctest.DocTestRunner(verbose=False).run(found, out=told.write)
     assert result.attempted > 0
     assert not result.failed, told.getvalue()
+
+
+def needs_example(name: str) -> bool:
+    made = getattr(concio, name)
+    if inspect.isclass(made):
+        return name not in RETURNED and not issubclass(made, Exception | Enum)
+    return callable(made)
+
+
+@pytest.mark.parametrize("name", [name for name in concio.__all__ if needs_example(name)])
+def test_what_users_call_has_an_example_that_prints(name: str) -> None:
+    text = inspect.getdoc(getattr(concio, name)) or ""
+    assert SECTIONS.findall(text)[-1:] == ["Examples"], "the section 'Examples' is the last one"
+    shown = doctest.DocTestParser().get_examples(text.rsplit("Examples\n--------\n", 1)[1])
+    assert any(one.want for one in shown), "an example that prints nothing shows nothing"
+    assert any(re.search(rf"\bconcio\.{name}\(", one.source) for one in shown), "it does not call what it is of"

@@ -113,6 +113,17 @@ def limit(
         A group does not exist, or the live groups hold no load.
     NoEquilibriumError
         The dead load alone cannot be carried.
+
+    Examples
+    --------
+    A pillar tips under a horizontal share of its weight of width over height. The bound and what Coulomb friction
+    carries agree:
+
+    >>> import concio
+    >>> pillar = concio.column(width=0.5, height=2.0, blocks=4, block="rigid", horizontal=1.0)
+    >>> found = concio.limit(pillar)
+    >>> [round(float(multiplier), 6) for multiplier in found.bracket]
+    [0.25, 0.25]
     """
     stages = limit_stages(model, live, path=path, steps=steps, search=search, friction=friction, progress=progress)
     *_, (_, found) = stages
@@ -290,6 +301,15 @@ def friction_margin(
     ------
     InputError
         A group does not exist; or a factor is given, and there is no live group to multiply.
+
+    Examples
+    --------
+    A block that carries 0.3 of its weight sideways on a friction of 0.6 needs half of it:
+
+    >>> import concio
+    >>> block = concio.column(width=2.0, height=1.0, blocks=1, block="rigid", friction=0.6, horizontal=0.3)
+    >>> round(concio.friction_margin(block).factor, 6)
+    0.5
     """
     assembly = as_assembly(model)
     found = smallest_friction(factored_problem(assembly, live, factor))

@@ -105,6 +105,16 @@ def load_margin(model: Model | Assembly, live: str | Sequence[str] = "live", tol
     ------
     InputError
         A group does not exist, or the live groups hold no load.
+
+    Examples
+    --------
+    A pillar tips under a horizontal share of its weight of width over height:
+
+    >>> import concio
+    >>> pillar = concio.column(width=0.5, height=2.0, blocks=1, block="rigid", horizontal=1.0)
+    >>> margin = concio.load_margin(pillar)
+    >>> round(margin.holds, 3), round(margin.proven, 6)
+    (0.25, 0.25)
     """
     assembly = lent_assembly(model)
     dead, load = dead_and_live(assembly, live)
@@ -141,6 +151,15 @@ def friction_by_solving(
     ------
     InputError
         A group does not exist, or the live groups hold no load.
+
+    Examples
+    --------
+    A block that carries 0.3 of its weight sideways on a friction of 0.6 needs half of it:
+
+    >>> import concio
+    >>> block = concio.column(width=2.0, height=1.0, blocks=1, block="rigid", friction=0.6, horizontal=0.3)
+    >>> round(concio.friction_by_solving(block).holds, 2)
+    0.5
     """
     assembly = lent_assembly(model)
     loaded = factored_problem(assembly, live, factor)

@@ -82,6 +82,19 @@ def run_path(
         No stages, or a stage names a load group or body that does not exist.
     SolverError
         A stage could not even be begun.
+
+    Examples
+    --------
+    The weight acts first. Then a horizontal share of it grows, until the block slides where it reaches the
+    friction:
+
+    >>> import concio
+    >>> block = concio.column(width=1.0, height=0.5, blocks=1, block="rigid", friction=0.4, horizontal=1.0)
+    >>> path = concio.run_path(block, [concio.Stage("weight", {"dead": 1.0}), concio.Stage("push", {"live": 1.0})])
+    >>> round(path.peak(), 6)
+    0.4
+    >>> path.sentence
+    "Collapses in stage 'push': it carries no more than live = 0.4 of 1."
     """
     assembly = lent_assembly(model)
     stages = stages or assembly.model.stages

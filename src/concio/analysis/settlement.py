@@ -77,6 +77,20 @@ def settle(
     ------
     InputError
         No support of that group moves.
+
+    Examples
+    --------
+    An arch whose abutment gives way comes to its least thrust:
+
+    >>> import concio
+    >>> import dataclasses
+    >>> arch = concio.arch(span=2.0, ring=0.3, voussoirs=9, block="rigid", unit_weight=20.0)
+    >>> spread = concio.Support("spread", "left abutment", displacement=(-0.005, 0.0))
+    >>> moved = concio.settle(dataclasses.replace(arch, supports=(spread,)))
+    >>> moved.reached
+    True
+    >>> round(float(moved.reactions["left abutment"][-1, 0]), 2)
+    2.69
     """
     assembly = as_assembly(model)
     if group not in assembly.groups:

@@ -64,6 +64,25 @@ def solve(
         A mechanism, an unbounded motion or the exclusion of all joint states proves that the loads are not carried.
     SolverError
         The solver stopped without an answer.
+
+    Examples
+    --------
+    A pillar of 20 kN:
+
+    >>> import concio
+    >>> pillar = concio.column(width=0.5, height=2.0, blocks=4, block="rigid", unit_weight=20.0)
+    >>> result = concio.solve(pillar)
+    >>> result.status.name
+    'SOLVED'
+    >>> round(float(result.reactions["ground"][1]), 6)
+    20.0
+
+    A horizontal share of the weight of 0.3 is more than width over height:
+
+    >>> import concio
+    >>> leaning = concio.column(width=0.5, height=2.0, blocks=4, block="rigid", horizontal=0.3)
+    >>> concio.solve(leaning, on_failure="return").status.name
+    'NO_EQUILIBRIUM'
     """
     check_options(method, options, function="solve()", others=("method", *options_of(solve)))
     begin = time.perf_counter()

@@ -136,6 +136,17 @@ def thrust_line(result: Result) -> ThrustLine:
     ------
     InputError
         The blocks do not form a chain: one of them has other than two joints.
+
+    Examples
+    --------
+    Under vertical loads the horizontal thrust is the same in every joint:
+
+    >>> import concio
+    >>> import numpy as np
+    >>> arch = concio.arch(span=2.0, ring=0.3, voussoirs=9, block="rigid")
+    >>> line = concio.thrust_line(concio.solve(arch))
+    >>> len(line.point), bool(np.ptp(line.force[:, 0]) < 1e-6)
+    (10, True)
     """
     joints, model = result.joints, result.model
     at: dict[int, list[int]] = {i: [] for i, b in enumerate(model.bodies) if b.kind != "fixed"}

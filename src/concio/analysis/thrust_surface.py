@@ -71,6 +71,19 @@ def thrust_surface(result: Result) -> ThrustSurface:
     ------
     InputError
         The model is in the plane.
+
+    Examples
+    --------
+    A force 0.1 m beside the axis of a pillar without weight passes every joint there:
+
+    >>> import concio
+    >>> light = concio.Rigid(unit_weight=0.0)
+    >>> pillar = concio.drums(
+    ...     diameter=1.0, height=3.0, drums=3, sides=8, block=light, top_force=10.0, eccentricity=(0.1, 0.0)
+    ... )
+    >>> surface = concio.thrust_surface(concio.solve(pillar))
+    >>> surface.point[:, 0].round(6).tolist()
+    [0.1, 0.1, 0.1]
     """
     if result.model.dim != 3:
         msg = "a thrust surface is for models in space; the model is in the plane"

@@ -272,6 +272,21 @@ def assemble(model: Model) -> Assembly:
     InputError
         What is given is not a model (the name of a file, for example); nothing holds the model; no two bodies touch and
         no support or tie holds a block; a load or support is not usable.
+
+    Examples
+    --------
+    A pillar of 4 rigid blocks has 3 unknowns a block and 2 contact pairs a joint. The assembly is meshed once and
+    solved for several loads:
+
+    >>> import concio
+    >>> pillar = concio.column(width=0.5, height=2.0, blocks=4, block="rigid", horizontal=1.0)
+    >>> assembly = concio.assemble(pillar)
+    >>> assembly.K.shape, len(assembly.pairs)
+    ((12, 12), 8)
+    >>> for factor in (0.24, 0.26):
+    ...     print(factor, concio.solve(assembly, factors={"live": factor}, on_failure="return").status.name)
+    0.24 SOLVED
+    0.26 NO_EQUILIBRIUM
     """
     require_model(model)
     fixed = {"", *(b.name for b in model.bodies if b.kind == "fixed")}  # a tie without a body ends at a fixed point

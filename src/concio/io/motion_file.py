@@ -107,6 +107,18 @@ def save_motion(result: PushResult | DynamicsResult, path: Path | str) -> Path:
     -------
     Path
         ``path``.
+
+    Examples
+    --------
+    >>> import concio
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> pushed = concio.push(concio.column(width=0.5, height=2.0, blocks=1, block="rigid"))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = concio.save_motion(pushed, Path(folder) / "push.npz")
+    ...     again = concio.load_motion(file)
+    >>> again.peak == pushed.peak
+    True
     """
     path = Path(path)
     arrays: dict[str, Any] = {}
@@ -135,6 +147,18 @@ def load_motion(path: Path | str) -> PushResult | DynamicsResult:
     InputError
         There is no such file, or it holds no motion; or a killed run left the directory half changed and it cannot be
         written.
+
+    Examples
+    --------
+    >>> import concio
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> pushed = concio.push(concio.column(width=0.5, height=2.0, blocks=1, block="rigid"))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = concio.save_motion(pushed, Path(folder) / "push.npz")
+    ...     again = concio.load_motion(file)
+    >>> round(float(again.capacity), 4)
+    0.25
     """
     path = Path(path)
     settle(path.parent)

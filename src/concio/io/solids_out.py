@@ -60,6 +60,18 @@ def write_solids(path: str | Path, what: Model | Result, *, scale: float = 1.0) 
     ------
     InputError
         The model is in the plane, the format is not known, or a package is missing.
+
+    Examples
+    --------
+    >>> import concio
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> pillar = concio.drums(diameter=1.0, height=2.0, drums=2, sides=8)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     concio.write_solids(Path(folder) / "pillar.obj", pillar)
+    ...     lines = (Path(folder) / "pillar.obj").read_text().splitlines()
+    >>> [line for line in lines if line.startswith("o ")]
+    ['o ground', 'o d01', 'o d02']
     """
     path = Path(path)
     writer = WRITERS.get(path.suffix.lower())

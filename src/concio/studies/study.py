@@ -190,11 +190,25 @@ def study(
 
     Examples
     --------
+    A pillar tips under a horizontal share of its weight of 0.25:
+
     >>> import concio
+    >>> push = concio.variable("push", "uniform", low=0.1, high=0.4)
+    >>> def pillar(values):
+    ...     return concio.column(width=0.5, height=2.0, blocks=1, block="rigid", horizontal=values["push"])
+    >>> found = concio.study(pillar, [push], "stands", sample=[[0.1], [0.2], [0.3], [0.4]])
+    >>> found.table()["stands"].tolist()
+    [1.0, 1.0, 0.0, 0.0]
+    >>> found.probability("stands", above=0.5).estimate
+    0.5
+
+    Friction in the tables of a model file, of which a file may be given as well:
+
     >>> mu = concio.variable("mu", "uniform", keys="arch.friction", low=0.3, high=0.7)
-    >>> found = concio.study({"arch": {"span": 2.0}}, [mu], "stands", size=4)
-    >>> len(found)
-    4
+    >>> arch = {"arch": {"span": 2.0, "ring": 0.3, "voussoirs": 9, "block": "rigid"}}
+    >>> found = concio.study(arch, [mu], "stands", size=4)
+    >>> found.verdicts
+    {'solved': 3, 'no_equilibrium': 1}
     """
     check_executor(executor, workers)
     source, table = _source(model)

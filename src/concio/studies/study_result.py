@@ -304,6 +304,20 @@ def load_study(directory: str | os.PathLike[str]) -> StudyResult:
     ------
     InputError
         There is no study, or it cannot be read.
+
+    Examples
+    --------
+    >>> import concio
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> push = concio.variable("push", "uniform", low=0.1, high=0.4)
+    >>> def pillar(values):
+    ...     return concio.column(width=0.5, height=2.0, blocks=1, block="rigid", horizontal=values["push"])
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     made = concio.study(pillar, [push], "stands", sample=[[0.2], [0.3]], directory=Path(folder) / "runs")
+    ...     found = concio.load_study(Path(folder) / "runs")
+    >>> found.table()["stands"].tolist()
+    [1.0, 0.0]
     """
     path = Path(directory)
     try:

@@ -260,6 +260,17 @@ def homogenise(
         The model is not a cell, or its joints allow no strain (rigid blocks on hard joints).
     SolverError
         The answer does not stand up to its check.
+
+    Examples
+    --------
+    Vertically, blocks of 1 GPa and 0.1 m height and bed joints of 10 GPa/m are springs in series:
+
+    >>> import concio
+    >>> law = concio.JointLaw(0.6, normal_stiffness=10e6, tangential_stiffness=4e6)
+    >>> cell = concio.cell(bond="stack", block_size=(0.2, 0.1), friction=law, block=concio.Elastic(E=1e6, nu=0.0))
+    >>> moduli = concio.homogenise(cell)
+    >>> round(float(moduli.E_y), 3), round(1 / (1 / 1e6 + 1 / (10e6 * 0.1)), 3)
+    (500000.0, 500000.0)
     """
     own = PeriodicCell.of(cell)
     problem = own.problem(free=(False,) * 3)

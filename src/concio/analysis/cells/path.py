@@ -98,6 +98,18 @@ def strain_path(
     InputError
         The model is not a cell, a stage names what is not a component, or a strain is imposed on rigid blocks with hard
         joints, whose forces it does not determine.
+
+    Examples
+    --------
+    Running bond is pressed with 100 kN/m2 and sheared until it slides. :func:`concio.strength` gives the same shear
+    stress:
+
+    >>> import concio
+    >>> law = concio.JointLaw(0.6, normal_stiffness=10e6, tangential_stiffness=4e6)
+    >>> cell = concio.cell(bond="running", block_size=(0.25, 0.125), friction=law)
+    >>> path = concio.strain_path(cell, [{"stress yy": -100.0}, {"strain xy": 1e-3}])
+    >>> round(float(path.stress[-1, 2]), 6)
+    37.5
     """
     own = PeriodicCell.of(cell)
     listed = (stages,) if isinstance(stages, Mapping | Stage) else stages or own.model.stages

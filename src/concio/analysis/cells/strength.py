@@ -251,6 +251,17 @@ def strength(
         The model is not a cell, or a direction is none.
     NoEquilibriumError
         The stress to begin with cannot be carried.
+
+    Examples
+    --------
+    Blocks in running bond are 0.25 m long and 0.125 m high. Under a vertical pressure of 100 kN/m2 and none along
+    the beds they carry a shear stress of 0.6 * 100 / (1 + 0.6 * 2 * 0.125 / 0.25) = 37.5 kN/m2:
+
+    >>> import concio
+    >>> cell = concio.cell(bond="running", block_size=(0.25, 0.125), friction=0.6, block="rigid")
+    >>> found = concio.strength(cell, [(0.0, 0.0, 1.0)], stress=(0.0, -100.0, 0.0), coulomb=False, faces=False)
+    >>> round(found.rays[0].associated.multiplier, 6)
+    37.5
     """
     own = PeriodicCell.of(cell)
     base = three(stress, "stress")

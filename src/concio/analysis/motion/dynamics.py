@@ -142,6 +142,17 @@ def dynamics(
     ------
     InputError
         The model or an argument cannot be used: a body without mass, a step larger than that of the record...
+
+    Examples
+    --------
+    A block that slides at v = 1 m/s on a friction of mu = 0.5 stops after v^2 / (2 mu g) = 0.102 m:
+
+    >>> import concio
+    >>> block = concio.column(width=2.0, height=0.5, blocks=1, block="rigid", friction=0.5)
+    >>> middle = concio.ControlPoint("b01", at=(0.0, 0.25))
+    >>> motion = concio.dynamics(block, velocities={"b01": (1.0, 0.0, 0.0)}, points=(middle,), duration=0.25)
+    >>> round(float(motion.point()[-1]), 3)
+    0.102
     """
     reference = Reference.of(model, gravity)
     _check_masses(reference)

@@ -149,6 +149,17 @@ def push(
         The model or an argument cannot be used.
     NoEquilibriumError
         The structure does not stand at multiplier zero.
+
+    Examples
+    --------
+    A block, 0.5 m wide and 2 m high, begins to turn over at 0.25 of its weight. It falls once its centroid has
+    moved by half its width:
+
+    >>> import concio
+    >>> pillar = concio.column(width=0.5, height=2.0, blocks=1, block="rigid")
+    >>> pushed = concio.push(pillar)
+    >>> round(float(pushed.peak), 4), round(float(pushed.capacity), 4)
+    (0.25, 0.25)
     """
     reference = Reference.of(model, gravity)
     chosen = factors_asked(reference, factors)

@@ -77,6 +77,16 @@ def rock(model: Model, *, direction: float = 1.0, step: float = 0.005, smallest:
         A body is elastic, or there is none that is rigid.
     NoEquilibriumError
         The structure does not stand to begin with.
+
+    Examples
+    --------
+    A block, 0.5 m wide and 2 m high, begins to turn over at 0.25 of its weight:
+
+    >>> import concio
+    >>> pillar = concio.column(width=0.5, height=2.0, blocks=1, block="rigid")
+    >>> curve = concio.rock(pillar)
+    >>> round(float(curve.multiplier[0]), 4)
+    0.25
     """
     require_model(model)
     for body in model.bodies:

@@ -98,6 +98,19 @@ def assess(
         The model does not stand without an earthquake.
     SolverError
         The callback asked to stop.
+
+    Examples
+    --------
+    The multiplier of a pillar that tips is width over height. Two limit states are left without hazard:
+
+    >>> import concio
+    >>> pillar = concio.column(width=0.5, height=2.0, blocks=1, block="rigid")
+    >>> site = concio.Site({"SLV": {"a_g": 0.20, "F0": 2.45, "Tc": 0.32}}, soil="A")
+    >>> found = concio.assess(pillar, site=site, direction="right", elsewhere=("out of plane",))
+    >>> round(found.mechanisms[0].multiplier, 4)
+    0.25
+    >>> found.verdict.outcome.name, found.verdict.unchecked[0][:8]
+    ('INCOMPLETE', 'SLD, SLC')
     """
     require_model(model)
     if model.periods is not None:

@@ -49,7 +49,7 @@ STDIN = Path("-")
 
 @strict
 def load(path: str | os.PathLike[str]) -> Model:
-    """Return the model that a TOML file describes.
+    r"""Return the model that a TOML file describes.
 
     Parameters
     ----------
@@ -60,6 +60,18 @@ def load(path: str | os.PathLike[str]) -> Model:
     ------
     InputError
         The file is missing, not readable, or says something that cannot be used; the message names the key.
+
+    Examples
+    --------
+    >>> import concio
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "pillar.toml"
+    ...     written = file.write_text("[column]\nwidth = 0.5\nheight = '200 cm'\nblocks = 4\n")
+    ...     model = concio.load(file)
+    >>> round(float(model.body("b04").centroid[1]), 6)
+    1.75
     """
     path = Path(path)
     return model_from_tables(read_tables(path), folder=path.parent, name=str(path), chain=(path.resolve(),))
@@ -93,7 +105,7 @@ def _standard_input() -> str:
 
 @strict
 def loads(text: str, *, folder: str | os.PathLike[str] = ".", name: str = "model text") -> Model:
-    """Return the model that a TOML text describes.
+    r"""Return the model that a TOML text describes.
 
     Parameters
     ----------
@@ -107,6 +119,13 @@ def loads(text: str, *, folder: str | os.PathLike[str] = ".", name: str = "model
     ------
     InputError
         As :func:`load`.
+
+    Examples
+    --------
+    >>> import concio
+    >>> model = concio.loads("[column]\nwidth = 0.5\nheight = '200 cm'\nblocks = 4\n")
+    >>> round(float(model.body("b04").centroid[1]), 6)
+    1.75
     """
     return model_from_tables(parse(text, name), folder=folder, name=name)
 

@@ -36,6 +36,16 @@ def dumps(model: Model, *, blocks_file: str | None = None) -> str:
     model : Model
     blocks_file : str, optional
         Name a table of blocks instead of writing them into the text.
+
+    Examples
+    --------
+    >>> import concio
+    >>> pillar = concio.column(width=0.5, height=2.0, blocks=4)
+    >>> text = concio.dumps(pillar)
+    >>> text.splitlines()[1]
+    'title = "column of 4 blocks, 0.5 x 2 m"'
+    >>> round(float(concio.loads(text).body("b04").centroid[1]), 6)
+    1.75
     """
     require_model(model)
     lines = ["# concio model"]
@@ -111,6 +121,18 @@ def save(model: Model, path: str | os.PathLike[str], *, blocks_file: str | None 
     ------
     InputError
         The file cannot be written.
+
+    Examples
+    --------
+    >>> import concio
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> pillar = concio.column(width=0.5, height=2.0, blocks=4)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     concio.save(pillar, Path(folder) / "pillar.toml")
+    ...     again = concio.load(Path(folder) / "pillar.toml")
+    >>> round(float(again.body("b04").centroid[1]), 6)
+    1.75
     """
     path = Path(path)
     text = dumps(model, blocks_file=blocks_file)

@@ -49,7 +49,7 @@ _SEPARATOR = re.compile(r"[,;\s]+")
 
 @strict
 def read_record(path: Path | str, *, unit: str | None = None, step: float | None = None) -> Record:
-    """Return the record of a file.
+    r"""Return the record of a file.
 
     Parameters
     ----------
@@ -65,6 +65,20 @@ def read_record(path: Path | str, *, unit: str | None = None, step: float | None
     InputError
         There is no such file; the unit is not known, or not what the name of the file says; the record has a gap or
         does not run forwards in time.
+
+    Examples
+    --------
+    The largest acceleration of 0.2 g in m/s2:
+
+    >>> import concio
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "record.txt"
+    ...     written = file.write_text("0.0\n0.1\n-0.2\n0.0\n")
+    ...     record = concio.read_record(file, unit="g", step=0.01)
+    >>> round(float(abs(record.values).max()), 5)
+    1.96133
     """
     path = Path(path)
     where = str(path)

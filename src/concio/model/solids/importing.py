@@ -112,6 +112,20 @@ def model_from_solids(
     -----
     A surface that falls into several closed parts gives a block for each. Triangles in one plane become one face.
     ``model.generator`` keeps the ``faults`` that were skipped, what was ``left_out`` and ``moved``.
+
+    Examples
+    --------
+    Two drums are written and read again:
+
+    >>> import concio
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> pillar = concio.drums(diameter=1.0, height=2.0, drums=2, sides=8)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     concio.write_solids(Path(folder) / "pillar.obj", pillar)
+    ...     model = concio.model_from_solids(Path(folder) / "pillar.obj", layers={"ground": "fixed"})
+    >>> [(body.name, round(body.volume, 6)) for body in model.free_bodies]
+    [('d01', 0.707107), ('d02', 0.707107)]
     """
     path = Path(path)
     where = str(path)
