@@ -24,7 +24,8 @@ HEAD = """# The validation book
 
 Written by `docs/make_validation.py`; the same rows are asserted by `tests/validation`. *Difference* is relative to the
 expected value unless marked "abs". *Allowed* is the tolerance of the test, with its reason in the section of the case.
-Rows marked *experiment* compare a model with a laboratory test: they are discussed, not asserted.
+Rows marked *experiment* compare a model with a test, those marked *other model* with another model of the same
+structure: they are discussed, not asserted.
 
 """
 
@@ -55,9 +56,9 @@ def difference(row: Row) -> str:
 
 
 def allowed(row: Row) -> str:
-    """Tolerance, or the word experiment."""
-    if row.check == "experiment":
-        return "experiment"
+    """Tolerance, or what the number is compared with."""
+    if not row.asserted:
+        return row.check
     return "exact" if row.tolerance == 0 else f"{row.tolerance:.0e}"
 
 
@@ -79,7 +80,7 @@ def reasons(rows: list[Row]) -> str:
     """The tolerances' reasons, each once."""
     found: dict[str, str] = {}
     for r in rows:
-        if r.check != "experiment":
+        if r.asserted:
             found.setdefault(r.reason, allowed(r))
     return "\n".join(f"* {size}: {reason}." for reason, size in found.items()) + "\n"
 
@@ -127,7 +128,7 @@ def main() -> int:
         count += len(rows)
         source = importlib.import_module(f"validation_cases.{name}").SOURCE
         every += [f"## {title}\n", f"Source: {source}\n", table(rows)]
-        wrong += [f"{name}: {r.name}" for r in rows if not r.passes and r.check != "experiment"]
+        wrong += [f"{name}: {r.name}" for r in rows if not r.passes and r.asserted]
         print(f"{name}: {len(rows)} rows")
     summary = f"{count} rows in {len(CASES)} cases; {len(wrong)} outside their tolerance.\n\n"
     (HERE / "validation" / "book.md").write_text(HEAD + summary + "\n".join(parts), encoding="utf-8")

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from arch_programme import Arch
 from validation_cases import arch_bridges
 from validation_cases.row import check
 
@@ -157,3 +158,14 @@ def test_the_worst_position_of_prestwood_is_found_to_ten_millimetres() -> None:
     sweep = arch_bridges.prestwood(1.0)
     around = [arch_bridges.load(sweep, share * 6.55 + d) for d in np.arange(-0.05, 0.051, 0.005)]
     assert least <= min(around) * (1 + 2e-5)
+
+
+@pytest.mark.parametrize("k", [0.0, 3.0])
+@pytest.mark.parametrize("share", [0.05, 0.15, 0.25, 0.5, 0.9])
+def test_a_grid_of_positions_beside_a_programme_written_from_the_statement(k: float, share: float) -> None:
+    """The edges of the bridge too, where abutments carry a part of the load; with joints that slide as well."""
+    other = Arch(6.55, 1.428, 0.22, 40, 20.0, 20.0, 0.165, 0.30, 3.8, k, friction=0.6)
+    model = concio.bridge(span=6.55, rise=1.428, ring=0.22, voussoirs=40, width=3.8, block="rigid", friction=0.6,
+                          unit_weight=20.0)  # fmt: skip
+    found = under_an_axle(model, share * 6.55, Fill(cover=0.165, unit_weight=20.0, passive=k), 0.30)
+    assert found == pytest.approx(other.axle(share * 6.55), rel=1e-4)

@@ -13,6 +13,8 @@ CASES: dict[str, str] = {
     "semicircular_arch": "Least thickness of a semicircular arch",
     "flat_arch": "Flat arch with spreading abutments",
     "arch_bridges": "Arch bridges with fill under an axle",
+    "fill_as_blocks": "Fill as blocks beside fill as a rule",
+    "loaded_bridges": "Bridges that were loaded to failure",
     "block_on_base": "Block that slides or topples",
     "stack_between_walls": "Wall friction in a stack between walls",
     "strip_on_base": "Elastic strip pulled along a base",
