@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, ParamSpec, TypeVar
 
+from concio.errors import InputError
+from concio.model.model import Model
 from concio.solvers.algebra.threads import one_thread
 from concio.verdict.unanswered import with_a_verdict
 
@@ -49,5 +51,16 @@ def entry_point_in_stages(function: Callable[P, Iterator[T]]) -> Callable[P, Ite
 def _entered(name: str, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Iterator[None]:
     """Enter an analysis of the first argument: a model, or what is made of one."""
     first = args[0] if args else next((kwargs[name] for name in ("model", "cell", "wall") if name in kwargs), None)
+    model = first if isinstance(first, Model) else getattr(first, "model", None)
+    if isinstance(model, Model):
+        _refuse_changes(model, name)
     with one_thread(), with_a_verdict(first, name):
         yield
+
+
+def _refuse_changes(model: Model, name: str) -> None:
+    """Refuse joint laws that change with what joints undergo: only a load step treats them."""
+    for law, constants in model.laws.items():
+        if constants.changes:
+            msg = f"joint law '{law}' changes with what the joint undergoes; {name} takes laws as they are at first"
+            raise InputError(msg, hint="concio.solve treats them; or give the law the constants it ends with")

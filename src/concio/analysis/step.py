@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, Literal
 
+from concio.analysis.changing_laws import points_that_change, solve_changing
 from concio.analysis.lent_compliance import lend, stiffened
 from concio.analysis.result import Result
 from concio.analysis.tie_forces import broken_ties
@@ -150,7 +151,7 @@ def _solve(
     options, begin = dict(given), time.perf_counter()
     if "engine" in find(method).options:
         options.setdefault("engine", assembly.model.engine)
-    lent = lend(assembly)
+    lent = lend(assembly if assembly.first_laws is None else replace(assembly, laws=assembly.first_laws))
     compliance, problem = lent.lent_compliance, lent.problem(factors)
     if not problem.pairs:  # K u = f: there are no states to find, whatever the method
         solver, options = find("sparse-lemke" if problem.dim == 2 else "auto"), {}
@@ -158,8 +159,12 @@ def _solve(
     engine = options.get("engine", "")
     problem = problem.by(options.get("engine"))  # what a method asks on its way factorises as it does
     with one_thread():
-        solution = solver(problem, progress=progress, **options)
-        if lent.lent_compliance and solution.solved:
+        if points_that_change(lent):
+            solution, laws = solve_changing(lent, problem, lambda p: solver(p, progress=progress, **options))
+            lent = replace(lent, laws=laws, first_laws=lent.laws)
+        else:
+            solution = solver(problem, progress=progress, **options)
+        if lent.first_laws is None and lent.lent_compliance and solution.solved:
             solution, left = without_compliance(assembly.problem(factors).by(problem.engine), problem, solution)
             lent = stiffened(lent, assembly, left)
     end = time.perf_counter()

@@ -60,6 +60,8 @@ class Assembly:
     lent_compliance : float
         Normal compliance added to hard joints between bodies that do not deform, a pair of mean area [m/kN]; 0 where
         none was (:mod:`concio.analysis.lent_compliance`).
+    first_laws : Laws, optional
+        Where joint laws have changed with what joints underwent, what they were at first.
     """
 
     model: Model
@@ -73,6 +75,7 @@ class Assembly:
     moved: Mapping[str, tuple[Array, Array]]
     lent_compliance: float = 0.0
     expands: Mapping[str, Array] = field(default_factory=dict)
+    first_laws: Laws | None = None
 
     @property
     def groups(self) -> tuple[str, ...]:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from concio.arguments import strict_class
 from concio.errors import InputError
@@ -132,6 +134,10 @@ class JointLaw:
         Stiffness of a compliant joint [kN/m3]; None is a hard joint.
     compressive_strength : float, str or None
         Largest contact pressure [kN/m2]; None is unlimited.
+    changes : tuple of callable
+        What changes the constants with what the joint has undergone: each takes the constants of k contact points and
+        what they have undergone (:class:`concio.analysis.changing_laws.Undergone`), and returns the constants. Only
+        :func:`concio.solve` treats them; everything else refuses a model that has any.
 
     Examples
     --------
@@ -148,8 +154,13 @@ class JointLaw:
     normal_stiffness: float | None = None
     tangential_stiffness: float | None = None
     compressive_strength: float | None = None
+    changes: tuple[Callable[..., Any], ...] = ()
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "changes", tuple(self.changes))
+        if not all(callable(change) for change in self.changes):
+            msg = "changes holds something that cannot be called"
+            raise InputError(msg, hint="give functions of the constants and of what the joint has undergone")
         kinds = {
             "friction": "friction",
             "cohesion": "stress",

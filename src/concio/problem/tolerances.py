@@ -34,6 +34,10 @@ near, never here."""
 AT_BOUND = 1e-9
 """Forces, gaps and slips below this share of the largest count as zero where the state of a pair is read off."""
 
+CONSTANTS_STAY = 1e-10
+"""Largest change of a constant of joint laws, relative to the largest of its kind at first, up to which constants that
+depend on the answer belong to it."""
+
 # -- proofs ---------------------------------------------------------------------------------------------------------
 
 ADMISSIBLE = 1e-9

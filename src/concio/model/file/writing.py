@@ -62,7 +62,11 @@ def dumps(model: Model, *, blocks_file: str | None = None) -> str:
     for name, material in model.materials.items():
         lines += _table(f"materials.{_key(name)}", _material(material))
     for name, law in model.laws.items():
-        lines += _table(f"joints.{_key(name)}", {f.name: getattr(law, f.name) for f in fields(law)})
+        if law.changes:
+            msg = f"joint law '{name}' changes with what the joint undergoes, which a model file cannot say"
+            raise InputError(msg, hint="keep such a model in Python")
+        constants = {f.name: getattr(law, f.name) for f in fields(law) if f.name != "changes"}
+        lines += _table(f"joints.{_key(name)}", constants)
     for rule in model.rules:
         lines += _table("rules", {"law": rule.law, "between": rule.between, "gap": rule.gap or None}, many=True)
     if blocks_file is None:
