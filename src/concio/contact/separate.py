@@ -37,9 +37,40 @@ def separate_groups(model: Model) -> list[Array]:
     list of integer arrays
         A fixed body belongs to every group whose free bodies come near it; one near none belongs to no group.
     """
-    free = np.array([body.kind != "fixed" for body in model.bodies])
-    count = len(model.bodies)
-    a, b = _near(model)
+    low, high = (np.array([f(body.vertices, axis=0) for body in model.bodies]) for f in (np.min, np.max))
+    return grouped(low, high, free_of(model), model.gap_reach or 0.0)
+
+
+def free_of(model: Model) -> Array:
+    """Return which bodies have unknowns (B,)."""
+    return np.array([body.kind != "fixed" for body in model.bodies])
+
+
+def grouped(
+    low: Array, high: Array, free: Array, reach: float, tied: Array | None = None, known: Sequence[Array] = ()
+) -> list[Array]:
+    """Return the numbers of the bodies of each group that stands apart, in order of their first free body.
+
+    Parameters
+    ----------
+    low, high : (B, d) arrays
+        Corners of the boxes around the bodies [m].
+    free : (B,) boolean array
+        Which of them have unknowns.
+    reach : float
+        Distance that is near in any case [m].
+    tied : (k, 2) integer array, optional
+        Bodies that ties connect.
+    known : sequence of integer arrays
+        Bodies that belong together, wherever they stand.
+    """
+    count = len(free)
+    a, b = _near(low, high, reach)
+    if tied is not None:
+        a, b = np.concatenate([a, tied[:, 0]]), np.concatenate([b, tied[:, 1]])
+    for group in known:
+        first = np.full(len(group), group[free[group]][0])
+        a, b = np.concatenate([a, first]), np.concatenate([b, group])
     both = free[a] & free[b]
     links = sp.coo_array((np.ones(int(both.sum())), (a[both], b[both])), shape=(count, count))
     _, label = connected_components(links, directed=False)
@@ -51,10 +82,9 @@ def separate_groups(model: Model) -> list[Array]:
     return [np.array(sorted(held[k])) for k in labels]
 
 
-def _near(model: Model) -> tuple[Array, Array]:
+def _near(low: Array, high: Array, reach: float) -> tuple[Array, Array]:
     """Return the pairs of bodies whose boxes come as near each other as the smaller one's size makes near."""
-    low, high = (np.array([f(body.vertices, axis=0) for body in model.bodies]) for f in (np.min, np.max))
-    size, reach = (high - low).max(axis=1), model.gap_reach or 0.0
+    size = (high - low).max(axis=1)
     margin = np.maximum(NEAR * size, reach)[:, None]
     tree = shapely.STRtree(shapely.box(*(low - margin)[:, :2].T, *(high + margin)[:, :2].T))
     a, b = tree.query(tree.geometries)

@@ -81,6 +81,17 @@ def check_rules(rules: Sequence[JointRule], bodies: Sequence[Body | Polyhedron],
                 raise InputError(msg, where=where or None, hint=hint)
 
 
+def rules_of(rules: Sequence[JointRule], bodies: Sequence[Body | Polyhedron]) -> tuple[JointRule, ...]:
+    """Return the rules that may speak of some bodies: each of whose words names one of them; the first if none does."""
+    known = {word for b in bodies for word in _words(b) if word}
+
+    def names(word: str) -> bool:
+        return word in known or ("*" in word and any(called(word, b) for b in bodies))
+
+    found = tuple(rule for rule in rules if all(names(word) for word in rule.between))
+    return found or (JointRule(rules[0].law),)
+
+
 def _words(body: Body | Polyhedron) -> tuple[str, str, str, str]:
     """Return the words by which rules find a body: role, layer, material, name."""
     return body.role, body.layer, "" if body.kind == "fixed" else body.material, body.name

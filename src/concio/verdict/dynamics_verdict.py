@@ -46,7 +46,7 @@ def dynamics_verdict(found: DynamicsResult) -> Verdict:
     """
     outcome = _outcome(found)
     reference = found.reference
-    small = unseen(Described(reference), found.factors)
+    small = unseen(Described(reference), found.factors, groups=found.structures)
     if small and not found.fallen and outcome in (Outcome.HOLDS, Outcome.FAILS):
         outcome = Outcome.INCOMPLETE  # neither that it rests nor that it does not stand is shown of such bodies
     return Verdict(

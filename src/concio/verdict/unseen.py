@@ -7,7 +7,7 @@ that something holds asks here.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -34,7 +34,9 @@ class LoadedJoints(Loaded, Protocol):
         """Its interfaces."""
 
 
-def unseen(loaded: LoadedJoints, *factors: Mapping[str, float] | None) -> tuple[str, ...]:
+def unseen(
+    loaded: LoadedJoints, *factors: Mapping[str, float] | None, groups: Sequence[Sequence[int]] = ()
+) -> tuple[str, ...]:
     """Return a sentence on the bodies that no certificate can see under loads at given factors, if there are any.
 
     Parameters
@@ -43,8 +45,10 @@ def unseen(loaded: LoadedJoints, *factors: Mapping[str, float] | None) -> tuple[
         Or anything else with its loads.
     factors : mappings of str to float
         Load factors at which something is said to hold; a group that is not named has 1, and so have all with None.
+    groups : sequence of sequences of int
+        Bodies that were solved as one, where these are not the connected parts.
     """
-    names = unseen_bodies(loaded, factors or (None,))
+    names = unseen_bodies(loaded, factors or (None,), groups)
     if not names:
         return ()
     verb = "is" if len(names) == 1 else "are"
@@ -59,10 +63,12 @@ def listed(names: tuple[str, ...]) -> str:
     return ", ".join(names[:NAMED]) + (f" and {len(names) - NAMED} more" if len(names) > NAMED else "")
 
 
-def unseen_bodies(loaded: LoadedJoints, factors: Iterable[Mapping[str, float] | None]) -> tuple[str, ...]:
+def unseen_bodies(
+    loaded: LoadedJoints, factors: Iterable[Mapping[str, float] | None], groups: Sequence[Sequence[int]] = ()
+) -> tuple[str, ...]:
     """Return the names of the bodies that no certificate can see at some of the given factors, in their order."""
     model, offsets = loaded.model, loaded.disc.offsets
-    part = _parts(model, loaded.detection)
+    part = _numbers(groups, len(model.bodies)) if groups else _parts(model, loaded.detection)
     found: set[int] = set()
     for at in factors:
         f = np.zeros(int(offsets[-1]))
@@ -72,6 +78,14 @@ def unseen_bodies(loaded: LoadedJoints, factors: Iterable[Mapping[str, float] | 
         total = np.bincount(part, weights=own)[part]
         found |= set(np.flatnonzero((own > 0) & (own < SEEN * total)).tolist())
     return tuple(model.bodies[b].name for b in sorted(found))
+
+
+def _numbers(groups: Sequence[Sequence[int]], count: int) -> np.ndarray:
+    """Return the number of the group of each body (B,); fixed bodies may have any."""
+    found = np.zeros(count, dtype=int)
+    for k, group in enumerate(groups):
+        found[list(group)] = k
+    return found
 
 
 def _parts(model: Model, detection: Detection) -> np.ndarray:

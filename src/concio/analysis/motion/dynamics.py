@@ -10,49 +10,40 @@ from typing import Literal
 import numpy as np
 
 from concio.analysis.entry_point import entry_point
+from concio.analysis.motion.dynamics_asked import check_masses, positive, step_asked, thrown
 from concio.analysis.motion.dynamics_result import DynamicsResult, Ending
-from concio.analysis.motion.fate import Watch
+from concio.analysis.motion.frames import Frames
 from concio.analysis.motion.ground import Ground, Motion
 from concio.analysis.motion.history import Recorder
 from concio.analysis.motion.interruption import Interruption
 from concio.analysis.motion.joints import SAG
-from concio.analysis.motion.located import ties_give_way
-from concio.analysis.motion.meetings import Meetings
 from concio.analysis.motion.moved_supports import begun
+from concio.analysis.motion.mover import Mover, Row, shifted
 from concio.analysis.motion.observer import Observer
+from concio.analysis.motion.pairs import PairMaker
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import Statics
-from concio.analysis.motion.stepper import Stepper, StepReport, at_rest
-from concio.analysis.motion.tie_cuts import where_ties_give_way
+from concio.analysis.motion.stepper import at_rest
+from concio.analysis.motion.structures import Structure, near_now, structures_of, together
 from concio.arguments import strict
 from concio.contact.moving.reference import Reference
 from concio.errors import InputError
-from concio.kinematics.rigid import swept
+from concio.fem.discretisation import FIXED
 from concio.model.model import Model
 from concio.model.stages import ControlPoint
 from concio.problem.contact_problem import Engine
 from concio.problem.solution import Progress, ProgressCallback
-from concio.problem.tolerances import CERTIFIED
 from concio.units import GRAVITY
 from concio.verdict.dynamics_verdict import supports_short
 
 Array = np.ndarray
 
-STEP = 2e-3
-"""Step where none is given and no record is finer [s]."""
-
 SHOTS = 1000
 """Placements kept where nothing else is asked for."""
 
-HALVINGS = 6
-"""Times a step may be halved."""
-
-SUNK = 1e-3
-"""Penetration at an impact over the width of a body from which on the step is halved."""
-
-LEAST_CUT = 1e-6
-"""Step over that asked for below which it is not cut where a tie gives way."""
+STAY = "fixed bodies stand as described: supports move them where a motion begins in equilibrium"
+"""What is said of supports that move where a motion begins as described."""
 
 AFTER = 20.0
 """How long after the ground a motion is followed where no duration is given and it neither rests nor falls [s]."""
@@ -155,11 +146,11 @@ def dynamics(
     0.102
     """
     reference = Reference.of(model, gravity)
-    _check_masses(reference)
+    check_masses(reference)
     ground = Ground.of(motion, scale)
-    stated = None if duration is None else _positive(duration, "duration")
-    shown = stated or _positive(ground.duration, "duration")
-    step = _step(step, ground, shown)
+    stated = None if duration is None else positive(duration, "duration")
+    shown = stated or positive(ground.duration, "duration")
+    step = step_asked(step, ground, shown)
     stop_at_rest = stated is None if stop_at_rest is None else stop_at_rest
     if base not in ("inertia", "moving"):
         msg = f"base = '{base}' is not 'inertia' or 'moving'"
@@ -170,100 +161,29 @@ def dynamics(
         if group not in reference.model.load_groups:
             msg = f"there is no load group '{group}'"
             raise InputError(msg, hint="groups: " + ", ".join(reference.model.load_groups))
-    stepper = Stepper(reference, scheme, engine)
-    state, notes, stands = _begin(reference, scheme, chosen, start, velocities, engine)
-    begun_at = state.time
     run = _Run(
-        reference, stepper, ground, base, chosen, scheme, tuple(points), shown + (0.0 if stated else AFTER), step,
-        adaptive, progress, stated, stands, engine,
+        reference, ground, base, chosen, scheme, tuple(points), shown + (0.0 if stated else AFTER), step, adaptive,
+        progress, stated, engine,
     )  # fmt: skip
-    run.notes += [*ground.attention, *notes]
-    run.origin = reference.disc.centroids if isinstance(start, MotionState) else state.centre.copy()
-    run.falls = start != "as described"
-    every = _positive(every or shown / SHOTS, "every")
-    ending = run.follow(state, every, stop_overturned, stop_at_rest)
-    return run.result(ending, begun_at)
-
-
-def _positive(value: float, name: str) -> float:
-    if not 0 < value < np.inf:
-        msg = f"{name} = {value:g} must be positive and finite"
-        hint = "give the time to compute, or a ground motion" if name == "duration" else None
-        raise InputError(msg, hint=hint)
-    return float(value)
-
-
-def _step(step: float | None, ground: Ground, duration: float) -> float:
-    if step is None:
-        return min(STEP, ground.sample, duration)
-    step = _positive(step, "step")
-    if step > ground.sample * (1 + 1e-9):
-        msg = f"the step of {step:g} s is larger than that of the record, {ground.sample:g} s"
-        raise InputError(msg, hint=f"take at most {ground.sample:g} s: what happens between samples would be lost")
-    return min(step, duration)
-
-
-def _check_masses(reference: Reference) -> None:
-    without = [reference.model.bodies[b].name for b in reference.free.tolist() if not reference.body_mass[b] > 0]
-    if without:
-        msg = f"block '{without[0]}' has no mass" + (f", and {len(without) - 1} others" if without[1:] else "")
-        raise InputError(msg, hint="give its material a unit_weight: mass is weight over gravity")
+    run.notes += ground.attention
+    run.begin(start, velocities)
+    every = positive(every or shown / SHOTS, "every")
+    return run.result(run.follow(every, stop_overturned, stop_at_rest))
 
 
 def _begin(
-    reference: Reference,
-    scheme: Scheme,
-    factors: Mapping[str, float],
-    start: str | MotionState,
-    velocities: Mapping[str, Sequence[float]] | None,
-    engine: Engine | None,
-) -> tuple[MotionState, list[str], bool | None]:
-    """Return the state at the beginning, what there is to say about it, and whether it is in equilibrium if asked."""
-    notes: list[str] = []
-    stands: bool | None = None
-    if isinstance(start, MotionState):
-        if start.centre.shape != reference.disc.centroids.shape or len(start.strain) != len(reference.body_of_node):
-            msg = "the state to start from belongs to another model"
-            raise InputError(msg, hint="take the state of a motion of the same model")
-        state = start
-    elif start in ("equilibrium", "as described"):
-        state = at_rest(reference)
-        if start == "equilibrium":
-            balanced, share, last = begun(Statics(reference, scheme, factors, engine=engine, sag=SAG), state)
-            stands, state = balanced.found, balanced.state if balanced.found else last
-            if not stands and 0.0 < share < 1.0:
-                notes.append(supports_short(share))
-            elif not stands:
-                notes.append("no equilibrium under the loads was found to begin with: the motion begins as described")
-        elif any(s.moves for s in reference.model.supports):
-            notes.append("fixed bodies stand as described: supports move them where a motion begins in equilibrium")
-    else:
-        msg = f"start = '{start}' is not 'equilibrium', 'as described' or a state"
-        raise InputError(msg)
-    if velocities:
-        state = _thrown(reference, state, velocities)
-    return state, notes, stands
-
-
-def _thrown(reference: Reference, state: MotionState, velocities: Mapping[str, Sequence[float]]) -> MotionState:
-    """Return a state with other velocities of some bodies."""
-    number = {b.name: i for i, b in enumerate(reference.model.bodies)}
-    velocity, spin, nodal = state.velocity.copy(), state.spin.copy(), state.nodal.copy()
-    for name, given in velocities.items():
-        if name not in number or reference.model.bodies[number[name]].kind == "fixed":
-            msg = f"there is no body called '{name}' that can move"
-            raise InputError(msg, where="velocities", hint="see the names with 'concio check'")
-        values = [float(v) for v in given]
-        if len(values) not in (2, 3) or not np.isfinite(values).all():
-            msg = f"the velocity of '{name}' is (v_x, v_y) or (v_x, v_y, spin), all finite"
-            raise InputError(msg, where="velocities")
-        b = number[name]
-        velocity[b], spin[b] = values[:2], values[2] if len(values) == 3 else 0.0
-        if reference.disc.shape_of[b] >= 0:
-            own = np.flatnonzero(reference.body_of_node == b)
-            placed = state.configuration(reference).nodes(b) - state.centre[b]
-            nodal[own] = velocity[b] + swept(spin[b], placed)
-    return replace(state, velocity=velocity, spin=spin, nodal=nodal)
+    structure: Structure, scheme: Scheme, factors: Mapping[str, float], engine: Engine | None
+) -> tuple[MotionState, bool, str]:
+    """Return where a structure begins, whether that is the equilibrium under its loads, and if not what there is."""
+    reference = structure.reference
+    state = at_rest(reference)
+    balanced, share, last = begun(Statics(reference, scheme, factors, engine=engine, sag=SAG), state)
+    if balanced.found:
+        return balanced.state, True, ""
+    if 0.0 < share < 1.0:
+        return last, False, supports_short(share)
+    what = "the motion begins as described" if structure.alone else f"'{structure.name}' begins as described"
+    return last, False, f"no equilibrium under the loads was found to begin with: {what}"
 
 
 @dataclass
@@ -271,7 +191,6 @@ class _Run:
     """A motion as it is computed."""
 
     reference: Reference
-    stepper: Stepper
     ground: Ground
     base: str
     factors: dict[str, float]
@@ -282,23 +201,82 @@ class _Run:
     adaptive: bool
     progress: ProgressCallback | None
     stated: float | None
-    stands: bool | None
     engine: Engine | None
+    stands: bool | None = None
     falls: bool = True
-    origin: Array = field(default_factory=lambda: np.zeros((0, 2)))
     fallen: list[str] = field(default_factory=list)
     rests: bool = False
     notes: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        maker = self.stepper.maker
-        self.observer = Observer(self.reference, maker, self.stepper.frames, self.factors, self.points)
+        frames, maker = Frames(self.reference, self.scheme), PairMaker(self.reference, self.scheme)
+        self.observer = Observer(self.reference, maker, frames, self.factors, self.points)
         self.recorder = Recorder()
-        self.meetings = Meetings.of(len(self.reference.model.bodies), self.step / 2**HALVINGS)
         self.sums = dict.fromkeys(("friction", "impact", "damping", "crushing", "input", "overlap", "drift"), 0.0)
         self.seconds = 0.0
         self.begun = clock.perf_counter()
-        self.state: MotionState | None = None
+
+    def begin(self, start: str | MotionState, velocities: Mapping[str, Sequence[float]] | None) -> None:
+        """Begin in equilibrium, as described or at a state, with other velocities of some bodies."""
+        reference = self.reference
+        structures, state = structures_of(reference), at_rest(reference)
+        if isinstance(start, MotionState):
+            if start.centre.shape != reference.disc.centroids.shape or len(start.strain) != len(reference.body_of_node):
+                msg = "the state to start from belongs to another model"
+                raise InputError(msg, hint="take the state of a motion of the same model")
+            state = start
+        elif start == "equilibrium":
+            structures, state = self._balanced(structures, state)
+        elif start != "as described":
+            msg = f"start = '{start}' is not 'equilibrium', 'as described' or a state"
+            raise InputError(msg)
+        elif any(s.moves for s in reference.model.supports):
+            self.notes.append(STAY)
+        if velocities:
+            state = thrown(reference, state, velocities)
+        self.falls = start != "as described"
+        self.origin = reference.disc.centroids if isinstance(start, MotionState) else state.centre.copy()
+        self.started, self.place = state.time, state.centre
+        self.movers: list[Mover] = []
+        self._move(near_now(structures, state) if len(structures) > 1 else structures, state)
+
+    def _balanced(
+        self, structures: list[Structure], state: MotionState
+    ) -> tuple[list[Structure], MotionState]:
+        """Return the structures and their equilibria under the loads, as far as there are any."""
+        while True:
+            found = [_begin(one, self.scheme, self.factors, self.engine) for one in structures]
+            whole = together(structures, [one[0] for one in found], state)
+            apart = near_now(structures, whole) if len(structures) > 1 else structures
+            if len(apart) == len(structures):
+                break
+            structures = apart
+        self.stands = all(one[1] for one in found)
+        self.notes += dict.fromkeys(one[2] for one in found if one[2])
+        return structures, whole
+
+    def _move(self, structures: list[Structure], state: MotionState) -> None:
+        """Let structures move on from a state of the whole."""
+        known = {id(mover.structure): mover for mover in self.movers}
+        self.movers = []
+        for one in structures:
+            mover = known.get(id(one))
+            if mover is None:
+                mover = Mover(one, self.scheme, self.factors, self.step, self.drive, self.adaptive, self.engine)
+                mover.begin(one.part(state), self.origin[one.bodies])
+            self.movers.append(mover)
+        self.state = self._whole(state, state.time)
+
+    def _whole(self, state: MotionState, time: float) -> MotionState:
+        """Return the state of the whole at a time, ``state`` being one before."""
+        if len(self.movers) == 1 and self.movers[0].structure.alone:
+            return self.movers[0].state
+        if self.base == "moving":  # fixed bodies that belong to no structure
+            since, now = self.ground.displacement(np.array([self.started, time]))
+            fixed = (self.reference.disc.shape_of == FIXED)[:, None]
+            state = replace(state, centre=np.where(fixed, self.place + now - since, state.centre))
+        states = [shifted(mover.state, time) for mover in self.movers]
+        return together([mover.structure for mover in self.movers], states, state)
 
     def drive(self, time: float, h: float) -> Drive:
         """Return what is imposed in a step."""
@@ -307,119 +285,100 @@ class _Run:
             return Drive(np.zeros(2), self.ground.mean_velocity(time, time + h), self.factors, moved)
         return Drive(self.ground.mean_acceleration(time, time + h), np.zeros(2), self.factors)
 
-    def follow(self, state: MotionState, every: float, stop_overturned: bool, stop_at_rest: bool) -> Ending:
+    def follow(self, every: float, stop_overturned: bool, stop_at_rest: bool) -> Ending:
         """Compute the motion and record it; return how it ended."""
-        self.state = state = self.stepper.located(state)
-        start = state.time
-        end, shot = start + self.duration, start
-        h, calm = self.step, 0
-        self.watch = Watch(self.observer, self.factors, self.scheme, self.origin, self.engine)
-        self._shoot(state)
+        start = shot = self.started
+        end = start + self.duration
+        self._shoot()
         with Interruption() as interruption:
-            while state.time < end - 1e-6 * self.step:
-                h = min(h, end - state.time)
-                made = self._attempt(state, h)
-                if made is None:
+            while self.state.time < end - 1e-6 * self.step:
+                if not self._advance(end):
                     return Ending.UNSOLVED
-                state, report, used = made
-                if used:
-                    calm = calm + 1 if used >= h else 0
-                    h = min(self.step, 2 * used if calm >= 2 else used)
-                self._keep(state, report)
-                if state.time >= shot + every - 1e-9 * self.step:
-                    shot = state.time
-                    self._shoot(state)
-                fell = self._fell(state)
+                if self.state.time >= shot + every - 1e-9 * self.step:
+                    shot = self.state.time
+                    self._shoot()
+                fell = self._fell()
                 if stop_overturned and fell is not None:
                     return fell
-                over = state.time - start > self.ground.duration
-                if self.watch.calm(state) and over and stop_at_rest and self.watch.rests(state):
+                over = self.state.time - start > self.ground.duration
+                if all([m.watch.calm(m.state) for m in self.movers]) and over and stop_at_rest and self._still():
                     self.rests = True
                     return Ending.AT_REST
-                told = self.progress is not None and self.progress(self._told(state, start))
+                told = self.progress is not None and self.progress(self._told(start))
                 if told or interruption.wanted:
                     return Ending.STOPPED
-        self.rests = self.watch.calm(state) and self.watch.rests(state)
-        if not self.rests and not self.fallen and state.time - start >= self.ground.duration:
-            self.fallen = self.watch.passed(state)
+        self.rests = all([m.watch.calm(m.state) for m in self.movers]) and self._still()
+        if not self.rests and not self.fallen and self.state.time - start >= self.ground.duration:
+            self.fallen = [words for m in self.movers for words in m.watch.passed(m.state)]
         return Ending.COMPLETE
 
-    def _fell(self, state: MotionState) -> Ending | None:
+    def _advance(self, end: float) -> bool:
+        """Make a step of one structure, or those of all to the next time that they have in common, and keep it."""
+        done = (self.state.time - self.started) / self.step
+        to = min(self.started + (np.floor(done + 1e-6) + 1.0) * self.step, end)
+        if len(self.movers) == 1:
+            rows = [self.movers[0].once(to)]
+            to = self.movers[0].state.time
+        else:
+            rows = [mover.advance(to) for mover in self.movers]
+        found = [row for row in rows if row is not None]
+        if len(found) < len(rows):
+            return False
+        self.state = self._whole(self.state, to)
+        self._keep(found)
+        if len(self.movers) > 1:
+            structures = [mover.structure for mover in self.movers]
+            apart = near_now(structures, self.state)
+            if [id(one) for one in apart] != [id(one) for one in structures]:
+                self._move(apart, self.state)
+        return True
+
+    def _still(self) -> bool:
+        """Return whether there are equilibria where all structures stand."""
+        return all([mover.watch.rests(mover.state) for mover in self.movers])
+
+    def _fell(self) -> Ending | None:
         """Return how a motion ends in which a block has fallen, None where none has; note the first ones."""
-        turned = self.watch.overturned(state)
-        sunk = self.watch.sunk(state) if self.falls else []
+        turned = [words for m in self.movers for words in m.watch.overturned(m.state)]
+        sunk = [words for m in self.movers for words in m.watch.sunk(m.state)] if self.falls else []
         self.fallen = self.fallen or turned or sunk
         if turned:
             return Ending.OVERTURNED
         return Ending.FALLEN if sunk and (self.stands is not False or self.stated is None) else None
 
-    def _attempt(self, state: MotionState, h: float) -> tuple[MotionState, StepReport, float] | None:
-        """Make a step that ends where a tie gives way, if one does; see :meth:`_made`."""
-        made = self._made(state, h)
-        if made is None or not self.adaptive or not ties_give_way(state, made[0]):
-            return made
-        whole, ties = made[0].time - state.time, self.stepper.maker.ties
-
-        def at(length: float) -> tuple[MotionState, StepReport]:
-            return self.stepper.step(state, length, self.drive(state.time, length))
-
-        cut = where_ties_give_way(ties, state, made[0], at, whole, LEAST_CUT * self.step)
-        if cut is None or cut[1].solution.residual > CERTIFIED:
-            return made
-        self.meetings.until = max(self.meetings.until, state.time + whole)
-        return *cut, 0.0
-
-    def _made(self, state: MotionState, h: float) -> tuple[MotionState, StepReport, float] | None:
-        """Make a step, smaller where that is needed; None where none can be solved.
-
-        The third is its length, none where it ended or began with an impact that was located.
-        """
-        least = self.step / 2**HALVINGS
-        meetings = self.meetings
-        asked, h = h, meetings.length(state.time, h)
-        planned = h != asked
-        while True:
-            new, report = self.stepper.step(state, h, self.drive(state.time, h))
-            solved = report.solution.residual <= CERTIFIED
-            late = self.adaptive and report.struck > SUNK * self.stepper.maker.width
-            if solved and self.adaptive:
-                cut = meetings.located(report.meets, report.part, h)
-                if cut is not None:
-                    to_it = self.stepper.step(state, cut, self.drive(state.time, cut))
-                    if to_it[1].solution.residual <= CERTIFIED:
-                        meetings.after(state.time, True, to_it[1].left, h)
-                        return *to_it, 0.0
-            if (solved and not late) or (solved and h <= least * 1.01):
-                meetings.after(state.time, False, np.inf, h)
-                return new, report, 0.0 if planned else h
-            if not solved and (h <= least * 1.01 or not self.adaptive):
-                return None
-            h *= 0.5
-
-    def _keep(self, state: MotionState, report: StepReport) -> None:
-        self.state = state
+    def _keep(self, rows: Sequence[Row]) -> None:
+        """Keep what the structures did."""
         for name in self.sums:
-            self.sums[name] += report.works[name]
-        found = report.solution
+            self.sums[name] += sum(row.works[name] for row in rows)
+        worst = max(rows, key=lambda row: row.residual)
+        reactions = np.zeros((len(self.observer.names), 2))
+        for mover, row in zip(self.movers, rows, strict=True):
+            np.add.at(reactions, self.observer.rows_of(mover.observer, mover.structure), row.reactions)
         self.recorder.step(
-            state.time, found.residual, found.how, found.factorisations, report.depth, self.observer.positions(state),
-            self.observer.reactions(found.t, report.pairs, report.normal),
+            self.state.time, worst.residual, worst.how, sum(row.factorisations for row in rows),
+            max(row.depth for row in rows), self.observer.positions(self.state), reactions,
         )  # fmt: skip
 
-    def _shoot(self, state: MotionState) -> None:
-        opening, slip = self.observer.joint_motion(state)
-        self.recorder.shot(state, opening, slip, self.observer.energies(state, self.sums))
+    def _shoot(self) -> None:
+        count = len(self.observer.joints)
+        opening, slip, energy = np.zeros(count), np.zeros(count), dict(self.sums)
+        for mover in self.movers:
+            own = self.observer.joints_of(mover.observer, mover.structure)
+            opening[own], slip[own] = mover.observer.joint_motion(mover.state)
+            for name, value in mover.observer.energies(mover.state, {}).items():
+                energy[name] = energy.get(name, 0.0) + value
+        self.recorder.shot(self.state, opening, slip, energy)
 
-    def _told(self, state: MotionState, start: float) -> Progress:
-        done = (state.time - start) / self.duration
+    def _told(self, start: float) -> Progress:
+        done = (self.state.time - start) / self.duration
         left = (clock.perf_counter() - self.begun) * (1 - done) / max(done, 1e-9)
-        return Progress("dynamics", len(self.recorder.rows), 1.0 - done, f"{state.time:.3f} s, {_time_left(left)} left")
+        at = f"{self.state.time:.3f} s, {_time_left(left)} left"
+        return Progress("dynamics", len(self.recorder.rows), 1.0 - done, at)
 
-    def result(self, ending: Ending, begun_at: float) -> DynamicsResult:
+    def result(self, ending: Ending) -> DynamicsResult:
         """Return what was computed."""
-        assert self.state is not None
         if self.recorder.shots[-1][0] is not self.state:
-            self._shoot(self.state)
+            self._shoot()
         self.seconds = clock.perf_counter() - self.begun
         shots, steps, energy = self.recorder.done(len(self.points), len(self.observer.names))
         return DynamicsResult(
@@ -428,9 +387,10 @@ class _Run:
             reactions_of=self.observer.names,
             joints=self.observer.joints, end=self.state, ground_time=steps.time,
             ground=self.ground.acceleration(steps.time), notes=tuple(self.notes), seconds=self.seconds,
-            lent_compliance=self.stepper.maker.joints.lent if len(self.reference.rigid) else 0.0,
-            asked=self.ground.words, begun=begun_at, stated=self.stated, stands=self.stands,
-            fallen=tuple(self.fallen), rests=self.rests, ground_ends=begun_at + self.ground.duration,
+            lent_compliance=max(mover.lent for mover in self.movers),
+            asked=self.ground.words, begun=self.started, stated=self.stated, stands=self.stands,
+            fallen=tuple(self.fallen), rests=self.rests, ground_ends=self.started + self.ground.duration,
+            structures=tuple(tuple(mover.structure.bodies.tolist()) for mover in self.movers),
         )  # fmt: skip
 
 

@@ -83,6 +83,8 @@ class DynamicsResult(Shown):
         Blocks that have fallen or passed their own equilibrium, a phrase each.
     rests : bool
         Whether nothing moves in the end, and an equilibrium was found there.
+    structures : tuple of tuples of int
+        Bodies of each structure that stood apart from the others to the end: each moved by itself.
     """
 
     model: Model
@@ -109,6 +111,7 @@ class DynamicsResult(Shown):
     stands: bool | None = None
     fallen: tuple[str, ...] = ()
     rests: bool = False
+    structures: tuple[tuple[int, ...], ...] = ()
 
     @property
     def complete(self) -> bool:

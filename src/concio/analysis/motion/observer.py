@@ -9,6 +9,7 @@ import numpy as np
 from concio.analysis.motion.frames import Frames
 from concio.analysis.motion.pairs import PairMaker
 from concio.analysis.motion.state import MotionState
+from concio.analysis.motion.structures import Structure
 from concio.contact.moving.points import MaterialPoints
 from concio.contact.moving.reference import Reference
 from concio.contact.moving.rows import Rows
@@ -107,6 +108,17 @@ class Observer:
             sign = np.concatenate([np.ones(len(a)), -np.ones(len(b))])[:, None]
             self._reacting = slots.key, np.concatenate([a, b]), np.concatenate([row_a[a], row_b[b]]), sign
         return self._reacting[1:]
+
+    def rows_of(self, part: Observer, structure: Structure) -> Array:
+        """Return the rows (r,) of the reactions of a structure, which a part of these observes, among all."""
+        fixed = self._row[structure.bodies[part.fixed]]
+        held = [self._held_row[int(structure.supports[i])] for i in part._held_row]
+        return np.concatenate([fixed, np.array(held, dtype=int)])
+
+    def joints_of(self, part: Observer, structure: Structure) -> Array:
+        """Return the numbers (f,) of the joints of a structure, which a part of these observes, among all."""
+        edges = structure.edges
+        return np.array([self._joint[int(edges[a]), int(edges[b])] for a, b in part._joint], dtype=int)
 
     def rows(self, state: MotionState) -> Rows:
         """Return the contact rows where the bodies stand, in the present layout."""

@@ -1,0 +1,66 @@
+"""What a motion is asked for: duration, step, velocities to begin with; and what is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from concio.analysis.motion.ground import Ground
+from concio.analysis.motion.state import MotionState
+from concio.contact.moving.reference import Reference
+from concio.errors import InputError
+from concio.kinematics.rigid import swept
+
+STEP = 2e-3
+"""Step where none is given and no record is finer [s]."""
+
+
+def positive(value: float, name: str) -> float:
+    """Return a number that was given; raise where it is not positive and finite."""
+    if not 0 < value < np.inf:
+        msg = f"{name} = {value:g} must be positive and finite"
+        hint = "give the time to compute, or a ground motion" if name == "duration" else None
+        raise InputError(msg, hint=hint)
+    return float(value)
+
+
+def step_asked(step: float | None, ground: Ground, duration: float) -> float:
+    """Return the step that was asked for, or the usual one; raise where it is larger than that of the record."""
+    if step is None:
+        return min(STEP, ground.sample, duration)
+    step = positive(step, "step")
+    if step > ground.sample * (1 + 1e-9):
+        msg = f"the step of {step:g} s is larger than that of the record, {ground.sample:g} s"
+        raise InputError(msg, hint=f"take at most {ground.sample:g} s: what happens between samples would be lost")
+    return min(step, duration)
+
+
+def check_masses(reference: Reference) -> None:
+    """Refuse bodies without mass."""
+    without = [reference.model.bodies[b].name for b in reference.free.tolist() if not reference.body_mass[b] > 0]
+    if without:
+        msg = f"block '{without[0]}' has no mass" + (f", and {len(without) - 1} others" if without[1:] else "")
+        raise InputError(msg, hint="give its material a unit_weight: mass is weight over gravity")
+
+
+def thrown(reference: Reference, state: MotionState, velocities: Mapping[str, Sequence[float]]) -> MotionState:
+    """Return a state with other velocities of some bodies."""
+    number = {b.name: i for i, b in enumerate(reference.model.bodies)}
+    velocity, spin, nodal = state.velocity.copy(), state.spin.copy(), state.nodal.copy()
+    for name, given in velocities.items():
+        if name not in number or reference.model.bodies[number[name]].kind == "fixed":
+            msg = f"there is no body called '{name}' that can move"
+            raise InputError(msg, where="velocities", hint="see the names with 'concio check'")
+        values = [float(v) for v in given]
+        if len(values) not in (2, 3) or not np.isfinite(values).all():
+            msg = f"the velocity of '{name}' is (v_x, v_y) or (v_x, v_y, spin), all finite"
+            raise InputError(msg, where="velocities")
+        b = number[name]
+        velocity[b], spin[b] = values[:2], values[2] if len(values) == 3 else 0.0
+        if reference.disc.shape_of[b] >= 0:
+            own = np.flatnonzero(reference.body_of_node == b)
+            placed = state.configuration(reference).nodes(b) - state.centre[b]
+            nodal[own] = velocity[b] + swept(spin[b], placed)
+    return replace(state, velocity=velocity, spin=spin, nodal=nodal)
