@@ -173,6 +173,12 @@ class Units:
             Size of the quantities it stands beside.
         sign : bool
             Whether a positive number has its sign.
+
+        Examples
+        --------
+        >>> import concio
+        >>> concio.Units(motion="cm").text("motion", 0.0123)
+        '1.23 cm'
         """
         factor, symbol = self.factor(kind, size or value)
         told = number(factor * value, digits, size=factor * size)

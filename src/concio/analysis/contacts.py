@@ -34,6 +34,16 @@ class Contacts:
     slip : (m, d-1) array
         y_t along the tangents [m].
     states : PairStates
+
+    Examples
+    --------
+    A pillar of 20 kN presses its base of 0.5 m2 with 40 kN/m2:
+
+    >>> import concio
+    >>> result = concio.solve(concio.column(width=0.5, height=2.0, blocks=4, block="rigid", unit_weight=20.0))
+    >>> base = result.contacts.pairs.body_a == result.body_index("ground")
+    >>> result.contacts.pressure[base].round(6).tolist()
+    [40.0, 40.0]
     """
 
     pairs: Pairs
@@ -114,6 +124,15 @@ class JointResultants:
         Share of the length whose pairs are open.
     slipping : (j,) boolean array
         True where every closed pair slips.
+
+    Examples
+    --------
+    Each joint of a pillar carries the weight above it:
+
+    >>> import concio
+    >>> result = concio.solve(concio.column(width=0.5, height=2.0, blocks=4, block="rigid", unit_weight=20.0))
+    >>> result.joints.N.round(6).tolist()
+    [20.0, 15.0, 10.0, 5.0]
     """
 
     body_a: Array

@@ -43,6 +43,16 @@ class SpaceResultants:
         Share of the area whose pairs are open.
     slipping : (j,) boolean array
         True where every closed pair slips.
+
+    Examples
+    --------
+    Each joint of a pillar carries the weight above it:
+
+    >>> import concio
+    >>> plane = concio.column(width=0.5, height=2.0, blocks=4, block="rigid", unit_weight=20.0)
+    >>> pillar = concio.extrude(plane, thickness=1.0)
+    >>> concio.solve(pillar).joints_in_space.N.round(6).tolist()
+    [20.0, 15.0, 10.0, 5.0]
     """
 
     body_a: Array

@@ -208,6 +208,16 @@ class LimitResult(Shown):
             The model has something that is not proved exactly yet.
         SolverError
             No exact forces and no exact motion were found.
+
+        Examples
+        --------
+        Checked as ``concio verify`` does:
+
+        >>> import concio
+        >>> from concio.proof.verify import check
+        >>> found = concio.limit(concio.column(width=0.5, height=2.0, blocks=1, block="rigid", horizontal=1.0))
+        >>> check(found.proof()).split(": ")[1:]
+        ['1/4 = 0.25 is balanced; nothing above 1/4 = 0.25 is', 'proved exactly']
         """
         from concio.proof.certificate import prove_limit
 

@@ -238,7 +238,21 @@ class PathResult(Shown):
         return max((s.parameter for s in self.steps if s.stage == wanted), default=0.0)
 
     def curve(self, point: ControlPoint, stage: int | None = None) -> tuple[Array, Array]:
-        """Return (displacement of the point [m], parameter) at every step, of one stage from its start or of all."""
+        """Return (displacement of the point [m], parameter) at every step, of one stage from its start or of all.
+
+        Examples
+        --------
+        A pillar of 2 m and 5 GPa is shortened by 0.04 mm under a pressure of 100 kN/m2:
+
+        >>> import concio
+        >>> stone = concio.Elastic(E="5 GPa", nu=0.0)
+        >>> pillar = concio.column(width=0.5, height=2.0, blocks=4, block=stone, top_pressure=100.0)
+        >>> path = concio.run_path(pillar, [concio.Stage("press", {"top": 1.0})])
+        >>> head = concio.ControlPoint("b04", at=(0.0, 2.0), direction=(0.0, -1.0))
+        >>> displacement, parameter = path.curve(head)
+        >>> round(1e3 * float(displacement[-1]), 6), float(parameter[-1])
+        (0.04, 1.0)
+        """
         functional, shift = control_functional(self.assembly, point)
         chosen = list(range(len(self.steps)))
         if stage is not None:
@@ -255,6 +269,14 @@ class PathResult(Shown):
 
         Gaps are less what dilatancy opened with every slip on the way, so that a closed joint has none.
         The certificate, and with it the status, is that of the step, whose slip directions count from the step before.
+
+        Examples
+        --------
+        >>> import concio
+        >>> block = concio.column(width=1.0, height=0.5, blocks=1, block="rigid", unit_weight=20.0, horizontal=0.3)
+        >>> path = concio.run_path(block, [concio.Stage("weight", {"dead": 1.0}), concio.Stage("push", {"live": 1.0})])
+        >>> [round(float(force), 6) for force in path.result().reactions["ground"]]
+        [-3.0, 10.0]
         """
         chosen = self.steps[step]
         problem, state = self.assembly.problem(chosen.factors), chosen.state

@@ -367,7 +367,16 @@ class Result(Shown):
         return sufficient_condition(self.assembly.problem(self.factors))
 
     def summary(self) -> dict[str, Any]:
-        """Return the numbers of ``--json``: plain types, kN and m."""
+        """Return the numbers of ``--json``: plain types, kN and m.
+
+        Examples
+        --------
+        >>> import concio
+        >>> result = concio.solve(concio.column(width=0.5, height=2.0, blocks=4, block="rigid"))
+        >>> numbers = result.summary()
+        >>> numbers["status"], numbers["pairs"]["stick"]
+        ('solved', 8)
+        """
         contacts = self.contacts if self.solved else None
         data: dict[str, Any] = {
             "status": self.status.name.lower(),

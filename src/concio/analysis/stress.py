@@ -25,6 +25,16 @@ class Stress:
     disc : Discretisation
     displacement : (N_all,) array
         Less what bodies expand by where their temperature changes [m].
+
+    Examples
+    --------
+    The vertical stress of blocks under a pressure of 100 kN/m2, without weight:
+
+    >>> import concio
+    >>> pillar = concio.column(width=0.5, height=2.0, blocks=4, top_pressure=100.0, unit_weight=0.0)
+    >>> result = concio.solve(pillar)
+    >>> result.stress.mean[result.body_index("b02"), 1].round(6).item()
+    -100.0
     """
 
     disc: Discretisation

@@ -25,6 +25,7 @@ class Turns:
     Examples
     --------
     >>> import numpy as np
+    >>> from concio.kinematics.turns import Turns
     >>> Turns.of(np.array([np.pi / 2])).apply(np.array([[1.0, 0.0]])).round(12).tolist()
     [[0.0, 1.0]]
     """

@@ -335,7 +335,15 @@ class Vehicle:
         return max(self.points or self.axles, key=lambda axle: axle.load)
 
     def footprints(self, position: float, direction: str = "") -> tuple[tuple[float, float, float, bool], ...]:
-        """Return of each axle middle x [m], length [m], load with all factors [kN], and whether it is a stretch."""
+        """Return of each axle middle x [m], length [m], load with all factors [kN], and whether it is a stretch.
+
+        Examples
+        --------
+        >>> import concio
+        >>> lorry = concio.Vehicle("lorry", axles=(concio.Axle(0.0, 60.0), concio.Axle(3.2, 100.0)))
+        >>> [place[0] for place in lorry.footprints(10.0)]
+        [10.0, 13.2]
+        """
         sign = -1.0 if (direction or self.direction) == "left" else 1.0
         return tuple(
             (position + sign * a.at, self.footprint if a.length is None else a.length,

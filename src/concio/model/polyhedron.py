@@ -121,6 +121,13 @@ class Polyhedron:
         low, high : (x, y, z)
         **fields
             Further fields of :class:`Polyhedron`.
+
+        Examples
+        --------
+        >>> import concio
+        >>> block = concio.Polyhedron.box("b01", (0.0, 0.0, 0.0), (0.6, 0.3, 0.2))
+        >>> round(block.volume, 6), len(block.faces)
+        (0.036, 6)
         """
         p, q = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
         if p.shape != (3,) or q.shape != (3,) or not (p < q).all():

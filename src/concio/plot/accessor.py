@@ -21,6 +21,16 @@ class Plots:
     Parameters
     ----------
     result : Result
+
+    Examples
+    --------
+    >>> import concio
+    >>> import io
+    >>> result = concio.solve(concio.column(width=0.5, height=2.0, blocks=4))
+    >>> picture = io.BytesIO()
+    >>> result.plot.deformed().figure.savefig(picture, format="png")
+    >>> picture.getvalue()[1:4]
+    b'PNG'
     """
 
     result: Result

@@ -71,6 +71,14 @@ class Tables:
     Parameters
     ----------
     result : Result
+
+    Examples
+    --------
+    >>> import concio
+    >>> result = concio.solve(concio.column(width=0.5, height=2.0, blocks=2, block="rigid", unit_weight=20.0))
+    >>> table = result.tables.joints()
+    >>> table["normal_force"].round(6).tolist()
+    [20.0, 10.0]
     """
 
     result: Result

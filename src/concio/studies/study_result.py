@@ -172,6 +172,19 @@ class StudyResult(Shown):
         ------
         InputError
             The runs are not a random sample.
+
+        Examples
+        --------
+        A pillar stands in two of four runs. The interval for so few runs is wide:
+
+        >>> import concio
+        >>> push = concio.variable("push", "uniform", low=0.1, high=0.4)
+        >>> def pillar(values):
+        ...     return concio.column(width=0.5, height=2.0, blocks=1, block="rigid", horizontal=values["push"])
+        >>> found = concio.study(pillar, [push], "stands", sample=[[0.1], [0.2], [0.3], [0.4]])
+        >>> stands = found.probability("stands", above=0.5)
+        >>> stands.estimate, round(stands.low, 2), round(stands.high, 2)
+        (0.5, 0.07, 0.93)
         """
         if self.sample.design in ("grid", "one-at-a-time", "saltelli"):
             msg = f"a {self.sample.design} sample has no probabilities"

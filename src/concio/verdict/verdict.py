@@ -125,6 +125,14 @@ class Verdict:
             Begins each line.
         most : int, optional
             Largest number of lines of one kind; more are counted.
+
+        Examples
+        --------
+        >>> import concio
+        >>> pillar = concio.column(width=0.5, height=2.0, blocks=4, block="rigid", unit_weight=20.0)
+        >>> verdict = concio.solve(pillar).verdict
+        >>> verdict.lines(indent="")[1]
+        'acts         dead: constant; self-weight, -20 kN along y'
         """
         parts: list[tuple[str, Sequence[str]]] = [
             ("asked", (self.question.asked,)),

@@ -159,7 +159,20 @@ class Moduli(Shown):
         return modulus, -float(strain[across]), float(strain.get(2, 0.0))
 
     def rotated(self, angle: float) -> Array:
-        """Return the matrix (3, 3) in axes turned anticlockwise by ``angle`` [rad]."""
+        """Return the matrix (3, 3) in axes turned anticlockwise by ``angle`` [rad].
+
+        Examples
+        --------
+        Axes turned by a right angle change the places of the two directions:
+
+        >>> import concio
+        >>> import math
+        >>> law = concio.JointLaw(0.6, normal_stiffness=10e6, tangential_stiffness=4e6)
+        >>> moduli = concio.homogenise(concio.cell(bond="stack", block_size=(0.2, 0.1), friction=law))
+        >>> turned = moduli.rotated(math.pi / 2)
+        >>> bool(abs(turned[0, 0] / moduli.matrix[1, 1] - 1.0) < 1e-9)
+        True
+        """
         T = rotation(angle)
         return np.asarray(T @ self.matrix @ T.T)
 

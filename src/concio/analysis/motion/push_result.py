@@ -197,7 +197,18 @@ class PushResult(Shown):
         return (self.centre[k] - self.centre[k - 1]) / grown, (self.rotation[k] - self.rotation[k - 1]) / grown
 
     def rotation_of(self, body: str) -> Array:
-        """Return the rotation of a body at every point, anticlockwise (n,) [rad]."""
+        """Return the rotation of a body at every point, anticlockwise (n,) [rad].
+
+        Examples
+        --------
+        A block falls once its diagonal is upright:
+
+        >>> import concio
+        >>> import math
+        >>> pushed = concio.push(concio.column(width=0.5, height=2.0, blocks=1, block="rigid"))
+        >>> round(float(abs(pushed.rotation_of("b01")[-1])), 4), round(math.atan(0.25), 4)
+        (0.245, 0.245)
+        """
         names = [b.name for b in self.model.bodies]
         if body not in names:
             msg = f"there is no body called '{body}'"

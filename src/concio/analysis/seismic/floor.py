@@ -41,6 +41,15 @@ class Mode:
         psi(z) at the height of the mechanism.
     xi : float
         Damping ratio in per cent.
+
+    Examples
+    --------
+    >>> import concio
+    >>> from concio.seismic import Mode
+    >>> mode = Mode(T=0.25, participation=1.2, shape=0.5, xi=10.0)
+    >>> site = concio.Site({"SLV": {"a_g": 0.20, "F0": 2.45, "Tc": 0.32}}, building=(mode,))
+    >>> site.building[0].T
+    0.25
     """
 
     T: float
@@ -71,6 +80,16 @@ class Storeys:
         Damping ratio in per cent.
     base : float
         Level of the ground in the model [m].
+
+    Examples
+    --------
+    The participation of the first mode of two storeys is 3 * 2 / (2 * 2 + 1), and its shape half-way up 1/2:
+
+    >>> from concio.seismic import Storeys
+    >>> building = Storeys(height=6.0, storeys=2, T1=0.25)
+    >>> mode = building.mode(3.0, {})
+    >>> mode.participation, mode.shape
+    (1.2, 0.5)
     """
 
     height: float

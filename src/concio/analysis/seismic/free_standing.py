@@ -52,6 +52,13 @@ class FreeStanding:
         t [m]; by default how far the blocks that move reach along the push.
     unit_weight : float, optional
         W [kN/m3]; by default the weight of the blocks that move over their volume.
+
+    Examples
+    --------
+    >>> from concio.seismic import FreeStanding
+    >>> parapet = FreeStanding("cantilever", E="900 MPa", thickness="30 cm")
+    >>> round(parapet.E), round(parapet.thickness, 6)
+    (900000, 0.3)
     """
 
     kind: str

@@ -79,6 +79,21 @@ def tie_force(model: Model, tie: str, *, zeta: float = 1.0, largest: float | Non
     ------
     InputError
         There is no such tie; or as :func:`concio.assess`.
+
+    Examples
+    --------
+    A tie holds a pillar near its head. The force that brings the weakest mechanism to zeta_E = 1:
+
+    >>> import concio
+    >>> import dataclasses
+    >>> from concio.seismic import tie_force
+    >>> pillar = concio.column(width=0.5, height=2.0, blocks=1, block="rigid")
+    >>> tie = concio.Tie("t1", "b01", (-0.25, 1.8), "", (-3.0, 1.8), stiffness=10e3, yield_force=5.0)
+    >>> site = concio.Site({"SLV": {"a_g": 0.30, "F0": 2.45, "Tc": 0.32}}, soil="C")
+    >>> held = dataclasses.replace(pillar, ties=(tie,))
+    >>> found = tie_force(held, "t1", site=site, levels=("SLV",), direction="right", elsewhere=("out of plane",))
+    >>> round(found.force, 1), round(found.reached, 3)
+    (1.7, 1.0)
     """
     names = [t.name for t in model.ties]
     if tie not in names:
@@ -146,6 +161,18 @@ def variations(found: Assessment, progress: ProgressCallback | None = None) -> t
     """Return how the weakest mechanism changes with the friction and, where joints crush, with their strength.
 
     It is sought again under its push, in all parts of the structure; of the named mechanisms only itself.
+
+    Examples
+    --------
+    A pillar tips whatever its friction:
+
+    >>> import concio
+    >>> from concio.seismic import variations
+    >>> pillar = concio.column(width=0.5, height=2.0, blocks=1, block="rigid")
+    >>> site = concio.Site({"SLV": {"a_g": 0.20, "F0": 2.45, "Tc": 0.32}}, soil="A")
+    >>> found = concio.assess(pillar, site=site, direction="right", levels=("SLV",), elsewhere=("out of plane",))
+    >>> [(v.what, v.factor, round(v.multiplier, 4)) for v in variations(found)]
+    [('friction', 0.8, 0.25), ('friction', 1.2, 0.25)]
     """
     result: list[Variation] = []
     worst = found.worst

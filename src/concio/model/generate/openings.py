@@ -26,6 +26,17 @@ class Opening:
         Height of the lintel [m]; 0 leaves it out, and the blocks above must carry themselves.
     bearing : float or str
         Length of the lintel's bearing on each side [m].
+
+    Examples
+    --------
+    A window of 1 m2 in a wall of 9 m2:
+
+    >>> import concio
+    >>> from concio.generate import Opening
+    >>> window = Opening(x=1.0, y=1.0, width=1.0, height=1.0, lintel=0.25)
+    >>> model = concio.wall(length=3.0, height=3.0, block_size=(0.5, 0.25), openings=[window])
+    >>> round(sum(block.area for block in model.free_bodies), 6)
+    8.0
     """
 
     x: float

@@ -38,6 +38,18 @@ class WallLine:
         Where it is not that of the others [m].
     openings : sequence of Opening or mapping
         ``x`` from the start along the axis, ``y`` from the foot [m].
+
+    Examples
+    --------
+    A wall of 3 by 1.5 m and 0.25 m with a window of 0.5 m2:
+
+    >>> import concio
+    >>> from concio.generate import Opening, WallLine
+    >>> window = Opening(x=1.0, y=0.5, width=1.0, height=0.5, lintel=0.25)
+    >>> line = WallLine((0.0, 0.0), (3.0, 0.0), height=1.5, openings=[window])
+    >>> model = concio.walls(lines=[line], block_size=(0.5, 0.25, 0.25))
+    >>> round(sum(block.volume for block in model.free_bodies), 6)
+    1.0
     """
 
     start: Sequence[float | str]

@@ -30,6 +30,17 @@ class Panel:
         As in :func:`concio.wall`; None takes the wall's.
     openings : sequence of Opening or mapping
         Measured from the panel's own corner.
+
+    Examples
+    --------
+    A panel of 1 by 0.5 m on a wall of 2 by 1 m:
+
+    >>> import concio
+    >>> from concio.generate import Panel
+    >>> panels = [Panel(length=2.0, height=1.0), Panel(length=1.0, height=0.5, at=(0.5, 1.0))]
+    >>> model = concio.wall(block_size=(0.5, 0.25), panels=panels)
+    >>> round(sum(block.area for block in model.free_bodies), 6)
+    2.5
     """
 
     length: float

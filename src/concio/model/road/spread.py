@@ -50,6 +50,15 @@ class SpreadRule:
     footprint, width_over : float or None
         Length and width of the footprint in place of the axle's [m].
     source : str
+
+    Examples
+    --------
+    A wheel of 1.8 m in width, under 0.5 m of fill that spreads 1:2 to both sides:
+
+    >>> from concio.bridges import SpreadRule
+    >>> rule = SpreadRule("1:2", along=1.0, across=1.0)
+    >>> round(rule.width_at(1.8, 0.5), 6)
+    2.3
     """
 
     name: str

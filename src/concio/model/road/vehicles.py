@@ -16,7 +16,14 @@ from concio.model.crossing import Axle, Vehicle
 
 @cache
 def vehicles() -> Mapping[str, Vehicle]:
-    """Return the vehicles that come with concio, by name."""
+    """Return the vehicles that come with concio, by name.
+
+    Examples
+    --------
+    >>> from concio.bridges import vehicles
+    >>> vehicles()["single axle"].total
+    100.0
+    """
     text = files("concio.model.road").joinpath("vehicles.toml").read_text(encoding="utf-8")
     found = {}
     for name, table in tomllib.loads(text).items():
