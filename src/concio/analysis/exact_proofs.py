@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, Literal
 
 import numpy as np
 
 from concio.contact.assembly import Assembly
+from concio.errors import InputError, SolverError
+from concio.problem.solution import Solution, Status, pair_states
 from concio.proof.certificate import prove_balance, prove_collapse
+from concio.proof.equilibrium import at_rest, prove_equilibrium
+from concio.proof.programs import recompute
 from concio.solvers.statics.existence import find_mechanism, statically_admissible
 
 Array = np.ndarray
+
+MOST_BLOCKS, MOST_UNKNOWNS = 100, 300
+"""Blocks and unknowns up to which reports and notebooks seek an exact certificate unasked."""
 
 
 def collapse_proof(
@@ -69,6 +76,51 @@ def balance_proof(
         tangential = found.friction_force.reshape(len(assembly.pairs), -1)
         directions = np.einsum("ki,kij->kj", tangential, assembly.pairs.tangents)
     return prove_balance(assembly, factors, numbers=numbers, directions=directions)
+
+
+def step_proof(
+    assembly: Assembly,
+    factors: Mapping[str, float] | None,
+    solution: Solution,
+    *,
+    numbers: Literal["binary", "decimal"] = "binary",
+) -> dict[str, Any]:
+    """Return the exact certificate of the outcome of a load step, see :meth:`concio.Result.proof`.
+
+    Parameters
+    ----------
+    assembly, factors, numbers
+        As in :func:`collapse_proof`.
+    solution : Solution
+        What the solver found.
+    """
+    if solution.status is Status.NO_EQUILIBRIUM:
+        return collapse_proof(assembly, factors, numbers=numbers)
+    if not solution.solved:
+        msg = f"the outcome '{solution.status.name.lower()}' has no exact certificate"
+        raise SolverError(msg, hint="an equilibrium has one, and loads that no forces balance")
+    if assembly.model.dim == 3 and at_rest(assembly):
+        return balance_proof(assembly, factors, numbers=numbers)
+    states = pair_states(assembly.problem(factors), solution)
+    forces = np.column_stack([solution.normal_force, solution.friction_force])
+    return prove_equilibrium(assembly, factors, states, forces, numbers=numbers)
+
+
+def sentence_proved(assembly: Assembly, make: Callable[[], dict[str, Any]]) -> str:
+    """Return what a certificate proves in a sentence; empty where there is none, or where it would cost much.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    make : callable
+        Makes the certificate, or raises.
+    """
+    if len(assembly.model.free_bodies) > MOST_BLOCKS or assembly.disc.unknowns > MOST_UNKNOWNS:
+        return ""
+    try:
+        return recompute(make())
+    except (InputError, SolverError):
+        return ""
 
 
 def against_slips(assembly: Assembly, velocity: Array) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -222,6 +223,16 @@ class LimitResult(Shown):
         from concio.proof.certificate import prove_limit
 
         return prove_limit(self.assembly, self.groups, numbers=numbers, directions=self._ways())
+
+    @cached_property
+    def proved(self) -> str:
+        """What an exact certificate of the associated multiplier proves, in a sentence; empty where there is none.
+
+        One is sought for up to a hundred blocks.
+        """
+        from concio.analysis.exact_proofs import sentence_proved
+
+        return sentence_proved(self.assembly, self.proof)
 
     def _ways(self) -> tuple[Array, Array]:
         """Return directions (m, d) of friction forces, and of what would oppose the slips of the mechanism."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -350,6 +350,46 @@ class Result(Shown):
     def verdict(self) -> Verdict:
         """The answer with its question: what acts, its proof, its limits, what is suspicious about the model."""
         return step_verdict(self)
+
+    def proof(self, numbers: Literal["binary", "decimal"] = "binary") -> dict[str, Any]:
+        """Return an exact certificate of the outcome, for ``concio verify``.
+
+        An equilibrium of a plane model is proved with its displacements: as fractions, or each number enclosed between
+        two. In space forces in balance prove that of rigid blocks on joints that do not yield. That no forces balance
+        the loads is proved by a motion.
+
+        Parameters
+        ----------
+        numbers : {"binary", "decimal"}
+            Numbers of the model as the computer holds them, or rounded to twelve decimal digits.
+
+        Raises
+        ------
+        InputError
+            The model has something that is not proved exactly yet, or is too large.
+        SolverError
+            The outcome has no exact certificate, or joints are on the edge of two states, which it names.
+
+        Examples
+        --------
+        >>> import concio
+        >>> wall = concio.wall(1.0, 0.5, (0.5, 0.25), block="rigid", unit_weight=20, friction=0.6)
+        >>> concio.solve(wall).proof()["claim"]
+        'equilibrium'
+        """
+        from concio.analysis.exact_proofs import step_proof
+
+        return step_proof(self.assembly, self.factors or None, self.solution, numbers=numbers)
+
+    @cached_property
+    def proved(self) -> str:
+        """What an exact certificate of the outcome proves, in a sentence; empty where there is none or none was sought.
+
+        One is sought where it costs little: up to a hundred rigid blocks, or a few small elastic ones.
+        """
+        from concio.analysis.exact_proofs import sentence_proved
+
+        return sentence_proved(self.assembly, self.proof)
 
     @property
     def sentence(self) -> str:

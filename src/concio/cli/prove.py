@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json as json_text
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -12,12 +12,16 @@ from concio.cli.options import Factors, File, Json, Quiet, factors_of, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_file, replaced_file
 
+if TYPE_CHECKING:
+    from concio.contact.assembly import Assembly
+
 
 @guarded
 def prove(
     file: File,
     claim: Annotated[
-        Literal["limit", "collapse", "balance"], typer.Option("--claim", help="Claim to prove.")
+        Literal["limit", "collapse", "balance", "equilibrium"],
+        typer.Option("--claim", help="Claim to prove."),
     ] = "limit",
     group: Annotated[
         list[str] | None,
@@ -46,7 +50,7 @@ def prove(
     from concio.analysis.exact_proofs import balance_proof, collapse_proof
     from concio.analysis.limit import limit
     from concio.errors import InputError
-    from concio.proof.verify import check
+    from concio.proof.programs import recompute
     from concio.verdict.proof_verdict import proof_verdict, with_attention
     from concio.verdict.unanswered import with_a_verdict
 
@@ -62,12 +66,12 @@ def prove(
     factors = factors_of(factor) or None
     with with_a_verdict(assembly, "prove"):
         if claim != "limit":
-            prove_that = {"collapse": collapse_proof, "balance": balance_proof}[claim]
-            live, made = [], prove_that(assembly, factors, numbers=numbers)
+            ways = {"collapse": collapse_proof, "balance": balance_proof, "equilibrium": _equilibrium}
+            live, made = [], ways[claim](assembly, factors, numbers=numbers)
         else:
             made = limit(assembly, live=live, path=False, steps=False, search=False).proof(numbers)
     made = with_attention(made, assembly)
-    sentence = check(made)
+    sentence = recompute(made)
     verdict = proof_verdict(made, sentence, assembly, factors, live)
     with replaced_file(place) as fresh:
         fresh.write_text(json_text.dumps(made, indent=1, ensure_ascii=True) + "\n", encoding="ascii")
@@ -80,3 +84,17 @@ def prove(
             say(line)
         say(f"  certificate  {place}, {place.stat().st_size:,} bytes; 'concio verify {place}' recomputes it")
     return verdict.exit_code
+
+
+def _equilibrium(
+    assembly: Assembly, factors: dict[str, float] | None, *, numbers: Literal["binary", "decimal"]
+) -> dict[str, Any]:
+    """Return the certificate of a load step that has an equilibrium; raise where it has none."""
+    import concio
+    from concio.errors import SolverError
+
+    result = concio.solve(assembly, factors=factors, on_failure="return")
+    if not result.solved:
+        msg = f"there is no equilibrium to prove: {result.sentence}"
+        raise SolverError(msg, hint="ask for the contrary with --claim collapse")
+    return result.proof(numbers)

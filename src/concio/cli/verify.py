@@ -22,16 +22,18 @@ def verify(
 
     What is suspicious about the model is printed as 'concio prove' wrote it down.
 
-    The program that does it is one short file without imports from concio, src/concio/proof/verify.py, and runs alone.
+    The programs that do it are two short files without imports from concio, which run alone: verify.py in
+    src/concio/proof, and verify_equilibrium.py for the claim of an equilibrium with its displacements.
 
     Example: concio verify wall.proof.json
     """
     from concio.errors import InputError
-    from concio.proof.verify import read
+    from concio.proof.programs import recompute
 
     try:
-        sentence = read(str(certificate))
-        noted = [str(line) for line in json_text.loads(certificate.read_text(encoding="ascii")).get("attention", [])]
+        data = json_text.loads(certificate.read_text(encoding="ascii"))
+        sentence = recompute(data)
+        noted = [str(line) for line in data.get("attention", [])]
     except OSError as error:
         msg = f"cannot be read: {error.strerror or error}"
         raise InputError(msg, where=str(certificate)) from None

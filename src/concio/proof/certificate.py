@@ -108,7 +108,7 @@ def prove_collapse(
         As :func:`prove_limit`; a structure that is balanced within friction has no such certificate.
     """
     data = statement(assembly, numbers)
-    acting = {g: _factor(factors, g, numbers) for g in assembly.groups}
+    acting = factors_of(assembly, factors, numbers)
     made = {"format": FORMAT, "claim": "collapse", **data, "constant": _texts(acting)}
     for share in (Fraction(0), *ASIDE):
         found = _upper(witness(data, {}, acting, side="outside", directions=directions, wider=share))
@@ -141,13 +141,20 @@ def prove_balance(
         As :func:`prove_limit`.
     """
     data = statement(assembly, numbers)
-    acting = {g: _factor(factors, g, numbers) for g in assembly.groups}
+    acting = factors_of(assembly, factors, numbers)
     made = {"format": FORMAT, "claim": "balance", **data, "constant": _texts(acting)}
     found = _lower(forces_below(data, acting, {}, Fraction(0), directions))
     if found is not None and _holds({**made, "forces": found["forces"]}):
         return sealed({**made, "forces": found["forces"]})
     msg = "no exact forces within friction were found that balance the loads"
     raise SolverError(msg, hint="there may be none, or they are on the edge of a round cone; 'concio run' tells")
+
+
+def factors_of(
+    assembly: Assembly, factors: Mapping[str, float] | None, numbers: Numbers = "binary"
+) -> dict[str, Fraction]:
+    """Return the factor of every load group as a fraction."""
+    return {g: _factor(factors, g, numbers) for g in assembly.groups}
 
 
 def sealed(made: Mapping[str, Any]) -> dict[str, Any]:

@@ -76,6 +76,22 @@ def solve_exactly(rows: Sequence[Row], right: Sequence[Fraction]) -> list[Fracti
     return None
 
 
+def scaled(rows: Sequence[Row], right: Sequence[Fraction]) -> sp.csc_array:
+    """Return the matrix of a system of fractions in floating point, rows and columns with a largest entry of 1.
+
+    Raises
+    ------
+    RuntimeError
+        An equation or an unknown is empty.
+    """
+    whole, _ = _whole(rows, right)
+    held = set().union(*whole)
+    if not all(whole) or len(held) < len(rows):
+        msg = "an equation or an unknown is empty"
+        raise RuntimeError(msg)
+    return _floats(whole, len(rows))[0]
+
+
 def _whole(rows: Sequence[Row], right: Sequence[Fraction]) -> tuple[list[dict[int, int]], list[int]]:
     """Return the rows and the right side times a whole number that takes their denominators away."""
     whole, b = [], []

@@ -28,7 +28,7 @@ FIXED_POINTS = "fixed points"
 REFUSED = "this is not proved exactly yet"
 
 
-def statement(assembly: Assembly, numbers: Numbers = "binary") -> dict[str, Any]:
+def statement(assembly: Assembly, numbers: Numbers = "binary", *, gaps: bool = False) -> dict[str, Any]:
     """Return blocks, contact points and loads of an assembly, every number a text.
 
     Parameters
@@ -37,16 +37,18 @@ def statement(assembly: Assembly, numbers: Numbers = "binary") -> dict[str, Any]
     numbers : {"binary", "decimal"}
         Binary numbers as the computer holds them, such as "0x1.8p-1"; or each rounded to twelve decimal digits, which
         turns 0.1 back into a tenth.
+    gaps : bool
+        Whether joints may have an initial gap.
 
     Raises
     ------
     InputError
         The model has something that exact certificates do not state: moved supports, initial gaps, periods.
     """
-    refuse(assembly)
+    refuse(assembly, gaps=gaps)
 
     def text(value: float) -> str:
-        return float(value).hex() if numbers == "binary" else f"{float(value):.12g}"
+        return text_of(value, numbers)
 
     def texts(values: np.ndarray) -> list[str]:
         return [text(v) for v in np.asarray(values, dtype=float).ravel()]
@@ -107,6 +109,8 @@ class JointPoint:
     friction : float
     more : mapping
         Cohesion, tension and cap where they are not 0, 0 and inf [kN].
+    node : int or None
+        Node of an elastic block b that a support holds.
     """
 
     a: int
@@ -115,6 +119,7 @@ class JointPoint:
     normal: np.ndarray
     friction: float
     more: Mapping[str, float] = field(default_factory=dict)
+    node: int | None = None
 
 
 HELD = {"tension": math.inf, "cap": math.inf}
@@ -122,7 +127,7 @@ HELD = {"tension": math.inf, "cap": math.inf}
 
 def joint_points(assembly: Assembly) -> list[JointPoint]:
     """Return the contact pairs, ties among them, in their order, then what supports hold of blocks."""
-    pairs, law, disc = assembly.pairs, assembly.laws, assembly.disc
+    pairs, law = assembly.pairs, assembly.laws
     at = pairs.point.copy()
     at[assembly.ties] = [tie.at_a for tie in assembly.model.ties] or at[assembly.ties]
     usual = {"cohesion": 0.0, "tension": 0.0, "cap": math.inf}
@@ -133,15 +138,31 @@ def joint_points(assembly: Assembly) -> list[JointPoint]:
         found.append(
             JointPoint(int(pairs.body_a[k]), int(pairs.body_b[k]), at[k], pairs.normal[k], float(law.friction[k]), more)
         )
+    return found + held_points(assembly)
+
+
+def held_points(assembly: Assembly) -> list[JointPoint]:
+    """Return what supports hold of blocks: a point for each direction in which a place is held."""
+    disc, found = assembly.disc, []
     for b, conditions in assembly.supported.held.items():
         for number in dict.fromkeys(c.support for c in conditions):
-            _, points, _, axes = points_held(disc, b, number)
-            found += [JointPoint(-1, b, p, np.eye(disc.dim)[axis], 0.0, HELD) for p in points for axis in axes]
+            chosen, points, _, axes = points_held(disc, b, number)
+            nodes = chosen.tolist() if disc.shape_of[b] >= 0 else [None] * len(points)
+            found += [
+                JointPoint(-1, b, place, np.eye(disc.dim)[axis], 0.0, HELD, node)
+                for node, place in zip(nodes, points, strict=True)
+                for axis in axes
+            ]
     return found
 
 
-def refuse(assembly: Assembly) -> None:
-    """Refuse what exact certificates do not state.
+def text_of(value: float, numbers: Numbers) -> str:
+    """Return a number as a text, see :func:`statement`."""
+    return float(value).hex() if numbers == "binary" else f"{float(value):.12g}"
+
+
+def refuse(assembly: Assembly, *, gaps: bool = False) -> None:
+    """Refuse what exact certificates do not state; initial gaps too, unless displacements are stated.
 
     Raises
     ------
@@ -153,7 +174,7 @@ def refuse(assembly: Assembly) -> None:
         "a periodic cell": model.periods is not None,
         "a support that is moved": any(s.moves for s in model.supports),
         "a change of temperature": bool(model.temperatures),
-        "a joint with an initial gap": bool((assembly.pairs.gap[assembly.pairs.interface >= 0] > 0).any()),
+        "a joint with an initial gap": not gaps and bool((assembly.pairs.gap[assembly.pairs.interface >= 0] > 0).any()),
         "no joint": not joint_points(assembly),
     }
     found = next((words for words, holds in reasons.items() if holds), None)

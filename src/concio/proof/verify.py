@@ -187,7 +187,7 @@ def check(data: Data) -> str:
         check_forces(data, data["forces"], constant)
         return f"forces {points} balance {acting}: proved exactly"
     if data["claim"] != "limit":
-        raise ValueError(f"unknown claim {data['claim']!r}")
+        raise ValueError(f"the claim {data['claim']!r} is not for this program")
     found = []
     if "forces" in data:
         lower = exact(data["lower"])
@@ -204,19 +204,11 @@ def check(data: Data) -> str:
     return f"{acting}, {points}: {'; '.join(found)}: proved exactly"
 
 
-def read(path: str) -> str:
-    """Return what a certificate file proves in a sentence; raise ValueError where it proves nothing."""
-    with open(path, encoding="ascii") as file:
-        data = json.load(file)
-    if not isinstance(data, dict):
-        raise ValueError("this is not a certificate")
-    return check(data)
-
-
 def main(path: str) -> int:
     """Print what a certificate file proves, or why it is refused; return the exit code."""
     try:
-        print(read(path))
+        with open(path, encoding="ascii") as file:
+            print(check(json.load(file)))
     except (ValueError, KeyError, IndexError, TypeError, ArithmeticError, OSError) as error:
         print(f"REFUSED: {error}")
         return 1

@@ -17,6 +17,7 @@ from concio.model.described import model_lines
 from concio.report.html_parts import figure_html
 from concio.verdict.limit_words import number_lines
 from concio.verdict.path_verdict import stage_loads
+from concio.verdict.proof_verdict import proved_line
 from concio.verdict.study_verdict import output_words, verdict_counts
 from concio.verdict.verdict import Verdict
 
@@ -65,6 +66,8 @@ def result_html(found: HasVerdict) -> str:
     more, figure = BENEATH.get(type(found).__name__, _nothing_more)(found)
     rows = verdict_rows(v, units)
     rows += [("model", model.title or "untitled")] if model is not None else []
+    proved = getattr(found, "proved", "")
+    rows += [("proof", proved_line(proved))] if proved else []
     return _piece(v.tone, v.headline, f"{v.sentence} {v.proof}", [*rows, *more], figure)
 
 

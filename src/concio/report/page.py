@@ -21,6 +21,7 @@ from concio.report.html_parts import figure_html, table_html, verdict_html
 from concio.report.space_data import space_view_data
 from concio.report.space_tables import space_tables_html, ties_html
 from concio.report.view_data import view_data
+from concio.verdict.proof_verdict import proved_line
 from concio.verdict.step_verdict import checks
 
 if TYPE_CHECKING:
@@ -150,7 +151,8 @@ def _verdict(result: Result) -> str:
             "<details><summary>The certificate, equation by equation</summary><div class=scroll><table><thead><tr>"
             f"<th>checked</th><th>error</th><th></th></tr></thead><tbody>{rows}</tbody></table></div></details>"
         )
-    return verdict_html(v, v.proof, checked, units=result.model.report)
+    proof = f"{v.proof} {proved_line(result.proved)}" if result.proved else v.proof
+    return verdict_html(v, proof, checked, units=result.model.report)
 
 
 def _elements(model: Model) -> str:

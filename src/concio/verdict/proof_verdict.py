@@ -17,7 +17,9 @@ ASKED = {
     "limit": "exact bounds of the multiplier with which joint forces within friction balance the loads",
     "collapse": "a proof that no joint forces within friction balance the loads that act",
     "balance": "exact joint forces within friction that balance the loads that act",
+    "equilibrium": "an exact Coulomb equilibrium under the loads that act, in one step from rest",
 }
+ONE_STATE = "one equilibrium in one step from rest: others may exist, and a history of loading may end in another"
 DILATES = "friction that dilates: forces in balance are necessary for Coulomb friction and not sufficient"
 
 
@@ -57,10 +59,25 @@ def proof_verdict(
         outcome=Outcome.HOLDS if whole else Outcome.INCOMPLETE,
         status="proved" if whole else "incomplete",
         question=question_of(ASKED[claim], assembly, factors, multiplied=live),
-        headline="Proved exactly." if whole else f"Proved from one side: no {missing} bound was found.",
+        headline=f"{_how(sentence)}." if whole else f"Proved from one side: no {missing} bound was found.",
         answer=f"{sentence[0].upper()}{sentence[1:]}.",
         proof=PROOF,
-        limits=(*joints_not_made(assembly.detection), DILATES),
+        limits=(*joints_not_made(assembly.detection), ONE_STATE if claim == "equilibrium" else DILATES),
         unchecked=() if whole else (f"the {missing} bound",),
         attention=attention(assembly),
     )
+
+
+def proved_line(sentence: str) -> str:
+    """Return the line of a report about a certificate that was made and accepted.
+
+    Parameters
+    ----------
+    sentence : str
+        What the checking program said.
+    """
+    return f"{_how(sentence)}: {sentence.rsplit(': proved', 1)[0]}."
+
+
+def _how(sentence: str) -> str:
+    return "Proved exactly" if sentence.endswith("proved exactly") else "Proved, with intervals"

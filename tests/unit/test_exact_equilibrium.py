@@ -1,0 +1,179 @@
+"""Equilibrium certificates: closed forms, the answers of the solver, and a program that refuses what was changed."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from copy import deepcopy
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import concio
+from commands import run
+from concio import Body, Elastic, JointLaw, JointRule, Load, Model, Rigid, Support, Tie
+from concio.errors import InputError, SolverError
+from concio.problem.solution import Status
+from concio.proof import verify_equilibrium as checker
+from concio.proof.certificate import sealed
+from concio.proof.programs import recompute
+from pillars import pillar, sideways
+from samples import sample
+
+PUSHED = (Load("weight", (0, -1)), Load("weight", (1, 0), group="live"))
+SPRINGS = JointLaw(0.6, normal_stiffness=4e4, tangential_stiffness=2e4)
+
+
+def block(kind: str = "rigid", push: float = 0.25, law: JointLaw = SPRINGS, **more: Any) -> concio.Result:
+    """Return the answer for a block of 1 m and 20 kN on the ground."""
+    ground = Body("ground", [(-1, -1), (3, -1), (3, 0), (-1, 0)], kind="fixed")
+    a = Body("a", [(0, 0), (1, 0), (1, 1), (0, 1)], kind=kind, material="stone")
+    stone: Any = Rigid(20.0) if kind == "rigid" else Elastic(E=1e5, nu=0.2, unit_weight=20.0)
+    given: dict[str, Any] = {"laws": {"joint": law}, "loads": PUSHED, "mesh_size": 0.5, **more}
+    return concio.solve(Model((ground, a), {"stone": stone}, **given), factors={"live": push}, on_failure="return")
+
+
+def solved(made: dict[str, Any]) -> tuple[list[tuple[Fraction, Fraction]], int]:
+    """Return the bounds of all unknowns and the number of those of the blocks."""
+    rows, right, _ = checker.system(made)
+    return checker.solution(made, rows, right), checker.numbering(made)[2]
+
+
+def test_a_block_on_springs_has_the_motion_of_the_closed_form() -> None:
+    """It moves by H/k_t and sinks by W/k_n, and turns by H/2 over the sum of k x^2 about the middle of the joint."""
+    made = block(law=JointLaw(5.0, normal_stiffness=4e4, tangential_stiffness=2e4)).proof("decimal")
+    (x, n), (w, h) = solved(made), (Fraction(20), Fraction(5))
+    arms = [(checker.exact(j["at"][0]) - Fraction(1, 2), checker.exact(j["normal_compliance"])) for j in made["joints"]]
+    turn = -(h / 2) / sum(arm**2 / a for arm, a in arms)
+    right = [h / 20000, -w / 40000 - turn / 2, turn]
+    assert n == 3
+    for (low, high), value in zip(x[:3], right, strict=True):
+        assert low <= value <= high
+        assert high - low < Fraction(1, 10**15)
+
+
+@pytest.mark.parametrize("kind", ["rigid", "elastic"])
+@pytest.mark.parametrize("push", [0.1, 0.3, 0.55])
+def test_enclosures_hold_the_answer_of_the_solver(kind: str, push: float) -> None:
+    result = block(kind, push)
+    made = result.proof()
+    assert "a Coulomb equilibrium" in recompute(made)
+    x, n = solved(made)
+    forces = np.array([float(low) for low, _ in x[n:]]).reshape(-1, 2)
+    assert np.allclose(forces[:, 0], result.contacts.normal_force, atol=1e-9)
+    assert np.allclose(forces[:, 1], result.contacts.friction_force.ravel(), atol=1e-9)
+    bodies = [float(low) for low, _ in x[:3]]
+    if kind == "rigid":  # the middle of the block, from the motion of the origin
+        centre = result.displacement[:2]
+        assert np.allclose([bodies[0] - 0.5 * bodies[2], bodies[1] + 0.5 * bodies[2]], centre, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ({"ties": (Tie("rod", "a", (0, 0.5), "", (-2, 0.5), 1e4, prestress=1.0, yield_force=3.0),)}, "slip"),
+        ({"law": JointLaw(0.3, 3.0, 1.0, normal_stiffness=4e4, tangential_stiffness=4e4)}, "slip"),
+        ({"supports": (Support("top", "a", edge=((0, 1), (0, 1)), directions="x"),)}, "slip"),
+        ({"rules": (JointRule("joint", gap=1e-4),), "push": 0.1}, "slip"),
+    ],
+    ids=["tie", "cohesion", "held", "gap"],
+)
+@pytest.mark.parametrize("kind", ["rigid", "elastic"])
+def test_ties_strength_held_blocks_and_gaps_are_proved(kind: str, more: dict[str, Any], words: str) -> None:
+    sentence = recompute(block(kind, **more).proof())
+    assert words in sentence
+    assert "proved" in sentence
+
+
+def test_rigid_blocks_on_hard_joints_stay_where_they_are() -> None:
+    made = block(law=JointLaw(0.6)).proof()
+    assert "proved exactly" in recompute(made)
+    assert set(made["solution"][: checker.numbering(made)[2]]) == {"0"}
+    fails = block(push=0.7, law=JointLaw(0.6))
+    assert fails.proof()["claim"] == "collapse"
+    assert "balance" in fails.proved
+
+
+def wall(number: int) -> concio.Result:
+    """Return the answer for a wall of elastic blocks of random friction, weight and push."""
+    rng = np.random.default_rng(number)
+    model = concio.wall(
+        length=1.0, height=0.4, block_size=(0.5, 0.2), unit_weight=float(rng.uniform(15, 28)), mesh_size=0.25,
+        friction=float(rng.uniform(0.3, 0.9)), horizontal=float(rng.choice([-1.0, 1.0])),
+    )  # fmt: skip
+    return concio.solve(model, factors={"live": float(rng.uniform(0, 0.25))}, on_failure="return")
+
+
+@pytest.mark.parametrize("number", range(sample(2, 20)))
+def test_elastic_walls_are_proved_though_joint_points_repeat_each_other(number: int) -> None:
+    result = wall(number)
+    made = result.proof()
+    x, n = solved(made)
+    total = sum(high - low for low, high in x)
+    assert total < Fraction(1, 10**15)
+    assert made["left_out"], "corners of three blocks have points that repeat each other"
+    found = np.array([float(low) for low, _ in x[n::2]])[: len(result.contacts.normal_force)]
+    assert np.allclose(found, result.contacts.normal_force, atol=1e-7 * np.abs(found).max())
+
+
+def test_states_that_are_not_those_of_the_answer_are_refused() -> None:
+    made = block("elastic").proof()
+    base = {k: v for k, v in made.items() if k != "digest"}
+    for k, (normal, along) in enumerate(made["states"]):
+        for other in ([normal, "+"], [normal, "-"], ["open", "free"], ["closed", "stick"]):
+            if other == [normal, along]:
+                continue
+            states = deepcopy(made["states"])
+            states[k] = other
+            with pytest.raises((ValueError, ZeroDivisionError, KeyError)):
+                checker.check(sealed({**base, "states": states}))
+
+
+def test_joints_on_the_edge_are_exact_or_named() -> None:
+    """A block without weight touches and is not pressed: no interval says that it neither opens nor presses."""
+    ground = Body("ground", [(-1, -1), (3, -1), (3, 0), (-1, 0)], kind="fixed")
+    a = Body("a", [(0, 0), (1, 0), (1, 1), (0, 1)], kind="elastic", material="stone")
+    loads = (Load("point", (0, -8.0), bodies=("a",), at=(0.5, 1.0)),)
+    law = {"joint": JointLaw(0.5, normal_stiffness=1e4, tangential_stiffness=1e4)}
+    model = Model((ground, a), {"stone": Elastic(E=1e5, nu=0.0, unit_weight=0.0)}, law, loads=loads, mesh_size=0.5)
+    assert "proved" in recompute(concio.solve(model).proof())
+
+
+def test_what_is_not_stated_is_refused_by_name() -> None:
+    with pytest.raises(InputError, match="a joint that dilates"):
+        block(law=JointLaw(0.6, dilatancy=0.1, normal_stiffness=4e4)).proof()
+    with pytest.raises(InputError, match="a support that is moved"):
+        block(supports=(Support("sinks", "ground", displacement=(0.0, -0.1)),)).proof()
+    left_open = replace(block().solution, status=Status.UNDECIDED)
+    with pytest.raises(SolverError, match="no exact certificate"):
+        replace(block(), solution=left_open).proof()
+
+
+def test_the_program_runs_alone_and_commands_prove_and_verify(tmp_path: Path) -> None:
+    model = tmp_path / "pillar.toml"
+    model.write_text(pillar(sideways(0.1)))
+    code, out, err = run("prove", model, "--claim", "equilibrium")
+    assert (code, err) == (0, "")
+    assert "a Coulomb equilibrium" in out
+    file = tmp_path / "pillar.proof.json"
+    assert "a Coulomb equilibrium" in run("verify", file)[1]
+    alone = [sys.executable, "-I", "-S", str(Path(checker.__file__)), str(file)]
+    done = subprocess.run(alone, capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert (done.returncode, "proved" in done.stdout) == (0, True)
+    file.write_text(file.read_text().replace("equilibrium", "limit"))
+    done = subprocess.run(alone, capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert (done.returncode, done.stdout[:8]) == (1, "REFUSED:")
+    imports = [line for line in Path(checker.__file__).read_text().splitlines() if line.startswith(("import", "from"))]
+    assert "concio" not in " ".join(imports)
+
+
+def test_reports_and_notebooks_say_that_it_is_proved_where_it_is() -> None:
+    assert "Proved exactly" in block(law=JointLaw(0.6))._repr_html_()
+    assert "Proved, with intervals" in block("elastic")._repr_html_()
+    dilates = block(law=JointLaw(0.6, dilatancy=0.1, normal_stiffness=4e4))
+    assert dilates.proved == ""
+    assert "Proved" not in dilates._repr_html_()
