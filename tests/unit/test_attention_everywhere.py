@@ -35,6 +35,10 @@ high = 0.2
 """
 CELL = "[cell]\nblock_size = [0.4, 0.2]\nfriction = 3.0\n"
 WALL = "[wall]\nlength = 0.8\nheight = 0.4\nblock_size = [0.4, 0.2]\nfriction = 3.0\nhorizontal = 0.1\n"
+BRIDGE = (
+    "[bridge]\nspan = 3.0\nrise = 0.75\nring = 0.215\nvoussoirs = 8\nwidth = 2.0\nblock = 'rigid'\nfriction = 3.0\n"
+    "[fill]\ncover = 0.3\n[vehicle]\naxles = [[0.0, 50.0]]\nposition = 1.0\n"
+)
 
 SURVEY = (
     (Path(concio.__file__).parents[2] / "examples" / "cracked_arch.toml").read_text(encoding="utf-8")
@@ -55,6 +59,7 @@ ASKS: dict[str, tuple[str, tuple[object, ...]]] = {
     "diagnose": (SURVEY, ("--most", "1")),
     "cell": (CELL, ("--no-strength",)),
     "continuum": (WALL, ("--no-strength", "--mesh-size", "0.4")),
+    "bridge": (BRIDGE, ("--step", "1 m", "--fine", "1 m", "--worst", "1", "--checked", "1", "--no-sensitivity")),
 }
 """A model with an implausible friction, given to every command that takes a model."""
 WRONG: dict[str, tuple[str, tuple[object, ...]]] = {
@@ -70,6 +75,7 @@ WRONG: dict[str, tuple[str, tuple[object, ...]]] = {
     "diagnose": (ODD, ()),
     "cell": (ODD, ()),
     "continuum": (WALL, ("--group", "none")),
+    "bridge": (BRIDGE, ("--vehicle", "none")),
 }
 """The same, asked what it cannot answer."""
 
@@ -157,7 +163,8 @@ def test_an_exception_of_every_analysis_has_a_verdict(name: str, monkeypatch: py
         msg = "the matrices are lost"
         raise concio.SolverError(msg)
 
-    text = {"homogenise": CELL, "strength": CELL, "strain_path": CELL, "compare_with_continuum": WALL}.get(name, ODD)
+    text = {"homogenise": CELL, "strength": CELL, "strain_path": CELL, "compare_with_continuum": WALL,
+            "assess_bridge": BRIDGE}.get(name, ODD)  # fmt: skip
     model = concio.loads(text)
     more: dict[str, Any] = {}
     if name == "assess":

@@ -111,7 +111,7 @@ def test_the_verdict_names_vehicle_kilonewtons_and_what_it_rests_on(assessed: co
     assert acting["live"].role == "multiplied"
     assert acting["live"].asked == 1.0
     assert set(acting) == {"dead", "fill", "live"}
-    assert any("owed to the pressure of the soil" in line for line in verdict.limits)
+    assert any("due to the pressure of the soil" in line for line in verdict.limits)
     assert any("crushing" in line for line in verdict.unchecked)
 
 
@@ -186,9 +186,9 @@ def test_the_command_prints_one_object_and_leaves_with_the_verdict(tmp_path: Pat
     ("text", "options", "words"),
     [
         ("", ("--settle", "left abutment"), "names no distance"),
-        ("", ("--settle", "north pier=10 mm"), "no fixed body"),
+        ("", ("--settle", "north pier=10 mm"), "not a fixed body"),
         ("", ("--required", "0"), "must be positive"),
-        ("", ("--step", "0 m"), "no distance of positions"),
+        ("", ("--step", "0 m"), "not a distance of positions"),
         ("", ("--vehicle", "tank"), "no vehicle 'tank'"),
     ],
 )
@@ -238,3 +238,23 @@ def test_brackets_are_at_positions_that_are_least_in_their_neighbourhood() -> No
         k = next(i for i, (x, _) in enumerate(curve) if x == bracket.standing.position)
         assert bracket.standing.multiplier <= min(m for _, m in curve[max(k - 1, 0) : k + 2])
     assert len(found.brackets) == 2  # the mirror images of one
+
+
+@pytest.mark.parametrize(("axle", "outcome"), [(100.0, "holds"), (400.0, "fails")])
+def test_run_and_bridge_give_one_answer(axle: float, outcome: str, tmp_path: Path) -> None:
+    path = written(tmp_path)
+    path.write_text(path.read_text().replace("100.0", f"{axle}") + "position = 0.7\n")
+    options = ("--step", "1 m", "--fine", "1 m", "--worst", "1", "--checked", "1", "--no-sensitivity")
+    for command, more in (("run", ()), ("bridge", options)):
+        code, out, _ = run(command, path, *more, "--json")
+        told = json.loads(out)
+        assert told["verdict"]["outcome"] == outcome, command
+        assert told["verdict"]["exit_code"] == code
+    assert run("bridge", path, *options, "--quiet")[1] == ""
+
+
+def test_bad_names_are_refused_before_anything_is_computed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("concio.analysis.bridges.assess_bridge.search", None)
+    for more in ({"others": ["tank"]}, {"settled": {"north pier": 0.01}}):
+        with pytest.raises(concio.InputError):
+            concio.assess_bridge(small(), **more)  # type: ignore[arg-type]

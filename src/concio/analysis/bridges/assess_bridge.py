@@ -10,7 +10,7 @@ import numpy as np
 
 from concio.analysis.bridges.bridge_result import Bracket, BridgeResult, Coulomb
 from concio.analysis.bridges.mexe import mexe_of
-from concio.analysis.bridges.service import service_state
+from concio.analysis.bridges.service import service_state, with_settlement
 from concio.analysis.bridges.sweep import APART, FINE, Standing, Sweep, grid, least, lowest, search
 from concio.analysis.bridges.variants import changes, parts
 from concio.analysis.entry_point import entry_point
@@ -104,6 +104,8 @@ def assess_bridge(
     if model.dim != 2:
         msg = "bridges are assessed in the plane; the model is in space"
         raise InputError(msg, hint="give the plane model of a strip")
+    also = {name: replace(find_vehicle(name), direction="both") for name in others}
+    with_settlement(model, settled or {})
     sweep = Sweep(model)
     _refuse_what_does_not_stand(sweep)
     standings = search(sweep, step=step, fine=fine, worst=worst, progress=progress)
@@ -129,8 +131,7 @@ def assess_bridge(
         parts=parts(model, *place),
         without_soil=_worst_of(without_pressure(model), step, fine) if soil else few[0],
         changes=changes(model, *place) if sensitivity else (),
-        others={name: _worst_of(with_vehicle(model, replace(find_vehicle(name), direction="both")), step, fine)
-                for name in others},
+        others={name: _worst_of(with_vehicle(model, one), step, fine) for name, one in also.items()},
         service=service_state(loaded[0]),
         settled=service_state(loaded[0], settled) if settled else None,
         settlements=dict(settled or {}),
