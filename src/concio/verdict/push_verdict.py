@@ -59,6 +59,7 @@ def push_verdict(found: PushResult) -> Verdict:
             *joints_not_made(reference.detection),
             *((LENT,) if found.lent_compliance else ()),
             SEVERAL,
+            *found.notes,
         ),
         unchecked=open_,
         attention=attention_of(found.model, reference.detection),
@@ -197,4 +198,6 @@ def _unseen(found: PushResult) -> tuple[str, ...]:
     """Return a sentence on bodies that no certificate can see at the beginning or at the peak."""
     sign = -1.0 if found.reversed else 1.0
     ends = [dict.fromkeys(found.live, m) for m in (0.0, sign * found.peak)]
-    return unseen(Described(found.reference), *({**found.factors, **end} for end in ends))
+    return unseen(
+        Described(found.reference), *({**found.factors, **end} for end in ends), groups=found.structures
+    )  # fmt: skip

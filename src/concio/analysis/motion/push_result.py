@@ -85,6 +85,8 @@ class PushResult(Shown):
         Whether the load grew instead of a displacement.
     reversed : bool
         Whether the live groups grew with the opposite sign, to push to the side asked for.
+    structures : tuple of tuples of int
+        Bodies of each structure that stands apart from the others.
     """
 
     model: Model
@@ -112,6 +114,7 @@ class PushResult(Shown):
     until: float | None = None
     by_load: bool = False
     reversed: bool = False
+    structures: tuple[tuple[int, ...], ...] = ()
 
     def __len__(self) -> int:
         return len(self.multiplier)
