@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from functools import cached_property
 from html import escape
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +18,7 @@ from concio.contact.applied import applied_forces
 from concio.plot.assessment_figures import model_figure
 from concio.report.assessment_mechanism import mechanism_html
 from concio.report.assessment_texts import Texts
+from concio.report.html_parts import page_html
 from concio.verdict.assessment_verdict import assessment_verdict
 from concio.verdict.verdict import Verdict
 
@@ -70,20 +70,13 @@ class AssessmentReport(Texts):
 
     def html(self) -> str:
         """Return the page."""
-        style = "".join((files("concio.report") / name).read_text(encoding="utf-8")
-                        for name in ("report.css", "assessment.css"))  # fmt: skip
         title = self.head.project or self.found.model.title or self.words["title"]
         parts = [self.header(title), self.top(), self.site(), self.model(), self.search()]
         parts += [mechanism_html(self, m, k, self.found.curve) for k, m in enumerate(self.found.mechanisms, 1)]
         parts += [self.varied_part(), self.tie_part()]
         footer = self.say("footer", version=concio.__version__)
-        return (
-            f'<!DOCTYPE html><html lang="{self.language}"><head><meta charset="utf-8">'
-            '<meta name="viewport" content="width=device-width, initial-scale=1">'
-            f'<title>{escape(title)} &middot; concio</title><link rel="icon" href="data:,">'
-            f"<style>{style}</style></head>"
-            f"<body class=assessment><main>{''.join(parts)}<footer>{footer}</footer></main></body></html>\n"
-        )
+        parts.append(f"<footer>{footer}</footer>")
+        return page_html(title, "".join(parts), language=self.language, kind="assessment")
 
     def header(self, title: str) -> str:
         """Return the head: title, project, author, date, code."""

@@ -24,7 +24,7 @@ from concio.plot.bridge_figures import change_name, plot_changes, plot_curve, pl
 from concio.plot.model_figure import plot_model
 from concio.problem.solution import PROVEN_FAILURES, Status
 from concio.report.bridge_data import data_rows
-from concio.report.html_parts import figure_html
+from concio.report.html_parts import figure_html, page_html
 from concio.verdict.bridge_verdict import bridge_verdict, heaviest_words
 from concio.verdict.bridge_words import Words
 
@@ -115,22 +115,13 @@ class BridgeReport:
 
     def html(self) -> str:
         """Return the page."""
-        style = "".join((files("concio.report") / name).read_text(encoding="utf-8")
-                        for name in ("report.css", "assessment.css"))  # fmt: skip
         title = self.found.model.title or self.words["title"]
         parts = [
             self.header(title), self.top(), self.summary(), self.model(), self.curve(), self.mechanism(), self.built(),
             self.sensitivity(), self.others(), self.service(), self.mexe(), self.film(), self.signed(),
         ]  # fmt: skip
-        return (
-            f'<!DOCTYPE html><html lang="{self.language}"><head><meta charset="utf-8">'
-            '<meta name="viewport" content="width=device-width, initial-scale=1">'
-            f'<title>{escape(title)} &middot; concio</title><link rel="icon" href="data:,">'
-            f"<style>{style}{STYLE}</style></head>"
-            f"<body class=assessment><main>{''.join(parts)}"
-            f"<footer>{escape(self.say('footer', version=concio.__version__))}</footer></main>"
-            f"<script>{SCRIPT}</script></body></html>\n"
-        )
+        parts.append(f"<footer>{escape(self.say('footer', version=concio.__version__))}</footer>")
+        return page_html(title, "".join(parts), language=self.language, kind="assessment", style=STYLE, script=SCRIPT)
 
     def header(self, title: str) -> str:
         """Return the head."""

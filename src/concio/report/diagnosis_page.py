@@ -16,7 +16,7 @@ from concio.arguments import closest
 from concio.display import number
 from concio.errors import InputError
 from concio.plot.diagnosis_figure import plot_causes, plot_cracks, plot_readings
-from concio.report.html_parts import figure_html
+from concio.report.html_parts import figure_html, page_html
 from concio.verdict.diagnosis_verdict import diagnosis_verdict
 
 if TYPE_CHECKING:
@@ -105,18 +105,10 @@ class DiagnosisReport:
 
     def html(self) -> str:
         """Return the page."""
-        style = "".join((files("concio.report") / name).read_text(encoding="utf-8")
-                        for name in ("report.css", "assessment.css"))  # fmt: skip
         title = self.head.get("project") or self.found.model.title or self.words["title"]
         parts = [self.header(title), self.top(), self.causes(), self.measurements(), self.places(), self.trials()]
-        return (
-            f'<!DOCTYPE html><html lang="{self.language}"><head><meta charset="utf-8">'
-            '<meta name="viewport" content="width=device-width, initial-scale=1">'
-            f'<title>{escape(title)} &middot; concio</title><link rel="icon" href="data:,">'
-            f"<style>{style}</style></head>"
-            f"<body class=assessment><main>{''.join(parts)}"
-            f"<footer>{escape(self.say('footer', version=concio.__version__))}</footer></main></body></html>\n"
-        )
+        parts.append(f"<footer>{escape(self.say('footer', version=concio.__version__))}</footer>")
+        return page_html(title, "".join(parts), language=self.language, kind="assessment")
 
     def header(self, title: str) -> str:
         """Return the head: title, project, place, author, date."""

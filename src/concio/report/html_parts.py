@@ -6,6 +6,7 @@ import base64
 import io
 from collections.abc import Mapping
 from html import escape
+from importlib.resources import files
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,6 +29,38 @@ HEADINGS: dict[str, str] = {
 
 LARGEST_SVG = 350_000
 """Drawings above this many bytes are embedded as images of dots."""
+
+
+def page_html(
+    title: str, body: str, *, language: str = "en", kind: str = "", style: str = "", script: str = ""
+) -> str:
+    """Return a whole page that fetches nothing.
+
+    Parameters
+    ----------
+    title : str
+        Plain text.
+    body : str
+        HTML of its main part.
+    language : str
+    kind : {"", "assessment"}
+        An assessment has a style of its own on top of that of all reports.
+    style, script : str
+        What this page adds.
+    """
+    styles = "".join(resource(name) for name in ("report.css", f"{kind}.css") if name != ".css")
+    return (
+        f'<!DOCTYPE html><html lang="{language}"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f'<title>{escape(title)} &middot; concio</title><link rel="icon" href="data:,">'
+        f'<style>{styles}{style}</style></head><body class="{kind}"><main>{body}</main>'
+        f"<script>{script}{resource('print.js')}</script></body></html>\n"
+    )
+
+
+def resource(name: str) -> str:
+    """Return a style, a script or a frame of pages that comes with the package."""
+    return (files("concio.report") / name).read_text(encoding="utf-8")
 
 
 def verdict_html(verdict: Verdict, certificate: str, details: str = "", *, units: Units = DEFAULT) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from html import escape
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,7 @@ from concio.arguments import strict
 from concio.display import number
 from concio.plot.motion_figure import plot_capacity, plot_energy, plot_ground, plot_history
 from concio.post.frames import box_of, frames
-from concio.report.html_parts import figure_html
+from concio.report.html_parts import figure_html, page_html, resource
 
 SECONDS = 12.0
 """How long the film of a push takes; a motion plays at its own speed."""
@@ -59,8 +58,6 @@ def write_motion_report(result: PushResult | DynamicsResult, path: Path | str) -
 
 def motion_html(result: PushResult | DynamicsResult) -> str:
     """Return the report as a text; see :func:`write_motion_report`."""
-    room = files("concio.report")
-    style, script = ((room / name).read_text(encoding="utf-8") for name in ("report.css", "motion.js"))
     title = result.model.title or ("Pushed over" if isinstance(result, PushResult) else "Motion")
     if isinstance(result, PushResult):
         figures = figure_html(plot_capacity(result), "capacity", "Multiplier over the controlled displacement.")
@@ -78,19 +75,16 @@ def motion_html(result: PushResult | DynamicsResult) -> str:
         'aria-label="frame"> <span id="word"></span></p>'
     )
     data = json.dumps(_film(result), separators=(",", ":")).replace("<", "\\u003c")
-    return (
-        '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f'<title>{escape(title)} &middot; concio</title><link rel="icon" href="data:,"><style>{style}</style></head>'
-        f'<body><main><header><p class="brand">concio</p><h1>{escape(title)}</h1></header>'
+    body = (
+        f'<header><p class="brand">concio</p><h1>{escape(title)}</h1></header>'
         f"<section id=verdict>{_verdict(result)}</section>"
-        f"<section><h2>The structure as it moves, true to scale</h2>{film}</section>"
+        f"<section class=moves><h2>The structure as it moves, true to scale</h2>{film}</section>"
         f"<section id=figures><h2>Figures</h2>{figures}</section>"
         f"<section id=tables>{tables}</section>"
         f"<footer>Written by concio {escape(concio.__version__)}. Forces in kN, lengths in m, time in s.</footer>"
-        "</main>"
-        f'<script type="application/json" id="data">{data}</script><script>{script}</script></body></html>\n'
+        f'<script type="application/json" id="data">{data}</script>'
     )
+    return page_html(title, body, script=resource("motion.js"))
 
 
 def _film(result: PushResult | DynamicsResult) -> dict[str, Any]:

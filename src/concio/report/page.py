@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from html import escape
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,7 +16,7 @@ from concio.display import Units, number
 from concio.errors import InputError
 from concio.model.described import law_words, material_words
 from concio.plot.figures import TITLES, suitable_figures
-from concio.report.html_parts import figure_html, table_html, verdict_html
+from concio.report.html_parts import figure_html, resource, table_html, verdict_html
 from concio.report.space_data import space_view_data
 from concio.report.space_tables import space_tables_html, ties_html
 from concio.report.view_data import view_data
@@ -101,9 +100,9 @@ def page(steps: Sequence[Result], labels: Sequence[str], *, verdict: str, figure
     data = json.dumps(shown, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     parts = {
         "TITLE": escape(last.model.title or "Result"),
-        "STYLE": _resource("report.css") + (_resource("space_view.css") if space else ""),
-        "SCRIPT": _resource("space_view.js" if space else "view.js"),
-        "VIEW": _resource("space_view.html" if space else "view.html"),
+        "STYLE": resource("report.css") + (resource("space_view.css") if space else ""),
+        "SCRIPT": resource("space_view.js" if space else "view.js") + resource("print.js"),
+        "VIEW": resource("space_view.html" if space else "view.html"),
         "VERDICT": verdict,
         "MODEL": _model(last),
         "FIGURES": figures,
@@ -113,7 +112,7 @@ def page(steps: Sequence[Result], labels: Sequence[str], *, verdict: str, figure
         "UNITS": escape(_units_sentence(last.model.report)),
         "VERSION": escape(concio.__version__),
     }
-    page = _resource("report.html")
+    page = resource("report.html")
     head, *pieces = page.split("{{")
     for piece in pieces:
         name, rest = piece.split("}}", 1)
@@ -127,10 +126,6 @@ def _units_sentence(units: Units) -> str:
         f"Forces in {units.force}, lengths in {units.length}, motions in {units.motion}, stresses in {stress}; tension "
         "is positive. A number that is rounded shows all its digits, in kN and m, under the pointer."
     )
-
-
-def _resource(name: str) -> str:
-    return (files("concio.report") / name).read_text(encoding="utf-8")
 
 
 def _label(result: Result, index: int) -> str:

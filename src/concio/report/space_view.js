@@ -411,7 +411,7 @@
     info.innerHTML = rows.join("<br>");
   }
 
-  /* hands: one finger or button turns, two fingers or the right button move, wheel and pinch come nearer */
+  /* hands: one finger or button turns, two fingers or the right button move, ctrl and wheel, and pinch, come nearer */
   const fingers = new Map();
   let moved = 0;
   const shift = (dx, dy) => {
@@ -440,7 +440,7 @@
     if (was && moved < 5 && was[2] !== 2 && e.type === "pointerup") { view.picked = pick(e.offsetX, e.offsetY); recolour(); describe(); draw(); }
   };
   canvas.addEventListener("pointerup", lift); canvas.addEventListener("pointercancel", lift);
-  canvas.addEventListener("wheel", (e) => { e.preventDefault(); view.distance *= Math.exp(0.0012 * e.deltaY); draw(); }, { passive: false });
+  canvas.addEventListener("wheel", (e) => { if (!e.ctrlKey && !e.metaKey) return; e.preventDefault(); view.distance *= Math.exp(0.0012 * e.deltaY); draw(); }, { passive: false });
   canvas.addEventListener("keydown", (e) => {
     const keys = { ArrowLeft: () => (view.turn += 0.1), ArrowRight: () => (view.turn -= 0.1), ArrowUp: () => (view.lift = Math.min(1.57, view.lift + 0.1)), ArrowDown: () => (view.lift = Math.max(-1.57, view.lift - 0.1)), "+": () => (view.distance *= 0.87), "-": () => (view.distance /= 0.87), f: fit };
     if (keys[e.key]) { keys[e.key](); e.preventDefault(); draw(); }

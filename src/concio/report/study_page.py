@@ -5,14 +5,13 @@ from __future__ import annotations
 import base64
 import math
 from html import escape
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import concio
 from concio.display import number
 from concio.plot.study_figures import suitable
-from concio.report.html_parts import figure_html
+from concio.report.html_parts import figure_html, page_html
 from concio.verdict.study_verdict import output_words, verdict_counts
 
 if TYPE_CHECKING:
@@ -45,7 +44,6 @@ def write_study_report(study: StudyResult, path: Path | str, *, title: str = "St
 
 def study_html(study: StudyResult, *, title: str = "Study", figures: bool = True) -> str:
     """Return the report as a text; see :func:`write_study_report`."""
-    style = (files("concio.report") / "report.css").read_text(encoding="utf-8")
     parts = [
         f'<header><p class="brand">concio</p><h1>{escape(title)}</h1></header>',
         f"<section id=verdict>{_head(study)}</section>",
@@ -57,12 +55,7 @@ def study_html(study: StudyResult, *, title: str = "Study", figures: bool = True
         parts.append(f"<section id=figures><h2>Figures</h2>{drawn}</section>")
     parts.append(f"<section id=failed><h2>Runs without an answer</h2>{_failed(study)}</section>")
     parts.append(f"<footer>Written by concio {escape(concio.__version__)}. Forces in kN, lengths in m.</footer>")
-    return (
-        '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f'<title>{escape(title)} &middot; concio</title><link rel="icon" href="data:,"><style>{style}</style></head>'
-        f"<body><main>{''.join(parts)}</main></body></html>\n"
-    )
+    return page_html(title, "".join(parts))
 
 
 def _head(study: StudyResult) -> str:

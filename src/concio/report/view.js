@@ -342,6 +342,7 @@
   $("zoom-out").addEventListener("click", () => zoomAt(width / 2, height / 2, 1 / 1.5));
   $("fit").addEventListener("click", () => { fit(); draw(); });
   canvas.addEventListener("wheel", (e) => {
+    if (!e.ctrlKey && !e.metaKey) return; /* the page scrolls; a pinch on a touchpad counts as ctrl */
     e.preventDefault(); zoomAt(e.offsetX, e.offsetY, Math.exp(-e.deltaY * (e.deltaMode ? 0.05 : 0.0015)));
   }, { passive: false });
   canvas.addEventListener("keydown", (e) => {

@@ -42,6 +42,10 @@ ACCURATE = 1e-10
 NEXT = 1e-4
 """Increment up to which the proof that there is no equilibrium counts for the point itself."""
 
+LET_GO = (1e-5, NEXT, 1e-6)
+"""Increments under which the structure is let go where nothing else answers: forces out of balance by a millionth of the
+load are lost among the errors of the steps, and a wall whose limit the path had reached was let go in vain."""
+
 SHRINKS = 0.3
 """An answer whose distance shrinks by this factor under a tenth of the increment is not a jump."""
 
@@ -104,9 +108,9 @@ def look_beyond(
     """
     unit = load_unit(path, point)
     shares = sorted(SHARES, key=lambda share: (share < min(least, SHARES[-1]), share))
-    tries = [(share, False) for share in shares] + [(SHARES[0], True)]
-    if free:
-        tries.pop()
+    tries = [(share, False) for share in shares]
+    if not free:
+        tries += [(share, True) for share in LET_GO]
     proof: Solution | None = None
     for share, thorough in tries:
         parameter = point.parameter + sense * min(share * unit, abs(end - point.parameter))
