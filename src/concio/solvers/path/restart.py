@@ -43,8 +43,11 @@ NEXT = 1e-4
 """Increment up to which the proof that there is no equilibrium counts for the point itself."""
 
 LET_GO = (1e-5, NEXT, 1e-6)
-"""Increments under which the structure is let go where nothing else answers: forces out of balance by a millionth of the
-load are lost among the errors of the steps, and a wall whose limit the path had reached was let go in vain."""
+"""Increments under which the structure is let go where nothing else answers.
+
+Forces out of balance by a millionth of the load are lost among the errors of the steps: a wall whose limit the path had
+reached was let go in vain.
+"""
 
 SHRINKS = 0.3
 """An answer whose distance shrinks by this factor under a tenth of the increment is not a jump."""
