@@ -51,10 +51,11 @@ if TYPE_CHECKING:
     from concio.io.motion_file import load_motion, save_motion
     from concio.io.solids_out import write_solids
     from concio.model.compose import place
-    from concio.model.crossing import Axle, Fill, Layer, Vehicle
+    from concio.model.crossing import Axle, Vehicle
     from concio.model.drawing.drawing import model_from_dxf
     from concio.model.file.reading import load, loads
     from concio.model.file.writing import dumps, save
+    from concio.model.fill import Fill, Layer
     from concio.model.generate.arch_on_piers import arch_on_piers
     from concio.model.generate.arches import arch
     from concio.model.generate.barrel import barrel
@@ -135,7 +136,8 @@ _HOMES = {
     "concio.model.generate.arches": ("arch",),
     "concio.model.generate.barrel": ("barrel",),
     "concio.model.generate.bridges": ("bridge",),
-    "concio.model.crossing": ("Axle", "Fill", "Layer", "Vehicle"),
+    "concio.model.crossing": ("Axle", "Vehicle"),
+    "concio.model.fill": ("Fill", "Layer"),
     "concio.model.road.earth": ("with_fill", "with_vehicle"),
     "concio.model.road.vehicles": ("find_vehicle",),
     "concio.model.generate.dome": ("dome",),

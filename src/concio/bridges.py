@@ -16,7 +16,8 @@ from concio.analysis.bridges.mexe import Mexe, mexe
 from concio.analysis.bridges.service import ServiceState
 from concio.analysis.bridges.sweep import Standing
 from concio.analysis.bridges.variants import Change
-from concio.model.crossing import Axle, Fill, Layer, Vehicle
+from concio.model.crossing import Axle, Vehicle
+from concio.model.fill import Fill, Layer
 from concio.model.road.earth import with_fill, with_vehicle
 from concio.model.road.spread import SpreadRule
 from concio.model.road.vehicles import find_vehicle, vehicles

@@ -15,7 +15,8 @@ from concio.analysis.bridges.mexe import mexe
 from concio.analysis.bridges.sweep import Sweep, search
 from concio.analysis.bridges.variants import parts
 from concio.analysis.limit import dead_and_live
-from concio.model.crossing import Axle, Fill, Vehicle
+from concio.model.crossing import Axle, Vehicle
+from concio.model.fill import Fill
 from concio.model.road.earth import ground_of, with_fill, with_vehicle, without_pressure
 from concio.solvers.statics.limit import associated_limit
 from concio.verdict.bridge_verdict import bridge_verdict

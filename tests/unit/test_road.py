@@ -9,7 +9,8 @@ import pytest
 
 import concio
 from concio.errors import InputError
-from concio.model.crossing import Axle, Fill, Layer, Vehicle
+from concio.model.crossing import Axle, Vehicle
+from concio.model.fill import Fill, Layer
 from concio.model.plausibility import implausible
 from concio.model.road.earth import (
     ground_of,
@@ -220,3 +221,36 @@ def test_the_width_of_the_rule_is_that_of_the_vehicle_that_crosses(vehicle: str,
         assert one.value == pytest.approx(other.value)
     assert [t.yield_force for t in model.ties] == pytest.approx([t.yield_force for t in direct.ties])
     assert concio.loads(concio.dumps(model)).fill == model.fill
+
+
+def test_spandrel_walls_take_their_share_of_width_and_weigh_with_their_parapets() -> None:
+    bare, walled = (covered(Fill(cover=0.3, unit_weight=20.0, passive=1.0, **more))  # type: ignore[arg-type]
+                    for more in ({}, {"spandrels": 0.4, "spandrel_weight": 22.0, "parapet": 1.0}))  # fmt: skip
+    down = [-sum(x.value[1] for x in m.loads if x.group == "fill") for m in (bare, walled)]
+    over = float(np.ptp(np.vstack([b.vertices for b in bare.free_bodies])[:, 0]))
+    assert down[1] == pytest.approx(down[0] * (1.2 * 20 + 0.8 * 22) / (2.0 * 20) + 0.8 * 22 * 1.0 * over, rel=1e-9)
+    caps = [sum(t.yield_force or 0.0 for t in m.ties) for m in (bare, walled)]
+    assert caps[1] == pytest.approx(0.6 * caps[0])
+    for more, words in (({"spandrels": 1.0}, "leave no fill"), ({"spandrels": 0.3, "width": "rule"}, "narrower")):
+        with pytest.raises(InputError, match=words):
+            covered(Fill(cover=0.3, **more))  # type: ignore[arg-type]
+
+
+def test_a_fill_line_is_the_layer_that_lies_above_it() -> None:
+    model = arch()
+    top = float(np.vstack([b.vertices for b in model.free_bodies])[:, 1].max()) + 0.4
+    line = ((-9.0, top - 0.1), (9.0, top - 0.1))
+    lined = covered(Fill(cover=0.4, passive=1.0, fill_line=line, surfacing_weight=24.0))
+    layered = covered(Fill(cover=0.4, passive=1.0, layers=(Layer(0.1, 24.0),)))
+    assert [x.value for x in lined.loads] == [pytest.approx(x.value) for x in layered.loads]
+    assert [t.yield_force for t in lined.ties] == pytest.approx([t.yield_force for t in layered.ties])
+    sloped = covered(Fill(cover=0.4, fill_line=((-9.0, top - 0.3), (1.5, top - 0.05), (9.0, top)), unit_weight=0.0))
+    total = -sum(load.value[1] for load in sloped.loads if load.group == "fill")
+    ends = np.vstack([b.vertices for b in sloped.free_bodies])[:, 0]
+    x = np.linspace(ends.min(), ends.max(), 20_001)
+    deep = top - np.interp(x, [-9.0, 1.5, 9.0], [top - 0.3, top - 0.05, top])
+    assert total == pytest.approx(2.0 * 23.0 * np.trapezoid(deep, x), rel=1e-4)
+    assert concio.loads(concio.dumps(lined)).fill == lined.fill
+    for at, words in ((top + 0.1, "above the road"), (top - 0.5, "below the masonry")):
+        with pytest.raises(InputError, match=words):
+            covered(Fill(cover=0.4, fill_line=((-9.0, at), (9.0, at))))

@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 
 import concio
-from concio.model.crossing import Axle, Fill, Vehicle
+from concio.model.crossing import Axle, Vehicle
+from concio.model.fill import Fill
 from concio.model.road.earth import with_fill, with_vehicle
 from concio.studies.compare import compare
 from concio.verdict.verdict import Outcome, Verdict

@@ -16,7 +16,8 @@ from validation_cases.row import check
 
 import concio
 from concio.analysis.limit import dead_and_live
-from concio.model.crossing import Axle, Fill, Vehicle
+from concio.model.crossing import Axle, Vehicle
+from concio.model.fill import Fill
 from concio.model.road.earth import with_fill, with_vehicle
 from concio.model.road.surface import Surface
 from concio.solvers.statics.limit import associated_limit

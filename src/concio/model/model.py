@@ -16,9 +16,10 @@ from concio.display import DEFAULT, Units
 from concio.errors import InputError
 from concio.model.actions import FACES, Face, Load, Point, Support, Temperature, Tie
 from concio.model.body import Body, Kind, called
-from concio.model.crossing import Fill, Vehicle
+from concio.model.crossing import Vehicle
 from concio.model.described import model_lines
 from concio.model.dimensions import WORDS, resolved
+from concio.model.fill import Fill
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.polyhedron import Polyhedron
 from concio.model.rules import JointRule, check_rules

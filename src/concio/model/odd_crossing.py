@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from concio.model.crossing import STRETCH, TONNES, Fill, Vehicle
+from concio.model.crossing import STRETCH, TONNES, Vehicle
+from concio.model.fill import Fill
 from concio.model.model import Body, Model
 from concio.units import GRAVITY
 

@@ -29,12 +29,12 @@ def draw_fill(ax: Axes, model: Model) -> list[Any]:
     """Draw fill, layers and road line below everything else; return their entries of the legend."""
     surface, road = ground_of(model)
     assert model.fill is not None
-    x = np.unique(np.concatenate([surface.start[:, 0], surface.end[:, 0], road.line[:, 0]]))
+    x = np.unique(np.concatenate([surface.start[:, 0], surface.end[:, 0], road.line[:, 0], road.under[:, 0]]))
     low, high = surface.height(x), road.height(x)
-    deep = sum(layer.depth for layer in model.fill.layers)
+    deep = road.surfacing(x) + sum(layer.depth for layer in model.fill.layers)
     ax.fill_between(x, low, high - deep, facecolor=EARTH, edgecolor="none", zorder=0.5)
     entries = [style.patch(EARTH, "fill", "none")]
-    if deep:
+    if deep.any():
         ax.fill_between(x, high - deep, high, facecolor=LAYER, edgecolor="none", zorder=0.6)
         entries.append(style.patch(LAYER, "layers of the road", "none"))
     ax.plot(*road.line.T, color=style.INK, lw=1.2, zorder=4)

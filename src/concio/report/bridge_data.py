@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from concio.model.crossing import STRETCH, Fill, Vehicle
+from concio.model.crossing import STRETCH, Vehicle
+from concio.model.fill import Fill
 from concio.model.materials import Elastic, JointLaw
 from concio.model.road.spread import spread_rule
 
@@ -65,6 +66,12 @@ def _fill(page: BridgeReport, fill: Fill) -> list[tuple[str, str]]:
         rows.append(("layers", "; ".join(
             page.say("layer", name=x.name, depth=page.unit("length", x.depth), weight=_weight(page, x.unit_weight))
             for x in fill.layers)))  # fmt: skip
+    if fill.fill_line:
+        line = page.say("road_given", n=str(len(fill.fill_line)))
+        rows.append(("fill_line", f"{line}, {_weight(page, fill.surfacing_weight)}"))
+    if fill.spandrels:
+        walls = [page.unit("length", fill.spandrels), page.unit("length", fill.parapet)]
+        rows.append(("spandrels", "; ".join([*walls, _weight(page, fill.spandrel_weight)])))
     rows.append(("fill_weight", _weight(page, fill.unit_weight)))
     if fill.friction_angle is not None:
         rows.append(("friction_angle", f"{page.n(fill.friction_angle)}\N{DEGREE SIGN}"))

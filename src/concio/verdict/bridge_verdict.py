@@ -238,7 +238,10 @@ def _limits(found: BridgeResult, w: Words) -> tuple[str, ...]:
     beside = worst.elsewhere + times * sum(a.load for a in found.vehicle.points) - sum(on_road)
     if beside > 1e-6 * found.vehicle.total:
         told.append(w.say("elsewhere", load=w.unit("force", beside, 4)))
-    return (*told, w.say("plane"), w.say("several"), *joints_not_made(found.assembly.detection),
+    told.append(w.say("plane"))
+    if found.model.fill is not None and found.model.fill.spandrels:
+        told.append(w.say("spandrels"))
+    return (*told, w.say("several"), *joints_not_made(found.assembly.detection),
             *crushing(found.assembly))  # fmt: skip
 
 

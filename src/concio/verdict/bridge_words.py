@@ -49,6 +49,7 @@ ENGLISH: Mapping[str, str] = {
     "plane": "the model is plane: skew, torsion, spandrel walls and the way in which load spreads across the "
     "bridge are "
     "in the width alone",
+    "spandrels": "spandrel walls count by their weight alone",
     "brackets": "what Coulomb friction carries at most was sought at {count} positions only",
     "unchecked_coulomb": "Coulomb friction at the other positions (asked for at none)",
     "unchecked_crushing": "crushing: the joints have no compressive strength",
@@ -104,6 +105,7 @@ ITALIAN: Mapping[str, str] = {
     "o carichi precedenti",
     "plane": "il modello è piano: obliquità, torsione, timpani e diffusione trasversale del carico entrano solo nella "
     "larghezza",
+    "spandrels": "i timpani contano solo con il loro peso",
     "brackets": "quanto porta al massimo l'attrito di Coulomb è stato cercato solo in {count} posizioni",
     "unchecked_coulomb": "l'attrito di Coulomb nelle altre posizioni (non chiesto in alcuna)",
     "unchecked_crushing": "lo schiacciamento: i giunti non hanno resistenza a compressione",

@@ -10,7 +10,7 @@ import numpy as np
 
 from concio.analysis.bridges.sweep import Sweep
 from concio.errors import ConcioError
-from concio.model.crossing import Fill
+from concio.model.fill import Fill
 from concio.model.generate.bridges import rebuilt
 from concio.model.model import Model
 from concio.model.road.earth import with_fill, with_vehicle, without_fill, without_pressure, without_vehicle
@@ -61,8 +61,8 @@ def parts(model: Model, position: float, direction: str) -> dict[str, float]:
     """Return the associated multiplier as the parts of a bridge are added: ring, weight of fill, spread, pressure."""
     fill = model.fill
     assert fill is not None
-    bare = replace(fill, unit_weight=0.0, layers=(), spread="none", passive=0.0, mobilised=1.0, pressure="none")
     weight = replace(fill, spread="none", passive=0.0, mobilised=1.0, pressure="none")
+    bare = replace(weight, unit_weight=0.0, layers=(), fill_line=(), spandrels=0.0)
     models = {
         BARE: refilled(model, bare), WEIGHT: refilled(model, weight), SPREAD: without_pressure(model), PASSIVE: model
     }  # fmt: skip

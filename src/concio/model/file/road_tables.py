@@ -8,10 +8,11 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, StrictBool, StrictStr, Tag
 
 from concio.errors import InputError
-from concio.model.crossing import Axle, Fill, Layer, Vehicle
+from concio.model.crossing import Axle, Vehicle
 from concio.model.file.errors import placed
 from concio.model.file.tables import Name, Point, Table, word_or_table
 from concio.model.file.values import Degrees, JointStiffness, Length, Number, Stress, UnitWeight
+from concio.model.fill import Fill, Layer
 from concio.model.model import Model
 from concio.model.road.earth import with_fill, with_vehicle
 from concio.model.road.spread import spread_rule
@@ -69,13 +70,18 @@ Width = Annotated[
 
 
 class FillTable(Table):
-    """Fill between the masonry and the road; see :class:`concio.model.crossing.Fill`."""
+    """Fill between the masonry and the road; see :class:`concio.model.fill.Fill`."""
 
     cover: Length | None = None
     gradient: Number = 0.0
     road: list[Point] = Field(default_factory=list)
     unit_weight: UnitWeight = 20.0
     layers: list[LayerTable] = Field(default_factory=list)
+    fill_line: list[Point] = Field(default_factory=list)
+    surfacing_weight: UnitWeight = 23.0
+    spandrels: Length = 0.0
+    spandrel_weight: UnitWeight = 22.0
+    parapet: Length = 0.0
     spread: Spread = "uniform 1:2"
     width: Width = "full"
     friction_angle: Degrees | None = None
@@ -139,8 +145,8 @@ def fill_of(table: FillTable) -> Fill:
     """
     own = table.model_fields_set - {"applied", "layers", "spread"}
     given: dict[str, Any] = {key: getattr(table, key) for key in own}
-    if "road" in given:
-        given["road"] = tuple((p[0], p[1]) for p in table.road)
+    for key in {"road", "fill_line"} & given.keys():
+        given[key] = tuple((p[0], p[1]) for p in given[key])
     given["layers"] = tuple(Layer(t.depth, t.unit_weight, t.name) for t in table.layers)
     given["spread"] = table.spread if isinstance(table.spread, str) else table.spread.model_dump(exclude_unset=True)
     spread_rule(given["spread"])
@@ -190,8 +196,9 @@ def crossed(model: Model, fill: FillTable | None, vehicle: VehicleTable | None) 
 def fill_table(fill: Fill) -> dict[str, Any]:
     """Return the table that :func:`fill_of` reads back, its loads standing in the file."""
     found = {f.name: getattr(fill, f.name) for f in fields(fill) if getattr(fill, f.name) is not None}
-    if not fill.road:
-        del found["road"]
+    for key in ("road", "fill_line"):
+        if not found[key]:
+            del found[key]
     if isinstance(fill.spread, dict):
         found["spread"] = {k: v for k, v in fill.spread.items() if v is not None}
     found["layers"] = [{"name": x.name, "depth": x.depth, "unit_weight": x.unit_weight} for x in fill.layers] or None

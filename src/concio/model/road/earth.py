@@ -20,7 +20,8 @@ import numpy as np
 
 from concio.arguments import strict
 from concio.errors import InputError
-from concio.model.crossing import Fill, Vehicle
+from concio.model.crossing import Vehicle
+from concio.model.fill import Fill
 from concio.model.model import Body, Load, Model, Tie
 from concio.model.road.spread import SpreadLoad, spread, spread_rule
 from concio.model.road.surface import Road, Surface
@@ -70,6 +71,7 @@ def with_fill(model: Model, fill: Fill) -> Model:
         msg = f"the load group '{fill.group}' has loads already"
         raise InputError(msg, where="fill", hint="give the fill another group")
     width, _ = width_used(model, fill, model.vehicle)
+    _check_spandrels(fill, width)
     if fill.width != "full":
         fill = replace(fill, bridge_width=max(b.thickness for b in model.bodies))
         model = _as_wide(model, width)
@@ -243,14 +245,38 @@ def width_used(model: Model, fill: Fill, vehicle: Vehicle | None = None) -> tupl
     return float(fill.width), "as given"
 
 
+def _check_spandrels(fill: Fill, width: float) -> None:
+    if not fill.spandrels:
+        return
+    if fill.width != "full":
+        msg = "spandrels and a width narrower than the bridge are both given: the walls stand at its edges"
+        raise InputError(msg, where="fill", hint="take width = 'full', or leave spandrels out")
+    if 2.0 * fill.spandrels >= width:
+        msg = f"two spandrel walls of {fill.spandrels:g} m leave no fill in a width of {width:g} m"
+        raise InputError(msg, where="fill", hint="spandrels is the thickness of each of the two")
+
+
 def _as_wide(model: Model, width: float) -> Model:
     """Return a model whose bodies are all of one width [m]."""
     return replace(model, bodies=tuple(replace(cast("Body", b), thickness=width) for b in model.bodies))
 
 
-def stress_at(fill: Fill, depth: Array) -> Array:
-    """Return the vertical stress [kN/m2] at depths below the road [m]: layers from the road down, then fill."""
+def stress_at(fill: Fill, depth: Array, surfacing: Array | float = 0.0) -> Array:
+    """Return the vertical stress in the fill [kN/m2] at depths below the road [m].
+
+    Parameters
+    ----------
+    fill : Fill
+    depth : array
+        [m].
+    surfacing : array or float
+        Depth of the fill line below the road at the same places, where the fill has one [m].
+    """
     depth = np.asarray(depth, dtype=float)
+    if fill.fill_line:
+        above = np.minimum(depth, surfacing)
+        stress: Array = fill.surfacing_weight * above + fill.unit_weight * (depth - above)
+        return stress
     total, begin = np.zeros_like(depth), 0.0
     for layer in fill.layers:
         total += layer.unit_weight * np.clip(depth - begin, 0.0, layer.depth)
@@ -258,9 +284,18 @@ def stress_at(fill: Fill, depth: Array) -> Array:
     return total + fill.unit_weight * np.maximum(depth - begin, 0.0)
 
 
+def _load_at(fill: Fill, road: Road, thickness: float, x: Array, y: Array) -> Array:
+    """Return the weight of fill, surfacing and spandrel walls above places (x, y), per length of road [kN/m]."""
+    depth = road.height(x) - y
+    walls = 2.0 * fill.spandrels
+    own = (thickness - walls) * stress_at(fill, depth, road.surfacing(x))
+    found: Array = own + walls * fill.spandrel_weight * (depth + fill.parapet)
+    return found
+
+
 def _weights(model: Model, fill: Fill, surface: Surface, road: Road) -> tuple[Load, ...]:
     """Return the weight of the strips above the bodies that can move."""
-    breaks = road.line[1:-1, 0]
+    breaks = np.concatenate([road.line[1:-1, 0], road.under[1:-1, 0]])
     found = []
     for k in range(len(surface)):
         body = model.bodies[int(surface.body[k])]
@@ -269,7 +304,7 @@ def _weights(model: Model, fill: Fill, surface: Surface, road: Road) -> tuple[Lo
         start, end = surface.start[k], surface.end[k]
         x = np.unique(np.concatenate([[start[0], end[0]], breaks[(breaks > start[0]) & (breaks < end[0])]]))
         y = start[1] + (x - start[0]) * (end[1] - start[1]) / (end[0] - start[0])
-        q = body.thickness * stress_at(fill, road.height(x) - y)  # linear between these places: layers lie above
+        q = _load_at(fill, road, body.thickness, x, y)  # linear between these places: layers lie above
         width = np.diff(x)
         force = float((0.5 * (q[1:] + q[:-1]) * width).sum())
         if not force:
@@ -296,8 +331,8 @@ def _pressures(model: Model, fill: Fill, surface: Surface, road: Road) -> tuple[
         body = model.bodies[b]
         at = _middle(points)
         rise = float(np.ptp(points[:, 1]))
-        area = rise * body.thickness
-        stress = float(stress_at(fill, road.height(at[:1]) - at[1:])[0])
+        area = rise * (body.thickness - 2.0 * fill.spandrels)
+        stress = float(stress_at(fill, road.height(at[:1]) - at[1:], road.surfacing(at[:1]))[0])
         most = (coefficient * stress + constant) * area
         least = active * stress * area
         if least:

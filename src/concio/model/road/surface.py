@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from concio.errors import InputError
-from concio.model.crossing import Fill
+from concio.model.fill import Fill
 from concio.model.model import Model
 from concio.representation import short_repr
 
@@ -95,9 +95,10 @@ class Surface:
 
 @dataclass(frozen=True, eq=False)
 class Road:
-    """A road line (n, 2) from left to right [m], straight on beyond its ends for depths."""
+    """A road line (n, 2) from left to right [m], and the line ``under`` its surfacing (k, 2), which may be none."""
 
     line: Array
+    under: Array = field(default_factory=lambda: np.zeros((0, 2)))
 
     @classmethod
     def of(cls, fill: Fill, surface: Surface) -> Road:
@@ -133,12 +134,39 @@ class Road:
         if layers > depth[k] + 1e-9:
             msg = f"the layers are {layers:.3g} m deep, the cover at x = {where[k]:.3g} m is {depth[k]:.3g} m"
             raise InputError(msg, where="fill", hint="cover is measured from the road, with surfacing and ballast")
-        return road
+        return cls(line, _checked_line(fill, surface, road)) if fill.fill_line else road
+
+    def surfacing(self, x: Array) -> Array:
+        """Return the depth of the surfacing [m] at places x: zero where no line is under it."""
+        if not len(self.under):
+            return np.zeros(np.shape(x))
+        found: Array = self.height(x) - np.interp(x, self.under[:, 0], self.under[:, 1])
+        return found
 
     def height(self, x: Array) -> Array:
         """Return the height of the road [m] at places x."""
         found: Array = np.interp(x, self.line[:, 0], self.line[:, 1])
         return found
+
+
+def _checked_line(fill: Fill, surface: Surface, road: Road) -> Array:
+    """Return the line under the surfacing, which lies between masonry and road over the whole bridge."""
+    under = np.array(fill.fill_line, dtype=float)
+    left, right = surface.reach
+    near = 1e-6 * (right - left)
+    if under[0, 0] > left + near or under[-1, 0] < right - near:
+        msg = f"the fill line runs from {under[0, 0]:g} to {under[-1, 0]:g} m, the masonry below it from {left:g} to "
+        msg += f"{right:g} m"
+        raise InputError(msg, where="fill", hint="let the fill line run over the whole bridge")
+    x = np.unique(np.concatenate([surface.start[:, 0], surface.end[:, 0], under[:, 0], road.line[:, 0]]))
+    x = x[(x >= left) & (x <= right)]
+    y = np.interp(x, under[:, 0], under[:, 1])
+    for name, beyond in (("above the road", y - road.height(x)), ("below the masonry", surface.height(x) - y)):
+        k = int(np.nanargmax(beyond))
+        if beyond[k] > near:
+            msg = f"the fill line lies {beyond[k]:.3g} m {name} at x = {x[k]:.3g} m"
+            raise InputError(msg, where="fill", hint="it is the line between fill and surfacing")
+    return under
 
 
 def _looking_up(model: Model) -> tuple[Array, Array, Array, Array]:
