@@ -210,7 +210,7 @@ def test_a_step_is_taken_from_the_best_iterate_where_that_is_near_enough(
     monkeypatch: pytest.MonkeyPatch, error: float, taken: bool
 ) -> None:
     run = Run(scale(pushed_wall(0.1)))
-    best = SimpleNamespace(error=error * one_step.STEP)
+    best = SimpleNamespace(error=error * one_step.RELAXED)
 
     class GivesUp(Run):
         def attempts(self, further=()):

@@ -99,10 +99,10 @@ def test_more_iterations_never_return_a_worse_point(seed, monkeypatch):
     equations = sp.csc_array(sp.vstack([A, A[[0]]])), np.append(b, b[0] + 0.3)
     worst = []
     for most in range(0, 48, 4):
-        monkeypatch.setattr(linear_interior, "MOST", most)
+        monkeypatch.setattr(linear_interior, "PROGRAMME_ITERATIONS", most)
         found = solve_interior(cost, equations, bounds)
         worst.append(max(found.primal, found.dual, found.gap))
-    assert min(worst) > linear_interior.ENOUGH
+    assert min(worst) > linear_interior.PROGRAMME_ENOUGH
     assert worst == sorted(worst, reverse=True)
 
 

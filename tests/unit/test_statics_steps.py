@@ -76,7 +76,7 @@ def test_pivoting_goes_on_from_the_states_a_step_has_reached(monkeypatch):
         displacement=answer.x, normal_force=answer.t[:, 0] + 1e-6, friction_force=answer.t[:, 1:] - 3e-7
     )
     pivot = step_solver.sparse_lemke.solve
-    monkeypatch.setattr(step_solver, "ROUNDS", 0)
+    monkeypatch.setattr(step_solver, "STEP_FACTORISATIONS", 0)
     monkeypatch.setattr(step_solver.interior, "solve", lambda _: near)
     monkeypatch.setattr(
         step_solver.sparse_lemke, "solve", lambda problem, **known: handed.append(known) or pivot(problem, **known)

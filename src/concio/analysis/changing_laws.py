@@ -16,11 +16,9 @@ import numpy as np
 from concio.contact.assembly import Assembly
 from concio.errors import InputError
 from concio.problem.contact_problem import Array, ContactProblem, Laws
+from concio.problem.limits_of_work import LAW_ROUNDS
 from concio.problem.solution import Solution, Status, failed
 from concio.problem.tolerances import CONSTANTS_STAY
-
-ROUNDS = 300
-"""Largest number of times the constants are asked anew."""
 
 OVER_AREA = ("normal_compliance", "tangential_compliance")
 TIMES_AREA = ("cohesion", "tension", "cap")
@@ -73,7 +71,7 @@ def solve_changing(
     """
     first = laws = problem.laws
     points = points_that_change(assembly)
-    for number in range(1, ROUNDS + 1):
+    for number in range(1, LAW_ROUNDS + 1):
         found = solve(replace(problem, laws=laws))
         if not found.solved:
             said = f"with the joint laws of round {number}: {found.status.value}"
@@ -84,7 +82,7 @@ def solve_changing(
         if _stay(laws, asked, first):
             return found, laws
         laws = asked
-    return _undecided(problem, found, f"joint laws and answer did not agree in {ROUNDS} rounds"), laws
+    return _undecided(problem, found, f"joint laws and answer did not agree in {LAW_ROUNDS} rounds"), laws
 
 
 def _undecided(problem: ContactProblem, found: Solution, said: str) -> Solution:

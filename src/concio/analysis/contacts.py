@@ -8,6 +8,7 @@ import numpy as np
 
 from concio.contact.pairs import Pairs
 from concio.problem.pair_state import PairState, PairStates
+from concio.problem.tolerances import UNLOADED
 from concio.representation import short_repr
 
 Array = np.ndarray
@@ -170,9 +171,6 @@ class JointResultants:
         point: Array = self.middle + np.nan_to_num(self.eccentricity)[:, None] * self.tangent
         return point
 
-
-UNLOADED = 1e-12
-"""Share of the largest normal force below which that of a joint is zero: it has no centre of pressure."""
 
 
 def loaded(N: Array) -> Array:

@@ -38,9 +38,10 @@ from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
+from concio.problem.limits_of_work import COLLAPSE_WORK, LARGEST_PATH, LARGEST_SEARCH, UNASKED_IN_SPACE, UNASKED_WORK
 from concio.problem.solution import PROVEN_FAILURES, Progress, ProgressCallback, Status
 from concio.solvers.methods import find
-from concio.solvers.statics.collapse_search import WORK_OF_ALL, find_collapse_state
+from concio.solvers.statics.collapse_search import find_collapse_state
 from concio.solvers.statics.collapse_state import CollapseState
 from concio.solvers.statics.existence import find_mechanism
 from concio.solvers.statics.friction import smallest_friction
@@ -56,19 +57,6 @@ Array = np.ndarray
 
 LIVE = "live"
 """Load group that is multiplied unless another is named; generators put their horizontal load there."""
-
-LARGEST_PATH = 400
-"""Up to this number of pairs the exact path is followed by default: some five events a pair, each a linear system."""
-
-LARGEST_SEARCH = 15_000
-"""Collapse states are searched for in problems of up to this number of pairs: about a minute there."""
-
-UNASKED_WORK = 40_000
-"""Linear programmes times pairs of that search where it is not asked for: some five seconds."""
-
-UNASKED_IN_SPACE = 1_500
-"""Up to this number of pairs in space collapse states are searched for by default, and the least load that was not
-reached is applied in one step: beyond, the few programmes of some seconds end far from a state."""
 
 Found = Literal["bound", "friction", "steps", "collapse state", "in one step", "spread", "path"]
 """The numbers of a limit load, in the order in which they are found: the quick ones first."""
@@ -191,7 +179,7 @@ def limit_stages(
         found = replace(found, search=f"not tried by default: {dead.pairs:,} contact pairs in space; request it")
 
     def seek(note: ProgressCallback) -> tuple[CollapseState | None, str]:
-        work = WORK_OF_ALL if search else UNASKED_WORK
+        work = COLLAPSE_WORK if search else UNASKED_WORK
         return search_collapse(dead, load, work=work, bound=top, progress=note)
 
     with ExitStack() as stack:
@@ -271,7 +259,7 @@ def search_collapse(
     dead: ContactProblem,
     live: Array,
     *,
-    work: int = WORK_OF_ALL,
+    work: int = COLLAPSE_WORK,
     bound: LimitLoad | None = None,
     progress: ProgressCallback | None = None,
 ) -> tuple[CollapseState | None, str]:

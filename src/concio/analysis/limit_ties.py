@@ -7,9 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from concio.analysis.path_ties import shares
-from concio.analysis.tie_forces import BROKEN, break_elongations
+from concio.analysis.tie_forces import break_elongations
 from concio.contact.assembly import Assembly
 from concio.contact.factors import load_factor
+from concio.problem.tolerances import BROKEN_TIE
 from concio.solvers.path.record import EventPath
 
 
@@ -31,7 +32,7 @@ def whole_up_to(assembly: Assembly, path: EventPath | None, live: Sequence[str])
     most, before = 0.0, None
     for state in path.states:
         share = shares(assembly, state, start, end)
-        if (share >= 1 - BROKEN).any():
+        if (share >= 1 - BROKEN_TIE).any():
             if before is None:
                 return 0.0
             last, own = before

@@ -14,6 +14,7 @@ import numpy as np
 
 from concio.contact.assembly import Assembly
 from concio.problem.contact_problem import ContactProblem
+from concio.problem.limits_of_work import BREAK_HALVINGS
 from concio.problem.solution import Solver
 from concio.solvers.path.near_forces import needed, solve_near
 from concio.solvers.path.state import (
@@ -27,9 +28,6 @@ from concio.solvers.path.state import (
 )
 
 Array = np.ndarray
-
-HALVINGS = 50
-"""Halvings of the load that is looked for under the motion of a point."""
 
 
 def marked(assembly: Assembly, state: PathState, pair: int) -> PathState:
@@ -67,7 +65,7 @@ def released(path: LinearPath, state: PathState, control: Array | None, solver: 
         return _at(path, state, state.parameter, solver)
     place, best = float(control @ state.displacement), None
     low, high = 0.0, state.parameter
-    for _ in range(HALVINGS):
+    for _ in range(BREAK_HALVINGS):
         middle = 0.5 * (low + high)
         found = _at(path, state, middle, solver if best is None else None)
         if found is not None and float(control @ found.displacement) <= place:

@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from concio.problem.tolerances import APPLIED
+
 if TYPE_CHECKING:
     from concio.analysis.path_result import PathStep
     from concio.model.stages import Stage
-
-APPLIED = 1e-9
-"""A factor that falls short of what was asked for by less than this share of its change was reached."""
 
 
 @dataclass(frozen=True)

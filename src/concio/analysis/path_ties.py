@@ -6,9 +6,11 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from concio.analysis.tie_forces import BROKEN, break_elongations
+from concio.analysis.tie_forces import break_elongations
 from concio.contact.assembly import Assembly
+from concio.problem.limits_of_work import BREAK_STEPS
 from concio.problem.solution import Solver
+from concio.problem.tolerances import BREAK_LOCATED, BROKEN_TIE
 from concio.solvers.methods import find
 from concio.solvers.path.apart import between
 from concio.solvers.path.record import Event, Outcome
@@ -16,12 +18,6 @@ from concio.solvers.path.state import LinearPath, PathState
 from concio.solvers.path.step_path import StepPath, follow_in_steps
 
 Array = np.ndarray
-
-LOCATED = 1e-8
-"""Share of its elongation at break within which a tie breaks, on a path in steps."""
-
-TRIES = 60
-"""Load steps at most to find that."""
 
 
 def breaking(
@@ -37,7 +33,7 @@ def breaking(
     """
     if not np.isfinite(break_elongations(assembly)).any():
         return None
-    return lambda state: bool((shares(assembly, state, start, end) >= 1 - BROKEN).any())
+    return lambda state: bool((shares(assembly, state, start, end) >= 1 - BROKEN_TIE).any())
 
 
 def shares(assembly: Assembly, state: PathState, start: Mapping[str, float], end: Mapping[str, float]) -> Array:
@@ -83,7 +79,7 @@ def until_a_tie_breaks(
     def share(state: PathState) -> Array:
         return shares(assembly, state, start, end)
 
-    over = [i for i, state in enumerate(found.states) if (share(state) >= 1 - BROKEN).any()]
+    over = [i for i, state in enumerate(found.states) if (share(state) >= 1 - BROKEN_TIE).any()]
     if not over:
         return found
     last = over[0]
@@ -93,7 +89,7 @@ def until_a_tie_breaks(
         return StepPath(found.states[:1], (Event(at, at, tie, "breaks", 0, 0),), Outcome.BROKEN, found.direction)
     before, after = found.states[last - 1 : last + 1]
     a, b = share(before), share(after)
-    part = float(np.min(np.where(b >= 1 - BROKEN, (1 - a) / np.where(b > a, b - a, 1.0), np.inf)))
+    part = float(np.min(np.where(b >= 1 - BROKEN_TIE, (1 - a) / np.where(b > a, b - a, 1.0), np.inf)))
     finite = any(e.step == last and e.kind in ("jumps", "restarts") for e in found.events)
     breaking = between(path, before, after, part) if exact and not finite else None
     if breaking is None and not finite:
@@ -115,16 +111,16 @@ def _located(
     """
     low, high, best = before.parameter, after.parameter, None
     a, b = float(share(before).max()), float(share(after).max())
-    for k in range(TRIES):
+    for k in range(BREAK_STEPS):
         part = (1 - a) / (b - a) if k % 3 < 2 and b > a else 0.5
         parameter = low + min(max(part, 0.01), 0.99) * (high - low)
         step = follow_in_steps(path, before, until=parameter, steps=1, solver=solver)
         if step.outcome is not Outcome.REACHED:
             return best
         most = float(share(step.states[-1]).max())
-        if most <= 1 + LOCATED:
+        if most <= 1 + BREAK_LOCATED:
             best, low, a = step.states[-1], parameter, most
-            if most >= 1 - LOCATED:
+            if most >= 1 - BREAK_LOCATED:
                 return best
         else:
             high, b = parameter, most

@@ -23,6 +23,7 @@ from concio.fem.discretisation import FIXED, RIGID
 from concio.kinematics.rigid import rigid_operator, swept
 from concio.model.model import Model
 from concio.problem.certificate import Certificate
+from concio.problem.limits_of_work import LARGEST_EXISTENCE
 from concio.problem.solution import Mechanism, Solution, Status, pair_states
 from concio.representation import short_repr
 from concio.solvers.statics.self_stress import SelfStress
@@ -36,10 +37,6 @@ if TYPE_CHECKING:
     from concio.post.tables import Tables
 
 Array = np.ndarray
-
-EXISTENCE = 2000
-"""Largest number of pairs for which summaries report the paper's sufficient condition (a linear programme)."""
-
 
 LARGE = 0.1
 """Share of a joint's length from which on its motion is called large."""
@@ -449,7 +446,7 @@ class Result(Shown):
             data["reactions"] = {name: list(force) for name, force in self.reactions.items()}
             data["ties"] = self.ties.as_list()
             data["pairs"] = {name: contacts.count(name) for name in STATE_NAMES}
-        if 0 < len(self.assembly.pairs) <= EXISTENCE:  # without pairs there is nothing to guarantee
+        if 0 < len(self.assembly.pairs) <= LARGEST_EXISTENCE:  # without pairs there is nothing to guarantee
             condition = self.existence
             data["sufficient_condition"] = {"holds": condition.holds, "margin": _finite(condition.margin)}
         if self.self_stress is not None:

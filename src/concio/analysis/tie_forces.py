@@ -9,15 +9,10 @@ import numpy as np
 
 from concio.contact.assembly import Assembly
 from concio.problem.contact_problem import ContactProblem
+from concio.problem.tolerances import BROKEN_TIE, SLACK_TIE
 from concio.representation import short_repr
 
 Array = np.ndarray
-
-SLACK = 1e-9
-"""A tie with less than this share of the largest force beside it is slack; one this near its most carries its most."""
-
-BROKEN = 1e-9
-"""A tie is broken where it is stretched to its break elongation, but for this share of it."""
 
 
 @short_repr
@@ -69,7 +64,7 @@ def tie_forces(assembly: Assembly, q: Array, normal_force: Array, factors: Mappi
     factors : mapping of str to float, optional
     """
     ties, own = assembly.model.ties, assembly.ties
-    dust = SLACK * float(np.abs(normal_force).max(initial=0.0))
+    dust = SLACK_TIE * float(np.abs(normal_force).max(initial=0.0))
     tension = np.where(np.abs(normal_force[own]) <= dust, 0.0, normal_force[own])
     state = tuple(_state(t.strength, float(force)) for t, force in zip(ties, tension, strict=True))
     pull = -tension[:, None] * assembly.pairs.normal[own]  # the force of the pair on its second body is along n
@@ -80,7 +75,7 @@ def tie_forces(assembly: Assembly, q: Array, normal_force: Array, factors: Mappi
 def _state(strength: float, force: float) -> str:
     if force == 0.0:
         return "slack"
-    return "yields" if force >= strength * (1 - SLACK) else "taut"
+    return "yields" if force >= strength * (1 - SLACK_TIE) else "taut"
 
 
 def broken_ties(assembly: Assembly, elongation: Array) -> tuple[tuple[str, float], ...]:
@@ -96,7 +91,7 @@ def broken_ties(assembly: Assembly, elongation: Array) -> tuple[tuple[str, float
     share = elongation / limit
     order = np.argsort(-share, kind="stable")
     ties = assembly.model.ties
-    return tuple((ties[int(k)].name, float(elongation[k])) for k in order if share[k] >= 1 - BROKEN)
+    return tuple((ties[int(k)].name, float(elongation[k])) for k in order if share[k] >= 1 - BROKEN_TIE)
 
 
 def without_breakable(assembly: Assembly, problem: ContactProblem) -> ContactProblem | None:

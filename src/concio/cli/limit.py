@@ -12,12 +12,10 @@ from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
+from concio.problem.limits_of_work import LARGEST_MARGIN
 
 if TYPE_CHECKING:
     from concio.analysis.limit import LimitResult
-
-LARGEST_MARGIN = 10_000
-"""Up to this number of pairs the friction margin is found by default: it takes some twenty linear programmes."""
 
 
 @guarded

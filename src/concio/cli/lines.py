@@ -73,9 +73,9 @@ def result_lines(result: Result) -> list[str]:
 
 def _existence(result: Result) -> list[str]:
     """Return the paper's sufficient condition in a line, for problems where its linear programme is quick."""
-    from concio.analysis.result import EXISTENCE
+    from concio.problem.limits_of_work import LARGEST_EXISTENCE
 
-    if not 0 < len(result.assembly.pairs) <= EXISTENCE:
+    if not 0 < len(result.assembly.pairs) <= LARGEST_EXISTENCE:
         return []
     condition = result.existence
     if not condition.holds:

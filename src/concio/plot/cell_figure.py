@@ -28,7 +28,7 @@ Array = np.ndarray
 AROUND = [(i, j) for j in (-1, 0, 1) for i in (-1, 0, 1)]
 """The cells that are drawn."""
 
-MOVES = 1e-6
+MOVES_VISIBLY = 1e-6
 """Relative motions below this share of the largest are none."""
 
 
@@ -117,7 +117,7 @@ def plot_motion(
     normal, tangential = cell.columns
     opening = problem.C_n @ velocity[:-3] + normal @ strain
     slip = problem.C_t @ velocity[:-3] + tangential @ strain
-    little = MOVES * float(np.abs(np.concatenate([opening, slip])).max())
+    little = MOVES_VISIBLY * float(np.abs(np.concatenate([opening, slip])).max())
     opens = opening > problem.laws.friction * np.abs(slip) + little
     state = np.where(opens, 0, np.where(np.abs(slip) > little, 2, 1))
     u = assembly.supported.T @ velocity[:-3]

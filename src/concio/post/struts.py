@@ -44,7 +44,7 @@ NEAR = 16
 LEFT = 1e3
 """What a unit of force that no bar holds costs over a bar as long as the body."""
 
-BALANCED = 1e-9
+LEFT_OVER = 1e-9
 """Share of a body's largest force that bars may leave."""
 
 AT_ONCE = 20_000
@@ -136,7 +136,7 @@ def struts(bodies: Sequence[Pushed]) -> Struts:
     joined = [_joined(body) for body in bodies]
     found = _solved(joined)
     for b, (_, left) in enumerate(found):
-        if left > BALANCED:
+        if left > LEFT_OVER:
             pushed = bodies[b]
             more = np.vstack([pushed.point, pushed.corners]), np.vstack([pushed.force, 0.0 * pushed.corners])
             joined[b] = _joined(Pushed(*more, pushed.corners), near=len(more[0]))

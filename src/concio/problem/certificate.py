@@ -8,8 +8,8 @@ entry, over all parts, is at most 1e-9.
 Equilibrium is checked in two parts. The resultants on every floating body are sums of loads and contact forces alone:
 displacements have no part in them and rounding hardly any. What is left is the balance at each node, where K u is the
 difference of large numbers if a stiff body rests on soft joints: u, stored in double precision, is known to some
-eps |u|, so that K u is known to eps |K| |u| and no better, whoever solves. :data:`ROUNDING` of that is granted, but
-never more than :data:`GRANTED` of the load: beyond, rounding could hide how a joint shares its force.
+eps |u|, so that K u is known to eps |K| |u| and no better, whoever solves. :data:`BALANCE_ROUNDING` of that is granted,
+but never more than :data:`GRANTED` of the load: beyond, rounding could hide how a joint shares its force.
 
 Friction is measured by its natural map. In the plane, for forces inside the cone, that is
 min(|y_t| / U, |t_t + (c + mu t_n) sign y_t| / F), U being that of the pair. In space the second of these would ask for
@@ -25,7 +25,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
-from concio.problem.tolerances import CERTIFIED, GRANTED, ROUNDING
+from concio.problem.tolerances import BALANCE_ROUNDING, CERTIFIED, GRANTED
 from concio.problem.units import in_units, measure, rounding
 from concio.representation import short_repr
 
@@ -114,7 +114,7 @@ def imbalance(problem: ContactProblem, u: Array, t_n: Array, t_t: Array, force: 
     moved = problem.R.T @ applied
     rest = problem.K @ u - (applied - problem.R @ moved)
     rest = rest - problem.R @ (problem.R.T @ rest)
-    known = np.minimum(ROUNDING * (abs(problem.K) @ np.abs(u)), GRANTED * force)
+    known = np.minimum(BALANCE_ROUNDING * (abs(problem.K) @ np.abs(u)), GRANTED * force)
     farthest = abs(problem.R).max(axis=0).toarray().ravel() if problem.rigid_motions else np.zeros(0)
     return moved / farthest, np.maximum(np.abs(rest) - known, 0.0)
 

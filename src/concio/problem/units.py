@@ -15,7 +15,7 @@ they would close is little beside that. Where nothing moves and no joint gives w
 that is not zero is wrong.
 
 Rounding is distinguished from error: y = x + C u + a t is known to a few eps of the sizes it is summed from, and no
-better, whoever solves. :data:`ROUNDING` of these is granted, never more than :data:`GRANTED` of the unit: where
+better, whoever solves. :data:`BALANCE_ROUNDING` of these is granted, never more than :data:`GRANTED` of the unit: where
 displacements are so large beside the compliance of a joint that they do not tell its force, nothing is certified.
 """
 
@@ -27,7 +27,7 @@ import numpy as np
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.parts import Parts, connected_parts
-from concio.problem.tolerances import GRANTED, ROUNDING
+from concio.problem.tolerances import BALANCE_ROUNDING, GRANTED
 from concio.representation import short_repr
 
 BEYOND = 1e100
@@ -134,6 +134,6 @@ def rounding(problem: ContactProblem, u: Array, t_n: Array, t_t: Array, measured
     along = np.linalg.norm(slip, axis=1)
     normal = np.abs(problem.gap) + abs(problem.C_n) @ size + law.normal_compliance * np.abs(t_n)
     normal += law.dilatancy * along
-    known = (ROUNDING * normal, ROUNDING * along)
+    known = (BALANCE_ROUNDING * normal, BALANCE_ROUNDING * along)
     units = (measured.length_of(law.normal_compliance), measured.length_of(law.tangential_compliance))
     return np.minimum(known[0], GRANTED * units[0]), np.minimum(known[1], GRANTED * units[1])

@@ -20,14 +20,14 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 
+from concio.problem.limits_of_work import MOST_BITS
+
 Row = dict[int, Fraction]
 
 BITS = 24
 """Bits of a correction that are taken at a time."""
 ROOM = 3
 """Bits by which each correction is smaller than the one before, at least."""
-MOST_BITS = 400_000
-"""Longer solutions are given up."""
 FIRST_BITS = 256
 
 

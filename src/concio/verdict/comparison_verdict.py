@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 MEETS = "solved"
 """Word of a row whose certificate holds, where nothing says that the structure fails."""
-BALANCED = "balanced only"
+BALANCED_ONLY = "balanced only"
 """Word of such a row of a structure that is proven to fail: its forces balance, and nothing puts them there."""
 WORDS = {
     Status.SOLVED: MEETS,
@@ -33,7 +33,7 @@ FAR = 1e-6
 def word_of(status: Status, decided: Verdict | None) -> str:
     """Return the word of a row, which never calls solved what the structure's verdict says to fail."""
     word = WORDS[status]
-    return BALANCED if word == MEETS and decided is not None and decided.outcome is Outcome.FAILS else word
+    return BALANCED_ONLY if word == MEETS and decided is not None and decided.outcome is Outcome.FAILS else word
 
 
 def comparison_verdict(table: ComparisonTable) -> Verdict:
@@ -45,7 +45,7 @@ def comparison_verdict(table: ComparisonTable) -> Verdict:
         With the verdict of the structure in ``decided`` where a model was compared; of a bare problem the rows alone
         say something, of its equations only.
     """
-    met = [row for row in table.rows if row.outcome in (MEETS, BALANCED)]
+    met = [row for row in table.rows if row.outcome in (MEETS, BALANCED_ONLY)]
     answer = _rows_words(table, met)
     limits = _several(met)
     open_rows = [row.method for row in table.rows if row.outcome in ("gave up", "too slow", "cancelled")]
@@ -73,7 +73,7 @@ def comparison_verdict(table: ComparisonTable) -> Verdict:
 def _rows_words(table: ComparisonTable, met: list[ComparisonRow]) -> str:
     names = ", ".join(row.method for row in met) or "none"
     text = f"Of {len(table.rows)} methods {len(met)} meet the equations with the certificate of all: {names}."
-    if any(row.outcome == BALANCED for row in met):
+    if any(row.outcome == BALANCED_ONLY for row in met):
         text += (
             " Their forces balance within friction as self-stress alone: the verdict above is that of the structure, "
             "and they do not contradict it."

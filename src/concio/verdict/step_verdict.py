@@ -9,6 +9,7 @@ import numpy as np
 
 from concio.contact.factors import load_factor
 from concio.display import Units, number
+from concio.problem.limits_of_work import LARGEST_HOLDING
 from concio.problem.solution import Status
 from concio.problem.tolerances import CERTIFIED
 from concio.solvers.statics.self_stress import SelfStress, least_compression, least_compression_of
@@ -33,9 +34,6 @@ that can move aside it takes up a share that falls with the compliance added, so
 
 MOST_REACTIONS = 4
 """More reactions than this are counted in a short text."""
-
-LARGEST = 20_000
-"""Largest number of pairs for which the forces that could hold a structure are worked out (a linear programme)."""
 
 SEVERAL = (
     "Coulomb friction can have several equilibria under the same loads: this is one of them, and the load history "
@@ -134,7 +132,7 @@ def _limits(result: Result) -> tuple[str, ...]:
 
 def self_stress(result: Result) -> SelfStress | None:
     """Return forces that would hold a structure which collapses as it is loaded; None where there are none."""
-    if result.status not in (Status.COLLAPSES, Status.NO_COULOMB_STATE) or len(result.assembly.pairs) > LARGEST:
+    if result.status not in (Status.COLLAPSES, Status.NO_COULOMB_STATE) or len(result.assembly.pairs) > LARGEST_HOLDING:
         return None
     problem = result.assembly.problem(result.factors)
     failing = [part.pairs for part in result.solution.parts if part.status is result.status]

@@ -29,7 +29,7 @@ from concio.verdict.not_standing import not_standing
 
 Array = np.ndarray
 
-CHECKED = 40
+POSITIONS_CHECKED = 40
 """Positions at which Coulomb states are found, unless more or fewer are asked for."""
 
 
@@ -42,7 +42,7 @@ def assess_bridge(
     step: float | None = None,
     fine: float = FINE,
     worst: int = 3,
-    checked: int = CHECKED,
+    checked: int = POSITIONS_CHECKED,
     sensitivity: bool = True,
     others: Sequence[str] = (),
     settled: Mapping[str, float] | None = None,

@@ -35,7 +35,7 @@ from concio.model.model import Model
 from concio.problem.certificate import imbalance
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.pair_state import PairStates
-from concio.problem.tolerances import CHECKED
+from concio.problem.tolerances import CHECKED, CONTRADICTION
 from concio.representation import short_repr
 from concio.solvers.path.state import CLOSED, OPEN, STICK, LinearPath
 from concio.solvers.path.state_rates import state_rates
@@ -47,9 +47,6 @@ if TYPE_CHECKING:
     from concio.plot.cell_accessor import ModuliPlots
 
 Array = np.ndarray
-
-CONTRADICTION = 1e-7
-"""Residual of the linear equations from which on the states of the joints forbid the strain."""
 
 
 @short_repr

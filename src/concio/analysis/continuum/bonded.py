@@ -8,13 +8,11 @@ import numpy as np
 
 from concio.contact.assembly import Assembly
 from concio.problem.pair_state import Normal, PairStates
+from concio.problem.tolerances import BONDED_LEFT
 from concio.solvers.path.state import LinearPath
 from concio.solvers.path.state_rates import state_rates
 
 Array = np.ndarray
-
-LEFT = 1e-8
-"""Residual of the linear equations above which there is no such state."""
 
 
 def bonded_displacement(assembly: Assembly, factors: Mapping[str, float]) -> Array | None:
@@ -26,7 +24,7 @@ def bonded_displacement(assembly: Assembly, factors: Mapping[str, float]) -> Arr
     path = LinearPath(problem, problem.f, problem.gap, -problem.slip_origin)
     m = problem.pairs
     found = state_rates(path, PairStates.plane(np.full(m, Normal.CLOSED), np.zeros(m)))
-    if found.residual > LEFT:
+    if found.residual > BONDED_LEFT:
         return None
     u: Array = assembly.supported.T @ found.displacement
     return u

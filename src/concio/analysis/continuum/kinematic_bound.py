@@ -25,12 +25,10 @@ from concio.analysis.continuum.continuum import Continuum
 from concio.analysis.continuum.joint_domain import joint_half_planes
 from concio.errors import SolverError
 from concio.kinematics.frames import turned_left
+from concio.problem.tolerances import DEAD_POWER
 from concio.solvers.statics.programme import optimise
 
 Array = np.ndarray
-
-POWER = 1e-6
-"""Share of its own power by which the dead load has to exceed what is absorbed to be proven not to be carried."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +111,7 @@ def kinematic_bound(
     needed = float(cost_mu @ mu + joint_cost @ nu) - float(power[0] @ u)
     if worthless:
         left = max(left, abs(float(power[1] @ u)) / (float(np.abs(power[1]).sum()) or 1.0))
-        multiplier = -np.inf if needed < -POWER * float(np.abs(power[0]) @ np.abs(u)) else np.nan
+        multiplier = -np.inf if needed < -DEAD_POWER * float(np.abs(power[0]) @ np.abs(u)) else np.nan
     else:
         multiplier = needed / float(power[1] @ u)
     top = float(np.abs(u).max()) or 1.0

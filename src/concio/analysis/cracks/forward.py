@@ -19,12 +19,10 @@ from concio.analysis.path_result import PathResult
 from concio.contact.assembly import Assembly
 from concio.errors import NoEquilibriumError, SolverError
 from concio.model.stages import Stage
+from concio.problem.limits_of_work import EXACT_PAIRS
 from concio.verdict.not_standing import not_standing
 
 Array = np.ndarray
-
-EXACT_PAIRS = 150
-"""Up to this number of contact pairs a path in the plane is followed event by event, unless stated otherwise."""
 
 
 @dataclass(frozen=True, eq=False)

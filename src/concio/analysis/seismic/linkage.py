@@ -28,7 +28,7 @@ Array = np.ndarray
 CLOSED = 1e-11
 """Largest gap of a joint, over the size of the mechanism, in a configuration that counts."""
 
-BALANCED = 1e-8
+LINKAGE_BALANCED = 1e-8
 """Largest residual of equilibrium over the largest force."""
 
 RANK = 1e-9
@@ -303,7 +303,7 @@ class Linkage:
         solved = np.linalg.lstsq(A, -weight * load, rcond=RANK)[0]
         left = A @ solved + weight * load
         top = max(float(np.abs(f.force).max()) for f in (*self.dead, *self.push))
-        if float(np.abs(left).max()) > BALANCED * top * 10:
+        if float(np.abs(left).max()) > LINKAGE_BALANCED * top * 10:
             return None
         pressed = all(solved[i] > -1e-6 * top for i in pushing) and all(
             -1e-6 * top < solved[i] < joint.strength + 1e-6 * top

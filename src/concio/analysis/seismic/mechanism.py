@@ -15,14 +15,14 @@ from fnmatch import fnmatchcase
 import numpy as np
 import scipy.sparse as sp
 
-from concio.analysis.limit import LARGEST_SEARCH, UNASKED_WORK
 from concio.analysis.seismic.macro_blocks import Mechanics, mechanics_of
 from concio.arguments import closest
 from concio.contact.assembly import Assembly
 from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
-from concio.solvers.statics.collapse_search import WORK_OF_ALL, find_collapse_state
+from concio.problem.limits_of_work import COLLAPSE_WORK, LARGEST_SEARCH, UNASKED_WORK
+from concio.solvers.statics.collapse_search import find_collapse_state
 from concio.solvers.statics.collapse_state import CollapseState
 from concio.solvers.statics.existence import find_mechanism, statically_admissible
 from concio.solvers.statics.limit import LimitLoad, associated_limit
@@ -220,7 +220,7 @@ class Mechanisms:
         beds = np.abs(self.assembly.pairs.normal[rows][:, -1]) > BED
         found = _quickly(problem, push, bound, beds)
         if not quick:
-            work = WORK_OF_ALL if problem.dim == 2 else UNASKED_WORK
+            work = COLLAPSE_WORK if problem.dim == 2 else UNASKED_WORK
             starts = None if problem.dim == 2 else 1
             found.append(find_collapse_state(problem, push, starts=starts, work=work, bound=bound).state)
         return min((s for s in found if s is not None), key=lambda s: s.multiplier, default=None)

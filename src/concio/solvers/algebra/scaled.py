@@ -26,7 +26,7 @@ from concio.errors import MethodError
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array, ContactProblem, Engine
 from concio.problem.natural_map import natural_map
-from concio.problem.tolerances import GRANTED, ROUNDING, SMOOTH
+from concio.problem.tolerances import BALANCE_ROUNDING, GRANTED, SMOOTH
 from concio.solvers.algebra.block_factor import BlockFactor
 
 LOOSE = 1e-10
@@ -172,7 +172,7 @@ class Scaled:
 
     def unbalanced(self, u: Array, t: Array, force: float) -> float:
         """Return the largest imbalance beyond what the rounding of u explains, over the largest force."""
-        known = np.minimum(ROUNDING * (self.stiffness_size @ np.abs(u)), GRANTED * force)
+        known = np.minimum(BALANCE_ROUNDING * (self.stiffness_size @ np.abs(u)), GRANTED * force)
         return float((np.abs(self.imbalance(u, t)) - known).max(initial=0.0)) / force
 
     def natural_map(self, u: Array, t: Array, unit: float = 1.0) -> Array:

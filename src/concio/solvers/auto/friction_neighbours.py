@@ -13,6 +13,7 @@ the certificate of the problem itself.
 from __future__ import annotations
 
 from concio.problem.contact_problem import ContactProblem
+from concio.problem.limits_of_work import NEIGHBOUR_HALVINGS, NEIGHBOUR_PIVOTS, NEIGHBOURS_PIVOTS, NEIGHBOURS_WORK
 from concio.problem.solution import ProgressCallback, Solution, Status, pair_states
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.interior.run import Cancelled, Run, Start
@@ -23,18 +24,6 @@ FACTORS = (0.98, 1.02, 0.95, 1.05)
 
 STARTS = (Start(10.0, 10.0), Start(100.0, 100.0))
 """Starts tried for each neighbour."""
-
-HALVINGS = 6
-"""Times the way back to the structure's own friction may be halved."""
-
-PIVOTS = 500
-"""Largest number of pivots of one path, beside one for every ten pairs."""
-
-BUDGET = 10_000
-"""Largest number of pivots of all paths."""
-
-WORK = 40_000_000
-"""Largest number of pivots of all paths times the number of pairs."""
 
 
 def from_neighbours(run: Run, progress: ProgressCallback | None = None) -> Solution | None:
@@ -54,7 +43,7 @@ def from_neighbours(run: Run, progress: ProgressCallback | None = None) -> Solut
     problem = run.scaled.problem
     if not problem.laws.friction.any():
         return None
-    left = min(BUDGET, WORK // problem.pairs)
+    left = min(NEIGHBOURS_PIVOTS, NEIGHBOURS_WORK // problem.pairs)
     for factor in FACTORS:
         near = Run(scale(problem.with_friction(factor)), progress)
         found = None
@@ -78,12 +67,12 @@ def _carry(
 ) -> tuple[Solution | None, int, int]:
     """Carry the state of a neighbour to the friction of ``problem``; return the answer, the paths and the pivots."""
     to, ways, pivots, failures = 1.0, 0, 0, 0
-    while failures <= HALVINGS and pivots < left:
+    while failures <= NEIGHBOUR_HALVINGS and pivots < left:
         answer = sparse_lemke.solve(
             problem.with_friction(to) if to != 1.0 else problem,
             start_states=pair_states(problem.with_friction(factor), near),
             start=(near.displacement, near.normal_force, near.friction_force),
-            limit=min(PIVOTS + problem.pairs // 10, left - pivots),
+            limit=min(NEIGHBOUR_PIVOTS + problem.pairs // 10, left - pivots),
             tries=0,
             progress=progress,
         )

@@ -11,14 +11,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from concio.problem.limits_of_work import HOMOTOPY_ITERATIONS
 from concio.solvers.interior.iteration import InteriorPoint
 from concio.solvers.interior.point import Point
 
 LEVEL = 1e-2
 """Mean product at which the walk stays, scaled units."""
-
-MOST = 300
-"""Largest number of iterations in all."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +53,7 @@ def walk(
     if not outcome.converged:
         return z, Walk(1.0, total)
     theta, stride = 1.0, 0.2
-    while theta > 0 and total < MOST:
+    while theta > 0 and total < HOMOTOPY_ITERATIONS:
         new = max(0.0, theta - stride)
         trial, outcome = engine.run(z, theta=new, level=2 * LEVEL, most=25, watch=watch)
         total += outcome.iterations

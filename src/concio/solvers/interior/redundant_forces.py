@@ -40,7 +40,7 @@ DETERMINED = 1e-8
 ROUNDS = 60
 """Largest number of Newton steps."""
 
-BALANCED = 1e-15
+LEAST_BALANCED = 1e-15
 """Imbalance over the largest force at which Newton's method stops."""
 
 SOFT = 1e-12
@@ -188,6 +188,6 @@ def _least(
         stale = 0 if size < 0.5 * best[0] else stale + 1
         if size < best[0]:
             best = size, t
-        if size <= BALANCED * force or (stale >= 3 and best[0] <= EXACT * force):
+        if size <= LEAST_BALANCED * force or (stale >= 3 and best[0] <= EXACT * force):
             break
     return best[1] if best[0] <= EXACT * force else None

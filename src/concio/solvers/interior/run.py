@@ -13,7 +13,7 @@ from concio.problem.certificate import certify
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.pair_state import PairStates
 from concio.problem.solution import Progress, ProgressCallback, Solution, Status, judge
-from concio.problem.tolerances import EXACT
+from concio.problem.tolerances import EXACT, RESTING
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.interior.homotopy import walk
 from concio.solvers.interior.iteration import EARLY, SHARE, InteriorPoint
@@ -23,9 +23,6 @@ from concio.solvers.states.reading import Finished, read_states
 from concio.solvers.states.settle import ROUNDS, TOGETHER, Settler
 
 NAME = "interior-point"
-
-AT_REST = 1e-6
-"""Largest scaled displacement that is tried as zero; elastic bodies under load move by about one."""
 
 TARGETS = (1e-6, 1e-8, 1e-10)
 """Merits at which the exact finish is tried; a deeper point tells states apart that the one before does not."""
@@ -285,7 +282,7 @@ class Run:
             u, t = np.zeros(len(s.f)), s.unstressed
         else:
             u, t = point.u, point.t
-        small = float(np.abs(u).max(initial=0.0)) < AT_REST
+        small = float(np.abs(u).max(initial=0.0)) < RESTING
         u, t_n, t_t = s.restore(u, t)
         rest = np.zeros_like(u)
         if small and certify(s.problem, rest, t_n, t_t).certified:

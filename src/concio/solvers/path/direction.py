@@ -15,6 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from concio.problem.contact_problem import Array
+from concio.problem.limits_of_work import LARGEST_VERTEX
 from concio.solvers.path.equations import PathEquations
 from concio.solvers.path.rate_lcp import lemke
 from concio.solvers.path.rates import Rates, Values, critical, holds, rates, restore, wrong
@@ -28,9 +29,6 @@ TRUE = 1e-7
 
 SELF_STRESS = 1e-5
 """A rate that runs away with displacements below this share of its forces (scaled) is a self-stress."""
-
-LARGEST_VERTEX = 400
-"""Largest dense complementarity problem tried at a vertex."""
 
 
 def find_direction(

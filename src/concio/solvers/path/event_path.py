@@ -21,8 +21,9 @@ import numpy as np
 
 from concio.errors import InputError
 from concio.problem.contact_problem import Array
+from concio.problem.limits_of_work import LARGEST_VERTEX, MOST_RESTARTS
 from concio.problem.solution import Progress, ProgressCallback
-from concio.solvers.path.direction import LARGEST_VERTEX, find_direction
+from concio.solvers.path.direction import find_direction
 from concio.solvers.path.events import Moment, changes
 from concio.solvers.path.near_forces import solve_near
 from concio.solvers.path.point import PathPoint
@@ -51,9 +52,6 @@ from concio.solvers.path.state import (
     state_of,
     step_problem,
 )
-
-MOST_RESTARTS = 200
-"""Finite steps (jumps and restarts) taken on one path before these count as too many events."""
 
 AT_REST = 1e-9
 """A structure displaced by less than this share of a typical, or of its last, displacement rests."""

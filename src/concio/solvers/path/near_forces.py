@@ -27,9 +27,10 @@ import scipy.sparse as sp
 from concio.problem.certificate import certify
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution, judge
+from concio.problem.tolerances import RESTING
 from concio.solvers.algebra.scaled import Scaled, scale, typical_stiffness
 from concio.solvers.interior import engine, newton_finish, space
-from concio.solvers.interior.run import AT_REST, SIZES, WEIGHTS, Run
+from concio.solvers.interior.run import SIZES, WEIGHTS, Run
 from concio.solvers.states.reading import read_states
 from concio.solvers.states.settle import Settler
 
@@ -186,7 +187,7 @@ def solve_near(
         found = Settler(s).settle(s, v, p, read_states(s.renewed(soft), v, p), least=False)
     else:
         found = newton_finish.finish(s, v, p, least=False)
-    still = float(np.abs(found.u).max(initial=0.0)) < AT_REST
+    still = float(np.abs(found.u).max(initial=0.0)) < RESTING
     v, p_n, p_t = s.restore(found.u, found.t)
     rest = np.zeros_like(v)
     if still and certify(problem, rest, p_n, p_t).certified:

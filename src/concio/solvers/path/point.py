@@ -30,7 +30,7 @@ FIRM = 1e-3
 displacements contradicts redundant pairs, and over a small compliance it would turn into forces."""
 
 
-EXACT = 1e-12
+ROUNDED = 1e-12
 """Certificate entries below this are rounding."""
 
 
@@ -143,7 +143,7 @@ class PathPoint:
         self.equations.set_states(contact, sliding)
         exact = self.record()
         exact = replace(exact, states=state.states)
-        if certify_step(self.path, before, exact).worst > certify_step(self.path, before, state).worst + EXACT:
+        if certify_step(self.path, before, exact).worst > certify_step(self.path, before, state).worst + ROUNDED:
             self.x, exact = self.unknowns(state), state
         self.state = exact
         return exact

@@ -14,13 +14,11 @@ from dataclasses import replace
 import numpy as np
 
 from concio.problem.contact_problem import ContactProblem
+from concio.problem.limits_of_work import SMALL_PATH
 from concio.problem.solution import ProgressCallback, Solution, Status
 from concio.solvers.auto import chain as auto
 from concio.solvers.interior import engine, space
 from concio.solvers.path.state import LinearPath, PathState, state_of
-
-SMALL = 1000
-"""Up to this number of pairs whatever it takes takes seconds."""
 
 
 def homogeneous(path: LinearPath) -> bool:
@@ -57,7 +55,7 @@ def solve_from_rest(problem: ContactProblem, progress: ProgressCallback | None) 
         solution = engine.solve(problem, homotopy=False, progress=progress)
     else:
         solution = space.solve(problem, progress=progress)
-    if solution.solved or problem.pairs > SMALL or solution.status is Status.CANCELLED:
+    if solution.solved or problem.pairs > SMALL_PATH or solution.status is Status.CANCELLED:
         return solution
     return auto.solve(problem, progress=progress)
 

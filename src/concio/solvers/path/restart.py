@@ -22,7 +22,7 @@ import numpy as np
 
 from concio.problem.contact_problem import Array
 from concio.problem.solution import ProgressCallback, Solution, Status, failed
-from concio.problem.tolerances import AT_BOUND
+from concio.problem.tolerances import ACCURATE, AT_BOUND
 from concio.problem.units import measure
 from concio.solvers.auto import chain as auto
 from concio.solvers.interior import engine
@@ -35,9 +35,6 @@ SHARES = (1e-6, 3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 2e-3, 4e-3, 7e-3, 1e-2, 2e-2
 
 QUICK = (10.0,)
 """Starting points of the quick tries."""
-
-ACCURATE = 1e-10
-"""Largest certificate entry of a state from which a path goes on: its error would stay in the balance of energy."""
 
 NEXT = 1e-4
 """Increment up to which the proof that there is no equilibrium counts for the point itself."""

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from concio.problem.limits_of_work import COLD_PAIRS, RELAXATION_WORK
 from concio.problem.pair_state import PairStates
 from concio.problem.solution import ProgressCallback, Status
-from concio.problem.tolerances import EXACT
+from concio.problem.tolerances import EXACT, RELAXED
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.interior.newton_finish import finish
 from concio.solvers.interior.run import Cancelled, Run
@@ -17,17 +18,8 @@ from concio.solvers.pivoting import sparse_lemke
 from concio.solvers.states.reading import Finished, natural_residual, read_states
 from concio.solvers.states.settle import Settler
 
-STEP = 1e-10
-"""Natural-map residual up to which a step counts as solved."""
-
 COVERS = 3
 """Covering vectors that pivoting tries for a first step."""
-
-PIVOTS = 3_000_000
-"""Largest number of pivots in one step times the number of pairs."""
-
-COLD = 3000
-"""Largest number of pairs for which the first step is tried by pivoting from nothing."""
 
 WORK, MOST_WORK, LEAST_WORK = 4e6, 3000, 300
 """Factorisations times unknowns and pairs in space after which no further step is made, and the factorisations that
@@ -41,7 +33,7 @@ def solve_step(run: Run, step: Scaled, here: Finished | None, longer: float) -> 
     """
     if here is not None:
         return solve_near(step, here, (longer, 1.0, 0.0)) or _pivot(run, step, here) or solve_afresh(run, step)
-    return solve_afresh(run, step) or (_pivot(run, step, None) if step.pairs <= COLD else None)
+    return solve_afresh(run, step) or (_pivot(run, step, None) if step.pairs <= COLD_PAIRS else None)
 
 
 def solve_near(step: Scaled, here: Finished, multiples: Iterable[float]) -> Finished | None:
@@ -50,12 +42,12 @@ def solve_near(step: Scaled, here: Finished, multiples: Iterable[float]) -> Fini
         settler = Settler(step)
         for guess, states in ((here.u, here.states), (0.0 * here.u, None)):
             new = settler.settle(step, guess, here.t, states)
-            if new.error <= STEP:
+            if new.error <= RELAXED:
                 return new
         return None
     for multiple in multiples:
         new = finish(step, multiple * here.u, here.t, rounds=20)
-        if new.error <= STEP:
+        if new.error <= RELAXED:
             return new
     return None
 
@@ -65,7 +57,7 @@ def solve_afresh(run: Run, step: Scaled, further: Iterable[Any] = ()) -> Finishe
     inner = type(run)(step, run.progress)
     found: Finished | None = None
     for found in inner.attempts(further):
-        if found is None and inner.best is not None and inner.best.error <= STEP:
+        if found is None and inner.best is not None and inner.best.error <= RELAXED:
             found = inner.best
         if found is not None:
             break
@@ -106,12 +98,12 @@ def _pivot(run: Run, step: Scaled, here: Finished | None) -> Finished | None:
     states = None if here is None else here.states
     found, pivots = pivot_from(step, states, here, limit=_most_pivots(step), progress=run.progress)
     run.iterations += pivots
-    return found if found is not None and found.error <= STEP else None
+    return found if found is not None and found.error <= RELAXED else None
 
 
 def _most_pivots(s: Scaled) -> int:
     """Return the largest number of pivots of one path."""
-    return min(s.pairs + 500, PIVOTS // s.pairs)
+    return min(s.pairs + 500, RELAXATION_WORK // s.pairs)
 
 
 def pivot_from(

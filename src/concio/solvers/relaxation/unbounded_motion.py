@@ -42,6 +42,7 @@ import numpy as np
 from concio.problem.certificate import certify
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Departure
+from concio.problem.tolerances import MOVING_ON, RIGID_BODY, SLIDES, STILL_PAIR
 from concio.problem.units import measure
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.interior.newton_finish import finish
@@ -53,24 +54,12 @@ FINEST = (1e-5, 1e-7, 1e-9)
 STEPS = 25
 """Largest number of steps for it."""
 
-SOLVED = 1e-9
-"""Natural-map residual up to which a step counts as solved."""
-
 DIGITS = 1e-13
 """Violation of a proof below which no further step is made; above it steps go on while they halve it."""
-
-RIGID = 1e-6
-"""Largest scaled displacement, besides the motion, that is taken for none: elastic bodies under load move by one."""
 
 BEYOND = 100.0
 """Least length of the motion, in displacements besides it, at the point on it that is certified: directions of slips
 that have only begun would be known to fewer digits."""
-
-SLIDES = 1e-6
-"""Share of the largest slip of a step from which on a pair counts as sliding."""
-
-STILL = 1e-9
-"""Relative velocities up to this share of the largest velocity count as none."""
 
 
 def unbounded_motion(s: Scaled, now: Finished, velocity: Array, resistance: float | None = None) -> Departure | None:
@@ -100,7 +89,7 @@ def _equal_steps(s: Scaled, u: Array, t: Array, step: Array, e: float) -> Depart
     last, best = np.inf, None
     for k in range(STEPS):
         new = finish(s.step_from(u, e, _forgotten(s, u, t, step)), step, t, rounds=12)
-        if new.error > SOLVED:
+        if new.error > MOVING_ON:
             break
         size, change = float(np.abs(new.u).max(initial=0.0)), float(np.abs(new.u - step).max(initial=0.0))
         step, t, u = new.u, new.t, u + new.u
@@ -135,14 +124,14 @@ def _proof(s: Scaled, a: Array, u: Array, t: Array) -> Departure | None:
     if not top > 0:
         return None
     u = u - a * (float(a @ u) / float(a @ a))
-    if float(np.abs(u).max()) < RIGID:
+    if float(np.abs(u).max()) < RIGID_BODY:
         u = np.zeros_like(u)  # nothing deforms: rounding must not be measured against itself
     rate, y = s.along(a), s.position(u, t)
     speed = np.linalg.norm(rate[:, 1:], axis=1)
     slip = (rate[:, 1:] * y[:, 1:]).sum(axis=1) / np.where(speed > 0, speed, 1.0)
     gap = y[:, 0] - s.dilatancy * np.linalg.norm(y[:, 1:], axis=1)
-    opening = (rate[:, 0] > STILL * top) & (gap < 0) & (t[:, 0] <= 0)
-    behind = (speed > STILL * top) & (slip < 0) & s.rough
+    opening = (rate[:, 0] > STILL_PAIR * top) & (gap < 0) & (t[:, 0] <= 0)
+    behind = (speed > STILL_PAIR * top) & (slip < 0) & s.rough
     far = np.concatenate([-gap[opening] / rate[opening, 0], -slip[behind] / speed[behind]]).max(initial=0.0)
     far = max(1.01 * far, BEYOND * float(np.abs(u).max()) / top)
     return verify_motion(s.problem, s.acceleration(a), *s.restore(u + far * a, t))
@@ -165,7 +154,7 @@ def verify_motion(problem: ContactProblem, a: Array, u: Array, t_n: Array, t_t: 
     top = float(np.abs(a).max(initial=0.0)) or 1.0
     w_t = (problem.C_t @ a).reshape(t_t.shape)
     speed = np.linalg.norm(w_t, axis=1)
-    moving = without_slip_across(problem, u, t_t, np.where((speed > STILL * top)[:, None], w_t, 0.0))
+    moving = without_slip_across(problem, u, t_t, np.where((speed > STILL_PAIR * top)[:, None], w_t, 0.0))
     moving = replace(moving, f=problem.f - problem.inertia @ a, load=problem.applied)
     certificate, units = certify(moving, u, t_n, t_t), measure(moving, u, t_n, t_t)
     force = units.pair_force

@@ -15,12 +15,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
-from concio.problem.tolerances import CHECKED
+from concio.problem.tolerances import CHECKED, FRICTION_ROOM
 from concio.solvers.statics.cone_statics import ConeStatics
-
-ROOM = 1e-9
-"""Friction, over the total load, that a pair that slips may have beside that of its direction: the direction is known
-to rounding only, and no forces exactly along it may be in balance. Well below what counts as checked."""
 
 NONE = -1e4
 """Multiplier, in units of the programme, below which a bound tells that no forces go with a motion: bounds of states
@@ -79,7 +75,7 @@ def forces_in_space(problem: ContactProblem, motion: Asked, live: Array) -> tupl
     smooth = slides | known
     changed = replace(
         laws, friction=np.where(smooth, 0.0, laws.friction), dilatancy=np.zeros(m),
-        cohesion=np.where(known, disc, np.where(slides, ROOM * force, laws.cohesion)),
+        cohesion=np.where(known, disc, np.where(slides, FRICTION_ROOM * force, laws.cohesion)),
         tension=np.where(known, 0.0, laws.tension), cap=np.where(known, 1.0, laws.cap),
     )  # fmt: skip
     less = replace(

@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.limits_of_work import COLLAPSE_WORK
 from concio.problem.solution import Progress, ProgressCallback
 from concio.problem.tolerances import CHECKED
 from concio.representation import short_repr
@@ -33,9 +34,6 @@ within a thousandth, and cost more."""
 
 MOST, WORK = 25, 350_000
 """Linear programmes from one start at most, and their number times the pairs."""
-
-WORK_OF_ALL = 100_000
-"""No further start is made once linear programmes times pairs have come to this."""
 
 STILL, PATIENCE = {2: 1e-9, 3: 1e-5}, 3
 """A start is done where the multiplier changes by less than ``STILL`` in ``PATIENCE`` iterations in a row; in space,
@@ -92,7 +90,7 @@ def find_collapse_state(
     iterations: int | None = None,
     average: float = 0.5,
     seed: int = 0,
-    work: int = WORK_OF_ALL,
+    work: int = COLLAPSE_WORK,
     bound: LimitLoad | None = None,
     progress: ProgressCallback | None = None,
 ) -> CollapseSearch:
@@ -122,7 +120,7 @@ def find_collapse_state(
     search = _Search(problem, live, average, progress)
     if np.isnan(top.multiplier):
         return search.outcome(0)
-    share = WORK if work >= WORK_OF_ALL else work
+    share = WORK if work >= COLLAPSE_WORK else work
     most = max(1, min(MOST, share // max(problem.pairs, 1))) if iterations is None else iterations
     rng = np.random.default_rng(seed)
     made, starts = 0, STARTS[problem.dim] if starts is None else starts

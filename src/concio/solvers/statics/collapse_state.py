@@ -22,15 +22,12 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
-from concio.problem.tolerances import CHECKED
+from concio.problem.tolerances import CHECKED, MOVES
 from concio.representation import short_repr
 from concio.solvers.statics.collapse_cones import forces_in_space
 from concio.solvers.statics.limit import static_residual
 from concio.solvers.statics.mechanism import pair_velocities
 from concio.solvers.statics.programme import LARGE, Method, StaticProgramme, optimise
-
-MOVES = 1e-8
-"""Relative velocities above this share of the largest count as opening or slipping."""
 
 NEAR = 1e9
 """Slip directions that differ by less than one over this are asked for as one."""

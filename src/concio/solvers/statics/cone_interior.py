@@ -32,14 +32,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from concio.problem.contact_problem import Array
+from concio.problem.limits_of_work import CONE_ITERATIONS
+from concio.problem.tolerances import CONE_TARGET
 from concio.solvers.statics.cone_programme import ConeProgramme
 from concio.solvers.statics.cone_step import Step
-
-TARGET = 1e-11
-"""Residuals and relative gap at which the iteration ends."""
-
-MOST = 120
-"""Largest number of iterations."""
 
 PATIENCE = 15
 """Iterations without progress after which the best point met is returned."""
@@ -99,7 +95,7 @@ def maximise(
     best: ConeAnswer | None = None
     since, iteration, least = 0, 0, np.inf
     with np.errstate(all="ignore"):
-        for iteration in range(MOST + 1):
+        for iteration in range(CONE_ITERATIONS + 1):
             r_p = programme.Ct @ p.t.ravel() + e + p.multiplier * g
             r_d = programme.rate(p.v) - programme.pressed(p.z, p.eta, p.w)
             r_d[~programme.rough, 1:] = 0.0
@@ -119,7 +115,7 @@ def maximise(
                 least, best = worst, now
             if stop is not None and stop(now):
                 return now
-            if worst < TARGET or since > PATIENCE or iteration == MOST:
+            if worst < CONE_TARGET or since > PATIENCE or iteration == CONE_ITERATIONS:
                 break
             step = Step.at(programme, p, g, r_p, r_d, r_g)
             following = None if step is None else step.mehrotra(gap)

@@ -18,6 +18,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.tolerances import PROGRAMME_ROUNDING, PROGRAMME_SETTLED
 from concio.solvers.algebra.scaled import interleaved
 from concio.solvers.algebra.second_order_cone import determinant, times
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
@@ -25,14 +26,8 @@ from concio.solvers.statics.cone_interior import ConeAnswer, maximise
 from concio.solvers.statics.cone_programme import ConeProgramme, Pairs
 from concio.solvers.statics.cone_step import PROXIMAL
 
-ROUNDING = 1e-14
-"""Share of the total load that forces may leave unbalanced, or exceed strengths by, before they are balanced again."""
-
 ENDLESS = 1e7
 """Multiplier, in units of the programme, from which on a load may be one that can grow without bound."""
-
-SETTLED = 1e-11
-"""Residual of forces in balance, and of an admissible motion, at which a programme may stop that has its answer."""
 
 CLEAR = 100.0
 """Times the gap that the multiplier must be away from one for the programme to stop with a motion as its answer."""
@@ -167,9 +162,9 @@ class ConeStatics:
             return self._judged(ones, f, np.zeros_like(f), 1.0)
 
         def decided(a: ConeAnswer) -> bool:
-            carried = a.multiplier >= size and a.primal < SETTLED
+            carried = a.multiplier >= size and a.primal < PROGRAMME_SETTLED
             above = a.multiplier + a.gap * max(1.0, abs(a.multiplier))  # what the motion does not exceed
-            return carried or (a.dual < SETTLED and CLEAR * (above - a.multiplier) < size - above)
+            return carried or (a.dual < PROGRAMME_SETTLED and CLEAR * (above - a.multiplier) < size - above)
 
         answer = maximise(it, e, g / size, start=ones, stop=decided)
         multiplier = answer.multiplier / size
@@ -180,7 +175,7 @@ class ConeStatics:
     def _judged(self, t: Array, f: Array, v: Array, multiplier: float) -> Balance:
         real = self.real(t)
         residual = self.excess(real, self.problem.f)
-        if multiplier >= 1.0 - 1e-9 and residual > ROUNDING:
+        if multiplier >= 1.0 - 1e-9 and residual > PROGRAMME_ROUNDING:
             nearer = self.real(self.balance(t, f))
             left = self.excess(nearer, self.problem.f)
             real, residual = (nearer, left) if left < residual else (real, residual)
@@ -208,7 +203,7 @@ class ConeStatics:
         load = self.problem.f + multiplier * live
         t = self.real(answer.t)
         residual = self.excess(t, load)
-        if residual > ROUNDING:
+        if residual > PROGRAMME_ROUNDING:
             nearer = self.real(self.balance(answer.t, e + answer.multiplier * (g / size)))
             left = self.excess(nearer, load)
             t, residual = (nearer, left) if left < residual else (t, residual)

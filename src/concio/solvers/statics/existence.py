@@ -19,14 +19,11 @@ import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import Mechanism
-from concio.problem.tolerances import BALANCED
+from concio.problem.tolerances import BALANCED, NEARLY_BALANCED
 from concio.representation import short_repr
 from concio.solvers.statics.cone_statics import ConeStatics
 from concio.solvers.statics.mechanism import mechanism_from, total_load
 from concio.solvers.statics.programme import Method, StaticProgramme, optimise
-
-NEARLY = 1e-6
-"""Residual below which the forces of the linear programme are balanced once more, to tell rounding from collapse."""
 
 
 @short_repr
@@ -124,7 +121,7 @@ def _least_imbalance(problem: ContactProblem, programme: StaticProgramme, method
         t_n, t_t = programme.forces(x)
         left = problem.R.T @ (problem.f + problem.C_n.T @ t_n + problem.C_t.T @ t_t.ravel())
         residual = float(np.abs(left).max() / force)
-        if attempt or not 1e-12 < residual < NEARLY:
+        if attempt or not 1e-12 < residual < NEARLY_BALANCED:
             break
         x = programme.balance(x, problem.f)
     velocity = problem.R @ (-result.marginals / programme.scale)

@@ -13,15 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.problem.contact_problem import ContactProblem
+from concio.problem.limits_of_work import FRICTION_PROGRAMMES
+from concio.problem.tolerances import WIDE_BRACKET
 from concio.representation import short_repr
 from concio.solvers.statics.existence import StaticState, statically_admissible
 from concio.solvers.statics.mechanism import absorbed_power
 
 LARGEST = 1024.0
 """Factor beyond which no friction is looked for: what falls with it falls with any."""
-
-MOST = 200
-"""Largest number of linear programmes."""
 
 
 @short_repr
@@ -52,11 +51,7 @@ class FrictionBounds:
             return True
         if np.isinf(self.factor):
             return self.below >= LARGEST
-        return self.factor - self.below <= WIDE * self.factor
-
-
-WIDE = 1e-5
-"""Distance of two bounds, relative to the upper one, from which on the least friction is not called settled."""
+        return self.factor - self.below <= WIDE_BRACKET * self.factor
 
 
 BELOW = 0.1
@@ -110,7 +105,7 @@ class _Search:
         """
         shares = (0.5, 0.25, 0.75, 0.125, 0.875)
         undecided, short = 0, BELOW
-        while self.high - self.low > width and self.programmes < MOST:
+        while self.high - self.low > width and self.programmes < FRICTION_PROGRAMMES:
             step, beyond = 0.25 * width, False
             inside = np.isfinite(self.guess) and self.low < self.guess + step < self.high - step
             if inside and not undecided:

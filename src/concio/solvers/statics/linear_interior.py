@@ -28,25 +28,15 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array
+from concio.problem.limits_of_work import PROGRAMME_ITERATIONS
+from concio.problem.tolerances import PROGRAMME_ENOUGH, PROGRAMME_TARGET, STILL_CLOSE
 from concio.solvers.algebra.normal_equations import NormalEquations
 
 START = 10.0
 """Size of variables and slacks at the start, the largest entry of b and of c being one."""
 
-TARGET = 1e-12
-"""Residuals and relative gap at which the iteration ends."""
-
-ENOUGH = 1e-7
-"""Residual of the equations at which the iteration may end; the rest is taken away afterwards."""
-
-STILL_CLOSE = 1e-5
-"""Residuals and relative gap that are worth being rechecked as an answer where the iteration ends by itself."""
-
 PATIENCE = 25
 """Iterations without progress after which the best point met is returned."""
-
-MOST = 200
-"""Largest number of iterations."""
 
 SHORT_OF_ONE = 0.995
 """Share of the step to the boundary that is taken."""
@@ -201,7 +191,7 @@ def solve_interior(cost: Array, equations: tuple[sp.csc_array, Array], bounds: A
     p = q.start()
     best, kept, since, narrow, iteration = (np.inf, np.inf, np.inf), None, 0, np.inf, 0
     with np.errstate(all="ignore"):
-        for iteration in range(MOST + 1):
+        for iteration in range(PROGRAMME_ITERATIONS + 1):
             rest = q.residuals(p)
             gap = q.gap(p)
             objective = float(q.c @ p.x + q.c_free @ p.free)
@@ -212,11 +202,12 @@ def solve_interior(cost: Array, equations: tuple[sp.csc_array, Array], bounds: A
                 break
             since = 0 if gap < 0.5 * narrow or max(primal, dual, relative) < 0.9 * max(best) else since + 1
             narrow = gap if since == 0 else narrow
-            if max(primal, dual, relative) < max(best) or (max(primal, dual) <= ENOUGH and relative < best[2]):
+            balanced = max(primal, dual) <= PROGRAMME_ENOUGH
+            if max(primal, dual, relative) < max(best) or (balanced and relative < best[2]):
                 best, kept = (primal, dual, relative), p
-            if max(dual, relative) < TARGET and primal < ENOUGH:
+            if max(dual, relative) < PROGRAMME_TARGET and primal < PROGRAMME_ENOUGH:
                 break
-            if since > PATIENCE or iteration == MOST:
+            if since > PATIENCE or iteration == PROGRAMME_ITERATIONS:
                 break
             theta = 1.0 / (p.z / p.x + np.where(q.capped, p.w / p.s, 0.0))
             try:

@@ -13,20 +13,13 @@ from __future__ import annotations
 import numpy as np
 
 from concio.problem.contact_problem import Array
+from concio.problem.limits_of_work import STEP_PAIRS, STEP_PROBLEMS
 from concio.problem.pair_state import PairStates
+from concio.problem.tolerances import STEP_SETTLED
 from concio.solvers.stepping.factor import StepFactor
 from concio.solvers.stepping.problem import StepProblem
 from concio.solvers.stepping.small import solve_small
 from concio.solvers.stepping.states import Linear, read_states, solve_states
-
-MOST = 120
-"""Largest number of pairs of a small problem."""
-
-ROUNDS = 12
-"""Largest number of small problems."""
-
-SETTLED = 1e-10
-"""Violations of a joint law up to this are settled."""
 
 
 class UpdatedFactor:
@@ -128,11 +121,11 @@ def settle(
     best, laws = p.residual(x, t)
     found = (x, t, states, best)
     asked = PairsAsked(p, factor, D)
-    for _ in range(ROUNDS):
-        violated = (laws > SETTLED) & read_states(p, x, t).differ(states)
+    for _ in range(STEP_PROBLEMS):
+        violated = (laws > STEP_SETTLED) & read_states(p, x, t).differ(states)
         violated[asked.number] = False
         added = np.flatnonzero(violated)
-        if not added.size or len(asked.number) + len(added) > MOST:
+        if not added.size or len(asked.number) + len(added) > STEP_PAIRS:
             break
         asked.join(added)
         decided = asked.decided(linear, x0, t0)
@@ -154,7 +147,7 @@ def settle(
         residual, laws1 = p.violation(t1, errors)
         if residual < found[3]:
             found = (x1, t1, now, residual)
-        if residual < SETTLED:
+        if residual < STEP_SETTLED:
             break
         laws = np.minimum(laws, laws1)
     return found

@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from concio.problem.contact_problem import Array, Engine
+from concio.problem.limits_of_work import STEP_FACTORISATIONS, STEP_PIVOTS
 from concio.problem.pair_state import PairStates
+from concio.problem.tolerances import STEP_GOOD, STEP_SETTLED
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.interior import engine as interior
 from concio.solvers.pivoting import sparse_lemke
 from concio.solvers.stepping.factor import StepFactor
 from concio.solvers.stepping.problem import StepProblem, StepSolution
-from concio.solvers.stepping.settle import SETTLED, settle
+from concio.solvers.stepping.settle import settle
 from concio.solvers.stepping.states import Linear, halting, read_states, solve_states
 
 FEW = 25
@@ -19,15 +21,6 @@ FEW = 25
 
 FLIPS = 6
 """Times all pairs that violate their law change state together before a small problem settles them."""
-
-ROUNDS = 14
-"""Factorisations at most before other methods are tried."""
-
-PIVOTS = 20
-"""Pivots a pair that are tried where nothing else decides."""
-
-GOOD = 1e-11
-"""Residual below which an answer is taken without looking further."""
 
 
 class StepSolver:
@@ -62,7 +55,7 @@ class StepSolver:
             return best
 
         seen: list[PairStates] = []
-        for round_ in range(ROUNDS):
+        for round_ in range(STEP_FACTORISATIONS):
             linear = Linear.of(p, states)
             D = linear.blocks(p)
             try:
@@ -72,15 +65,15 @@ class StepSolver:
                 break
             residual, laws = p.violation(t1, errors)
             found = keep(x1, t1, states, residual, "same states" if not round_ else "active set")
-            if residual < GOOD:
+            if residual < STEP_GOOD:
                 return self._count(found)
             new = halting(read_states(p, x1, t1, errors), states)
-            changed = int(((laws > SETTLED) & new.differ(states)).sum())
+            changed = int(((laws > STEP_SETTLED) & new.differ(states)).sum())
             seen.append(states)
             if changed <= FEW or round_ >= FLIPS or any(not new.differ(s).any() for s in seen):
                 x2, t2, settled, residual = settle(p, factor, states, x1, t1, D)
                 found = keep(x2, t2, settled, residual, "small problem")
-                if residual < SETTLED:
+                if residual < STEP_SETTLED:
                     return self._count(found)
                 if any(not new.differ(s).any() for s in seen):
                     break
@@ -103,10 +96,10 @@ class StepSolver:
         pick = np.flatnonzero(p.active)
         answer = interior.solve(problem)
         found = self._read(p, pick, answer.displacement, answer.normal_force, answer.friction_force, "interior point")
-        if found.residual < SETTLED:
+        if found.residual < STEP_SETTLED:
             return found
         nearest = found if best is None or found.residual < best.residual else best
-        answer = sparse_lemke.solve(problem, start_states=nearest.states[pick], tries=0, limit=PIVOTS * len(pick))
+        answer = sparse_lemke.solve(problem, start_states=nearest.states[pick], tries=0, limit=STEP_PIVOTS * len(pick))
         found = self._read(p, pick, answer.displacement, answer.normal_force, answer.friction_force, "pivoting")
         return found if found.residual < nearest.residual else nearest
 

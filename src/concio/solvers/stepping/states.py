@@ -17,7 +17,7 @@ from concio.problem.contact_problem import Array
 from concio.problem.pair_state import PairStates
 from concio.solvers.stepping.problem import Errors, StepProblem, largest
 
-EXACT = 1e-13
+REFINED = 1e-13
 """Relative residual at which refinement stops."""
 
 ROUNDS = 25
@@ -145,7 +145,7 @@ def solve_states(
         late = late + 1 if residual > 0.3 * least else 0
         if best is None or residual < least:
             best, least = (x, t, errors), residual
-        if not residual > EXACT or late >= 2 or residual > 1e3 * least:
+        if not residual > REFINED or late >= 2 or residual > 1e3 * least:
             break
         n0 = r_n * stiff
         t0 = np.where(stick, r_t / linear.soft_t, drag * n0)

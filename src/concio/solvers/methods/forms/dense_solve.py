@@ -24,7 +24,7 @@ from concio.solvers.pivoting.state_solution import finish
 
 Back = Callable[[LemkeResult], "tuple[Array, Array, Array | None]"]
 
-EXACT = 1e-12
+EXACT_ENOUGH = 1e-12
 """An answer less exact than this is finished by pivoting on the sparse form."""
 
 ROUGH = 1e-6
@@ -130,7 +130,7 @@ class DenseRun:
         except SingularMatrixError:
             exact = plain
         best = exact if exact.certificate.worst <= plain.certificate.worst else plain
-        if best.certificate.worst > EXACT and best.certificate.worst < ROUGH:
+        if best.certificate.worst > EXACT_ENOUGH and best.certificate.worst < ROUGH:
             best = self._cross_over(problem, best)
         return best
 
