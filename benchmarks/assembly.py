@@ -11,7 +11,8 @@ import time
 import scipy.sparse.linalg as spla
 
 import concio
-from concio.contact.assembly import assemble, detect
+from concio.contact.assembly import assemble
+from concio.contact.detection import detect
 from concio.contact.pairs import make_pairs
 from concio.contact.sides import interface_breaks
 from concio.fem.discretisation import discretise

@@ -21,7 +21,7 @@ from wall_family import panel, wall, wall_model
 
 import concio
 from concio.analysis.lent_compliance import lend
-from concio.contact.assembly import detect
+from concio.contact.detection import detect
 from concio.io.result_file import load_result, save_result
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.interior.run import Run, Start

@@ -16,7 +16,7 @@ from test_parts_apart import LAWS, another, box, model, stack
 import concio
 from concio.analysis.motion.dynamics_result import Ending
 from concio.analysis.motion.structures import near_now, structures_of, together
-from concio.contact.moving.reference import Reference
+from concio.contact.reference import Reference
 from concio.model.materials import JointLaw
 from concio.model.model import Load, Tie
 from concio.model.rules import JointRule

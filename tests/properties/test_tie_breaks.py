@@ -16,7 +16,7 @@ from concio.analysis.path import Stage, run_path
 from concio.cli.check_lines import check_lines
 from concio.cli.lines import tie_lines
 from concio.cli.path_lines import path_facts
-from concio.contact.assembly import detect
+from concio.contact.detection import detect
 from concio.errors import NoEquilibriumError
 from concio.model.materials import JointLaw, Rigid
 from concio.model.model import Load, Tie

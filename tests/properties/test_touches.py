@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 import concio
 from concio import Body, JointLaw, Load, Model, Polyhedron, Rigid
-from concio.contact.assembly import detect
+from concio.contact.detection import detect
 from concio.model.interfaces.detect import detect_interfaces
 from concio.model.interfaces.patches import detect_patches
 from samples import sample

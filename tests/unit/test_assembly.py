@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from concio.contact.assembly import assemble, default_tolerance
+from concio.contact.assembly import assemble
+from concio.contact.detection import default_tolerance
 from concio.contact.factors import load_factor
 from concio.errors import GeometryError, InputError
 from concio.model.model import Body, Load, Support

@@ -11,7 +11,7 @@ import pytest
 import concio
 from concio import JointLaw, Load, Model, Polyhedron, Rigid, Tie
 from concio.analysis.seismic.assessment import Assessment
-from concio.analysis.seismic.placed import contacts_of
+from concio.analysis.seismic.macro_contacts import contacts_of
 from concio.analysis.seismic.sequence import Sequence, follow_in_steps
 from concio.errors import InputError
 from concio.report.assessment_page import AssessmentReport

@@ -11,7 +11,7 @@ import pytest
 
 import concio
 from concio import Body, JointLaw, Load, Model, Polyhedron, Rigid, Support, Tie
-from concio.contact.assembly import detect
+from concio.contact.detection import detect
 from concio.verdict.attention import attention_of
 
 DOWN = (Load("weight", (0.0, -1.0)),)

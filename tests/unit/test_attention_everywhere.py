@@ -92,7 +92,7 @@ def asked(command: str, text: str, options: tuple[object, ...], tmp_path: Path) 
 
 def odd(text: str) -> set[str]:
     """Return what the verdict of a model says is odd about it."""
-    from concio.contact.assembly import detect
+    from concio.contact.detection import detect
     from concio.verdict.attention import attention_of
 
     model = concio.loads(text)
@@ -182,7 +182,7 @@ def test_an_exception_of_every_analysis_has_a_verdict(name: str, monkeypatch: py
     if name == "strain_path":
         more["stages"] = [concio.Stage("press", {"stress yy": -10.0})]
     for place in (
-        "concio.contact.assembly.Assembly.problem", "concio.contact.moving.reference.Reference.of",
+        "concio.contact.assembly.Assembly.problem", "concio.contact.reference.Reference.of",
         "concio.analysis.cells.periodic_cell.PeriodicCell.problem",
     ):  # fmt: skip
         monkeypatch.setattr(place, broken)

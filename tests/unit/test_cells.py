@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import concio
-from concio.contact.assembly import detect
+from concio.contact.detection import detect
 from concio.contact.periodic import STRAINS
 from concio.errors import GeometryError, InputError
 from concio.model.interfaces.detect import detect_interfaces

@@ -12,7 +12,7 @@ import concio
 import concio.solvers.stepping.solver as step_solver
 from concio.analysis.motion.dynamics_result import Ending
 from concio.analysis.motion.stepper import at_rest
-from concio.contact.moving.reference import Reference
+from concio.contact.reference import Reference
 from motion_models import G, standing
 
 ALPHA = np.arctan(1 / 3)

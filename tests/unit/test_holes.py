@@ -9,7 +9,8 @@ import pytest
 
 import concio
 from commands import run
-from concio.contact.assembly import assemble, detect
+from concio.contact.assembly import assemble
+from concio.contact.detection import detect
 from concio.errors import GeometryError, InputError
 from concio.fem.polygon_mesh import mesh_polygon
 from concio.io.paraview import bodies_grid

@@ -11,7 +11,7 @@ import pytest
 import concio
 from commands import run
 from concio import GeometryError, InputError, Polyhedron
-from concio.contact.assembly import detect
+from concio.contact.detection import detect
 from concio.model.polyhedron import BOX
 from concio.model.solids.step import decoded
 from ifc_files import MILLIMETRE, IfcText, row

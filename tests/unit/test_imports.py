@@ -22,7 +22,7 @@ ORDER = (
     "display",
     "kinematics", "model", "model/motion", "model/road", "model/interfaces", "model/generate", "model/drawing",
     "model/solids", "model/file",
-    "fem", "problem", "contact", "contact/moving",
+    "fem", "problem", "contact",
     "solvers/algebra", "solvers/lcp", "solvers/states", "solvers/statics", "solvers/interior", "solvers/pivoting",
     "solvers/relaxation", "solvers/stepping", "solvers/auto", "solvers/path", "solvers",
     "solvers/methods/forms", "solvers/methods/iterative", "solvers/methods/exhaustive", "solvers/methods",

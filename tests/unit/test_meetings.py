@@ -9,7 +9,7 @@ import concio
 from concio.analysis.motion.meetings import EARNED, MOST, Meetings
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.stepper import Stepper, at_rest
-from concio.contact.moving.reference import Reference
+from concio.contact.reference import Reference
 from models import box, model_of, weight
 from motion_models import G, standing
 

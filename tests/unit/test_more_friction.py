@@ -14,9 +14,9 @@ from concio.analysis.seismic.assessment import Assessment
 from concio.analysis.seismic.directions import pushes
 from concio.analysis.seismic.examine import prepared
 from concio.analysis.seismic.mechanism import Mechanisms
-from concio.analysis.seismic.placed import Placed, stated
 from concio.analysis.seismic.sequence import Sequence
 from concio.contact.assembly import assemble
+from concio.contact.face_points import stated
 from concio.solvers.statics.cone_statics import ConeStatics
 from samples import sample
 from seismic_walls import site
@@ -62,7 +62,7 @@ def rocking() -> Sequence:
 def test_what_a_step_left_of_overlap_in_a_contact_without_force_does_not_end_the_curve() -> None:
     """Steps get shorter, and with them the overlap that is left to them: what was there before must be put back."""
     sequence = rocking()
-    state = sequence.state(Placed.at_rest(sequence.mechanics), sequence.contacts.force)
+    state = sequence.state(sequence.at_rest(), sequence.contacts.force)
     assert state is not None
     sunk = state.q.moved(np.array([[0.0, 0.0, -1e-6, 0.0, 0.0, 0.0]]), 1.0)
     state = sequence.state(sunk, sequence.contacts.force)

@@ -14,12 +14,12 @@ from concio.analysis.motion.push_result import PushEnding
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.statics import Statics
 from concio.analysis.motion.stepper import Stepper, at_rest
-from concio.contact.moving import search as search_module
-from concio.contact.moving.attachments import Held, Ties
-from concio.contact.moving.laws import LawTable
-from concio.contact.moving.original import OriginalContacts
-from concio.contact.moving.reference import Reference
-from concio.contact.moving.rows import RowMaker
+from concio.contact import search as search_module
+from concio.contact.attachments import Held, Ties
+from concio.contact.laws import LawTable
+from concio.contact.original import OriginalContacts
+from concio.contact.reference import Reference
+from concio.contact.rows import RowMaker
 from concio.errors import NoEquilibriumError
 from concio.kinematics.placement import Placement
 from concio.problem.tolerances import CERTIFIED

@@ -14,7 +14,7 @@ import trimesh
 import concio
 from commands import run
 from concio import GeometryError, InputError, Model, Polyhedron
-from concio.contact.assembly import detect
+from concio.contact.detection import detect
 from concio.model.polyhedron import BOX
 
 CUBE = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)

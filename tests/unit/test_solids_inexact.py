@@ -10,7 +10,7 @@ import pytest
 
 import concio
 from concio import Body, GeometryError, InputError, JointLaw, Model, Rigid
-from concio.contact.assembly import detect
+from concio.contact.detection import detect
 
 
 def rounded(model: Model, path: Path, digits: int) -> Path:

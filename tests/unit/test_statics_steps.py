@@ -15,7 +15,7 @@ from concio.analysis.motion.pairs import relative
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.statics import Statics
 from concio.analysis.motion.stepper import at_rest
-from concio.contact.moving.reference import Reference
+from concio.contact.reference import Reference
 from concio.kinematics.rigid import rigid_row
 from concio.problem.cone import Cone
 from concio.problem.pair_state import PairState, PairStates

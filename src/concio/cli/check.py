@@ -34,7 +34,8 @@ def check(
     """
     import concio
     from concio.cli.check_lines import check_facts, check_lines
-    from concio.contact.assembly import assemble, detect
+    from concio.contact.assembly import assemble
+    from concio.contact.detection import detect
     from concio.errors import ConcioError
     from concio.verdict.question import resultants
 

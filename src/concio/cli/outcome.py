@@ -76,7 +76,7 @@ def _with_attention(told: dict[str, Any], file: object) -> dict[str, Any]:
     if "verdict" in told or not isinstance(file, Path):
         return told
     import concio
-    from concio.contact.assembly import detect
+    from concio.contact.detection import detect
     from concio.verdict.attention import attention_of
 
     with suppress(ConcioError, OSError, MemoryError):

@@ -16,12 +16,12 @@ from concio.contact.geometry import GEOMETRIES
 from concio.contact.inertia import masses
 from concio.contact.loads import load_vectors
 from concio.contact.pairs import CONTACT_MODELS, Pairs, pair_laws
-from concio.contact.periodic import held_at_a_point, strain_groups
-from concio.contact.separate import bare, merged, separate_groups
+from concio.contact.periodic import strain_groups
+from concio.contact.reference import Reference
 from concio.contact.supports import Supported, apply_supports, moved_obstacles
 from concio.contact.ties import add_ties
-from concio.errors import GeometryError, InputError
-from concio.fem.discretisation import Discretisation, discretise
+from concio.errors import InputError
+from concio.fem.discretisation import Discretisation
 from concio.model.interfaces.detect import Detection
 from concio.model.model import Model, require_model
 from concio.problem.contact_problem import ContactProblem, Laws
@@ -196,47 +196,6 @@ def _no_pairs(disc: Discretisation) -> Pairs:
     )  # fmt: skip
 
 
-def default_tolerance(model: Model) -> float:
-    """Return the distance within which edges touch: the model's, or 1e-6 of its size [m]."""
-    if model.gap_tolerance is not None:
-        return model.gap_tolerance
-    return 1e-6 * model.size
-
-
-def detect(model: Model) -> Detection:
-    """Return the interfaces of a model with the report of what was dropped or overlaps.
-
-    Structures that stand apart are looked at one by one: the tolerance of each is 1e-6 of its own size, unless the
-    model gives one.
-    """
-    geometry = GEOMETRIES[model.dim]
-    groups = [np.arange(len(model.bodies))] if model.periods is not None else separate_groups(model)
-    if not groups or len(groups[0]) == len(model.bodies):
-        return geometry.detect(model, default_tolerance(model))
-    found = []
-    for group in groups:
-        part = bare(model, group)
-        found.append((group, geometry.detect(part, default_tolerance(part))))
-    return merged(found)
-
-
-def detect_without_overlap(model: Model) -> Detection:
-    """Return the interfaces of a model whose bodies do not overlap.
-
-    Raises
-    ------
-    GeometryError
-        Two bodies overlap.
-    """
-    detection = detect(model)
-    if detection.overlaps:
-        first = detection.overlaps[0]
-        others = len(detection.overlaps) - 1
-        msg = first.sentence + (f", and {others} more overlap{'s' if others > 1 else ''}" if others else "")
-        raise GeometryError(msg, hint="raise gap_tolerance only where the overlap is no more than inaccurate drawing")
-    return detection
-
-
 def as_assembly(model: Model | Assembly, *, jointless: bool = False, periodic: bool = False) -> Assembly:
     """Return the assembly of a model; an assembly as it is.
 
@@ -301,9 +260,8 @@ def assemble(model: Model) -> Assembly:
     if not model.free_bodies:
         msg = "every body is fixed: there is nothing to compute"
         raise InputError(msg, hint="make the blocks elastic or rigid")
-    detection = detect_without_overlap(model)
-    geometry = GEOMETRIES[model.dim]
-    disc = discretise(held_at_a_point(model) if periodic else model, geometry.marks(model, detection))
+    reference = Reference.described(model)
+    detection, disc, geometry = reference.detection, reference.disc, GEOMETRIES[model.dim]
     held = bool(model.ties) or bool({s.body for s in model.supports} & {b.name for b in model.free_bodies})
     if not detection.interfaces and not held:
         msg = "no two bodies touch: there is no interface at all"

@@ -13,13 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from concio.contact.coupling import Line, Side, couple
-from concio.contact.joint_points import points_along
+from concio.contact.coupling import Line, couple
+from concio.contact.laws import LawTable, RuleBook
+from concio.contact.operators import Entries, nodal_entries, operators, rigid_entries
 from concio.contact.sides import FacingSides
 from concio.errors import InputError
-from concio.fem.discretisation import FIXED, Discretisation
-from concio.kinematics.frames import turned_left
-from concio.kinematics.rigid import rigid_row
+from concio.fem.discretisation import RIGID, Discretisation
+from concio.kinematics.frames import frames
 from concio.model.interfaces.detect import Interface
 from concio.model.model import Model
 from concio.problem.contact_problem import Laws
@@ -122,14 +122,14 @@ def make_pairs(disc: Discretisation, interfaces: Sequence[Interface]) -> Pairs:
     """
     model = disc.model
     sides = FacingSides.of(model.outlines, interfaces)
-    law, opening = laws_of(model, sides.a, sides.b)
+    law, opening = RuleBook(model).find(sides.a, sides.b)
     along = sides.end - sides.start
     length = np.hypot(*along.T)
     along = along / length[:, None]
     unit = 1e-9 * float(np.median(disc.reach))
     first_a, forwards_a, key_a = place(disc, sides.a, sides.edge_a, sides.p_a, sides.q_a, sides.start, along, unit)
     first_b, forwards_b, key_b = place(disc, sides.b, sides.edge_b, sides.p_b, sides.q_b, sides.start, along, unit)
-    points = np.array([points_along(x.compressive_strength, x.normal_stiffness) for x in model.laws.values()])[law]
+    points = LawTable.of(model).points[law]
     keys = np.column_stack([key_a, key_b, np.round(length / unit).astype(np.int64), points])
     _, example, group = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     couplings = [
@@ -146,47 +146,46 @@ def make_pairs(disc: Discretisation, interfaces: Sequence[Interface]) -> Pairs:
     begin = np.concatenate([[0], np.cumsum(count)])
     total = int(begin[-1])
     at, own_length = np.zeros(total), np.zeros(total)
-    triplets: list[tuple[Array, Array, Array, Array]] = []  # row, column, C_n, C_t
-    tangent = turned_left(sides.normal)
     order = np.argsort(group, kind="stable")
     ends = np.searchsorted(group[order], np.arange(len(couplings) + 1))
+    face = np.repeat(np.arange(len(interfaces)), count)
+    frame = frames(sides.normal)
+    entries: list[Entries] = []
     for g, coupling in enumerate(couplings):
         members = order[ends[g] : ends[g + 1]]
         rows = begin[members][:, None] + np.arange(len(coupling.at))
         at[rows], own_length[rows] = coupling.at, coupling.length
-        where = sides.start[members][:, None] + coupling.at[:, None] * along[members][:, None]
-        frame = np.stack([sides.normal[members], tangent[members]])
-        own = where - sides.shift[members][:, None]  # the same points on b itself, not on its image across the cell
-        for body, side, sign, points_of in ((sides.a, coupling.a, -1.0, where), (sides.b, coupling.b, 1.0, own)):
-            b = body[members]
-            if disc.shape_of[b[0]] == FIXED:
-                continue
-            row, column, value = (
-                _rigid_side(disc, b, rows, points_of, frame)
-                if side is None
-                else _meshed_side(disc, b, rows, side, frame)
-            )
-            triplets.append((row.ravel(), column.ravel(), sign * value[0].ravel(), sign * value[1].ravel()))
-    face = np.repeat(np.arange(len(interfaces)), count)
+        for body, side, sign in ((sides.a, coupling.a, -1.0), (sides.b, coupling.b, 1.0)):
+            if side is not None:
+                pair = (begin[members][:, None] + side.pair).ravel()
+                first = (disc.offsets[body[members]][:, None] + 2 * side.node).ravel()
+                weight = np.tile(side.weight, len(members))
+                entries.append(nodal_entries(pair, frame[face[pair]], weight, first, sign))
+    where = sides.start[face] + at[:, None] * along[face]
+    own = where - sides.shift[face]  # the same points on b itself, not on its image across the cell
+    for body, points_of, sign in ((sides.a[face], where, -1.0), (sides.b[face], own, 1.0)):
+        pair = np.flatnonzero(disc.shape_of[body] == RIGID)
+        b = body[pair]
+        arm = points_of[pair] - disc.centroids[b]
+        entries.append(rigid_entries(pair, frame[face[pair]], arm, disc.reach[b], disc.offsets[b], sign))
+    C_n, C_t = operators(entries, total, disc.unknowns, 2)
     share = at / length[face]
     gap = np.maximum(sides.gap[face, 0] * (1 - share) + sides.gap[face, 1] * share, 0.0) + opening[face]
     thickness = np.array([b.thickness for b in model.bodies])
-    row, column, v_n, v_t = (np.concatenate(v) for v in zip(*triplets, strict=True))
-    shape = (total, disc.unknowns)
     return Pairs(
         body_a=sides.a[face],
         body_b=sides.b[face],
         interface=face,
-        point=sides.start[face] + at[:, None] * along[face],
+        point=where,
         normal=sides.normal[face],
-        tangents=tangent[face][:, None],
+        tangents=frame[face, 1:],
         length=own_length,
         area=own_length * np.minimum(thickness[sides.a], thickness[sides.b])[face],
         gap=gap,
         law=law[face],
         law_names=tuple(model.laws),
-        C_n=_clean(sp.csr_array((v_n, (row, column)), shape=shape)),
-        C_t=_clean(sp.csr_array((v_t, (row, column)), shape=shape)),
+        C_n=C_n,
+        C_t=C_t,
         rule=np.array([CONTACT_MODELS.index(c.model) for c in couplings])[group][face],
     )
 
@@ -196,45 +195,7 @@ def pair_laws(model: Model, pairs: Pairs) -> Laws:
 
     What is apart at first is not bonded: pairs with an initial gap have friction, but no cohesion and no tension.
     """
-    laws = [model.laws[name] for name in pairs.law_names]
-
-    def table(name: str, missing: float = 0.0) -> Array:
-        values = [getattr(law, name) for law in laws]
-        found: Array = np.array([missing if v is None else float(v) for v in values])[pairs.law]
-        return found
-
-    area = pairs.area
-
-    def compliance(name: str) -> Array:
-        stiffness = table(name, np.inf) * area
-        return np.where(np.isfinite(stiffness), 1.0 / stiffness, 0.0)
-
-    bonded = np.where(pairs.gap > 0, 0.0, area)
-    return Laws(
-        friction=table("friction"),
-        cohesion=table("cohesion") * bonded,
-        tension=table("tensile_strength") * bonded,
-        dilatancy=table("dilatancy"),
-        normal_compliance=compliance("normal_stiffness"),
-        tangential_compliance=compliance("tangential_stiffness"),
-        cap=table("compressive_strength", np.inf) * area,
-    )
-
-
-def laws_of(model: Model, a: Array, b: Array) -> tuple[Array, Array]:
-    """Return number of the law (i,) and opening (i,) [m] that the rules give the interfaces of bodies a, b (i,)."""
-    names = {b.name for b in model.bodies}
-    if any(word in names for rule in model.rules for word in rule.between):
-        sort = np.arange(len(model.bodies))
-    else:
-        known: dict[tuple[str, ...], int] = {}
-        sort = np.array([known.setdefault((b.kind, b.role, b.layer, b.material), len(known)) for b in model.bodies])
-    pairs = np.column_stack([sort[a], sort[b]])
-    _, example, group = np.unique(pairs, axis=0, return_index=True, return_inverse=True)
-    rules = [model.rule_between(model.bodies[a[i]], model.bodies[b[i]]) for i in example]
-    number = {name: k for k, name in enumerate(model.laws)}
-    group = group.ravel()
-    return np.array([number[rule.law] for rule in rules])[group], np.array([rule.gap for rule in rules])[group]
+    return LawTable.of(model).laws(pairs.law, pairs.area, pairs.gap <= 0)
 
 
 def place(
@@ -257,35 +218,3 @@ def line_of(disc: Discretisation, b: int, edge: int, first: float, forwards: boo
     if forwards:
         return Line(nodes.nodes, first + nodes.at, nodes.order)
     return Line(nodes.nodes[::-1], (first - nodes.at)[::-1], nodes.order)
-
-
-def _meshed_side(disc: Discretisation, b: Array, rows: Array, side: Side, frame: Array) -> tuple[Array, Array, Array]:
-    """Return rows and columns (g, k, 2) and values (2, g, k, 2) of the displacement along n and t of meshed sides.
-
-    Parameters
-    ----------
-    b : (g,) array
-        Bodies.
-    rows : (g, p) array
-        Numbers of their pairs.
-    side : Side
-        k entries.
-    frame : (2, g, 2) array
-        Normals and tangents.
-    """
-    columns = disc.offsets[b][:, None, None] + (2 * side.node[:, None] + np.arange(2))
-    row = np.broadcast_to(rows[:, side.pair, None], columns.shape)
-    return row, columns, frame[:, :, None] * side.weight[:, None]
-
-
-def _rigid_side(disc: Discretisation, b: Array, rows: Array, at: Array, frame: Array) -> tuple[Array, Array, Array]:
-    """Return the same, (g, p, 3) and (2, g, p, 3), for rigid sides whose points are ``at`` (g, p, 2)."""
-    columns = np.broadcast_to(disc.offsets[b][:, None, None] + np.arange(3), (*rows.shape, 3))
-    value = rigid_row(frame[:, :, None], at - disc.centroids[b][:, None], disc.reach[b][:, None])
-    return np.broadcast_to(rows[..., None], columns.shape), columns, value
-
-
-def _clean(matrix: sp.csr_array) -> sp.csr_array:
-    matrix.sum_duplicates()
-    matrix.eliminate_zeros()
-    return matrix

@@ -8,14 +8,15 @@ import numpy as np
 import scipy.sparse as sp
 import shapely
 
-from concio.contact.pairs import CONTACT_MODELS, Pairs, laws_of
+from concio.contact.laws import RuleBook
+from concio.contact.operators import Entries, nodal_entries, operators, rigid_entries
+from concio.contact.pairs import CONTACT_MODELS, Pairs
 from concio.contact.patch_coupling import FaceSide, PatchCoupling, couple_faces
 from concio.contact.patch_points import CRUSHING, STIFF, corner_points, spread_points
-from concio.fem.discretisation import FIXED, Discretisation
+from concio.fem.discretisation import RIGID, Discretisation
 from concio.fem.solid import SolidShape
 from concio.fem.solid_mesh import Mark
-from concio.kinematics.frames import tangents
-from concio.kinematics.rigid import motions, rigid_row
+from concio.kinematics.frames import frames, tangents
 from concio.model.interfaces.patch import Patch
 from concio.model.materials import JointLaw
 from concio.model.model import Model
@@ -46,9 +47,9 @@ def make_patch_pairs(disc: Discretisation, patches: Sequence[Patch]) -> Pairs:
     """
     model = disc.model
     a, b = np.array([(p.a, p.b) for p in patches]).T
-    law, opening = laws_of(model, a, b)
+    law, opening = RuleBook(model).find(a, b)
     normal = np.array([p.normal for p in patches])
-    frame = np.concatenate([normal[:, None], tangents(normal)], axis=1)  # (p, 3, 3): n, t1, t2
+    frame = frames(normal)  # (p, 3, 3): n, t1, t2
     points = np.array([_points(model, model.laws[name]) for name in model.laws])[law]
     crushes = np.array([x.compressive_strength is not None for x in model.laws.values()])[law]
     place, area, rule, of_patch = _stated(disc, patches, points, crushes)
@@ -121,30 +122,19 @@ def _operators(
 ) -> tuple[sp.csr_array, sp.csr_array]:  # fmt: skip
     """Return C_n (m, N) and C_t (2 m, N) of pairs at ``where`` (m, 3) on patches ``face`` (m,), in frames (p, 3, 3)."""
     begin = np.searchsorted(face, np.arange(len(frame)))
-    blocks = []
-    for body, sign, side in zip(bodies, (-1.0, 1.0), ("a", "b"), strict=True):
-        own = {k: s for k, c in of_patch.items() if (s := getattr(c, side)) is not None}
-        rigid = np.ones(len(frame), dtype=bool)
-        rigid[list(own)] = False
-        rigid &= disc.shape_of[body] != FIXED
-        blocks.append(_rigid_rows(disc, np.flatnonzero(rigid[face]), body[face], where, frame[face], sign))
-        for k, entries in own.items():
-            row = begin[k] + entries.pair
-            column = disc.offsets[body[k]] + 3 * entries.node[:, None] + np.arange(3)
-            value = sign * frame[k][:, None, :] * entries.weight[:, None]  # (3, e, 3)
-            blocks.append((np.repeat(row, 3), column.ravel(), value.reshape(3, -1)))
-    row, column = (np.concatenate([block[k] for block in blocks]) for k in (0, 1))
-    value = np.concatenate([block[2] for block in blocks], axis=1)
-    total = len(where)
-    C_n = sp.csr_array((value[0], (row, column)), shape=(total, disc.unknowns))
-    C_t = sp.csr_array(
-        (np.concatenate([value[1], value[2]]), (np.concatenate([2 * row, 2 * row + 1]), np.tile(column, 2))),
-        shape=(2 * total, disc.unknowns),
-    )
-    for matrix in (C_n, C_t):
-        matrix.sum_duplicates()
-        matrix.eliminate_zeros()
-    return C_n, C_t
+    entries: list[Entries] = []
+    for body, sign, name in zip(bodies, (-1.0, 1.0), ("a", "b"), strict=True):
+        pair = np.flatnonzero(disc.shape_of[body[face]] == RIGID)
+        b = body[face[pair]]
+        arm = where[pair] - disc.centroids[b]
+        entries.append(rigid_entries(pair, frame[face[pair]], arm, disc.reach[b], disc.offsets[b], sign))
+        for k, coupling in of_patch.items():
+            side = getattr(coupling, name)
+            if side is not None:
+                own = np.broadcast_to(frame[k], (len(side.pair), 3, 3))
+                first = disc.offsets[body[k]] + 3 * side.node
+                entries.append(nodal_entries(begin[k] + side.pair, own, side.weight, first, sign))
+    return operators(entries, len(where), disc.unknowns, 3)
 
 
 def _points(model: Model, law: JointLaw) -> int:
@@ -154,17 +144,6 @@ def _points(model: Model, law: JointLaw) -> int:
     if model.contact_points != "auto":
         return int(model.contact_points)
     return CRUSHING if law.compressive_strength is not None else STIFF if law.normal_stiffness is not None else 0
-
-
-def _rigid_rows(
-    disc: Discretisation, pairs: Array, body: Array, at: Array, frame: Array, sign: float
-) -> tuple[Array, Array, Array]:
-    """Return rows and columns (e,) and values (3, e) of the displacement along n, t1, t2 of rigid sides."""
-    own = body[pairs]
-    columns = disc.offsets[own][:, None] + np.arange(motions(3))
-    arm = (at[pairs] - disc.centroids[own])[:, None]
-    value = sign * rigid_row(frame[pairs], arm, disc.reach[own][:, None])  # (q, 3, 6)
-    return np.repeat(pairs, columns.shape[1]), columns.ravel(), np.moveaxis(value, 1, 0).reshape(3, -1)
 
 
 def _coupling(

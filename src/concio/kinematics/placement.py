@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from concio.kinematics.rigid import plane_rotation, rotation_matrix
+from concio.kinematics.rigid import plane_rotation, rotation_matrix, swept
 from concio.kinematics.turns import Turns
 
 Array = np.ndarray
@@ -64,6 +64,24 @@ class Placement:
         if self.dim == 2:
             return Placement(self.centre + translation, self.rotation + turn)
         return Placement(self.centre + translation, rotation_matrix(turn) @ self.rotation)
+
+    def screwed(self, shift: Array, turn: Array) -> Placement:
+        """Return the placement after motions of constant velocity that turns with the body: exact about fixed axes.
+
+        Parameters
+        ----------
+        shift : (B, d) array
+            Displacements of the centroids if they did not turn [m].
+        turn : (B,) array in the plane, (B, 3) in space
+            [rad].
+        """
+        angle = (turn if self.dim == 2 else np.linalg.norm(turn, axis=1))[:, None]
+        across = swept(turn, shift)
+        small = np.abs(angle) < 1e-4
+        safe = np.where(small, 1.0, angle)
+        versine = 0.5 * np.sinc(angle / (2 * np.pi)) ** 2
+        third = np.where(small, 1.0 / 6.0, (safe - np.sin(safe)) / safe**3)
+        return self.moved(shift + versine * across + third * swept(turn, across), turn)
 
     def points(self, body: Array, arm: Array) -> Array:
         """Return the positions (k, d) of points at reference arms (k, d) of bodies (k,) [m]."""

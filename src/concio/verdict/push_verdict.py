@@ -9,7 +9,7 @@ import numpy as np
 
 from concio.contact.applied import resultants, sideways
 from concio.contact.factors import load_factor
-from concio.contact.moving.reference import Reference
+from concio.contact.reference import Reference
 from concio.display import number
 from concio.fem.discretisation import Discretisation
 from concio.model.interfaces.detect import Detection

@@ -23,7 +23,8 @@ from concio.analysis.continuum.outline import (
     mesh_lines,
     wall_shape,
 )
-from concio.contact.assembly import Assembly, default_tolerance
+from concio.contact.assembly import Assembly
+from concio.contact.detection import default_tolerance
 from concio.contact.factors import load_factor
 from concio.errors import InputError
 from concio.kinematics.frames import cross, turned_left, turned_right

@@ -20,7 +20,7 @@ from concio.analysis.motion.moved_supports import begun
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.statics import Statics
 from concio.analysis.motion.stepper import at_rest
-from concio.contact.moving.reference import Reference
+from concio.contact.reference import Reference
 from concio.errors import ConcioError
 from concio.kinematics.rigid import swept
 from concio.units import GRAVITY

@@ -1,6 +1,6 @@
 """Certificates of equilibria and of steps of a motion, on equations that are written down once more.
 
-Contact pairs are those of :class:`concio.contact.moving.original.OriginalContacts`; supports and ties are placed here
+Contact pairs are those of :class:`concio.contact.original.OriginalContacts`; supports and ties are placed here
 from the model. Of the solution come only its answer: placements, velocities, forces, what joints remember of the step
 before, how far pairs have slid, and of an impact the restitution and the forces from which added compliance counts.
 How far pairs have slid is compared with what their material points moved.
@@ -19,12 +19,12 @@ from concio.analysis.motion.pairs import PairMaker, assembled, no_pairs, relativ
 from concio.analysis.motion.scheme import RETURN, Drive, Scheme
 from concio.analysis.motion.state import Memory, MotionState
 from concio.analysis.motion.tie_bars import TieStep
-from concio.contact.moving.laws import LawTable
-from concio.contact.moving.original import OriginalContacts
-from concio.contact.moving.points import MaterialPoints
-from concio.contact.moving.reference import Reference
-from concio.contact.moving.rows import Rows
-from concio.contact.moving.slots import Slots
+from concio.contact.laws import LawTable
+from concio.contact.original import OriginalContacts
+from concio.contact.points import MaterialPoints
+from concio.contact.reference import Reference
+from concio.contact.rows import Rows
+from concio.contact.slots import Slots
 from concio.kinematics.frames import cross, turned, turned_left
 from concio.kinematics.turns import Turns
 from concio.problem.cone import Cone

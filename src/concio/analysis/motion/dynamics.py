@@ -27,7 +27,7 @@ from concio.analysis.motion.statics import Statics
 from concio.analysis.motion.stepper import at_rest
 from concio.analysis.motion.structures import Structure, near_now, structures_of, together
 from concio.arguments import strict
-from concio.contact.moving.reference import Reference
+from concio.contact.reference import Reference
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED
 from concio.model.model import Model

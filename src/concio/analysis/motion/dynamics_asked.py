@@ -9,7 +9,7 @@ import numpy as np
 
 from concio.analysis.motion.ground import Ground
 from concio.analysis.motion.state import MotionState
-from concio.contact.moving.reference import Reference
+from concio.contact.reference import Reference
 from concio.errors import InputError
 from concio.kinematics.rigid import swept
 

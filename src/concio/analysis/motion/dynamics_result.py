@@ -14,7 +14,7 @@ from concio.analysis.motion.energy import EnergyBalance
 from concio.analysis.motion.history import Shots, Steps
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.state import Memory, MotionState
-from concio.contact.moving.reference import Configuration, Reference
+from concio.contact.reference import Configuration, Reference
 from concio.errors import InputError
 from concio.kinematics.placement import Placement
 from concio.model.model import Model

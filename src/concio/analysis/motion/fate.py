@@ -19,7 +19,7 @@ from concio.analysis.motion.observer import Observer
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import Statics
-from concio.contact.moving.reference import Reference
+from concio.contact.reference import Reference
 from concio.problem.contact_problem import Engine
 
 Array = np.ndarray

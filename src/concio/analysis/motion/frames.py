@@ -13,7 +13,7 @@ import numpy as np
 
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import MotionState
-from concio.contact.moving.reference import Reference
+from concio.contact.reference import Reference
 from concio.kinematics.frames import cross, dot
 from concio.kinematics.rigid import swept
 from concio.kinematics.turns import Turns

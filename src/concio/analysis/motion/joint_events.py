@@ -8,7 +8,7 @@ import numpy as np
 
 from concio.analysis.motion.pairs import PairMaker
 from concio.analysis.motion.state import Memory, TieMemory
-from concio.contact.moving.rows import Rows
+from concio.contact.rows import Rows
 from concio.model.model import Model
 from concio.problem.pair_state import Normal
 

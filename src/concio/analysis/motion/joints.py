@@ -23,9 +23,9 @@ from concio.analysis.motion.joint_step import JointStep, PairData
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.springs import Springs, pressed, standing
 from concio.analysis.motion.state import Memory
-from concio.contact.moving.laws import LawTable
-from concio.contact.moving.rows import Rows
-from concio.contact.moving.slots import Slots
+from concio.contact.laws import LawTable
+from concio.contact.rows import Rows
+from concio.contact.slots import Slots
 from concio.problem.cone import Cone
 
 Array = np.ndarray

@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from concio.analysis.motion.state import MotionState
-from concio.contact.moving.reference import Reference
-from concio.contact.moving.slots import KINDS
+from concio.contact.reference import Reference
+from concio.contact.slots import KINDS
 
 SHARE = 0.3
 """Share of an interval at which the next value is taken where no chord bounds it from one side."""

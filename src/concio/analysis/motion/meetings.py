@@ -15,7 +15,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.analysis.motion.joint_step import JointStep
-from concio.contact.moving.slots import Slots
+from concio.contact.slots import Slots
 
 Array = np.ndarray
 

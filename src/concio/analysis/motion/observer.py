@@ -10,10 +10,10 @@ from concio.analysis.motion.frames import Frames
 from concio.analysis.motion.pairs import PairMaker
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.structures import Structure
-from concio.contact.moving.points import MaterialPoints
-from concio.contact.moving.reference import Reference
-from concio.contact.moving.rows import Rows
-from concio.contact.moving.slots import KINDS
+from concio.contact.points import MaterialPoints
+from concio.contact.reference import Reference
+from concio.contact.rows import Rows
+from concio.contact.slots import KINDS
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED
 from concio.model.stages import ControlPoint

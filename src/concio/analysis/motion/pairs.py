@@ -10,11 +10,11 @@ from concio.analysis.motion.joint_step import PairData
 from concio.analysis.motion.joints import SAG, Joints
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.state import Memory, TieMemory
-from concio.contact.moving.attachments import Held, Ties
-from concio.contact.moving.reference import Reference
-from concio.contact.moving.rows import Rows
-from concio.contact.moving.search import ContactSearch
-from concio.contact.moving.slots import Slots
+from concio.contact.attachments import Held, Ties
+from concio.contact.reference import Reference
+from concio.contact.rows import Rows
+from concio.contact.search import ContactSearch
+from concio.contact.slots import Slots
 from concio.kinematics.frames import dot
 from concio.kinematics.placement import Placement
 from concio.kinematics.turns import Turns

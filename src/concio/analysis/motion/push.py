@@ -23,8 +23,8 @@ from concio.analysis.motion.scheme import Scheme
 from concio.arguments import strict
 from concio.contact.applied import free_group, pushed
 from concio.contact.assembly import assemble
-from concio.contact.moving.points import Followed
-from concio.contact.moving.reference import Reference
+from concio.contact.points import Followed
+from concio.contact.reference import Reference
 from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
 from concio.model.stages import ControlPoint

@@ -24,7 +24,7 @@ from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import Balanced, Statics
 from concio.analysis.motion.stepper import at_rest
 from concio.analysis.motion.structures import Structure, near_now, structures_of, together
-from concio.contact.moving.reference import Reference
+from concio.contact.reference import Reference
 from concio.model.stages import ControlPoint
 from concio.problem.contact_problem import Engine
 from concio.problem.solution import ProgressCallback

@@ -11,7 +11,7 @@ from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.statics import Balanced
 from concio.arguments import closest
 from concio.contact.factors import load_factor
-from concio.contact.moving.reference import Reference
+from concio.contact.reference import Reference
 from concio.errors import InputError
 from concio.model.stages import ControlPoint
 

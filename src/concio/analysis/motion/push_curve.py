@@ -14,7 +14,7 @@ from concio.analysis.motion.observer import Observer
 from concio.analysis.motion.push_result import PushEnding
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import Balanced, Statics
-from concio.contact.moving.reference import Reference
+from concio.contact.reference import Reference
 from concio.problem.solution import Progress, ProgressCallback
 
 Array = np.ndarray

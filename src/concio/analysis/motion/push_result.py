@@ -13,8 +13,8 @@ import numpy as np
 from concio.analysis.motion.joint_events import JointEvent
 from concio.analysis.motion.state import MotionState
 from concio.arguments import closest
-from concio.contact.moving.points import Followed
-from concio.contact.moving.reference import Configuration, Reference
+from concio.contact.points import Followed
+from concio.contact.reference import Configuration, Reference
 from concio.errors import InputError
 from concio.kinematics.placement import Placement
 from concio.model.model import Model

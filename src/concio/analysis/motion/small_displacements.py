@@ -23,8 +23,8 @@ from concio.analysis.motion.resistance import RESISTANCE
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import Memory, MotionState
 from concio.contact.factors import load_factor
-from concio.contact.moving.points import Followed
-from concio.contact.moving.reference import Reference
+from concio.contact.points import Followed
+from concio.contact.reference import Reference
 from concio.kinematics.frames import dot, norm, turned_left
 from concio.kinematics.rigid import swept
 from concio.kinematics.turns import Turns

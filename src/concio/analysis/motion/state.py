@@ -7,8 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from concio.contact.moving.attachments import Ties
-from concio.contact.moving.reference import Configuration, Reference
+from concio.contact.attachments import Ties
+from concio.contact.reference import Configuration, Reference
 from concio.kinematics.placement import Placement
 from concio.problem.pair_state import Normal, PairStates
 

@@ -22,7 +22,7 @@ from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.small_displacements import Look, SmallDisplacements
 from concio.analysis.motion.state import Memory, MotionState
 from concio.analysis.motion.tie_bars import settled_ties
-from concio.contact.moving.reference import Reference
+from concio.contact.reference import Reference
 from concio.kinematics.turns import Turns
 from concio.model.stages import ControlPoint
 from concio.problem.contact_problem import Engine

@@ -30,9 +30,9 @@ from concio.analysis.motion.scheme import RETURN, Drive, Scheme
 from concio.analysis.motion.state import Memory, MotionState, TieMemory
 from concio.analysis.motion.sunk import moved_apart
 from concio.analysis.motion.tie_bars import TieStep
-from concio.contact.moving.attachments import Ties
-from concio.contact.moving.reference import Reference
-from concio.contact.moving.rows import Rows
+from concio.contact.attachments import Ties
+from concio.contact.reference import Reference
+from concio.contact.rows import Rows
 from concio.kinematics.placement import Placement
 from concio.kinematics.turns import Turns
 from concio.problem.contact_problem import Engine

@@ -15,9 +15,9 @@ import numpy as np
 
 from concio.analysis.motion.state import Memory, MotionState, TieMemory
 from concio.contact.applied import applied_forces
-from concio.contact.moving.reference import Reference
-from concio.contact.moving.slots import KINDS
+from concio.contact.reference import Reference
 from concio.contact.separate import free_of, grouped
+from concio.contact.slots import KINDS
 from concio.kinematics.placement import Placement
 from concio.model.model import Load, Model, called
 from concio.model.rules import rules_of

@@ -14,7 +14,7 @@ from concio.analysis.motion.joint_step import PairData
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.springs import RETURN
 from concio.analysis.motion.state import TieMemory
-from concio.contact.moving.attachments import Ties
+from concio.contact.attachments import Ties
 from concio.problem.pair_state import Normal
 
 Array = np.ndarray

@@ -12,7 +12,7 @@ from typing import TypeVar
 import numpy as np
 
 from concio.analysis.motion.state import MotionState
-from concio.contact.moving.attachments import Ties
+from concio.contact.attachments import Ties
 
 Array = np.ndarray
 Report = TypeVar("Report")

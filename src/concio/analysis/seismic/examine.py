@@ -17,8 +17,8 @@ from concio.analysis.seismic.free_standing import FreeStanding, branch_of
 from concio.analysis.seismic.linkage import Force, Linkage
 from concio.analysis.seismic.local_mechanism import LocalMechanism
 from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, carried
+from concio.analysis.seismic.macro_contacts import contacts_of
 from concio.analysis.seismic.mechanism import Found
-from concio.analysis.seismic.placed import contacts_of
 from concio.analysis.seismic.sequence import Sequence, follow_in_steps
 from concio.analysis.seismic.site import Site
 from concio.analysis.seismic.tie_history import together

@@ -20,8 +20,9 @@ from scipy.sparse.linalg import splu
 from concio.analysis.seismic.curve import FARTHEST, CapacityCurve, not_followed
 from concio.analysis.seismic.linkage import Force
 from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, carried
-from concio.analysis.seismic.placed import Contacts, Placed, Stated, on_blocks, problem_of, stated
+from concio.analysis.seismic.macro_contacts import on_blocks, problem_of
 from concio.analysis.seismic.tie_history import TieHistory
+from concio.contact.face_points import FacePoints, Standing, Stated, stated
 from concio.kinematics.rigid import motions
 from concio.model.model import Tie
 from concio.problem.contact_problem import Engine
@@ -67,7 +68,7 @@ class State:
 
     Parameters
     ----------
-    q : Placed
+    q : Standing
     multiplier : float
     velocity : (G, 3 or 6) array
         For a control point that moves by one.
@@ -80,7 +81,7 @@ class State:
     history : TieHistory
     """
 
-    q: Placed
+    q: Standing
     multiplier: float
     velocity: Array
     normal_force: Array
@@ -98,7 +99,7 @@ class Sequence:
     Parameters
     ----------
     mechanics : Mechanics
-    contacts : Contacts
+    contacts : FacePoints
     dead, push : tuple of Force
     ties : tuple of (Tie, int, int)
         With the macro-blocks of their ends.
@@ -108,7 +109,7 @@ class Sequence:
     """
 
     mechanics: Mechanics
-    contacts: Contacts
+    contacts: FacePoints
     dead: tuple[Force, ...]
     push: tuple[Force, ...]
     ties: tuple[tuple[Tie, int, int], ...]
@@ -120,12 +121,16 @@ class Sequence:
         """Largest distance of a contact or a force from the first centre [m]."""
         return self.mechanics.reach([*self.contacts.point, *(f.point for f in (*self.dead, *self.push))])
 
-    def controlled(self, q: Placed) -> float:
+    def at_rest(self) -> Standing:
+        """Return the macro-blocks where they were described."""
+        return Standing.at_rest(np.array([b.centre for b in self.mechanics.blocks]))
+
+    def controlled(self, q: Standing) -> float:
         """Return the displacement of the control point [m]."""
         block, point, along = self.control
         return float((q.carry(np.array([block]), point[None])[0] - point) @ along)
 
-    def elongations(self, q: Placed) -> Array:
+    def elongations(self, q: Standing) -> Array:
         """Return the elongations (n,) of the ties [m]."""
         longer = np.zeros(len(self.ties))
         for k, (tie, a, b) in enumerate(self.ties):
@@ -134,7 +139,7 @@ class Sequence:
             longer[k] = float(np.linalg.norm(now[1] - now[0])) - float(np.linalg.norm(ends[1] - ends[0]))
         return longer
 
-    def pulls(self, q: Placed, history: TieHistory) -> tuple[Array, Array, Array]:
+    def pulls(self, q: Standing, history: TieHistory) -> tuple[Array, Array, Array]:
         """Return forces (n,) [kN] and elongations (n,) [m] of the ties, and their pull on the unknowns (N,)."""
         load = np.zeros(len(self.mechanics.blocks) * motions(q.centre.shape[1]))
         longer = self.elongations(q)
@@ -147,7 +152,7 @@ class Sequence:
             load += on_blocks(q, tuple(f for f in pull if f.block != GROUND), self.size)
         return forces, longer, load
 
-    def state(self, q: Placed, normal_force: Array, history: TieHistory | None = None) -> State | None:
+    def state(self, q: Standing, normal_force: Array, history: TieHistory | None = None) -> State | None:
         """Return how the mechanism moves in a configuration, from normal forces (m,) near it; None if nothing tells."""
         history = TieHistory.none(len(self.ties)) if history is None else history
         L, d = self.size, q.centre.shape[1]
@@ -190,7 +195,7 @@ class Sequence:
         return State(q, found.multiplier, velocity / speed, forces, stays, now, pull, longer,
                      history.after(longer))  # fmt: skip
 
-    def step(self, last: State, length: float) -> Placed | None:
+    def step(self, last: State, length: float) -> Standing | None:
         """Return the configuration after the control point has moved by about ``length``; None if it cannot be.
 
         Contacts that press are put back where they have come apart, and so are others that have come to overlap: those
@@ -211,7 +216,7 @@ class Sequence:
         off = max(float(np.abs(gap[kept]).max(initial=0.0)), float(-gap[~crushing].min(initial=0.0)))
         return q if off <= LOST * length and np.isfinite(q.centre).all() else None
 
-    def _put_back(self, q: Placed, kept: Array, last: State) -> Placed:
+    def _put_back(self, q: Standing, kept: Array, last: State) -> Standing:
         """Return a configuration near ``q`` in which ``kept`` (m,) contacts touch and what sticks has not slid."""
         L, d = self.size, q.centre.shape[1]
         presses, stuck = np.flatnonzero(kept), np.flatnonzero(last.stays)
@@ -262,7 +267,7 @@ def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
         Of kind "steps"; where it ends early, its reason says why.
     """
     L = sequence.size
-    state = sequence.state(Placed.at_rest(sequence.mechanics), sequence.contacts.force)
+    state = sequence.state(sequence.at_rest(), sequence.contacts.force)
     if state is None:
         return not_followed("no state")
     first = state.multiplier
@@ -324,13 +329,13 @@ def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
 class TieEvent:
     """A configuration in which a tie yields or breaks, ``length`` [m] after the last."""
 
-    q: Placed
+    q: Standing
     length: float
     tie: int
     breaks: bool
 
 
-def _tie_event(sequence: Sequence, last: State, q: Placed, length: float) -> TieEvent | None:
+def _tie_event(sequence: Sequence, last: State, q: Standing, length: float) -> TieEvent | None:
     """Return the first yielding or breaking of a tie within a step that leads to ``q``; None where there is none."""
     bars = [tie for tie, _, _ in sequence.ties]
     event = last.history.next_event(bars, last.elongation, sequence.elongations(q)) if bars else None

@@ -18,7 +18,7 @@ from concio.kinematics.turns import Turns
 from concio.model.stages import ControlPoint
 
 if TYPE_CHECKING:
-    from concio.contact.moving.reference import Reference
+    from concio.contact.reference import Reference
 
 Array = np.ndarray
 

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from concio.contact.moving.candidates import CRUSHED, THROUGH, find_candidates
-from concio.contact.moving.edges import PlacedEdges
-from concio.contact.moving.rows import RowMaker, Rows
-from concio.contact.moving.slots import SlotMaker, Slots
-from concio.contact.moving.touch import Touch, Toucher
+from concio.contact.candidates import CRUSHED, THROUGH, find_candidates
+from concio.contact.edges import PlacedEdges
+from concio.contact.rows import RowMaker, Rows
+from concio.contact.slots import SlotMaker, Slots
+from concio.contact.touch import Touch, Toucher
 from concio.kinematics.frames import norm
 from concio.kinematics.placement import Placement
 from concio.model.interfaces.detect import SLIVER_SHARE
 
 if TYPE_CHECKING:
-    from concio.contact.moving.reference import Reference
+    from concio.contact.reference import Reference
 
 Array = np.ndarray
 

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from concio.contact.moving.candidates import Candidates
-from concio.contact.moving.edges import MovingEdges, PlacedEdges
+from concio.contact.candidates import Candidates
+from concio.contact.edges import MovingEdges, PlacedEdges
 from concio.kinematics.frames import dot, norm, turned_left, turned_right
 from concio.kinematics.placement import Placement
 from concio.kinematics.rigid import swept

@@ -8,6 +8,7 @@ import numpy as np
 
 from concio.contact.joint_points import points_along
 from concio.model.model import Model
+from concio.problem.contact_problem import Laws
 
 Array = np.ndarray
 
@@ -58,6 +59,30 @@ class LawTable:
             points=np.array([points_along(law.compressive_strength, law.normal_stiffness) for law in laws]),
             names=tuple(model.laws),
         )
+
+
+    def laws(self, law: Array, area: Array, bonded: Array) -> Laws:
+        """Return the laws of pairs (m,) as forces and lengths: strengths times area, compliance over area.
+
+        Parameters
+        ----------
+        law : (m,) integer array
+        area : (m,) array
+            [m2].
+        bonded : (m,) boolean array
+            Pairs that have cohesion and tensile strength.
+        """
+
+        def compliance(per_area: Array) -> Array:
+            found: Array = np.divide(per_area[law], area, out=np.zeros(len(law)), where=per_area[law] > 0)
+            return found
+
+        held = np.where(bonded, area, 0.0)
+        return Laws(
+            friction=self.friction[law], cohesion=self.cohesion[law] * held, tension=self.tension[law] * held,
+            dilatancy=self.dilatancy[law], normal_compliance=compliance(self.normal),
+            tangential_compliance=compliance(self.tangential), cap=self.cap[law] * area,
+        )  # fmt: skip
 
 
 class RuleBook:

@@ -11,12 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from concio.contact.coupling import Coupling, Line, Side, couple
+from concio.contact.candidates import Candidates
+from concio.contact.coupling import Coupling, Side, couple
+from concio.contact.edges import MovingEdges, PlacedEdges
 from concio.contact.joint_points import joint_rule
-from concio.contact.moving.candidates import Candidates
-from concio.contact.moving.edges import MovingEdges, PlacedEdges
-from concio.contact.moving.laws import LawTable, RuleBook
-from concio.contact.moving.touch import Touch, Toucher
+from concio.contact.laws import LawTable, RuleBook
+from concio.contact.pairs import line_of
+from concio.contact.touch import Touch, Toucher
 from concio.fem.discretisation import Discretisation
 from concio.kinematics.frames import dot, norm
 
@@ -54,7 +55,7 @@ class Slots:
     Parameters
     ----------
     low, high : (m,) integer arrays
-        Contact points (of :class:`concio.contact.moving.touch.Touch`) between which a slot stands.
+        Contact points (of :class:`concio.contact.touch.Touch`) between which a slot stands.
     fraction : (m,) array
         Where between them, 0 at ``low``.
     share : (m,) array
@@ -179,7 +180,7 @@ class SlotMaker:
 
     def _meshed_faces(self, faces: Array, found: Candidates, touch: Touch, placed: PlacedEdges) -> _MeshedSlots:
         """Return the slots of joints with a meshed side, and of corners of meshed bodies."""
-        result = _MeshedSlots()
+        result, own, number = _MeshedSlots(), self.edges.body, self.edges.number
         for i in faces.tolist():
             a, b = int(found.edge_a[i]), int(found.edge_b[i])
             t = placed.tangent[a] - placed.tangent[b]
@@ -188,7 +189,8 @@ class SlotMaker:
             if length <= 0.0:
                 length = 1e-9 * float(self.edges.length[a])
             lines = [
-                self._line(e, float(dot(t, placed.start[e] - start)), forwards) for e, forwards in ((a, 1), (b, 0))
+                line_of(self.disc, int(own[e]), int(number[e]), float(dot(t, placed.start[e] - start)), forwards)
+                for e, forwards in ((a, True), (b, False))
             ]
             result.add(i, couple(lines[0], lines[1], length), length, self.edges.body[[a, b]], self.first_node)
         for corner, edge in zip(found.corner.tolist(), found.edge.tolist(), strict=True):
@@ -214,16 +216,6 @@ class SlotMaker:
         k = int(np.clip(np.searchsorted(nodes.at, along) - 1, 0, len(nodes.at) - 2))
         share = (along - nodes.at[k]) / (nodes.at[k + 1] - nodes.at[k])
         return self.first_node[b] + nodes.nodes[k : k + 2], np.array([1.0 - share, share])
-
-    def _line(self, edge: int, first: float, forwards: int) -> Line | None:
-        """Return the nodes of an edge in positions along the common length; None where it is not meshed."""
-        b = int(self.edges.body[edge])
-        if not self.meshed[b]:
-            return None
-        nodes = self.disc.shapes[self.disc.shape_of[b]].edges[int(self.edges.number[edge])]
-        if forwards:
-            return Line(nodes.nodes, first + nodes.at, nodes.order)
-        return Line(nodes.nodes[::-1], (first - nodes.at)[::-1], nodes.order)
 
 
 class _MeshedSlots:

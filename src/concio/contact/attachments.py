@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.contact.factors import load_factor
-from concio.contact.moving.points import NOWHERE, MaterialPoints
+from concio.contact.points import NOWHERE, MaterialPoints
 from concio.contact.supports import points_held
 from concio.fem.discretisation import FIXED
 from concio.kinematics.frames import dot, norm, turned_left
@@ -21,7 +21,7 @@ from concio.kinematics.placement import Placement
 from concio.kinematics.turns import Turns
 
 if TYPE_CHECKING:
-    from concio.contact.moving.reference import Reference
+    from concio.contact.reference import Reference
 
 Array = np.ndarray
 

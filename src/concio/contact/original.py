@@ -14,10 +14,10 @@ import numpy as np
 import shapely
 
 from concio.contact.joint_points import joint_rule
-from concio.contact.moving.reference import Configuration, Reference
-from concio.contact.moving.rows import Rows
-from concio.contact.moving.search import Layout
-from concio.contact.moving.slots import KINDS, LONE, Slots
+from concio.contact.reference import Configuration, Reference
+from concio.contact.rows import Rows
+from concio.contact.search import Layout
+from concio.contact.slots import KINDS, LONE, Slots
 from concio.fem.discretisation import FIXED, RIGID
 from concio.kinematics.frames import cross, turned, turned_left
 from concio.kinematics.placement import Placement

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from concio.contact.moving.slots import MeshedSide, Slots
-from concio.contact.moving.touch import Touch, Toucher
+from concio.contact.slots import MeshedSide, Slots
+from concio.contact.touch import Touch, Toucher
 from concio.fem.discretisation import RIGID, Discretisation
 from concio.kinematics.frames import components, dot, frames, norm
 from concio.kinematics.placement import Placement

@@ -13,13 +13,14 @@ from functools import cached_property
 
 import numpy as np
 
-from concio.contact.assembly import default_tolerance, detect_without_overlap
+from concio.contact.detection import default_tolerance, detect_without_overlap
+from concio.contact.edges import MovingEdges
 from concio.contact.expansion import refuse_temperatures
 from concio.contact.geometry import GEOMETRIES
-from concio.contact.moving.edges import MovingEdges
-from concio.contact.moving.laws import LawTable, RuleBook
-from concio.contact.moving.loads import MovingLoads
-from concio.contact.moving.matrices import BodyMatrices
+from concio.contact.laws import LawTable, RuleBook
+from concio.contact.matrices import BodyMatrices
+from concio.contact.moving_loads import MovingLoads
+from concio.contact.periodic import held_at_a_point
 from concio.contact.supports import apply_supports
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID, Discretisation, discretise
@@ -52,7 +53,7 @@ class Reference:
 
     @classmethod
     def of(cls, model: Model, gravity: float = GRAVITY) -> Reference:
-        """Return the reference of a model.
+        """Return the reference of a model that is to move.
 
         Raises
         ------
@@ -75,10 +76,22 @@ class Reference:
             msg = "a periodic cell has no place of its own: it cannot move"
             raise InputError(msg, hint="take a wall of several blocks")
         refuse_temperatures(model, "a motion, or a push at large displacements,")
+        reference = cls.described(model, gravity)
+        apply_supports(reference.disc)  # what cannot be used is said before anything moves
+        return reference
+
+    @classmethod
+    def described(cls, model: Model, gravity: float = GRAVITY) -> Reference:
+        """Return the reference of any model whose bodies do not overlap: in the plane, in space, a periodic cell.
+
+        Raises
+        ------
+        GeometryError
+            Bodies overlap.
+        """
         detection = detect_without_overlap(model)
-        disc = discretise(model, GEOMETRIES[model.dim].marks(model, detection))
-        apply_supports(disc)  # what cannot be used is said before anything moves
-        return cls(model, detection, disc, gravity)
+        meshed = model if model.periods is None else held_at_a_point(model)
+        return cls(model, detection, discretise(meshed, GEOMETRIES[model.dim].marks(model, detection)), gravity)
 
     @cached_property
     def free(self) -> Array:

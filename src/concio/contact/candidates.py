@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from concio.contact.moving.edges import MovingEdges, PlacedEdges
+from concio.contact.edges import MovingEdges, PlacedEdges
 from concio.kinematics.frames import dot, turned_right
 from concio.model.interfaces.facing import facing_pairs
 
