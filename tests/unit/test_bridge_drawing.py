@@ -99,3 +99,38 @@ def test_drawings_that_do_not_fit_are_refused(
     path.write_text(FILE.format(more=more))
     with pytest.raises(InputError, match=words):
         concio.load(path)
+
+
+def test_lines_that_stand_apart_are_spans_on_piers_below_a_drawn_fill_line(tmp_path: Path) -> None:
+    path = drawn(tmp_path)
+    document = ezdxf.readfile(tmp_path / "survey.dxf")
+    space = document.modelspace()
+    for entity in list(space):
+        if entity.dxf.layer in ("INTRADOS", "EXTRADOS"):
+            other = entity.copy()
+            other.translate(1e3 * (SPAN + 1.0), 0.0, 0.0)
+            space.add_entity(other)
+    top = 2000.0 + 1e3 * (RISE + RING + 0.2)
+    space.add_line((2000.0, top), (20000.0, top), dxfattribs={"layer": "FILL"})
+    road = next(e for e in space if e.dxf.layer == "STRADA" and e.dxf.end.x > 6500.0)
+    road.dxf.end = (20000.0, road.dxf.end.y)
+    document.saveas(tmp_path / "survey.dxf")
+    path.write_text(FILE.format(more='fill_line = "FILL"').replace("width = 2.0", "width = 2.0\npier_height = 2.0"))
+    model = concio.load(path)
+    made = concio.bridge(span=[SPAN, SPAN], rise=RISE, ring=RING, voussoirs=16, width=2.0, block="rigid",
+                         unit_weight=22.0, pier_width=1.0, pier_height=2.0)  # fmt: skip
+    made = concio.with_fill(made, concio.Fill(cover=0.3, passive=1.0, layers=(concio.Layer(0.1, 23.0),)))
+    assert {b.name for b in model.bodies} == {b.name for b in made.bodies}
+    weights = [-sum(x.value[1] for x in m.loads if x.group == "fill") for m in (model, made)]
+    assert weights[0] == pytest.approx(weights[1], rel=5e-3)
+    for name in ("s1-v01", "s2-v16", "pier1-p01"):
+        assert model.body(name).centroid == pytest.approx(made.body(name).centroid, abs=5e-3)
+
+
+def test_layers_with_other_numbers_of_lines_are_refused(tmp_path: Path) -> None:
+    path = drawn(tmp_path)
+    document = ezdxf.readfile(tmp_path / "survey.dxf")
+    document.modelspace().add_line((9000, 2000), (9500, 2100), dxfattribs={"layer": "EXTRADOS"})
+    document.saveas(tmp_path / "survey.dxf")
+    with pytest.raises(InputError, match="they make 2 lines, one is wanted"):
+        concio.load(path)

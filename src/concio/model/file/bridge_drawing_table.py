@@ -16,7 +16,7 @@ from concio.model.file.values import Length
 
 
 class BridgeDrawingTable(Table):
-    """A drawing of one span: a layer for each line of the barrel from the intrados outwards, and one for the road.
+    """A drawing of a bridge: a layer for each line of the barrel from the intrados outwards, for road and fill line.
 
     Keys
     ----
@@ -26,6 +26,8 @@ class BridgeDrawingTable(Table):
         Layers of the lines of the barrel, from the intrados outwards.
     road :
         Layer of the road line.
+    fill_line :
+        Layer of the line between fill and surfacing.
     unit :
         Unit of the drawing, where the file does not say it.
     chord_tolerance :
@@ -35,6 +37,7 @@ class BridgeDrawingTable(Table):
     file: Name
     lines: list[StrictStr] = Field(default_factory=lambda: ["INTRADOS", "EXTRADOS"])
     road: StrictStr | None = None
+    fill_line: StrictStr | None = None
     unit: StrictStr | None = None
     chord_tolerance: Length = 0.002
 
@@ -54,21 +57,29 @@ def drawn_barrel(drawing: BridgeDrawingTable | None, bridge: Any, folder: Path) 
             what = "there is no [bridge]" if bridge is None else "lines names fewer than two layers"
             raise InputError(what, hint="it draws the barrel of [bridge], which says voussoirs and materials")
         drawn = _read(drawing, folder)
-        inner, *between, outer = (drawn[name] for name in drawing.lines)
+        each = [drawn[name] for name in drawing.lines]
+        inner, *between, outer = each if len(each[0]) > 1 else [lines[0] for lines in each]
         return {"intrados": inner, "extrados": outer, "ring_lines": between}
 
 
 def with_drawn_road(fill: FillTable | None, drawing: BridgeDrawingTable | None, folder: Path) -> FillTable | None:
-    """Return the table of the fill with the road line of a drawing, where it says neither cover nor road."""
-    if drawing is None or fill is None or drawing.road is None or fill.cover is not None or fill.road:
+    """Return the table of the fill with road and fill line of a drawing, where the table does not say them itself."""
+    if drawing is None or fill is None:
+        return fill
+    wanted = {"road": drawing.road if fill.cover is None and not fill.road else None,
+              "fill_line": None if fill.fill_line else drawing.fill_line}  # fmt: skip
+    if not any(wanted.values()):
         return fill
     with placed("[bridge_drawing]"):
-        line = _read(drawing, folder)[drawing.road]
-    road = {"road": [(float(x), float(y)) for x, y in line]}
-    return fill.model_copy(update=road)
+        drawn = _read(drawing, folder)
+    update = {key: [(float(x), float(y)) for x, y in drawn[layer][0]] for key, layer in wanted.items() if layer}
+    found = fill.model_copy(update=update)
+    found.model_fields_set.update(update)
+    return found
 
 
-def _read(drawing: BridgeDrawingTable, folder: Path) -> dict[str, list[list[float]]]:
+def _read(drawing: BridgeDrawingTable, folder: Path) -> dict[str, list[list[list[float]]]]:
     """Return the lines of a drawing by layer, the left springing of the first at (0, 0) [m]."""
-    wanted = [*drawing.lines, *([] if drawing.road is None else [drawing.road])]
-    return read_lines(folder / drawing.file, wanted, unit=drawing.unit, chord=drawing.chord_tolerance)
+    single = [name for name in (drawing.road, drawing.fill_line) if name is not None]
+    path = folder / drawing.file
+    return read_lines(path, drawing.lines, unit=drawing.unit, chord=drawing.chord_tolerance, single=single)

@@ -39,9 +39,9 @@ def bridge(
     ring_friction: float | str | JointLaw | None = None,
     staggered: bool = False,
     headers: int = 0,
-    intrados: Sequence[Sequence[float]] | None = None,
-    extrados: Sequence[Sequence[float]] | None = None,
-    ring_lines: Sequence[Sequence[Sequence[float]]] = (),
+    intrados: Sequence[Any] | None = None,
+    extrados: Sequence[Any] | None = None,
+    ring_lines: Sequence[Sequence[Any]] = (),
     pier_width: float | str | Sequence[float | str] | None = None,
     pier_height: float | str = 0.0,
     pier_courses: int = 1,
@@ -74,7 +74,8 @@ def bridge(
     headers : int
         Every so many voussoirs one runs through all rings; 0 is none.
     intrados, extrados : sequences of points, optional
-        Lines of one span in place of span, rise and ring, from the left to the right springing [m].
+        Lines in place of span, rise and ring, from the left to the right springing [m]; of several spans a line for
+        each span, and piers fill the room between them.
     ring_lines : sequence of lines
         Between them, where there are several rings, from the intrados outwards [m].
     pier_width : float or str, or sequence
@@ -125,8 +126,11 @@ def bridge(
             if value is not None:
                 msg = f"{key} and the lines of the barrel are both given"
                 raise InputError(msg, where=where, hint=f"the lines are what is built: leave {key} out")
-        barrels = [_drawn(where, intrados, extrados, ring_lines, voussoirs)]
-        spans = [float(np.ptp(np.array([barrels[0].left[0, 0], barrels[0].right[0, 0]])))]
+        if pier_width is not None:
+            msg = "pier_width and the lines of the barrel are both given"
+            raise InputError(msg, where=where, hint="piers are as wide as the lines leave room: leave pier_width out")
+        barrels = _drawn(where, intrados, extrados, ring_lines, voussoirs)
+        spans = [float(b.right[0, 0] - b.left[0, 0]) for b in barrels]
     else:
         if span is None or ring is None:
             msg = f"'{'span' if span is None else 'ring'}' is missing"
@@ -141,12 +145,15 @@ def bridge(
             barrel_of(where, profile_of(where, shape, s, r), replace(plan, prefix=label))
             for s, r, label in zip(spans, rises, labels, strict=True)
         ]
-    if len(spans) > 1 and pier_width is None:
-        msg = "pier_width is missing"
-        raise InputError(msg, where=where, hint="several spans stand on piers")
-    widths = [] if len(spans) == 1 else _lengths(where, "pier_width", pier_width, len(spans) - 1)
-    starts = np.concatenate([[0.0], np.cumsum(np.array(spans[:-1]) + widths)]) if len(spans) > 1 else [0.0]
-    barrels = [b.moved(float(x)) for b, x in zip(barrels, starts, strict=True)]
+    widths: list[float] = []
+    if len(spans) > 1 and intrados is None:
+        if pier_width is None:
+            msg = "pier_width is missing"
+            raise InputError(msg, where=where, hint="several spans stand on piers")
+        widths = _lengths(where, "pier_width", pier_width, len(spans) - 1)
+        starts = np.concatenate([[0.0], np.cumsum(np.array(spans[:-1]) + widths)])
+        barrels = [b.moved(float(x)) for b, x in zip(barrels, starts, strict=True)]
+    record_starts = [float(b.left[0, 0]) for b in barrels]
     _check_backing(where, barrels, back)
     behind = [
         0.5 * s if abutment is None else positive(where, "abutment", abutment) for s in (spans[0], spans[-1])
@@ -162,7 +169,7 @@ def bridge(
             pieces.append(Piece(f"backing{i}", _backing(left, right, back), layer="backing"))
     title = f"{shape} arch bridge, {len(spans)} span{'s' * (len(spans) > 1)} of " + ", ".join(f"{s:g}" for s in spans)
     record: dict[str, object] = {"kind": "bridge", "shape": shape, "spans": [float(s) for s in spans],
-                                 "starts": [float(x) for x in starts], "rings": 1}  # fmt: skip
+                                 "starts": record_starts, "rings": 1}  # fmt: skip
     if intrados is None:
         rings = _lengths(where, "ring", ring, most=MOST_RINGS)
         foot = rings if springing_ring is None else _lengths(where, "springing_ring", springing_ring, len(rings))
@@ -226,14 +233,28 @@ def _plan(
     )
 
 
-def _drawn(where: str, intrados: Any, extrados: Any, between: Any, voussoirs: Any) -> Barrel:
+def _drawn(where: str, intrados: Any, extrados: Any, between: Any, voussoirs: Any) -> list[Barrel]:
+    """Return the barrel of each span between its lines."""
     if intrados is None or extrados is None:
         msg = "intrados and extrados belong together, and one of them is missing"
         raise InputError(msg, where=where)
-    lines = [[[quantity(v, "length", where=where) for v in p] for p in line]
-             for line in (intrados, *between, extrados)]  # fmt: skip
-    number = voussoirs if isinstance(voussoirs, int) else next(iter(voussoirs))
-    return barrel_between(where, lines, count(where, "voussoirs", number, 3), "")
+    several = _nested(intrados)
+    rings = [line if several else [line] for line in (intrados, *between, extrados)]
+    if several and any(not _nested(line) or len(line) != len(intrados) for line in rings):
+        msg = f"the intrados has {len(intrados)} lines, one for each span, and another line of the barrel has not"
+        raise InputError(msg, where=where, hint="give as many lines for the extrados and between the rings")
+    number = count(where, "voussoirs", voussoirs if isinstance(voussoirs, int) else next(iter(voussoirs)), 3)
+    found = []
+    for k, lines in enumerate(zip(*rings, strict=True), 1):
+        own = [[[quantity(v, "length", where=where) for v in p] for p in line] for line in lines]
+        found.append(barrel_between(f"{where}, span {k}" if several else where, own, number, f"s{k}-" * several))
+    return found
+
+
+def _nested(line: Any) -> bool:
+    """Return whether a line is a list of lines, and not of points."""
+    first: Sequence[Any] = next(iter(line), ())
+    return len(first) > 0 and not isinstance(first[0], int | float | str | np.number)
 
 
 def _check_backing(where: str, barrels: Sequence[Barrel], back: float) -> None:
