@@ -1,6 +1,6 @@
-"""Draw the pictures of the README and of the front page: ``python docs/make_pictures.py``.
+"""Draw the pictures of the README, of the front page and of some pages: ``python docs/make_pictures.py``.
 
-The front page shows the lines that make each picture; these are run here as they stand there, so that picture and lines
+The pages show the lines that make each picture; these are run here as they stand there, so that picture and lines
 cannot part. The facade of the README is ``examples/facade.toml``.
 """
 
@@ -18,17 +18,19 @@ import concio
 HERE = Path(__file__).resolve().parent
 PICTURES = HERE / "_static"
 DOTS = 110
+PAGES = ("index.md", "howto/cracks.md")
 
 
-def front_page() -> list[str]:
-    """Run the code blocks of the front page; save the axes ``picture`` of each under the name of the image below it."""
-    text = (HERE / "index.md").read_text(encoding="utf-8")
+def page(name: str) -> list[str]:
+    """Run the code blocks of a page; save the axes ``picture`` of each under the name of the image below it."""
+    text = (HERE / name).read_text(encoding="utf-8")
     drawn = []
-    for code, name in re.findall(r"```python\n(.*?)```\n\n!\[[^\]]*\]\(_static/([\w.-]+)\)", text, re.DOTALL):
+    below = r"```python\n((?:(?!```).)*?)```\n\n!\[[^\]]*\]\((?:\.\./)?_static/([\w.-]+)\)"
+    for code, image in re.findall(below, text, re.DOTALL):
         names: dict[str, object] = {}
         exec(code, names)
-        names["picture"].figure.savefig(PICTURES / name, dpi=DOTS)  # type: ignore[attr-defined]
-        drawn.append(name)
+        names["picture"].figure.savefig(PICTURES / image, dpi=DOTS)  # type: ignore[attr-defined]
+        drawn.append(image)
     return drawn
 
 
@@ -41,4 +43,6 @@ def facade() -> list[str]:
 
 
 if __name__ == "__main__":
-    print(*front_page(), *facade())
+    for name in PAGES:
+        print(*page(name))
+    print(*facade())

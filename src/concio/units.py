@@ -186,7 +186,9 @@ def quantity(value: float | str, kind: str, *, where: str | None = None) -> floa
         return number * factor * GRAVITY
     if mass or (force, length) != KINDS[kind]:
         plain = SYMBOL[kind] == "-"
-        msg = f"'{_short(str(value))}' must be a plain number" if plain else f"'{_short(str(value))}' is not a {kind}"
+        article = "an" if kind[0] in "ae" else "a"
+        told = f"'{_short(str(value))}'"
+        msg = f"{told} must be a plain number" if plain else f"{told} is not {article} {kind}"
         expected = None if plain else f"expected a unit like {SYMBOL[kind]}"
         masses = "kg, g and t are masses: write N, kN or kgf for a force"
         raise InputError(msg, where=where, hint=masses if mass else expected)

@@ -171,9 +171,11 @@ def plot_causes(found: Diagnosis, ax: Axes | None = None, *, language: str = "en
     ax = diagram_axes(ax, SIZE)
     units = found.model.report
     names = [c.name for c in found.candidates]
+    symbols: dict[str, None] = {}
     for k, cause in enumerate(shown):
         for c, s, a, b in zip(cause.chosen, cause.motion, cause.low, cause.high, strict=True):
             factor, symbol = units.factor(found.candidates[c].quantity, abs(s) or 1e-3)
+            symbols |= {symbol: None} if symbol else {}
             y = c + 0.7 * ((k + 1) / (len(shown) + 1) - 0.5)
             ends = [v if np.isfinite(v) else s for v in (a, b)]
             ax.plot([factor * v for v in ends], [y, y], "-", color=COLOURS[k], lw=2.0)
@@ -183,7 +185,8 @@ def plot_causes(found: Diagnosis, ax: Axes | None = None, *, language: str = "en
     ax.axvline(0.0, color="#BBBBBB", lw=0.7, zorder=1)
     ax.set_yticks(range(len(names)), names, fontsize=7.5)
     ax.set_ylim(len(names) - 0.5, -0.5)
-    dress_diagram(ax, words["causes"], words["interval"].format(confidence=f"{100 * found.confidence:g}"), "")
+    label = words["interval"].format(confidence=f"{100 * found.confidence:g}")
+    dress_diagram(ax, words["causes"], f"{label} [{', '.join(symbols)}]" if symbols else label, "")
     return ax
 
 

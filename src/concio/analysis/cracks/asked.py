@@ -25,6 +25,7 @@ COLUMNS = (
     "along_z",
 )  # fmt: skip
 """Columns of a table of measurements; of a joint both bodies, else the body and that of the second point."""
+NO_VALUE = "give it; a joint that was found closed is of kind 'closed', and what was not measured is left out"
 HEADING = re.compile(r"^\s*(?P<name>[^\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*$")
 
 
@@ -162,6 +163,9 @@ def _row(
     if error is None:
         msg = "the error is missing"
         raise InputError(msg, where=place, hint="give a column 'error', or error = '0.5 mm' in [survey]")
+    if "value" not in row and kind != "closed":
+        msg = "the value is missing"
+        raise InputError(msg, where=place, hint=NO_VALUE)
     bodies = tuple(row[key] for key in ("body_a", "body_b") if key in row)
     at_a_joint = kind in AT_A_JOINT
     try:
@@ -171,7 +175,8 @@ def _row(
             other="" if at_a_joint else row.get("body_b", ""), to=points["to_"], direction=points["along_"] or (),
         )  # fmt: skip
     except InputError as fault:
-        where = ", ".join(filter(None, (place, fault.where)))
+        told = (fault.where or "").startswith(place)
+        where = fault.where if told else ", ".join(filter(None, (place, fault.where)))
         raise InputError(fault.what, where=where, hint=fault.hint) from None
 
 
@@ -183,8 +188,11 @@ def _measurement(table: MeasurementTable, survey: SurveyTable, where: str) -> Me
         key = "error_of_tilts = '0.5 mrad'" if table.kind in ANGLES else "error = '0.5 mm'"
         msg = "the error is missing"
         raise InputError(msg, where=f"{where} '{table.name}'", hint=f"give error, or {key} in [survey] for all")
+    if table.value is None and table.kind != "closed":
+        msg = "the value is missing"
+        raise InputError(msg, where=f"{where} '{table.name}'", hint=NO_VALUE)
     return Measurement(
-        table.name, table.kind, error, table.value, joint=table.joint or (), body=table.body, at=table.at,
+        table.name, table.kind, error, table.value or 0.0, joint=table.joint or (), body=table.body, at=table.at,
         other=table.other, to=table.to, direction=table.direction or (),
     )  # fmt: skip
 

@@ -124,15 +124,16 @@ def diagnose(
         for key, things in (("low", given[1]), ("high", given[1]), ("value", given[0]), ("error", given[0]))
     )
     trials: tuple[Trial, ...] = ()
+    coarse = changed = np.inf
     for number in STEPS if steps is None else (steps,):
         forward = Forward.of(assembly, moved, found, method, number)
         case = _Case(Fitter(forward, value, error, low, high, scale), *given, confidence)
         searched = search(
             case.fitter, [c.mover for c in given[1]], most=most, beyond=beyond, confidence=confidence,
-            coarse=trials, progress=progress,
+            coarse=trials, change=changed, progress=progress,
         )  # fmt: skip
         trials = searched.trials
-        coarse = case.refinement(searched)
+        coarse, changed = case.refinement(searched)
         if coarse <= CHANGED:
             break
     fitter = case.fitter
@@ -211,25 +212,29 @@ class _Case:
         changes = [np.abs(e.values - best.predicted) / self.fitter.error for e in ends if e.reached]
         return float(max((c.max() for c in changes), default=np.inf))
 
-    def refinement(self, searched: Found) -> float:
-        """Return how much a reading changes, in errors, where the paths of the best fits are followed in finer steps.
+    def refinement(self, searched: Found) -> tuple[float, float]:
+        """Return how much readings change, in errors, where the paths of the best fits are followed in finer steps.
+
+        The largest change of a reading, and the largest root of the sum of squares of the changes of a fit.
 
         Looked at are the simplest cause and the best fit of every number of motions that is not far off: one that is
         turned down because its path was walked too coarsely is no less a fault than one that is taken.
         """
-        near = [t.fit for t in searched.trials if t.fit is not None and t.chosen]
+        near = [t.fit for t in searched.trials if t.fit is not None and t.chosen and not t.coarse]
         tried = [f for f in near if f.misfit <= FAR * allowed(f.freedom, self.confidence)]
         tried = tried or sorted(near, key=lambda f: f.misfit)[:1]
         sizes = {len(f.chosen) for f in tried}
         best = [min((f for f in tried if len(f.chosen) == s), key=lambda f: f.misfit) for s in sorted(sizes)]
         first = [f for f in (*searched.accepted, *searched.spoiled) if f.chosen][:1]
-        return max((self._change(f) for f in (*first, *best)), default=0.0)
+        changes = [self._change(f) for f in dict.fromkeys((*first, *best))]
+        largest = max((float(c.max()) for c in changes), default=0.0)
+        return largest, max((float(np.linalg.norm(c)) for c in changes), default=0.0)
 
-    def _change(self, fit: Fit) -> float:
-        """Return the largest change of a reading of one fit in finer steps, in errors."""
+    def _change(self, fit: Fit) -> Array:
+        """Return the changes (n,) of the readings of one fit in finer steps, in errors."""
         fine = self.fitter.forward.refined(fit.motions, FINER)
-        change = np.abs(fine.values - fit.prediction.values) / self.fitter.error
-        return float(change.max()) if fine.reached else np.inf
+        change: Array = np.abs(fine.values - fit.prediction.values) / self.fitter.error
+        return change if fine.reached else np.full(len(change), np.inf)
 
 
 def _check(

@@ -230,7 +230,10 @@ class Fitter:
                 radius = 0.3 * float(np.abs(d / self.scale[own]).max())
                 continue
             if there.misfit < here.misfit - 0.1 * gain:
+                rate = there.misfit / here.misfit
                 here, refreshed = there, False
+                if float(without_each(here).min()) * rate ** (MOST_STEPS - steps) > DISTANT * allowed:
+                    break  # at this rate it comes nowhere near
                 continue
             if not refreshed:
                 here, refreshed = self._refreshed(here), True

@@ -20,6 +20,9 @@ AT_A_JOINT = ("opening", "slip", "closed")
 ANGLES = ("tilt",)
 """Kinds in radians; all others are in metres."""
 
+LARGEST = 1.0
+"""No measurement is larger than this [m or rad]: it is in another unit."""
+
 
 @strict_class
 @dataclass(frozen=True)
@@ -94,6 +97,10 @@ class Measurement:
         if not math.isfinite(self.value):
             msg = f"value = {self.value!r} is not a finite number"
             raise InputError(msg, where=where, hint="leave out what was not measured")
+        if abs(self.value) > LARGEST:
+            unit = "rad" if self.kind in ANGLES else "m"
+            msg = f"value = {self.value:g} {unit} is no {self.kind} of a structure that stands"
+            raise InputError(msg, where=where, hint=f"a bare number is in {unit}: give the unit, such as '4.9 mm'")
         self._check_place(where)
 
     def _check_place(self, where: str) -> None:

@@ -8,7 +8,7 @@ with more. Where a measurement spoils an otherwise good choice it is named, with
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
@@ -21,6 +21,8 @@ Array = np.ndarray
 
 HOPELESS = 4.0
 """A misfit without a measurement, to first order, that is this many times the one allowed is not looked at further."""
+SURE = 2.0
+"""Times the change of a reading in finer steps that is allowed for where a choice is turned down on coarse ones."""
 CLEAR = 4.0
 """A measurement that is left out must be further than this from what the others predict, in standard deviations."""
 
@@ -34,10 +36,13 @@ class Trial:
     chosen : tuple of int
     fit : Fit or None
         None where no motion of them was reached.
+    coarse : bool
+        Whether it was turned down on paths of coarser steps than the others, from which it was too far off.
     """
 
     chosen: tuple[int, ...]
     fit: Fit | None
+    coarse: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +71,7 @@ def allowed(freedom: int, confidence: float) -> float:
 
 def search(
     fitter: Fitter, movers: Sequence[str], *, most: int, beyond: int, confidence: float,
-    coarse: Sequence[Trial] = (),
+    coarse: Sequence[Trial] = (), change: float = 0.0,
     progress: ProgressCallback | None = None,
 ) -> Found:  # fmt: skip
     """Return the causes of up to ``most`` motions, ``beyond`` more than the simplest needs at most.
@@ -80,6 +85,9 @@ def search(
     confidence : float
     coarse : sequence of Trial
         What a search with coarser paths looked at: its fits are begun with, and those far off are taken as they are.
+    change : float
+        How much finer steps changed the readings of the best of these, root of the sum of squares in errors: by so
+        much the root of its misfit changes at most. Twice as much is allowed for the others.
     progress : callable, optional
     """
     before = {t.chosen: t for t in coarse}
@@ -99,9 +107,11 @@ def search(
                 progress(Progress("diagnose", len(trials), 1.0 - i / len(choices), f"{size} motions"))
             known = before.get(chosen)
             begin = None if known is None else known.fit
-            if begin is not None and size and (begin.left or without_each(begin).min() > FAR * limit):
-                trials.append(Trial(chosen, replace(begin, left=True)))
-                continue
+            if begin is not None and size and begin.misfit > limit:
+                least = float(np.sqrt(without_each(begin).min()))
+                if begin.left or least > min(np.sqrt(FAR * limit), np.sqrt(limit) + SURE * change):
+                    trials.append(Trial(chosen, begin, coarse=True))
+                    continue
             fit = fitter.fit(chosen, allowed=limit, begin=begin) if size else _rest(fitter)
             trials.append(Trial(chosen, fit))
             if fit is None or fit.left:

@@ -29,7 +29,7 @@ class MeasurementTable(Table):
 
     name: Name
     kind: Literal["opening", "slip", "closed", "tilt", "level", "distance"] = "opening"
-    value: Reading = 0.0
+    value: Reading = None
     error: Reading = None
     joint: tuple[Name, Name] | None = None
     body: StrictStr = ""
