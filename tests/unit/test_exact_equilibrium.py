@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import subprocess
 import sys
 from copy import deepcopy
@@ -16,10 +17,13 @@ import pytest
 import concio
 from commands import run
 from concio import Body, Elastic, JointLaw, JointRule, Load, Model, Rigid, Support, Tie
+from concio.analysis.lent_compliance import lend
 from concio.errors import InputError, SolverError
+from concio.problem.pair_state import PairStates
 from concio.problem.solution import Status
 from concio.proof import verify_equilibrium as checker
-from concio.proof.certificate import sealed
+from concio.proof.certificate import prove_balance, sealed
+from concio.proof.equilibrium import prove_equilibrium
 from concio.proof.programs import recompute
 from pillars import pillar, sideways
 from samples import sample
@@ -89,20 +93,58 @@ def test_ties_strength_held_blocks_and_gaps_are_proved(kind: str, more: dict[str
     assert "proved" in sentence
 
 
-def test_rigid_blocks_on_hard_joints_stay_where_they_are() -> None:
+def test_rigid_blocks_on_hard_joints_are_proved_for_any_small_compliance() -> None:
     made = block(law=JointLaw(0.6)).proof()
-    assert "proved exactly" in recompute(made)
-    assert set(made["solution"][: checker.numbering(made)[2]]) == {"0"}
+    assert "with these compliances or any multiple of them: proved" in recompute(made)
+    assert "lent" in made
     fails = block(push=0.7, law=JointLaw(0.6))
     assert fails.proof()["claim"] == "collapse"
     assert "balance" in fails.proved
+
+
+def hanging(stiffness: float | None) -> Model:
+    """Return a block between two walls that do not squeeze it."""
+    faces = {"l": (-1, 0, "fixed"), "r": (1, 2, "fixed"), "b": (0, 1, "rigid")}
+    bodies = [Body(name, [(x, 0), (z, 0), (z, 1), (x, 1)], kind=kind) for name, (x, z, kind) in faces.items()]
+    law = {"joint": JointLaw(0.6, normal_stiffness=stiffness, tangential_stiffness=stiffness)}
+    return Model(tuple(bodies), {"block": Rigid(20.0)}, law, loads=(Load("weight", (0, -1)),))
+
+
+@pytest.mark.parametrize("stiffness", [None, 1e7, 1e12])
+def test_a_block_that_nothing_squeezes_has_no_certificate_of_equilibrium(stiffness: float | None) -> None:
+    """Forces out of nothing balance its weight; no compliance, however small, brings them about."""
+    result = concio.solve(hanging(stiffness), on_failure="return")
+    with pytest.raises(SolverError):
+        result.proof()
+    assert result.proved == ""
+    lent = lend(concio.assemble(hanging(stiffness)))
+    m = len(lent.pairs)
+    forces = np.column_stack([np.full(m, 100.0), np.zeros(m)])
+    for codes in itertools.product((0, 1), (0, 1, -1), repeat=2):  # both joints open or closed, stick or slip
+        normal = np.array(codes[::2])[lent.pairs.interface]
+        states = PairStates.plane(normal, np.array(codes[1::2])[lent.pairs.interface])
+        with pytest.raises(SolverError):
+            prove_equilibrium(lent, None, states, forces)
+
+
+def test_forces_chosen_at_will_are_refused_by_the_program() -> None:
+    """A hand-made certificate of the hanging block without compliance, with forces that balance its weight."""
+    made = prove_balance(concio.assemble(hanging(None)))
+    x = ["0", "0", "0"]
+    for joint, force in zip(made["joints"], made["forces"], strict=True):
+        n, f = ([Fraction(checker.exact(t)) for t in texts] for texts in (joint["normal"], force))
+        x += [str(n[0] * f[0] + n[1] * f[1]), str(n[0] * f[1] - n[1] * f[0])]
+    states = [["closed", "stick"]] * len(made["joints"])
+    false = {**made, "claim": "equilibrium", "shapes": [], "states": states, "solution": x}
+    with pytest.raises(ValueError, match="any forces would pass"):
+        checker.check(sealed(false))
 
 
 def wall(number: int) -> concio.Result:
     """Return the answer for a wall of elastic blocks of random friction, weight and push."""
     rng = np.random.default_rng(number)
     model = concio.wall(
-        length=1.0, height=0.4, block_size=(0.5, 0.2), unit_weight=float(rng.uniform(15, 28)), mesh_size=0.25,
+        length=1.0, height=0.6, block_size=(0.5, 0.2), unit_weight=float(rng.uniform(15, 28)), mesh_size=0.25,
         friction=float(rng.uniform(0.3, 0.9)), horizontal=float(rng.choice([-1.0, 1.0])),
     )  # fmt: skip
     return concio.solve(model, factors={"live": float(rng.uniform(0, 0.25))}, on_failure="return")
@@ -172,8 +214,9 @@ def test_the_program_runs_alone_and_commands_prove_and_verify(tmp_path: Path) ->
 
 
 def test_reports_and_notebooks_say_that_it_is_proved_where_it_is() -> None:
-    assert "Proved exactly" in block(law=JointLaw(0.6))._repr_html_()
-    assert "Proved, with intervals" in block("elastic")._repr_html_()
+    assert "Proved" in block(law=JointLaw(0.6))._repr_html_()
+    assert "Proved exactly" in block(push=0.7, law=JointLaw(0.6))._repr_html_()
+    assert "Proved, with intervals" in wall(0)._repr_html_()
     dilates = block(law=JointLaw(0.6, dilatancy=0.1, normal_stiffness=4e4))
     assert dilates.proved == ""
     assert "Proved" not in dilates._repr_html_()

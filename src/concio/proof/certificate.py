@@ -65,7 +65,9 @@ def prove_limit(
     }  # fmt: skip
     inside = witness(data, constant, multiplied, side="inside", directions=force_ways)
     tried = [_lower(inside)] + ([_upper(inside)] if assembly.model.dim == 2 else [])
-    parts = [part for part in tried if part and _holds({**made, **part})]
+    parts = [part for part in tried if part]
+    if not _holds({**made, **{key: value for part in parts for key, value in part.items()}}):
+        parts = [part for part in parts if _holds({**made, **part})]
     if inside is not None and not any("lower" in part for part in parts):
         size = max(abs(inside.multiplier), Fraction(1))
         lower = (

@@ -1,8 +1,8 @@
 """Equilibrium certificates: the joint states of an answer, and what shows that an exact solution has them.
 
 The checking program :mod:`concio.proof.verify_equilibrium` writes the equations down; here is found what it needs
-beside the model's numbers. Rigid blocks on joints without compliance stay where they are: forces in balance are the
-proof. In all other cases the states of the joint points are read off the answer; the equations of states are linear.
+beside the model's numbers. The states of the joint points are read off the answer; the equations of states are linear.
+Hard joints of rigid blocks have the compliance that is lent to them: without it any forces in balance would pass.
 Their solution is enclosed by elimination in the order of a factor in floating point, with as many bits as it takes.
 Where a sign is not strict an enclosure cannot show it, and small models are solved in fractions.
 
@@ -21,19 +21,19 @@ import scipy.sparse.linalg as sla
 
 from concio.contact.assembly import Assembly
 from concio.errors import InputError, SolverError
-from concio.fem.discretisation import RIGID
 from concio.problem.pair_state import Normal, PairStates
 from concio.proof import verify_equilibrium as checker
 from concio.proof.certificate import FORMAT, factors_of, sealed
 from concio.proof.deformable import deformable_statement
 from concio.proof.exact_solve import Row, scaled, solve_exactly
-from concio.proof.statement import Numbers, statement
-from concio.proof.witness import forces_below
+from concio.proof.statement import Numbers, statement, text_of
 
 BITS = (384, 768, 1536, 3072)
 """Bits of an enclosure, tried in turn."""
 SHARP = 64
 """Bits of a unit to which every number is enclosed at least."""
+ALWAYS_EXACT = 120
+"""Equations up to which the solution is given in fractions, which are short then."""
 LARGEST_EXACT = 600
 """Equations up to which a solution is sought in fractions where an enclosure does not decide a sign."""
 LARGEST_ENCLOSED = 12_000
@@ -49,6 +49,7 @@ def prove_equilibrium(
     Parameters
     ----------
     assembly : Assembly
+        Hard joints of rigid blocks with the compliance lent to them (:mod:`concio.analysis.lent_compliance`).
     factors : mapping of str to float, optional
         Of the load groups.
     states : PairStates
@@ -68,8 +69,8 @@ def prove_equilibrium(
     constant = {g: str(x) for g, x in factors_of(assembly, factors, numbers).items()}
     made = {"format": FORMAT, "claim": "equilibrium", **deformable_statement(assembly, data, numbers)}
     made = {**made, "constant": constant}
-    if at_rest(assembly):
-        return _at_rest(made, data, {g: Fraction(x) for g, x in constant.items()})
+    if assembly.lent_compliance:
+        made["lent"] = text_of(assembly.lent_compliance, numbers)
     made["states"] = _words(assembly, states, len(made["joints"]))
     rows, right, signs = checker.system(made)
     if len(rows) > LARGEST_ENCLOSED:
@@ -80,42 +81,6 @@ def prove_equilibrium(
     checker.leave_out(made, rows, right)
     made["pivots"] = _pivots(rows, right)
     return _enclosed(made, rows, right, signs)
-
-
-def at_rest(assembly: Assembly) -> bool:
-    """Return whether blocks stay where they are under forces in balance: rigid ones, on joints that do not yield."""
-    law = assembly.laws
-    still = bool((law.normal_compliance[assembly.pairs.interface >= 0] == 0).all())
-    still = still and bool((law.tangential_compliance == 0).all())
-    return still and not assembly.model.ties and bool((assembly.disc.shape_of <= RIGID).all())
-
-
-def _at_rest(made: dict[str, Any], data: dict[str, Any], acting: Mapping[str, Fraction]) -> dict[str, Any]:
-    """Return the certificate of forces in balance on blocks that do not move."""
-    found = forces_below(data, acting, {}, Fraction(0))
-    if found is None or found.forces is None:
-        msg = "no exact forces within friction were found that balance the loads"
-        raise SolverError(msg, hint="there may be none; 'concio run' and 'concio limit' tell")
-    n = checker.numbering(made)[2]
-    x, states = [Fraction(0)] * n, []
-    for joint, force in zip(data["joints"], found.forces, strict=True):
-        normal = [checker.exact(text) for text in joint["normal"]]
-        size = normal[0] ** 2 + normal[1] ** 2
-        pressed = force[0] * normal[0] + force[1] * normal[1]
-        x += [pressed / size, (force[1] * normal[0] - force[0] * normal[1]) / size]
-        smooth = checker.law(joint, "friction") == 0 == checker.law(joint, "cohesion")
-        states.append(["closed", "free" if smooth else "stick"])
-    made = sealed({**made, "states": states, "solution": [str(v) for v in x]})
-    _accepted(made)
-    return made
-
-
-def _accepted(made: dict[str, Any]) -> None:
-    try:
-        checker.check(made)
-    except ValueError as error:
-        msg = f"the certificate is not one: {error}"
-        raise SolverError(msg) from None
 
 
 def _words(assembly: Assembly, states: PairStates, count: int) -> list[list[str]]:
@@ -198,6 +163,9 @@ def _enclosed(
 ) -> dict[str, Any]:
     """Return the certificate with as many bits as it takes, or the exact solution; raise with joints on the edge."""
     n = checker.numbering(made)[2]
+    small = _in_fractions(made, rows, right) if len(rows) <= ALWAYS_EXACT else None
+    if small is not None:
+        return small
     for bits in BITS:
         try:
             found = checker.enclosed(list(rows), list(right), made["pivots"], bits)
@@ -222,17 +190,27 @@ def _exact(
     made: dict[str, Any], rows: Sequence[Row], right: Sequence[Fraction], edge: Sequence[str]
 ) -> dict[str, Any]:
     """Return the certificate with the solution in fractions; raise with the joints on the edge."""
-    if len(rows) <= LARGEST_EXACT:
-        x = solve_exactly(rows, right)
-        if x is not None:
-            whole = {k: v for k, v in made.items() if k not in ("left_out", "pivots")}
-            done = sealed({**whole, "solution": [str(v) for v in x]})
-            _accepted(done)
-            return done
+    found = _in_fractions(made, rows, right) if len(rows) <= LARGEST_EXACT else None
+    if found is not None:
+        return found
     named = list(dict.fromkeys(edge))
     more = f" and {len(named) - 3} more" if len(named) > 3 else ""
     msg = f"on the edge of two states: {'; '.join(named[:3])}{more}"
     raise SolverError(msg, hint="intervals decide no sign that is exactly zero, and the model is large for fractions")
+
+
+def _in_fractions(made: dict[str, Any], rows: Sequence[Row], right: Sequence[Fraction]) -> dict[str, Any] | None:
+    """Return the certificate with the solution in fractions; None where it is not accepted."""
+    x = solve_exactly(rows, right)
+    if x is None:
+        return None
+    whole = {k: v for k, v in made.items() if k not in ("left_out", "pivots")}
+    done = sealed({**whole, "solution": [str(v) for v in x]})
+    try:
+        checker.check(done)
+    except ValueError:
+        return None
+    return done
 
 
 def _joint(made: Mapping[str, Any], k: int) -> str:

@@ -29,6 +29,8 @@ BITS = 24
 ROOM = 3
 """Bits by which each correction is smaller than the one before, at least."""
 FIRST_BITS = 256
+SINGULAR = 1e200
+"""Correction, rows and columns scaled, from which a matrix counts as singular."""
 
 
 def solve_exactly(rows: Sequence[Row], right: Sequence[Fraction]) -> list[Fraction] | None:
@@ -59,8 +61,8 @@ def solve_exactly(rows: Sequence[Row], right: Sequence[Fraction]) -> list[Fracti
         if not np.isfinite(step).all():
             return None
         now = float(np.abs(step).max())
-        if now > last * 2.0 ** (BITS - ROOM):
-            return None  # the factor is too rough for its corrections to shrink
+        if now > min(last * 2.0 ** (BITS - ROOM), SINGULAR):
+            return None  # the matrix is singular to rounding, or the factor is too rough for its corrections to shrink
         last = max(now, 1.0)
         delta = [round(float(s) * 2.0**BITS) for s in step]
         parts = [(p << BITS) + d for p, d in zip(parts, delta, strict=True)]

@@ -20,6 +20,7 @@ import hashlib
 import json
 import sys
 from fractions import Fraction
+from functools import cache
 from math import isqrt
 from typing import Any
 
@@ -30,6 +31,7 @@ Factors = dict[str, Fraction]
 Data = dict[str, Any]
 
 
+@cache
 def exact(text: str) -> Fraction:
     """Return the fraction that a text says: binary "0x1.8p-1", decimal "0.75" or "3/4"."""
     return Fraction(float.fromhex(text)) if "0x" in text else Fraction(text)
@@ -77,11 +79,14 @@ def loads(data: Data, factors: Factors) -> list[list[Vector]]:
     """Return force and moment about the origin on each block, of all loads times the factor of their group."""
     d = len(data["bodies"][0]["pieces"][0][0])
     total = [[[Fraction(0)] * d, [Fraction(0)] * (1 if d == 2 else 3)] for _ in data["bodies"]]
+    solids: dict[int, tuple[Fraction, Vector]] = {}
     for load in data["loads"]:
         factor = factors.get(load["group"], Fraction(0))
         b = load["body"]
+        if not factor:
+            continue
         if load["kind"] == "weight":
-            volume, first = solid(data["bodies"][b])
+            volume, first = solids[b] = solids.get(b) or solid(data["bodies"][b])
             weight = exact(data["bodies"][b]["unit_weight"]) * factor
             force = [weight * volume * x for x in vector(load["value"])]
             moment = cross([weight * m for m in first], vector(load["value"]))

@@ -5,6 +5,9 @@ stiffness of each elastic block, and the state of every joint point. From these 
 of Coulomb equilibrium as fractions and shows that they have a solution: fractions given in the file that satisfy them,
 or intervals that hold one, by elimination with integers that keeps count of every rounding. Then it checks the signs.
 
+Rigid blocks need joints with compliance: without it any forces in balance would pass for contact. Where there are
+neither gaps nor elastic blocks, displacements are in proportion to it, and forces do not depend on its size.
+
 Unknowns: displacement (v, w) of each block as a rigid body, v that of the origin; the deformation d of an elastic block
 at its nodes, but for three components that are held; p along the normal n and q along t, n turned left, at each joint
 point, acting on b. A point x of a block moves by v + w x (-x_2, x_1) + d. The equations:
@@ -22,6 +25,7 @@ import hashlib
 import json
 import sys
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
 Row = dict[int, Fraction]
@@ -30,6 +34,7 @@ Interval = tuple[int, int]
 Condition = tuple[str, Row, Fraction]
 
 
+@cache
 def exact(text: str) -> Fraction:
     """Return the fraction that a text says: binary "0x1.8p-1", decimal "0.75" or "3/4"."""
     return Fraction(float.fromhex(text)) if "0x" in text else Fraction(text)
@@ -121,6 +126,9 @@ def system(data: Data) -> tuple[list[Row], list[Fraction], list[Condition]]:
                 rows[unknown][force] = -value
         y_n[p], y_t[q] = law(joint, "normal_compliance"), law(joint, "tangential_compliance")
         gap = law(joint, "gap")
+        rigid = not any("shape" in data["bodies"][joint[side]] for side in "ab")
+        if rigid and bounded and (y_n[p] <= 0 or (y_t[q] <= 0 and max(mu, cohesion) > 0)):
+            raise ValueError(f"joint point {k} of blocks that do not deform has no compliance: any forces would pass")
         if normal == "closed":
             rows[p], right[p] = y_n, -gap
             signs += [("pulled", {p: one}, tension)] if "tension" in bounded else []
@@ -250,8 +258,11 @@ def check(data: Data) -> str:
     states = [state for pair in data["states"] for state in pair]
     told = ", ".join(f"{states.count(s)} {s}" for s in ("open", "closed", "crushed"))
     slips = f"{states.count('+') + states.count('-')} slip"
+    scales = not data["shapes"] and not any(law(joint, "gap") for joint in data["joints"])
+    sizes = ", with these compliances or any multiple of them" if scales else ""
     acting = ", ".join(f"{group} x {float(exact(text)):g}" for group, text in data["constant"].items())
-    return f"{acting}: a Coulomb equilibrium of the {len(data['joints'])} joint points stated ({told}, {slips}): {how}"
+    points = f"{len(data['joints'])} joint points stated ({told}, {slips})"
+    return f"{acting}: a Coulomb equilibrium of the {points}{sizes}: {how}"
 
 
 def main(path: str) -> int:

@@ -23,6 +23,7 @@ import numpy as np
 import scipy.linalg as sl
 import scipy.sparse as sp
 
+from concio.proof.exact_pivots import pivoted, square, transposed
 from concio.proof.exact_solve import Row, solve_exactly
 from concio.proof.joint_rays import Ray, Side, Vector, joint_rays
 from concio.proof.verify import cross, vector
@@ -229,30 +230,14 @@ def _at_basis(
         return None
     used, rows = basis
     everywhere, every = _completed(columns, used, rows, len(right))
-    primal = solve_exactly(_square(columns, everywhere, every), [right[row] for row in every])
-    dual = solve_exactly(_transposed(_square(columns, used, rows)), [Fraction(int(column == last)) for column in used])
+    optimal = pivoted(columns, right, everywhere) if len(every) == len(right) else None
+    if optimal is not None:
+        return optimal
+    primal = solve_exactly(square(columns, everywhere, every), [right[row] for row in every])
+    dual = solve_exactly(transposed(square(columns, used, rows)), [Fraction(int(column == last)) for column in used])
     if primal is None or dual is None:
         return None
     return dict(zip(everywhere, primal, strict=True)), {row: dual[i] for i, row in enumerate(rows)}
-
-
-def _square(columns: Sequence[Row], used: Sequence[int], rows: Sequence[int]) -> list[Row]:
-    """Return the rows of the square matrix of some columns and rows."""
-    place = {row: i for i, row in enumerate(rows)}
-    square: list[Row] = [{} for _ in rows]
-    for j, column in enumerate(used):
-        for row, value in columns[column].items():
-            if row in place:
-                square[place[row]][j] = value
-    return square
-
-
-def _transposed(square: Sequence[Row]) -> list[Row]:
-    turned: list[Row] = [{} for _ in square]
-    for i, row in enumerate(square):
-        for j, value in row.items():
-            turned[j][i] = value
-    return turned
 
 
 def _completed(columns: Sequence[Row], used: list[int], rows: list[int], m: int) -> tuple[list[int], list[int]]:

@@ -20,6 +20,7 @@ ASKED = {
     "equilibrium": "an exact Coulomb equilibrium under the loads that act, in one step from rest",
 }
 ONE_STATE = "one equilibrium in one step from rest: others may exist, and a history of loading may end in another"
+LENT = "a compliance lent to hard joints of rigid blocks, in proportion to one over their area"
 DILATES = "friction that dilates: forces in balance are necessary for Coulomb friction and not sufficient"
 
 
@@ -62,7 +63,11 @@ def proof_verdict(
         headline=f"{_how(sentence)}." if whole else f"Proved from one side: no {missing} bound was found.",
         answer=f"{sentence[0].upper()}{sentence[1:]}.",
         proof=PROOF,
-        limits=(*joints_not_made(assembly.detection), ONE_STATE if claim == "equilibrium" else DILATES),
+        limits=(
+            *joints_not_made(assembly.detection),
+            ONE_STATE if claim == "equilibrium" else DILATES,
+            *([LENT] if "lent" in made else []),
+        ),
         unchecked=() if whole else (f"the {missing} bound",),
         attention=attention(assembly),
     )
