@@ -13,6 +13,7 @@ from concio.errors import InputError, SolverError
 from concio.fem.discretisation import RIGID
 from concio.problem.solution import Solution, Status, pair_states
 from concio.proof.certificate import prove_balance, prove_collapse
+from concio.proof.deformable import refuse
 from concio.proof.equilibrium import prove_equilibrium
 from concio.proof.programs import recompute
 from concio.solvers.methods import find
@@ -104,9 +105,7 @@ def step_proof(
         raise SolverError(msg, hint="an equilibrium has one, and loads that no forces balance")
     if assembly.model.dim == 3 and bool((assembly.disc.shape_of <= RIGID).all()) and not assembly.model.ties:
         return balance_proof(assembly, factors, numbers=numbers)
-    if assembly.first_laws is not None:
-        msg = "the model has joints whose points change: its equilibrium is not proved exactly yet"
-        raise InputError(msg, hint="the certificate of 'concio run' holds for it, in floating point")
+    refuse(assembly)
     lent = lend(assemble(assembly.model) if assembly.lent_compliance else assembly)
     if lent.lent_compliance:  # what the result holds is the limit of stiff joints
         solution = find("auto")(lent.problem(factors))

@@ -352,8 +352,8 @@ class Result(Shown):
         """Return an exact certificate of the outcome, for ``concio verify``.
 
         An equilibrium of a plane model is proved with its displacements: as fractions, or each number enclosed between
-        two. In space forces in balance prove that of rigid blocks on joints that do not yield. That no forces balance
-        the loads is proved by a motion.
+        two. Of rigid blocks in space it is proved that forces balance the loads, of loads that nothing balances that
+        none do.
 
         Parameters
         ----------

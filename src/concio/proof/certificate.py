@@ -126,8 +126,8 @@ def prove_balance(
 ) -> dict[str, Any]:  # fmt: skip
     """Return the exact certificate of joint forces within their strength that balance the loads.
 
-    Rigid blocks on joints without compliance are in equilibrium under such forces, and stay where they are. Of elastic
-    blocks and of compliant joints they say less: forces in balance are necessary and not sufficient.
+    They are necessary for equilibrium and not sufficient: forces out of nothing also balance a block that nothing
+    squeezes between two walls.
 
     Parameters
     ----------

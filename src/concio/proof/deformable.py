@@ -33,7 +33,7 @@ def deformable_statement(assembly: Assembly, data: dict[str, Any], numbers: Numb
     InputError
         The model is in space, or has joints that dilate.
     """
-    _refuse(assembly)
+    refuse(assembly)
     disc = assembly.disc
     free = [free_components(disc, s) for s in range(len(disc.shapes))]
     bodies = [dict(body) for body in data["bodies"]]
@@ -54,10 +54,18 @@ def deformable_statement(assembly: Assembly, data: dict[str, Any], numbers: Numb
     return {**data, "bodies": bodies, "shapes": shapes, "loads": loads, "joints": _joints(assembly, data, numbers)}
 
 
-def _refuse(assembly: Assembly) -> None:
+def refuse(assembly: Assembly) -> None:
+    """Refuse what equilibrium certificates do not state, beside what no certificate does.
+
+    Raises
+    ------
+    InputError
+        With the first thing that stands in the way.
+    """
     reasons = {
         "is in space, where joints slip in any direction": assembly.model.dim != 2,
         "has a joint that dilates": bool((assembly.laws.dilatancy > 0).any()),
+        "has joints whose points change": assembly.first_laws is not None,
     }
     found = next((words for words, holds in reasons.items() if holds), None)
     if found is not None:
