@@ -13,6 +13,7 @@ import concio
 from commands import run
 from concio.analysis.bridges.mexe import mexe
 from concio.analysis.bridges.sweep import Sweep, search
+from concio.analysis.bridges.two_vehicles import second_vehicle, worst_apart
 from concio.analysis.bridges.variants import parts
 from concio.analysis.limit import dead_and_live
 from concio.model.crossing import Axle, Vehicle
@@ -191,6 +192,9 @@ def test_the_command_prints_one_object_and_leaves_with_the_verdict(tmp_path: Pat
         ("", ("--required", "0"), "must be positive"),
         ("", ("--step", "0 m"), "not a distance of positions"),
         ("", ("--vehicle", "tank"), "no vehicle 'tank'"),
+        ("", ("--apart", "8 m"), "no second vehicle"),
+        ("", ("--second", "same"), "needs distances"),
+        ("", ("--second", "same", "--apart", "8 kN"), "--apart"),
     ],
 )
 def test_bad_options_are_refused_in_words(text: str, options: tuple[str, ...], words: str, tmp_path: Path) -> None:
@@ -259,3 +263,36 @@ def test_bad_names_are_refused_before_anything_is_computed(monkeypatch: pytest.M
     for more in ({"others": ["tank"]}, {"settled": {"north pier": 0.01}}):
         with pytest.raises(concio.InputError):
             concio.assess_bridge(small(), **more)  # type: ignore[arg-type]
+
+
+def two_spans() -> concio.Model:
+    """Return two slender spans on a pier that tips, under one axle."""
+    made = concio.bridge(span=[3.0, 3.0], rise=0.75, ring=0.215, voussoirs=8, width=2.0, block="rigid", friction=0.6,
+                         unit_weight=22.0, pier_width=0.6, pier_height=3.0)  # fmt: skip
+    return with_vehicle(with_fill(made, FILL), Vehicle("one axle", (Axle(0.0, 10.0),)))
+
+
+def test_a_second_vehicle_is_put_where_both_are_worst() -> None:
+    model = two_spans()
+    options = {"step": 0.6, "fine": 0.3, "worst": 1, "checked": 1, "sensitivity": False}
+    found = concio.assess_bridge(model, second="same", apart=[0.5, 3.6], **options)  # type: ignore[arg-type]
+    assert list(found.apart) == [0.5, 3.6]
+    for d, least in found.apart.items():
+        both = Vehicle("two", (Axle(0.0, 10.0), Axle(d, 10.0)))
+        places = search(Sweep(with_vehicle(model, both)), step=0.6, fine=1.0)
+        assert least == pytest.approx(min(s.multiplier for s in places))
+    worst = min(found.apart, key=lambda d: found.apart[d])
+    assert [a.at for a in found.vehicle.axles] == [0.0, worst]
+    assert found.worst.multiplier <= found.apart[worst] * (1 + 1e-9)
+    assert any("0.5 m, 3.6 m" in line for line in found.verdict.limits)
+    assert found.summary()["apart"][0]["distance"] == 0.5
+
+
+def test_a_second_vehicle_unlike_the_first_goes_before_and_behind_it_with_its_axles_alone() -> None:
+    other = second_vehicle(small(), "LM1 lane 1", [4.0])
+    assert len(other.axles) == 2
+    _, found = worst_apart(small(), other, [1.5], step=1.0)
+    assert list(found) == [-1.5, 1.5]
+    for name, apart, words in (("SW/0", [4.0], "axles"), ("same", [], "needs"), ("same", [-1.0], "positive")):
+        with pytest.raises(concio.InputError, match=words):
+            second_vehicle(small(), name, apart)

@@ -28,6 +28,12 @@ def bridge(
     vehicle: Annotated[
         list[str] | None, typer.Option("--vehicle", "-v", help="Additional vehicle from the library (repeatable).")
     ] = None,
+    second: Annotated[
+        str | None, typer.Option("--second", help="A second vehicle together with the first: a name, or 'same'.")
+    ] = None,
+    apart: Annotated[
+        str | None, typer.Option("--apart", help="Distances between the two: '8 m, 12 m, 16 m'.")
+    ] = None,
     settle: Annotated[
         list[str] | None, typer.Option("--settle", help="A fixed block that settles: 'pier1 ground=10 mm'.")
     ] = None,
@@ -58,6 +64,8 @@ def bridge(
     options: dict[str, Any] = {"required": required, "worst": worst, "checked": checked, "sensitivity": sensitivity}
     options |= {"step": None if step is None else quantity(step, "length", where="--step")}
     options |= {"fine": quantity(fine, "length", where="--fine"), "others": tuple(vehicle or ())}
+    distances = [text.strip() for text in (apart or "").split(",") if text.strip()]
+    options |= {"second": second, "apart": [quantity(text, "length", where="--apart") for text in distances]}
     options |= {"settled": dict(_settlement(text) for text in settle or ()), "span_rise": mexe_factor}
     with progress_bar(shown=not json) as progress:
         found = concio.assess_bridge(model, progress=progress, **options)

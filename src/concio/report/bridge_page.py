@@ -224,7 +224,11 @@ class BridgeReport:
         rows = [(name, self.words["none"], "") if s is None else
                 (name, self.n(s.multiplier), self.unit("length", s.position))
                 for name, s in self.found.others.items()]  # fmt: skip
-        return self.section("others", self.table(("vehicle", "not_exceeded", "position"), rows)) if rows else ""
+        found = self.section("others", self.table(("vehicle", "not_exceeded", "position"), rows)) if rows else ""
+        if self.found.apart:
+            pairs = [(self.unit("length", d), self.n(m)) for d, m in self.found.apart.items()]
+            found += self.section("apart", self.table(("distance", "not_exceeded"), pairs))
+        return found
 
     def service(self) -> str:
         """Return the working states."""

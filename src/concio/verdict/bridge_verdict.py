@@ -103,6 +103,8 @@ def bridge_lines(found: BridgeResult) -> list[str]:
             f"bound {number(other.multiplier, 4)} times, worst at x = {units.text('length', other.position, 4)}"
         )  # fmt: skip
         lines.append(f"  vehicle      {name}: {what}")
+    for d, multiplier in found.apart.items():
+        lines.append(f"  apart        {units.text('length', d, 4)}: bound {number(multiplier, 4)} times both vehicles")
     for c in found.changes:
         unit = "" if c.unit == "-" else f" {c.unit}"
         lines.append(
@@ -241,6 +243,9 @@ def _limits(found: BridgeResult, w: Words) -> tuple[str, ...]:
     told.append(w.say("plane"))
     if found.model.fill is not None and found.model.fill.spandrels:
         told.append(w.say("spandrels"))
+    if found.apart:
+        distances = ", ".join(w.unit("length", d, 4) for d in found.apart)
+        told.append(w.say("apart", count=len(found.apart), distances=distances))
     return (*told, w.say("several"), *joints_not_made(found.assembly.detection),
             *crushing(found.assembly))  # fmt: skip
 

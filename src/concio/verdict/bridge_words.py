@@ -49,6 +49,8 @@ ENGLISH: Mapping[str, str] = {
     "plane": "the model is plane: skew, torsion, spandrel walls and the way in which load spreads across the "
     "bridge are "
     "in the width alone",
+    "apart": "the second vehicle was looked at {count} distances from the first ({distances}); other distances, "
+    "and one vehicle alone, were not",
     "spandrels": "spandrel walls count by their weight alone",
     "brackets": "what Coulomb friction carries at most was sought at {count} positions only",
     "unchecked_coulomb": "Coulomb friction at the other positions (asked for at none)",
@@ -105,6 +107,8 @@ ITALIAN: Mapping[str, str] = {
     "o carichi precedenti",
     "plane": "il modello è piano: obliquità, torsione, timpani e diffusione trasversale del carico entrano solo nella "
     "larghezza",
+    "apart": "il secondo veicolo è stato esaminato a {count} distanze dal primo ({distances}); altre distanze, e "
+    "un veicolo solo, no",
     "spandrels": "i timpani contano solo con il loro peso",
     "brackets": "quanto porta al massimo l'attrito di Coulomb è stato cercato solo in {count} posizioni",
     "unchecked_coulomb": "l'attrito di Coulomb nelle altre posizioni (non chiesto in alcuna)",

@@ -12,6 +12,7 @@ from concio.analysis.bridges.bridge_result import Bracket, BridgeResult, Coulomb
 from concio.analysis.bridges.mexe import mexe_of
 from concio.analysis.bridges.service import service_state, with_settlement
 from concio.analysis.bridges.sweep import APART, FINE, Standing, Sweep, grid, least, lowest, search
+from concio.analysis.bridges.two_vehicles import second_vehicle, worst_apart
 from concio.analysis.bridges.variants import changes, parts
 from concio.analysis.entry_point import entry_point
 from concio.analysis.lent_compliance import lend
@@ -45,6 +46,8 @@ def assess_bridge(
     checked: int = POSITIONS_CHECKED,
     sensitivity: bool = True,
     others: Sequence[str] = (),
+    second: str | None = None,
+    apart: Sequence[float] = (),
     settled: Mapping[str, float] | None = None,
     span_rise: float | None = None,
     progress: ProgressCallback | None = None,
@@ -71,6 +74,11 @@ def assess_bridge(
         Whether ring, fill, friction and strength are varied, at the worst position.
     others : sequence of str
         Further vehicles of the library, each with its own worst position.
+    second : str, optional
+        A vehicle of the library that is on the bridge together with the first, or "same"; its axles alone count. The
+        answer is for both, at the distance at which they are worst.
+    apart : sequence of float
+        Distances between the reference points of the two that are looked at [m].
     settled : mapping of str to float, optional
         Downward settlement of fixed bodies by name, for a second working state [m].
     span_rise : float, optional
@@ -106,8 +114,16 @@ def assess_bridge(
         raise InputError(msg, hint="give the plane model of a strip")
     also = {name: replace(find_vehicle(name), direction="both") for name in others}
     with_settlement(model, settled or {})
+    if second is None and apart:
+        msg = "distances between two vehicles are given, and no second vehicle"
+        raise InputError(msg, where="apart", hint="name it, or say 'same'")
+    follower = None if second is None else second_vehicle(model, second, apart)
     sweep = Sweep(model)
     _refuse_what_does_not_stand(sweep)
+    distances: dict[float, float] = {}
+    if follower is not None:
+        model, distances = worst_apart(model, follower, apart, step=step, progress=progress)
+        sweep = Sweep(model)
     standings = search(sweep, step=step, fine=fine, worst=worst, progress=progress)
     low, high = sweep.reach()
     few = least(lowest(standings), max(worst, 1), APART * (high - low))
@@ -137,6 +153,7 @@ def assess_bridge(
         settlements=dict(settled or {}),
         mexe=mexe_of(model, span_rise=span_rise),
         fine=fine,
+        apart=distances,
     )  # fmt: skip
 
 

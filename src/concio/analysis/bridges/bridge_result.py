@@ -80,6 +80,8 @@ class BridgeResult(Shown):
         What the formula gives, where it applies.
     fine : float
         Distance to which the worst positions were refined [m].
+    apart : mapping of float to float
+        Of two vehicles, the least multiplier for each distance between them that was looked at [m].
     """
 
     model: Model
@@ -96,6 +98,7 @@ class BridgeResult(Shown):
     settlements: Mapping[str, float] = field(default_factory=dict)
     mexe: Mexe | None = None
     fine: float = FINE
+    apart: Mapping[float, float] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return "\n".join(bridge_lines(self))
@@ -218,6 +221,7 @@ class BridgeResult(Shown):
             ],
             "others": {n: None if s is None else {"load_factor": _finite(s.multiplier), "position": s.position}
                        for n, s in self.others.items()},
+            "apart": [{"distance": d, "load_factor": _finite(m)} for d, m in self.apart.items()],
             "service": _state(state),
             "settled": None if self.settled is None else {**_state(self.settled), "by": dict(self.settlements)},
             "mexe": None if self.mexe is None else {"axle": _finite(self.mexe.axle), "limits": list(self.mexe.limits)},
