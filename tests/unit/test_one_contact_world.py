@@ -134,3 +134,33 @@ def test_turns_are_matrices(d):
     carried = standing.carry(np.array([-1, 2]), point)
     assert carried[0] == pytest.approx(point[0], abs=0.0)
     assert carried[1] == pytest.approx(placement.centre[2] + placement.matrix[2] @ point[1], abs=1e-14)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("kind", ["rigid", "elastic"])
+def test_ties_of_statics_stretch_as_their_ends_move(d, kind):
+    """Closing of the pair of a tie is what its two ends come nearer, to a fixed point and to a block that deforms."""
+    if d == 2:
+        material = {"material": "stone"} if kind == "rigid" else {}
+        block = box("block", 0.0, 1.0, 0.0, 0.5, kind=kind, **material)
+        ground, law, loads = box("ground", -1.0, 2.0, -1.0, 0.0, kind="fixed"), 0.6, (weight(),)
+        model = model_of(ground, block, law=law, loads=loads)
+    else:
+        stone = concio.Rigid(20.0) if kind == "rigid" else concio.Elastic(1e6, 0.2, unit_weight=20.0)
+        block = concio.Polyhedron.box("block", (0, 0, 0), (1, 1, 0.5), kind=kind)
+        ground = concio.Polyhedron.box("ground", (-1, -1, -1), (2, 2, 0), kind="fixed")
+        joint = {"joint": concio.JointLaw(0.6)}
+        model = concio.Model((ground, block), {"block": stone}, joint, loads=(concio.Load("weight", (0, 0, -1)),))
+    at, far = ((0.9, 0.4), (2.0, 1.5)) if d == 2 else ((0.9, 0.8, 0.4), (2.0, 0.5, 1.5))
+    ties = (
+        concio.Tie("out", "block", at, "", far, stiffness=1e3, prestress=2.0),
+        concio.Tie("down", "ground", (*far[:-1], -0.5), "block", at, stiffness=1e3),
+    )
+    assembly = assemble(replace(model, ties=ties))
+    u = 1e-3 * np.random.default_rng(d).normal(size=assembly.disc.unknowns)
+    unknowns, operator = assembly.disc.point_operator(1, np.array(at))
+    moved = operator @ u[unknowns]
+    for tie, row in zip(ties, assembly.pairs.C_n[assembly.ties] @ u, strict=True):
+        other = np.array(tie.at_b if tie.body_a == "block" else tie.at_a)
+        away = (np.array(at) - other) / np.linalg.norm(np.array(at) - other)
+        assert row == pytest.approx(-away @ moved, rel=1e-12)

@@ -272,7 +272,7 @@ def assemble(model: Model) -> Assembly:
         raise InputError(msg, hint="look at the model with 'concio check'; raise gap_tolerance if the drawing has gaps")
     pairs = geometry.pairs(disc, detection) if detection.interfaces else _no_pairs(disc)
     laws = pair_laws(model, pairs)
-    pairs, laws = add_ties(disc, pairs, laws)
+    pairs, laws = add_ties(reference, pairs, laws)
     supported = apply_supports(disc)
     moved = strain_groups(pairs, detection.segments) if periodic else moved_obstacles(disc, pairs)
     add_expansions(disc, pairs, moved)

@@ -16,7 +16,7 @@ from concio.contact.factors import load_factor
 from concio.contact.points import NOWHERE, MaterialPoints
 from concio.contact.supports import points_held
 from concio.fem.discretisation import FIXED
-from concio.kinematics.frames import dot, norm, turned_left
+from concio.kinematics.frames import dot, frames, norm, turned_left
 from concio.kinematics.placement import Placement
 from concio.kinematics.turns import Turns
 
@@ -77,7 +77,7 @@ class Held:
             groups += [support.group] * len(at)
             axes += [held] * len(at)
         place = np.concatenate([*places, np.zeros((0, 2))])
-        points = MaterialPoints.of(disc, bodies, place, reference.first_node, reference.node_column)
+        points = MaterialPoints.of(reference, bodies, place)
         return cls(
             points, place, np.concatenate([*motions, np.zeros((0, 2))]), np.array(supports, dtype=int), tuple(groups),
             np.eye(2)[[0 if 0 in a else 1 for a in axes]].reshape(-1, 2),
@@ -133,19 +133,13 @@ class Ties:
     @classmethod
     def of(cls, reference: Reference) -> Ties:
         """Return the ties of a model."""
-        model, disc = reference.model, reference.disc
-        number = {b.name: i for i, b in enumerate(model.bodies)}
-
-        def ends(bodies: list[str], at: list[tuple[float, ...]]) -> MaterialPoints:
-            own = [number[name] if name else NOWHERE for name in bodies]
-            place = np.array(at, dtype=float).reshape(-1, 2)
-            return MaterialPoints.of(disc, own, place, reference.first_node, reference.node_column)
-
-        ties = model.ties
-        at_a, at_b = [t.at_a for t in ties], [t.at_b for t in ties]
-        length = np.hypot(*(np.array(at_b, dtype=float) - np.array(at_a, dtype=float)).reshape(-1, 2).T)
+        ties, d = reference.model.ties, reference.model.dim
+        number = {b.name: i for i, b in enumerate(reference.model.bodies)} | {"": NOWHERE}
+        at_a = np.array([t.at_a for t in ties], dtype=float).reshape(-1, d)
+        at_b = np.array([t.at_b for t in ties], dtype=float).reshape(-1, d)
         return cls(
-            ends([t.body_a for t in ties], at_a), ends([t.body_b for t in ties], at_b), length,
+            MaterialPoints.of(reference, [number[t.body_a] for t in ties], at_a),
+            MaterialPoints.of(reference, [number[t.body_b] for t in ties], at_b), norm(at_b - at_a),
             np.array([t.stiffness for t in ties]), np.array([t.prestress for t in ties]),
             np.array([t.most for t in ties]),
             np.array([np.inf if t.break_elongation is None else t.break_elongation for t in ties]),
@@ -158,22 +152,22 @@ class Ties:
         return np.concatenate([self.a.columns, self.b.columns], axis=1)
 
     def span(self, placement: Placement, strain: Array) -> tuple[Array, Array]:
-        """Return the vectors (k, 2) from their first ends to their second ones, and their lengths (k,) [m]."""
+        """Return the vectors (k, d) from their first ends to their second ones, and their lengths (k,) [m]."""
         vector = self.b.positions(placement, strain) - self.a.positions(placement, strain)
         return vector, norm(vector)
 
     def rows(self, placement: Placement, strain: Array) -> tuple[Array, Array, Array, Array]:
-        """Return the rows (k, 2, w) of -elongation, those of swinging, the gaps (k,) and the lengths (k,) [m]."""
+        """Return the rows (k, d, w) of -elongation, those of swinging, the gaps (k,) and the lengths (k,) [m]."""
         span, length = self.span(placement, strain)
         direction = self.sign[:, None] * span / np.where(length > 0, length, 1.0)[:, None]
         turn = placement.turns
-        row, across = (
-            np.concatenate([self.a.rows(v, turn), -self.b.rows(v, turn)], axis=1)
-            for v in (direction, turned_left(direction))
+        row, *across = (
+            np.concatenate([self.a.rows(way, turn), -self.b.rows(way, turn)], axis=1)
+            for way in np.moveaxis(frames(direction), 1, 0)
         )
         gap = -self.prestress / self.stiffness - self.sign * (length - self.length)
         nothing = np.zeros_like(row)
-        return np.stack([row, nothing], axis=1), np.stack([across, nothing], axis=1), gap, length
+        return np.stack([row, *(nothing for _ in across)], axis=1), np.stack([*across, nothing], axis=1), gap, length
 
     def turning(self, placement: Placement, strain: Array, tension: Array) -> tuple[Array, Array]:
         """Return unknowns (2k,) and stiffness (2k,) with which tight ties resist that rigid bodies turn [kN/m].

@@ -10,7 +10,7 @@ import numpy as np
 
 from concio.arguments import closest
 from concio.errors import InputError
-from concio.fem.discretisation import RIGID, Discretisation
+from concio.fem.discretisation import RIGID
 from concio.kinematics.frames import dot, norm
 from concio.kinematics.placement import Placement
 from concio.kinematics.rigid import motions, rigid_row, swept
@@ -53,9 +53,7 @@ class MaterialPoints:
     reach: Array
 
     @classmethod
-    def of(
-        cls, disc: Discretisation, bodies: Sequence[int], points: Array, first_node: Array, node_column: Array
-    ) -> MaterialPoints:
+    def of(cls, reference: Reference, bodies: Sequence[int], points: Array) -> MaterialPoints:
         """Return points (k, d) of bodies, given where the bodies were described [m].
 
         Raises
@@ -63,6 +61,7 @@ class MaterialPoints:
         InputError
             A point of a meshed body lies outside it.
         """
+        disc, first_node, node_column = reference.disc, reference.first_node, reference.node_column
         k, n, nodes, d = len(bodies), disc.unknowns, len(node_column) - 1, disc.dim
         body = np.array(bodies, dtype=int).reshape(k)
         found: list[tuple[Array, Array]] = []
@@ -153,7 +152,7 @@ class Followed:
                 raise InputError(msg, where="control point", hint="for example (1, 0)")
         place = np.array([p.at for p in wanted], dtype=float).reshape(-1, reference.model.dim)
         bodies = [names.index(p.body) for p in wanted]
-        points = MaterialPoints.of(reference.disc, bodies, place, reference.first_node, reference.node_column)
+        points = MaterialPoints.of(reference, bodies, place)
         along = np.array([p.direction for p in wanted], dtype=float).reshape(place.shape)
         return cls(points, place, along / norm(along)[:, None])
 

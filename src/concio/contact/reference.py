@@ -111,20 +111,20 @@ class Reference:
     @cached_property
     def first_node(self) -> Array:
         """Number of the first node of each meshed body, counted through all of them (B,)."""
-        counts = np.where(self.disc.shape_of >= 0, np.diff(self.disc.offsets) // 2, 0)
+        counts = np.where(self.disc.shape_of >= 0, np.diff(self.disc.offsets) // self.disc.dim, 0)
         first: Array = np.concatenate([[0], np.cumsum(counts)])[:-1]
         return first
 
     @cached_property
     def body_of_node(self) -> Array:
         """Body of each node of the meshed bodies (nodes,)."""
-        return np.repeat(self.meshed, np.diff(self.disc.offsets)[self.meshed] // 2)
+        return np.repeat(self.meshed, np.diff(self.disc.offsets)[self.meshed] // self.disc.dim)
 
     @cached_property
     def node_arm(self) -> Array:
-        """Positions (nodes, 2) of the nodes of meshed bodies from their centroids, as described [m]."""
+        """Positions (nodes, d) of the nodes of meshed bodies from their centroids, as described [m]."""
         arms = [self.disc.nodes(b) - self.disc.centroids[b] for b in self.meshed.tolist()]
-        return np.concatenate([*arms, np.zeros((0, 2))])
+        return np.concatenate([*arms, np.zeros((0, self.disc.dim))])
 
     def node_place(self, placement: Placement, strain: Array) -> Array:
         """Return where the nodes of meshed bodies are (nodes, d), for strains (nodes, d) [m]."""
@@ -132,10 +132,10 @@ class Reference:
 
     @cached_property
     def node_column(self) -> Array:
-        """Unknowns (nodes + 1, 2) of the nodes of meshed bodies; the last row stands for no node."""
-        n = self.disc.unknowns
-        columns = [np.arange(*self.disc.offsets[b : b + 2]).reshape(-1, 2) for b in self.meshed.tolist()]
-        return np.concatenate([*columns, np.full((1, 2), n)]).astype(int)
+        """Unknowns (nodes + 1, d) of the nodes of meshed bodies; the last row stands for no node."""
+        n, d = self.disc.unknowns, self.disc.dim
+        columns = [np.arange(*self.disc.offsets[b : b + 2]).reshape(-1, d) for b in self.meshed.tolist()]
+        return np.concatenate([*columns, np.full((1, d), n)]).astype(int)
 
     @cached_property
     def mass(self) -> Array:
@@ -234,7 +234,7 @@ class Reference:
 
     def at_rest(self) -> Configuration:
         """Return the configuration in which the model was described."""
-        return Configuration(self, Placement.at_rest(self.disc.centroids), np.zeros((len(self.body_of_node), 2)))
+        return Configuration(self, Placement.at_rest(self.disc.centroids), np.zeros_like(self.node_arm))
 
 
 @dataclass(frozen=True, eq=False)

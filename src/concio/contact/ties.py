@@ -15,7 +15,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.arguments import closest
+from concio.contact.attachments import Ties
 from concio.contact.pairs import CONTACT_MODELS, Pairs
+from concio.contact.reference import Reference
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, Discretisation
 from concio.kinematics.frames import tangents
@@ -25,7 +27,7 @@ from concio.problem.contact_problem import Laws
 Array = np.ndarray
 
 
-def add_ties(disc: Discretisation, pairs: Pairs, laws: Laws) -> tuple[Pairs, Laws]:
+def add_ties(reference: Reference, pairs: Pairs, laws: Laws) -> tuple[Pairs, Laws]:
     """Return the pairs and laws with one more pair for each tie of the model (interface -1).
 
     Raises
@@ -33,13 +35,18 @@ def add_ties(disc: Discretisation, pairs: Pairs, laws: Laws) -> tuple[Pairs, Law
     InputError
         A tie has no length, no stiffness, or an end that lies on no body.
     """
-    ties = disc.model.ties
+    disc, ties = reference.disc, reference.model.ties
     if not ties:
         return pairs, laws
-    n = len(ties)
-    normals, ends, C_n = _fastened(disc, ties)
-    stiffness = np.array([t.stiffness for t in ties])
-    prestress = np.array([t.prestress for t in ties])
+    n, ends = len(ties), _ends(disc, ties)
+    bars, here = Ties.of(reference), reference.at_rest()
+    span, length = bars.span(here.placement, here.strain)
+    normals = -(bars.sign / length)[:, None] * span  # the force of a bar on b points back to a
+    rows, _, _, _ = bars.rows(here.placement, here.strain)
+    moves = bars.columns < disc.unknowns
+    entries = rows[:, 0][moves], (np.nonzero(moves)[0], bars.columns[moves])
+    C_n = sp.csr_array(entries, shape=(n, disc.unknowns))  # minus the elongations
+    stiffness, prestress = bars.stiffness, bars.prestress
     zero, one = np.zeros(n), np.ones(n)
     joined = replace(
         pairs,
@@ -62,37 +69,23 @@ def add_ties(disc: Discretisation, pairs: Pairs, laws: Laws) -> tuple[Pairs, Law
     return joined, Laws(*(np.concatenate([getattr(laws, name), getattr(tie_laws, name)]) for name in names))
 
 
-def _fastened(disc: Discretisation, ties: Sequence[Tie]) -> tuple[Array, Array, sp.csr_array]:
-    """Return normals (t, d), bodies at both ends (t, 2) and minus the elongations (t, N) of ties, all checked."""
+def _ends(disc: Discretisation, ties: Sequence[Tie]) -> Array:
+    """Return the bodies at both ends (t, 2) of ties, all checked; -1 for a fixed point."""
     number = {b.name: i for i, b in enumerate(disc.model.bodies)}
-    rows: list[Array] = []
-    columns: list[Array] = []
-    values: list[Array] = []
-    normals = np.zeros((len(ties), disc.dim))
     ends = np.zeros((len(ties), 2), dtype=int)
     for k, tie in enumerate(ties):
         where = f"tie '{tie.name}'"
         _check(tie, where)
-        a, b = np.array(tie.at_a, dtype=float), np.array(tie.at_b, dtype=float)
-        direction = tie.sign * (b - a) / float(np.linalg.norm(b - a))
-        normals[k] = -direction  # the force of a bar on b points back to a
-        for side, (name, point, sign) in enumerate(((tie.body_a, a, 1.0), (tie.body_b, b, -1.0))):
+        for side, name in enumerate((tie.body_a, tie.body_b)):
             if name and name not in number:
                 msg = f"there is no body called '{name}'"
                 hint = closest(name, number, otherwise="leave body_b empty for a fixed point")
                 raise InputError(msg, where=where, hint=hint)
             ends[k, side] = number.get(name, -1)
-            if name:
-                dofs, operator = disc.point_operator(number[name], point)
-                rows.append(np.full(len(dofs), k))
-                columns.append(dofs)
-                values.append(sign * direction @ operator)  # -elongation
         if all(e < 0 or disc.shape_of[e] == FIXED for e in ends[k]):
             msg = "neither end is fastened to a block that can move"
             raise InputError(msg, where=where, hint="name a block at one end at least")
-    shape = (len(ties), disc.unknowns)
-    C_n = sp.csr_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape)
-    return normals, ends, C_n
+    return ends
 
 
 def _check(tie: Tie, where: str) -> None:

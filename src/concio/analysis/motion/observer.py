@@ -56,7 +56,7 @@ class Observer:
                 raise InputError(msg, where="point", hint="see the names with 'concio check'")
         place = np.array([p.at for p in points], dtype=float).reshape(-1, 2)
         bodies = [number[p.body] for p in points]
-        self.points = MaterialPoints.of(reference.disc, bodies, place, reference.first_node, reference.node_column)
+        self.points = MaterialPoints.of(reference, bodies, place)
         self.fixed = np.flatnonzero(reference.disc.shape_of == FIXED)
         held = sorted({int(i) for i in maker.held.support})
         self.names = (*(model.bodies[b].name for b in self.fixed), *(model.supports[i].name for i in held))

@@ -132,7 +132,7 @@ def push(
     if not unit.any():
         msg = "what is to be multiplied has no force: there is nothing to push with"
         raise InputError(msg, hint="give materials a unit_weight, or name the groups to multiply (live)")
-    Followed.of(reference, *points)  # what cannot be followed is said before anything moves
+    Followed.of(reference, *points, *([] if point is None else [point]))  # refused before anything moves
     clock_begun = clock.perf_counter()
     try:
         with Interruption() as interruption:
