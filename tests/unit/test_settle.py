@@ -43,7 +43,7 @@ def test_updated_factor_is_the_factor_of_the_updated_matrix() -> None:
     s = scale(wall(2, 3))
     rng = np.random.default_rng(0)
     D = rng.uniform(0.5, 2.0, (s.pairs, 2, 2)) + 2.0 * np.eye(2)
-    blocks = UpdatedBlocks(s)
+    blocks = UpdatedBlocks(s.factor, s.C, s.f.size, s.dim)
     blocks.factorise(D, 1e-3)
     b = rng.normal(size=len(s.f))
     for _ in range(3):

@@ -14,6 +14,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, Engine
+from concio.solvers.algebra.factor import Springs
 from concio.solvers.algebra.sparse_factor import OrderedFactor, Pattern
 
 PIVOT = 0.0
@@ -24,10 +25,6 @@ SAME = 1e-13
 
 SMALL_BODY = 6
 """Bodies of up to this many unknowns are coupled as wholes: rigid blocks."""
-
-
-Springs = Array | float | sp.csr_array
-"""What ties unknowns to a place: the diagonal of a matrix, or all of it."""
 
 
 def same_springs(a: Springs | None, b: Springs | None) -> bool:

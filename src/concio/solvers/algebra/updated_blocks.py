@@ -12,12 +12,15 @@ the pair was stiffer than what is left, which refinement makes up for.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import scipy.linalg as sl
+import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array
-from concio.solvers.algebra.block_factor import Springs, same_springs
-from concio.solvers.algebra.scaled import Scaled
+from concio.solvers.algebra.block_factor import same_springs
+from concio.solvers.algebra.factor import Factor, Springs
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 
 MOST = 48
@@ -31,12 +34,17 @@ ROOM = 3e7
 
 
 class UpdatedBlocks:
-    """Factors of K + C' D C + diagonal whose blocks D differ in a few pairs from those factorised.
+    """Factors of A = K + C' D C + diagonal whose blocks D differ in a few pairs from those factorised.
 
     Parameters
     ----------
-    s : Scaled
-        Its factor and its C are used; other data do not matter.
+    factor : Factor
+        Of A.
+    C : (m d, N) CSR array, or dense
+        Columns beyond N are left out.
+    N, d : int
+    most : int
+        Largest number of pairs whose columns are kept.
 
     Attributes
     ----------
@@ -44,17 +52,17 @@ class UpdatedBlocks:
         The blocks as they are now.
     """
 
-    def __init__(self, s: Scaled) -> None:
-        self.factor, self.C, self.d = s.factor, s.C, s.dim
-        self.most = int(min(MOST, ROOM // max(self.C.shape[1] * self.d, 1)))
+    def __init__(self, factor: Factor, C: Any, N: int, d: int, most: int = MOST) -> None:
+        self.factor, self.C, self.N, self.d = factor, C, N, d
+        self.most = int(min(most, ROOM // max(N * d, 1)))
         self._forget()
 
     def _forget(self) -> None:
         """Begin with the factor as it is: no columns, no changes."""
         self.version = self.factor.count
         self.pairs = np.zeros(0, dtype=int)
-        self.X, self.W = np.zeros((self.C.shape[1], 0)), np.zeros((0, 0))
-        self.C_P = self.C[:0]
+        self.X, self.W = np.zeros((self.N, 0)), np.zeros((0, 0))
+        self.C_P: Any = None
         self._delta = np.zeros((0, 0))
         self.D = self.factor.D
 
@@ -116,6 +124,15 @@ class UpdatedBlocks:
         at = self._rows(self._places(pairs))
         return np.asarray(W[np.ix_(at, at)])
 
+    def moved(self, pairs: Array, forces: Array) -> Array:
+        """Return the displacements (N,) under forces (k d,) of some pairs whose columns are kept."""
+        f = np.zeros(len(self.W))
+        f[self._rows(self._places(pairs))] = forces
+        if self._delta.any():
+            f -= sl.lu_solve(self._inverse, self._delta @ (self.W @ f), check_finite=False)
+        displacements: Array = self.X @ f
+        return displacements
+
     def _places(self, pairs: Array) -> Array:
         """Return where pairs stand among those with columns."""
         order = np.argsort(self.pairs)
@@ -132,15 +149,18 @@ class UpdatedBlocks:
         new = np.setdiff1d(pairs, self.pairs)
         if not new.size:
             return
-        rows, kept = self._rows(new), self.X.shape[1]
-        X = np.empty((self.C.shape[1], kept + rows.size))
-        X[:, :kept] = self.X
-        for first in range(0, rows.size, AT_ONCE):  # copies of all columns at once would not fit beside large factors
-            some = slice(first, first + AT_ONCE)
-            X[:, kept:][:, some] = self.factor.solve(self.C[rows[some]].T.toarray())
-        self.X = X
-        self.pairs = np.concatenate([self.pairs, new])
-        self.C_P = self.C[self._rows(self.pairs)]
+        rows = self.C[self._rows(new)]
+        rows = rows if rows.shape[1] == self.N else rows[:, : self.N]
+        X = np.empty((self.N, self.X.shape[1] + rows.shape[0]))
+        X[:, : self.X.shape[1]] = self.X
+        for first in range(0, rows.shape[0], AT_ONCE):  # all at once would not fit beside large factors
+            some = rows if rows.shape[0] <= AT_ONCE else rows[first : first + AT_ONCE]
+            at = self.X.shape[1] + first
+            dense = some if isinstance(some, np.ndarray) else some.toarray()
+            X[:, at : at + some.shape[0]] = self.factor.solve(np.ascontiguousarray(dense.T))
+        both = np.vstack if isinstance(rows, np.ndarray) else sp.vstack
+        self.X, self.pairs = X, np.concatenate([self.pairs, new])
+        self.C_P = rows if self.C_P is None else both([self.C_P, rows])
         self.W = self.C_P @ self.X
 
 

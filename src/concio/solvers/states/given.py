@@ -11,7 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from concio.problem.contact_problem import Array
-from concio.solvers.algebra.block_factor import Springs, times_springs
+from concio.solvers.algebra.block_factor import times_springs
+from concio.solvers.algebra.factor import Springs
 from concio.solvers.algebra.scaled import LOOSE, Scaled
 from concio.solvers.algebra.updated_blocks import UpdatedBlocks
 from concio.solvers.states.equations import StateEquations
@@ -42,7 +43,7 @@ class GivenStates:
     """
 
     def __init__(self, s: Scaled) -> None:
-        self.blocks = UpdatedBlocks(s)
+        self.blocks = UpdatedBlocks(s.factor, s.C, s.f.size, s.dim)
         self.solves = 0
 
     def solve(

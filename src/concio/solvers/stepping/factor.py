@@ -6,6 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, Engine
+from concio.solvers.algebra.factor import Springs
 from concio.solvers.algebra.sparse_factor import OrderedFactor, Pattern, SingularMatrixError
 
 SMALL = 40
@@ -48,7 +49,7 @@ class StepFactor:
     Parameters
     ----------
     matrix : (N, N) CSR array
-        A; its pattern must stay.
+        A; its pattern must stay, its entries may change (:meth:`take`).
     columns : (m, w) integer array
         Unknowns of the rows of each pair; N where there is none.
     engine : {"superlu", "pardiso"}, optional
@@ -69,30 +70,41 @@ class StepFactor:
             engine,
         )
         self.pattern = pattern
-        self._matrix_slot = pattern.slot[: coo.nnz]
+        self._matrix_slot, self._diagonal_slot = pattern.slot[: coo.nnz], pattern.slot[coo.nnz : coo.nnz + n]
         slot = np.full(m * w * w, pattern.nnz, dtype=np.int64)
         slot[inside] = pattern.slot[coo.nnz + n :]
         self._slot = slot
         self.numeric: SmallInverse | OrderedFactor = SmallInverse(pattern) if n <= SMALL else OrderedFactor(pattern)
+        self.D: Array | None = None
+        self.diagonal: Springs | None = None
+
+    def take(self, matrix: sp.csr_array, values: Array) -> None:
+        """Take other entries of A, and other rows ``values`` (m, d, w), for the factors to come."""
+        self._matrix, self._values = matrix, values
 
     @property
     def count(self) -> int:
         """Number of factorisations made."""
         return self.numeric.count
 
-    def factorise(self, matrix: sp.csr_array, values: Array, D: Array) -> None:
-        """Factorise A + C'DC for rows ``values`` (m, d, w) and blocks D (m, d, d).
+    def factorise(self, D: Array, diagonal: Springs = 0.0) -> None:
+        """Factorise A + C'DC + diagonal for blocks D (m, d, d).
 
         Raises
         ------
         SingularMatrixError
             A pivot is zero or not finite.
         """
-        nnz = self.pattern.nnz
+        nnz, values = self.pattern.nnz, self._values
         local = np.matmul(values.transpose(0, 2, 1), np.matmul(D, values))
         data = np.bincount(self._slot, weights=local.ravel(), minlength=nnz + 1)[:nnz].astype(float)
-        data += np.bincount(self._matrix_slot, weights=matrix.data, minlength=nnz)
+        data += np.bincount(self._matrix_slot, weights=self._matrix.data, minlength=nnz)
+        assert not isinstance(diagonal, sp.csr_array), "a diagonal"
+        if np.any(diagonal):
+            data[self._diagonal_slot] += diagonal
+        self.D = None
         self.numeric.factorise(data)
+        self.D, self.diagonal = D, diagonal
 
     def solve(self, b: Array) -> Array:
         """Return the solution for the last matrix factorised; ``b`` is (N,) or (N, k)."""

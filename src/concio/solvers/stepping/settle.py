@@ -16,57 +16,33 @@ from concio.problem.contact_problem import Array
 from concio.problem.limits_of_work import STEP_PAIRS, STEP_PROBLEMS
 from concio.problem.pair_state import PairStates
 from concio.problem.tolerances import STEP_SETTLED
-from concio.solvers.stepping.factor import StepFactor
+from concio.solvers.algebra.factor import Factor, Solves
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
+from concio.solvers.algebra.updated_blocks import UpdatedBlocks
 from concio.solvers.stepping.problem import StepProblem
 from concio.solvers.stepping.small import solve_small
 from concio.solvers.stepping.states import Linear, read_states, solve_states
 
 
-class UpdatedFactor:
-    """A factor of F + B' E B by that of F: Z = F^-1 B' and G = B Z are at hand, E is small."""
-
-    def __init__(self, factor: StepFactor, values: Array, columns: Array, Z: Array, G: Array, E: Array) -> None:
-        self.factor, self.values, self.columns, self.Z = factor, values, columns, Z
-        self.inner = E @ np.linalg.inv(np.eye(len(E)) + G @ E)
-
-    def solve(self, b: Array) -> Array:
-        """Return the solution of (F + B' E B) x = b (N,)."""
-        x = self.factor.solve(b)
-        moved = np.matmul(self.values, np.append(x, 0.0)[self.columns][:, :, None])[:, :, 0].ravel()
-        corrected: Array = x - self.Z @ (self.inner @ moved)
-        return corrected
-
-
 class PairsAsked:
-    """The pairs V in question, their rows B, and how these respond: Z = F^-1 B' and G = B Z.
+    """The pairs V in question on a factor that is updated for them: two solves each.
 
     Parameters
     ----------
     p : StepProblem
-    factor : StepFactor
+    factor : Factor
         Holds F, the matrix with all pairs in their states.
-    D : (m, d, d) array
-        Blocks of F.
     """
 
-    def __init__(self, p: StepProblem, factor: StepFactor, D: Array) -> None:
-        self.p, self.factor, self.D = p, factor, D
-        self.number = np.zeros(0, dtype=int)
-        self.values, self.columns = p.values[:0], p.columns[:0]
-        self.Z, self.G = np.zeros((len(p.b), 0)), np.zeros((0, 0))
+    def __init__(self, p: StepProblem, factor: Factor) -> None:
+        self.p, self.number = p, np.zeros(0, dtype=int)
+        assert factor.D is not None
+        self.D = factor.D
+        self.blocks = UpdatedBlocks(factor, p.rows[0], len(p.b), p.dim, STEP_PAIRS)
 
     def join(self, added: Array) -> None:
-        """Take further pairs in: two solves each."""
-        p, d, n = self.p, self.p.dim, len(self.p.b)
-        rhs = np.zeros((n + 1, d * len(added)))
-        for k, pair in enumerate(added.tolist()):
-            for j in range(d):
-                np.add.at(rhs[:, d * k + j], p.columns[pair], p.values[pair, j])
-        self.Z = np.column_stack([self.Z, self.factor.solve(rhs[:n])])
+        """Take further pairs in."""
         self.number = np.concatenate([self.number, added])
-        self.values, self.columns = p.values[self.number], p.columns[self.number]
-        padded = np.vstack([self.Z, np.zeros((1, self.Z.shape[1]))])
-        self.G = np.einsum("vdw,vwk->vdk", self.values, padded[self.columns]).reshape(len(self.number) * d, -1)
 
     def decided(self, linear: Linear, x0: Array, t0: Array) -> tuple[Array, Array] | None:
         """Return x (N,) and t (m, d) with these pairs decided by the small problem, all others in their states.
@@ -78,10 +54,9 @@ class PairsAsked:
         x0, t0 : (N,), (m, d) arrays
         """
         p, d, V = self.p, self.p.dim, self.number
-        D_V = _diagonal(self.D[V])
-        held = np.linalg.inv(np.eye(len(D_V)) - D_V @ self.G)
+        self.blocks.change(V, np.zeros((V.size, d, d)))
         soft = np.column_stack([p.a_n[V], *[p.a_t[V]] * (d - 1)]).ravel()
-        W = self.G @ held + np.diag(soft)
+        W = self.blocks.flexibility(V) + np.diag(soft)
         y_n, y_t = p.relative(x0, t0)
         y = np.column_stack([y_n, y_t])[V].ravel()
         tau0 = t0[V].ravel()
@@ -91,7 +66,7 @@ class PairsAsked:
         if forces is None:
             return None
         tau = forces.ravel() * p.force
-        dx = self.Z @ (held @ (tau - tau0))
+        dx = self.blocks.moved(V, tau - tau0)
         moved = p.opening(dx)
         dt_n = -self.D[:, 0, 0] * (moved[:, 0] - linear.open_wide * moved[:, 1])
         dt_t = np.where(linear.stick, -moved[:, 1] / linear.soft_t, linear.drag * dt_n)
@@ -99,14 +74,14 @@ class PairsAsked:
         t[V] = tau.reshape(-1, d)
         return x0 + dx, t
 
-    def updated(self, D: Array) -> UpdatedFactor:
-        """Return the factor with these pairs in other states, of blocks ``D`` (m, d, d); raises LinAlgError."""
-        change = _diagonal(D[self.number] - self.D[self.number])
-        return UpdatedFactor(self.factor, self.values, self.columns, self.Z, self.G, change)
+    def updated(self, D: Array) -> Solves:
+        """Return the factor with these pairs in other states, of blocks ``D`` (m, d, d)."""
+        self.blocks.change(self.number, D[self.number])
+        return self.blocks
 
 
 def settle(
-    p: StepProblem, factor: StepFactor, states: PairStates, x: Array, t: Array, D: Array
+    p: StepProblem, factor: Factor, states: PairStates, x: Array, t: Array
 ) -> tuple[Array, Array, PairStates, float]:
     """Settle the states of a step whose states, factorised, gave (x, t).
 
@@ -120,7 +95,7 @@ def settle(
     x0, t0, linear = x, t, Linear.of(p, states)
     best, laws = p.residual(x, t)
     found = (x, t, states, best)
-    asked = PairsAsked(p, factor, D)
+    asked = PairsAsked(p, factor)
     for _ in range(STEP_PROBLEMS):
         violated = (laws > STEP_SETTLED) & read_states(p, x, t).differ(states)
         violated[asked.number] = False
@@ -128,7 +103,10 @@ def settle(
         if not added.size or len(asked.number) + len(added) > STEP_PAIRS:
             break
         asked.join(added)
-        decided = asked.decided(linear, x0, t0)
+        try:
+            decided = asked.decided(linear, x0, t0)
+        except SingularMatrixError:
+            break
         if decided is None:
             break
         x, t = decided
@@ -141,7 +119,7 @@ def settle(
         D_now = settled.blocks(p)
         try:
             updated = asked.updated(D_now)
-        except np.linalg.LinAlgError:
+        except SingularMatrixError:
             break
         x1, t1, errors = solve_states(p, updated, settled, x, t, D_now)
         residual, laws1 = p.violation(t1, errors)
@@ -152,9 +130,3 @@ def settle(
         laws = np.minimum(laws, laws1)
     return found
 
-
-def _diagonal(blocks: Array) -> Array:
-    v, d, _ = blocks.shape
-    full = np.zeros((v, d, v, d))
-    full[np.arange(v), :, np.arange(v)] = blocks
-    return full.reshape(v * d, v * d)

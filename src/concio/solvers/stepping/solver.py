@@ -44,6 +44,7 @@ class StepSolver:
         """Solve a step from the states of the one before and a point near the answer."""
         if self.factor is None:
             self.factor = StepFactor(p.matrix.sparse, p.columns, self.engine)
+        self.factor.take(p.matrix.sparse, p.values)
         factor, begun = self.factor, self.factor.count
         best: StepSolution | None = None
 
@@ -59,7 +60,7 @@ class StepSolver:
             linear = Linear.of(p, states)
             D = linear.blocks(p)
             try:
-                factor.factorise(p.matrix.sparse, p.values, D)
+                factor.factorise(D)
                 x1, t1, errors = solve_states(p, factor, linear, x, t, D)
             except SingularMatrixError:
                 break
@@ -71,7 +72,7 @@ class StepSolver:
             changed = int(((laws > STEP_SETTLED) & new.differ(states)).sum())
             seen.append(states)
             if changed <= FEW or round_ >= FLIPS or any(not new.differ(s).any() for s in seen):
-                x2, t2, settled, residual = settle(p, factor, states, x1, t1, D)
+                x2, t2, settled, residual = settle(p, factor, states, x1, t1)
                 found = keep(x2, t2, settled, residual, "small problem")
                 if residual < STEP_SETTLED:
                     return self._count(found)
@@ -84,7 +85,8 @@ class StepSolver:
         """Return the change of x (N,) under a change f (N,) of the right-hand side, in given states."""
         if self.factor is None:
             self.factor = StepFactor(p.matrix.sparse, p.columns, self.engine)
-        self.factor.factorise(p.matrix.sparse, p.values, Linear.of(p, states).blocks(p))
+        self.factor.take(p.matrix.sparse, p.values)
+        self.factor.factorise(Linear.of(p, states).blocks(p))
         return self.factor.solve(f)
 
     def _count(self, found: StepSolution) -> StepSolution:

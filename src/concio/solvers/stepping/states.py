@@ -8,13 +8,13 @@ again. Where forces are not unique (rigid blocks on many corners) refinement fro
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from concio.problem import natural_map
 from concio.problem.contact_problem import Array
 from concio.problem.pair_state import PairStates
+from concio.solvers.algebra.factor import Solves
 from concio.solvers.stepping.problem import Errors, StepProblem, largest
 
 REFINED = 1e-13
@@ -22,14 +22,6 @@ REFINED = 1e-13
 
 ROUNDS = 25
 """Largest number of refinements."""
-
-
-class Factor(Protocol):
-    """Solves with the matrix of some states."""
-
-    def solve(self, b: Array) -> Array:
-        """Return the solution for the right-hand side b (N,)."""
-        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +111,7 @@ class Linear:
 
 
 def solve_states(
-    p: StepProblem, factor: Factor, linear: Linear, x: Array, t: Array, D: Array
+    p: StepProblem, factor: Solves, linear: Linear, x: Array, t: Array, D: Array
 ) -> tuple[Array, Array, Errors]:
     """Solve the equations of given states by refinement from (x, t); the factor holds (nearly) their matrix.
 
