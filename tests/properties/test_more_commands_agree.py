@@ -24,8 +24,8 @@ from samples import sample
 SELF_STRESS = ("slot of rigid blocks", "slot of elastic blocks", "narrow panel", "hangs beside a heavy block",
                "hangs beside a heavy block that is pushed")  # fmt: skip
 """They fall, though forces in balance within friction exist: no proof says that nothing balances the loads."""
-NOT_PROVED = ("floor turned", "floor turned too far", "held by a tie", "held by a tie that yields")
-"""A proof in fractions refuses moved supports and ties by name."""
+NOT_PROVED = ("floor turned", "floor turned too far")
+"""A proof in fractions refuses moved supports by name."""
 TURNED = {"floor turned too far": FAILS}
 """Where weights turn with their floor the answer is another one, which the motion and the push name."""
 SITE = """

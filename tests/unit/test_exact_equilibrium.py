@@ -127,6 +127,19 @@ def test_a_block_that_nothing_squeezes_has_no_certificate_of_equilibrium(stiffne
             prove_equilibrium(lent, None, states, forces)
 
 
+def test_collapse_for_want_of_a_joint_that_was_almost_made_has_no_certificate() -> None:
+    """A beam on a bearing and a knife edge stands; the edge is a corner, and no joint is made there."""
+    ground = Body("g", [(-0.5, 0), (0.2, 0), (0.2, 1), (-0.5, 1)], kind="fixed")
+    knife = Body("k", [(3.8, 0.5), (4.2, 0.5), (4, 1)], kind="fixed")
+    beam = Body("beam", [(0, 1), (4.5, 1), (4.5, 1.3), (0, 1.3)], kind="rigid")
+    law = {"joint": JointLaw(0.6)}
+    model = Model((ground, knife, beam), {"block": Rigid(20.0)}, law, loads=(Load("weight", (0, -1)),))
+    result = concio.solve(model, on_failure="return")
+    with pytest.raises(InputError, match="almost made"):
+        result.proof()
+    assert result.proved == ""
+
+
 def test_forces_chosen_at_will_are_refused_by_the_program() -> None:
     """A hand-made certificate of the hanging block without compliance, with forces that balance its weight."""
     made = prove_balance(concio.assemble(hanging(None)))

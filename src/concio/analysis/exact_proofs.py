@@ -18,6 +18,7 @@ from concio.proof.equilibrium import prove_equilibrium
 from concio.proof.programs import recompute
 from concio.solvers.methods import find
 from concio.solvers.statics.existence import find_mechanism, statically_admissible
+from concio.verdict.attention import joints_not_made
 
 Array = np.ndarray
 
@@ -47,8 +48,12 @@ def collapse_proof(
     Raises
     ------
     InputError, SolverError
-        As :func:`concio.proof.certificate.prove_collapse`.
+        As :func:`concio.proof.certificate.prove_collapse`; or a joint was almost made, and with it the loads may be
+        balanced.
     """
+    almost = joints_not_made(assembly.detection)
+    if almost:
+        raise InputError(almost[0], hint="with it the loads may be balanced: close it, or raise gap_tolerance")
     directions = None
     if assembly.model.dim == 3:
         found = find_mechanism(assembly.problem(factors))
