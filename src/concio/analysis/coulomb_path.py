@@ -1,4 +1,7 @@
-"""The Coulomb path of a limit load: dead load first, then the live load, event by event, to collapse and beyond."""
+"""The Coulomb path of a limit load: dead load first, then the live load, event by event, to collapse and beyond.
+
+Parts that touch only through fixed bodies are followed by themselves: the path ends where the first of them does.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +11,9 @@ import numpy as np
 
 from concio.errors import SolverError
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.parts import parts_of
 from concio.problem.solution import ProgressCallback
-from concio.solvers.path.event_path import follow
+from concio.solvers.path.apart import follow_parts, part_that_moves, path_of, put_together
 from concio.solvers.path.ray import homogeneous, ray, restarted
 from concio.solvers.path.record import EventPath, Outcome
 from concio.solvers.path.state import LinearPath, PathState, at_rest
@@ -49,10 +53,10 @@ def dead_state(
     weight = LinearPath(problem.with_loads(0.0 * problem.f), problem.f)
     rest = at_rest(weight.problem)
     if homogeneous(weight):
-        end = ray(weight, rest, progress=progress)
+        end = _ray(weight, rest, progress)
         if end is not None:
             return restarted(end), ""
-    found = follow(weight, rest, until=1.0, progress=progress)
+    found = follow_parts(weight, rest, until=1.0, progress=progress)
     if found.outcome is Outcome.REACHED:
         return restarted(found.end), ""
     if found.outcome is Outcome.CANCELLED:
@@ -63,13 +67,25 @@ def dead_state(
     )
 
 
+def _ray(weight: LinearPath, rest: PathState, progress: ProgressCallback | None) -> PathState | None:
+    """Return the end of the straight path from rest, of each part by itself; None where one load step misses it."""
+    parts = [part for part in parts_of(weight.problem) if part.unknowns.size]
+    ends = []
+    for part in parts:
+        end = ray(path_of(weight, part), at_rest(part.problem), progress=progress)
+        if end is None:
+            return None
+        ends.append(end)
+    return replace(put_together(rest, parts, ends), parameter=1.0)
+
+
 def live_load_path(
     problem: ContactProblem, live: Array, start: PathState, *, progress: ProgressCallback | None = None
 ) -> tuple[EventPath, bool]:
     """Follow the live load to collapse; return the path, and whether its peak is shown to be collapse.
 
     Under growing load the path goes as far as certified states go, over jumps; from there the displacement that the
-    load works on is controlled, to see the structure move.
+    load works on is controlled, to see the structure move: of the part that has come to its end.
 
     Parameters
     ----------
@@ -81,14 +97,16 @@ def live_load_path(
     progress : callable, optional
     """
     path = LinearPath(problem, live)
-    growing = follow(path, start, until=1e6, progress=progress)
+    growing = follow_parts(path, start, until=1e6, progress=progress)
     shown = growing.outcome is Outcome.LIMIT
-    control = live / float(np.abs(live).sum())
+    moving = part_that_moves(path, growing.direction)
+    control = np.where(moving, live, 0.0) if (moving & (live != 0)).any() else live
+    control = control / float(np.abs(control).sum())
     moved = float(control @ (growing.end.displacement - start.displacement))
     if growing.outcome not in (Outcome.LIMIT, Outcome.LOST) or not moved > 0:
         return growing, shown or growing.outcome is Outcome.MECHANISM
     until = float(control @ start.displacement) + FAR * moved
-    falling = follow(path, growing.end, until=until, control=control, progress=progress)
+    falling = follow_parts(path, growing.end, until=until, control=control, progress=progress)
     whole = EventPath(
         growing.states + falling.states[1:],
         growing.events + tuple(replace(e, step=e.step + len(growing.states) - 1) for e in falling.events),

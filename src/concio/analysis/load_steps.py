@@ -18,8 +18,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from concio.problem.apart import own, solve_apart
 from concio.problem.certificate import certify
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.parts import Part
 from concio.problem.solution import ProgressCallback, Solution, Status
 from concio.problem.tolerances import CERTIFIED
 from concio.representation import short_repr
@@ -117,7 +119,7 @@ def load_steps(
     found : callable, optional
         Called with every multiplier that is shown to be carried.
     """
-    first = solve_from_rest(dead, progress)
+    first = solve_apart(dead, lambda part: solve_from_rest(part.problem, progress))
     if not first.solved:
         return LoadSteps((), float("nan"), None, float("nan"), 1, first.status)
     path = LinearPath(dead, live)
@@ -233,7 +235,14 @@ def in_one_step(
 
 
 def _step(problem: ContactProblem, state: PathState, progress: ProgressCallback | None) -> Solution:
-    near = (state.displacement, state.normal_force, state.friction_force)
+    """Return a load step from a state nearby, each connected part by itself."""
+    return solve_apart(problem, lambda part: _part_step(part, state, progress))
+
+
+def _part_step(part: Part, state: PathState, progress: ProgressCallback | None) -> Solution:
+    problem = part.problem
+    u, t_n, t_t = own(part, state.displacement, state.normal_force, state.friction_force)
+    near = u, t_n, t_t
     if problem.dim == 3 and not needed(problem):
         return space.solve(problem, progress=progress, starts=CONE_STARTS, near=near)
     solution = solve_near(problem, *near, starts=START, progress=progress)

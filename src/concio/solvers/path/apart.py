@@ -97,6 +97,15 @@ def state_of_part(state: PathState, part: Part) -> PathState:
     )  # fmt: skip
 
 
+def part_that_moves(path: LinearPath, direction: Array) -> Array:
+    """Return the unknowns (N,) of the parts of which a direction (N,) moves anything."""
+    found = np.zeros(path.problem.unknowns, dtype=bool)
+    for part in parts_of(path.problem):
+        if len(direction) and direction[part.unknowns].any():
+            found[part.unknowns] = True
+    return found
+
+
 def put_together(whole: PathState, parts: Sequence[Part], states: Sequence[PathState]) -> PathState:
     """Return a state of the whole, as it was but for what states of its parts say, work and dissipation added up."""
     names = ("normal_force", "friction_force", "slip", "offset")

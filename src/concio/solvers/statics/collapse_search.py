@@ -15,16 +15,19 @@ What comes out is the least of the states found, each certified for itself; that
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.limits_of_work import COLLAPSE_WORK
+from concio.problem.parts import Part, parts_of
 from concio.problem.solution import Progress, ProgressCallback
 from concio.problem.tolerances import CHECKED
 from concio.representation import short_repr
 from concio.solvers.statics.collapse_state import CollapseState, Motion, certify_collapse
+from concio.solvers.statics.existence import statically_admissible
 from concio.solvers.statics.limit import LimitLoad, associated_limit
 from concio.solvers.statics.programme import StaticProgramme, optimise
 
@@ -94,7 +97,7 @@ def find_collapse_state(
     bound: LimitLoad | None = None,
     progress: ProgressCallback | None = None,
 ) -> CollapseSearch:
-    """Search Coulomb collapse states.
+    """Search Coulomb collapse states, of each connected part by itself.
 
     Parameters
     ----------
@@ -116,6 +119,72 @@ def find_collapse_state(
         Associated limit of the problem, where it is known already.
     progress : callable, optional
     """
+    asked = _Asked(starts, iterations, average, seed, work, progress)
+    parts = [part for part in parts_of(problem) if part.unknowns.size]
+    if len(parts) <= 1:
+        return _of_one(problem, live, bound, asked)
+    found: list[CollapseSearch] = []
+    parts.sort(key=lambda part: not live[part.unknowns].any())  # those without a load of their own only stand
+    for part in parts:
+        if not live[part.unknowns].any() or (found and found[-1].cancelled):
+            break
+        found.append(_of_one(part.problem, live[part.unknowns], None, asked))
+    return _of_all(problem, live, parts, found)
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """How to search: see :func:`find_collapse_state`."""
+
+    starts: int | None
+    iterations: int | None
+    average: float
+    seed: int
+    work: int
+    progress: ProgressCallback | None
+
+
+def _of_all(
+    problem: ContactProblem, live: Array, parts: Sequence[Part], found: Sequence[CollapseSearch]
+) -> CollapseSearch:
+    """Return what was found of the whole: a part that moves while all others stand, at the least multiplier."""
+    states = [(one.state, k) for k, one in enumerate(found) if one.state is not None]
+    whole = None
+    for state, k in sorted(states, key=lambda pair: pair[0].multiplier):
+        whole = _whole(problem, live, parts, state, k)
+        if whole is not None:
+            break
+    met = sorted(x for one in found for x in one.multipliers)
+    different = [x for i, x in enumerate(met) if not i or x > met[i - 1] + SAME[problem.dim] * max(1.0, abs(x))]
+    return CollapseSearch(
+        whole, sum(one.starts for one in found), sum(one.programmes for one in found), tuple(different),
+        any(one.cancelled for one in found),
+    )  # fmt: skip
+
+
+def _whole(
+    problem: ContactProblem, live: Array, parts: Sequence[Part], state: CollapseState, moving: int
+) -> CollapseState | None:
+    """Return the state of the whole in which one part begins to move; None where another one is not in balance."""
+    t_n, t_t = np.zeros(problem.pairs), np.zeros((problem.pairs, problem.dim - 1))
+    velocity, worst = np.zeros(problem.unknowns), state.statics
+    velocity[parts[moving].unknowns] = state.velocity
+    for k, part in enumerate(parts):
+        normal, friction = state.normal_force, state.friction_force
+        if k != moving:
+            loads = part.problem.f + state.multiplier * live[part.unknowns]
+            held = statically_admissible(part.problem.with_loads(loads))
+            if not held.exists:
+                return None
+            normal, friction, worst = held.normal_force, held.friction_force, max(worst, held.residual)
+        t_n[part.pairs], t_t[part.pairs] = normal, friction
+    return replace(state, normal_force=t_n, friction_force=t_t, velocity=velocity, statics=worst)
+
+
+def _of_one(problem: ContactProblem, live: Array, bound: LimitLoad | None, asked: _Asked) -> CollapseSearch:
+    """Search the collapse states of a connected part."""
+    starts, iterations, work = asked.starts, asked.iterations, asked.work
+    average, seed, progress = asked.average, asked.seed, asked.progress
     top = associated_limit(problem, live) if bound is None else bound
     search = _Search(problem, live, average, progress)
     if np.isnan(top.multiplier):

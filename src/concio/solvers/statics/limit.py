@@ -15,6 +15,7 @@ Reference: Livesley, Limit analysis of structures formed from rigid blocks, Int.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,6 +23,7 @@ import scipy.sparse as sp
 
 from concio.errors import SolverError
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.parts import Part, parts_of
 from concio.problem.solution import Mechanism
 from concio.problem.tolerances import CHECKED
 from concio.representation import short_repr
@@ -103,6 +105,8 @@ class LimitLoad:
 def associated_limit(problem: ContactProblem, live: Array) -> LimitLoad:
     """Return the largest multiplier of the live load for associated friction.
 
+    It is the least of the connected parts', each found by itself and in its own units.
+
     Parameters
     ----------
     problem : ContactProblem
@@ -115,8 +119,42 @@ def associated_limit(problem: ContactProblem, live: Array) -> LimitLoad:
     SolverError
         The linear programme stopped without an answer.
     """
-    m, s = problem.pairs, problem.dim - 1
     live = np.asarray(live, dtype=float)
+    parts = [part for part in parts_of(problem) if part.unknowns.size]
+    if len(parts) <= 1:
+        return _of_one(problem, live)
+    found = [_of_one(part.problem, live[part.unknowns]) for part in parts]
+    least = int(np.argmin([-np.inf if np.isnan(one.multiplier) else one.multiplier for one in found]))
+    return _of_all(problem, live, parts, found, least)
+
+
+def _of_all(
+    problem: ContactProblem, live: Array, parts: Sequence[Part], found: Sequence[LimitLoad], least: int
+) -> LimitLoad:
+    """Return the limit load of the whole, of those of its parts."""
+    m, s = problem.pairs, problem.dim - 1
+    t_n, t_t, residual = np.zeros(m), np.zeros((m, s)), 0.0
+    multiplier, mechanism = found[least].multiplier, found[least].mechanism
+    for k, (part, one) in enumerate(zip(parts, found, strict=True)):
+        normal, friction, error = one.normal_force, one.friction_force, one.residual
+        if k != least and np.isfinite(multiplier):
+            loads = part.problem.f + multiplier * live[part.unknowns]
+            state = statically_admissible(part.problem.with_loads(loads))
+            if not state.exists:
+                nothing = np.zeros(m), np.zeros((m, s))
+                return LimitLoad(np.nan, np.nan, *nothing, np.inf, None)  # what one carries is too little for another
+            normal, friction, error = state.normal_force, state.friction_force, state.residual
+        t_n[part.pairs], t_t[part.pairs], residual = normal, friction, max(residual, error)
+    if mechanism is not None:
+        velocity = np.zeros(problem.unknowns)
+        velocity[parts[least].unknowns] = mechanism.velocity
+        mechanism = replace(mechanism, velocity=velocity)
+    return LimitLoad(multiplier, found[least].upper, t_n, t_t, residual, mechanism)
+
+
+def _of_one(problem: ContactProblem, live: Array) -> LimitLoad:
+    """Return the limit load of a connected part."""
+    m, s = problem.pairs, problem.dim - 1
     nothing = (np.zeros(m), np.zeros((m, s)))
     size = float(np.abs(live).sum())
     pushed = float(np.abs(problem.R.T @ live).max(initial=0.0))
