@@ -22,7 +22,7 @@ CLASSES = {
 }  # fmt: skip
 """Classes of the project that are distinguished from each other by their names."""
 
-SEQUENCES, MAPPINGS = ("Sequence", "tuple", "list", "Iterable"), ("Mapping", "dict")
+SEQUENCES, MAPPINGS = ("Sequence", "Several", "tuple", "list", "Iterable"), ("Mapping", "dict")
 
 Check = Callable[[Any], bool]
 

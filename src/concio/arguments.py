@@ -108,6 +108,8 @@ def _hint(wanted: str, value: object) -> str | None:
     """Return how to write what was probably meant."""
     if wanted.startswith("a sequence of numbers") and isinstance(value, int | float):
         return f"write ({value!r},)"
+    if wanted.startswith("a sequence of texts") and isinstance(value, str):
+        return f"write ({value!r},)"
     if wanted == "a Result":
         return "solve the model first: concio.solve(model)"
     return None

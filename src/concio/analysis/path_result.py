@@ -201,7 +201,9 @@ class PathResult(Shown):
         """
         wanted = stage % len(self.outcomes)
         own = [i for i, step in enumerate(self.steps) if step.stage == wanted]
-        own = [own[0] - 1, *own] if own and own[0] > 0 else own
+        own = own or [sum(step.stage < wanted for step in self.steps)]  # it ended where it began
+        own = [own[0] - 1, *own] if own[0] > 0 else own
+        own = [i for i in own if i < len(self.steps)]
         first, target = self.steps[own[0]].factors, {**self.steps[own[0]].factors, **self.stages[wanted].factors}
         changed = [g for g in first if target[g] != first[g]]
         if changed and len({(first[g], target[g]) for g in changed}) == 1:

@@ -157,7 +157,8 @@ def thrust_line(result: Result) -> ThrustLine:
     for b, own in at.items():
         if len(own) != 2:
             msg = f"it has {len(own)} joints: the blocks do not form a chain"
-            raise InputError(msg, where=f"block '{model.bodies[b].name}'", hint="use course_resultants for walls")
+            hint = "a line of thrust is that of an arch or a pier; result.plot.forces() shows those of a wall"
+            raise InputError(msg, where=f"block '{model.bodies[b].name}'", hint=hint)
     ends = [j for j in range(len(joints.N)) if not {int(joints.body_a[j]), int(joints.body_b[j])} <= at.keys()]
     if len(ends) != 2:
         msg = f"the chain has {len(ends)} ends on fixed bodies, expected 2"

@@ -222,6 +222,13 @@ class Tie:
     break_elongation: float | None = None
     kind: Literal["bar", "soil"] = "bar"
 
+    def __post_init__(self) -> None:
+        kinds = {"stiffness": "stiffness", "prestress": "force", "yield_force": "force", "break_elongation": "length"}
+        for name, kind in kinds.items():
+            value = getattr(self, name)
+            if value is not None:
+                object.__setattr__(self, name, quantity(value, kind, where=f"tie '{self.name}', {name}"))
+
     @property
     def sign(self) -> float:
         """1 where it takes tension, -1 where it takes compression."""

@@ -34,6 +34,7 @@ from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import InputError
 from concio.model.model import Model
 from concio.problem.solution import Progress, ProgressCallback
+from concio.representation import short_repr
 from concio.verdict.continuum_verdict import continuum_verdict
 from concio.verdict.verdict import Verdict
 from concio.views import Shown, view
@@ -51,7 +52,8 @@ STRETCHES = (1.0, 6.0, 1 / 6)
 steep or flat lines need such lines in the mesh."""
 
 
-@dataclass(frozen=True, eq=False)
+@short_repr
+@dataclass(frozen=True, eq=False, repr=False)
 class ContinuumComparison(Shown):
     """A wall of blocks beside its homogenised continuum.
 

@@ -16,6 +16,7 @@ from concio.contact.assembly import assemble
 from concio.errors import InputError
 from concio.model.model import Model
 from concio.problem.solution import Progress, ProgressCallback
+from concio.representation import short_repr
 from concio.verdict.continuum_verdict import continuum_verdict
 from concio.verdict.verdict import Verdict
 from concio.views import Shown, view
@@ -26,7 +27,8 @@ if TYPE_CHECKING:
 Array = np.ndarray
 
 
-@dataclass(frozen=True, eq=False)
+@short_repr
+@dataclass(frozen=True, eq=False, repr=False)
 class BlockHalving(Shown):
     """A wall with blocks of several sizes beside its continuum.
 

@@ -1,0 +1,50 @@
+"""Mistakes that were found by users: each is told in words, or is none any more."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import concio
+from models import box, model_of, weight
+from seismic_walls import overturning, site
+
+
+def test_a_path_whose_last_stage_ends_where_it_begins_says_so() -> None:
+    wall = concio.wall(
+        length=1.0, height=1.0, block_size=(0.5, 0.25), block="rigid", friction=0.6, unit_weight=20, horizontal=0.1
+    )
+    found = concio.run_path(wall, [concio.Stage("nothing", {"live": 0.0}), concio.Stage("push", {"live": 1.0})])
+    assert "live = 0 of 1" in found.sentence
+    word, values = found.load()
+    assert word == "live"
+    assert np.array_equal(values, [0.0])
+
+
+@pytest.mark.parametrize(("name", "value"), [("levels", "SLV"), ("elsewhere", "out of plane")])
+def test_a_text_in_place_of_a_list_of_texts_is_told(name: str, value: str) -> None:
+    with pytest.raises(TypeError, match=rf"{name} = '{value}' must be a sequence of texts") as told:
+        concio.assess(overturning(), site=site(), **{name: value})  # type: ignore[arg-type]
+    assert f"write ('{value}',)" in str(told.value)
+
+
+def test_a_tie_reads_texts_with_units() -> None:
+    tie = concio.Tie(
+        "t", "a", (0.0, 0.0), "", (1.0, 0.0), stiffness="10 MN/m", prestress="500 N", break_elongation="2 mm"
+    )  # type: ignore[arg-type]
+    assert (tie.stiffness, tie.prestress, tie.break_elongation) == pytest.approx((1e4, 0.5, 2e-3))
+    with pytest.raises(concio.InputError, match="tie 't', stiffness"):
+        concio.Tie("t", "a", (0.0, 0.0), "", (1.0, 0.0), stiffness="10 m")  # type: ignore[arg-type]
+
+
+def test_a_comparison_with_the_continuum_prints_in_a_few_lines() -> None:
+    wall = concio.wall(length=0.8, height=0.4, block_size=(0.4, 0.2), friction=0.6, unit_weight=20.0, top_pressure=10.0)
+    assert len(repr(concio.compare_with_continuum(wall, mesh_size=0.4, strength=False))) < 1500
+
+
+def test_the_thrust_line_of_a_wall_names_what_shows_its_forces() -> None:
+    stone = {"kind": "rigid", "material": "stone"}
+    blocks = [box("floor", 0, 2, -1, 0, kind="fixed"), box("a", 0, 1, 0, 1, **stone), box("b", 1, 2, 0, 1, **stone)]
+    result = concio.solve(model_of(*blocks, box("c", 0, 2, 1, 2, **stone), loads=(weight(),)))
+    with pytest.raises(concio.InputError, match=r"result\.plot\.forces"):
+        concio.thrust_line(result)
