@@ -225,7 +225,7 @@ def help_of(text: str) -> list[str]:
     told, _, example = inspect.cleandoc(text).partition("Example:")
     lines = [told.strip()]
     if example:
-        lines += ["", "```console", *(f"$ {line.strip()}" for line in example.strip().splitlines()), "```"]
+        lines += ["", "```sh", *(line.strip() for line in example.strip().splitlines()), "```"]
     return lines
 
 

@@ -272,7 +272,7 @@ def test_a_measurement_that_cannot_be_meant_is_refused(change, words) -> None:
         ({"body": "a"}, "exactly one"),
         ({"body": "a", "direction": (0, -1), "rotation": 1.0}, "exactly one"),
         ({"body": "a", "group": "live"}, "exactly one"),
-        ({"group": "live", "direction": (0, -1)}, "no direction"),
+        ({"group": "live", "direction": (0, -1)}, "not a direction"),
         ({"group": "live", "low": 1.0}, "allowed to be zero"),
         ({"body": "a", "direction": (0, -1), "base": 1.0}, "base is"),
     ],
@@ -296,7 +296,7 @@ def test_a_candidate_that_cannot_be_meant_is_refused(change, words) -> None:
         ([Measurement(**GOOD)], [Candidate("c", body="v01", direction=(0, -1))], "is not fixed"),
         ([Measurement(**GOOD)], [Candidate("c", body="nothing", direction=(0, -1))], "no body called"),
         ([Measurement(**GOOD)], [Candidate("c", group="nothing")], "no load group"),
-        ([Measurement(**GOOD)], [Candidate("c", body="left abutment", direction=(0, -1, 0))], "no direction"),
+        ([Measurement(**GOOD)], [Candidate("c", body="left abutment", direction=(0, -1, 0))], "not a direction"),
         (["K1", "K2"], [GIVES], "Measurement is needed"),
     ],
 )

@@ -60,7 +60,7 @@ def test_what_cannot_be_used_is_said(tmp_path, text, words):
 def test_a_cut_at2_file(tmp_path):
     path = tmp_path / "record.at2"
     path.write_text(AT2.replace("NPTS=    7", "NPTS=    9"))
-    with pytest.raises(concio.InputError, match="promises 9 samples, the file holds 7"):
+    with pytest.raises(concio.InputError, match="announces 9 samples, the file holds 7"):
         concio.read_record(path)
 
 

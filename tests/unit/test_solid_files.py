@@ -167,7 +167,7 @@ WRONG = {
     "millimetres": (off_of((CUBE * 300, BOX)), "longer than 300 m .* unit = 'mm'"),
     "index": (off_of((CUBE, [(0, 1, 9)])), "uses a vertex|uses vertex 9"),
     "two vertices": (off_of((CUBE, [(0, 1)])), "a face of 2 vertices|has 2 vertices"),
-    "no number": (off_of((CUBE, BOX)).replace("1.0 1.0 1.0", "1.0 one 1.0"), "line .*cannot be read|no row of"),
+    "no number": (off_of((CUBE, BOX)).replace("1.0 1.0 1.0", "1.0 one 1.0"), "line .*cannot be read|not a row of"),
     "counts": (off_of((CUBE, BOX)).replace("8 6 0", f"{10**9} 6 0"), "more than 5,000,000 vertices"),
     "faces": (off_of((CUBE, BOX)).replace("8 6 0", f"8 {10**9} 0"), "the file ends before"),
     "no faces": (off_of((CUBE, [])), "no faces|holds no blocks"),

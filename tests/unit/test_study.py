@@ -247,7 +247,7 @@ def test_bad_values_are_rows_and_not_the_end(tmp_path: Path) -> None:
         ({"correlation": {("mu", "nu"): 0.5}}, "no variable 'nu'"),
         ({"correlation": {("mu", "span"): 1.5}}, "must lie between"),
         ({"sample": np.ones((3, 1))}, "has as many columns"),
-        ({"stop": concio.Stop("standing", 0.1)}, "no output of the study"),
+        ({"stop": concio.Stop("standing", 0.1)}, "not an output of the study"),
     ],
 )
 def test_what_does_not_fit_is_told(arguments: dict[str, object], said: str) -> None:

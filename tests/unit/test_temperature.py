@@ -233,5 +233,5 @@ def test_the_question_of_a_verdict_names_the_change() -> None:
 
 
 def test_no_cycle_is_refused() -> None:
-    with pytest.raises(InputError, match="no cycle"):
+    with pytest.raises(InputError, match="not a cycle"):
         concio.cycles("temperature", 1.0, times=0)

@@ -52,11 +52,11 @@ def test_step_size_does_not_matter_for_one_hinge():
 
 
 def test_point_loads_count():
-    """A load W on top of a pillar of weight W = 4 kN, 0.05 m from its axis towards its toe."""
+    """A load W on top of a pillar of weight W = 4 kN, 0.05 m from its axis towards its toe: a weight that is pushed, too."""
     plain = block()
     own, extra = Load("weight", (0.0, -1.0)), Load("point", (0.0, -4.0), bodies=("pillar",), at=(0.15, 1.0))
     loaded = rock(replace(plain, loads=(own, extra)))
-    assert loaded.multiplier[0] == pytest.approx((4 * 0.1 + 4 * 0.05) / (4 * 0.5), rel=2e-3)
+    assert loaded.multiplier[0] == pytest.approx((4 * 0.1 + 4 * 0.05) / (4 * 0.5 + 4 * 1.0), rel=2e-3)
 
 
 def test_elastic_blocks_are_refused():

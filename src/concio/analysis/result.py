@@ -370,7 +370,8 @@ class Result(Shown):
         Examples
         --------
         >>> import concio
-        >>> wall = concio.wall(1.0, 0.5, (0.5, 0.25), block="rigid", unit_weight=20, friction=0.6)
+        >>> size = {"length": 1.0, "height": 0.5, "block_size": (0.5, 0.25)}
+        >>> wall = concio.wall(**size, block="rigid", unit_weight=20, friction=0.6)
         >>> concio.solve(wall).proof()["claim"]
         'equilibrium'
         """

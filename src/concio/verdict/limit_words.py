@@ -221,7 +221,7 @@ def path_lines(found: LimitResult) -> list[str]:
     """Return the Coulomb path in words: a collapse multiplier where one is shown, else what is carried at least."""
     path, head = found.path, "  Coulomb load path    "
     if path is None:
-        ask = " (--path follows it)" if "unasked" in found.path_note else ""
+        ask = " (--path follows it)" if "by default" in found.path_note else ""
         return [] if found.path_note == NOT_ASKED else [f"{head}{found.path_note}{ask}"]
     end = {
         "REACHED": "continued under constant load until it had moved far" if found.collapse_shown

@@ -40,7 +40,7 @@ def with_unit(value: Any, units: Mapping[str, float], what: str) -> Any:
     except ValueError:
         size = None
     if found is None or size is None or (found.group(2) and found.group(2) not in units):
-        msg = f"'{value}' is no {what}: write a number with one of " + ", ".join(units)
+        msg = f"'{value}' is not {'an' if what[0] in 'aeiou' else 'a'} {what}: write a number with one of " + ", ".join(units)
         raise ValueError(msg)
     return size * units.get(found.group(2), 1.0)
 
