@@ -133,6 +133,8 @@ class NewtonStep:
         H = M.copy()
         H[:, 0, 0] = z.y_n / z.t[:, 0] + s.compliance[:, 0] + dilatancy * mu * M[:, 0, 0]
         if s.any_capped:
+            if not residuals.room[capped].min() > 0:  # rounded up to the cap
+                return None
             H[capped, 0, 0] += (z.p / residuals.room)[capped]
         H[:, 0, 1:] *= dilatancy[:, None]
         H[:, 1:, 0] *= mu[:, None]
