@@ -52,7 +52,7 @@ def test_step_size_does_not_matter_for_one_hinge():
 
 
 def test_point_loads_count():
-    """A load W on top of a pillar of weight W = 4 kN, 0.05 m from its axis towards its toe: a weight that is pushed, too."""
+    """A load W on top of a pillar of weight W = 4 kN, 0.05 m from its axis towards its toe, is pushed with it."""
     plain = block()
     own, extra = Load("weight", (0.0, -1.0)), Load("point", (0.0, -4.0), bodies=("pillar",), at=(0.15, 1.0))
     loaded = rock(replace(plain, loads=(own, extra)))

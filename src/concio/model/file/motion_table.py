@@ -40,7 +40,8 @@ def with_unit(value: Any, units: Mapping[str, float], what: str) -> Any:
     except ValueError:
         size = None
     if found is None or size is None or (found.group(2) and found.group(2) not in units):
-        msg = f"'{value}' is not {'an' if what[0] in 'aeiou' else 'a'} {what}: write a number with one of " + ", ".join(units)
+        article = "an" if what[0] in "aeiou" else "a"
+        msg = f"'{value}' is not {article} {what}: write a number with one of {', '.join(units)}"
         raise ValueError(msg)
     return size * units.get(found.group(2), 1.0)
 
