@@ -13,7 +13,7 @@ at once. Models in space are followed in steps: where a slip turns, a path has n
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -124,15 +124,14 @@ def run_path(
             f"hard joints between rigid blocks were given a compliance of {lent:.3g} m/kN, {SHEAR_TO_NORMAL:g} times "
             "as much along the joint: without it their forces are not determined"
         )
+    how = _How(assembly, method, solver, max_events, brittle, progress, notes)
     direction = np.zeros(assembly.supported.T.shape[1])
     for number, stage in enumerate(stages):
         target = _target(assembly, factors, stage)
         path = _linear(assembly, factors, target)
         start = then = assembly.problem(factors)
         state = _at_rest(path) if state is None else replace(state, parameter=0.0)
-        found = _past_breaks(
-            assembly, path, state, stage, (factors, target), method, solver, max_events, brittle, progress, notes
-        )
+        found = _past_breaks(how, path, state, stage, (factors, target))
         first = len(steps)
         for before, after in zip((found.states[0], *found.states), found.states, strict=False):
             if after is found.states[0] and steps:
@@ -156,71 +155,80 @@ def run_path(
     )  # fmt: skip
 
 
-def _past_breaks(
-    assembly: Assembly, path: LinearPath, state: PathState, stage: Stage,
-    ends: tuple[Mapping[str, float], Mapping[str, float]], method: str, solver: str, max_events: int, brittle: bool,
-    progress: ProgressCallback | None, notes: list[str],
-) -> StepPath:  # fmt: skip
+@dataclass(frozen=True, eq=False)
+class _How:
+    """How stages are followed, see :func:`run_path`; ``notes`` grows."""
+
+    assembly: Assembly
+    method: str
+    solver: str
+    max_events: int
+    brittle: bool
+    progress: ProgressCallback | None
+    notes: list[str]
+
+
+Ends = tuple[Mapping[str, float], Mapping[str, float]]
+"""Load factors at both ends of a stage."""
+
+
+def _past_breaks(how: _How, path: LinearPath, state: PathState, stage: Stage, ends: Ends) -> StepPath:
     """Follow one stage, and go on without each tie that breaks as far as there is an equilibrium without it."""
+    assembly = how.assembly
     control = None if stage.control is None else control_functional(assembly, stage.control)[0]
     until = None if control is None else float(control @ state.displacement) + stage.until
     whole: StepPath | None = None
     while True:
         left = without_gone(path, state, assembly.ties)
-        found = _walk(
-            assembly, left, state, stage, ends, method, solver, max_events, brittle, progress, notes, (control, until)
-        )
+        found = _walk(how, left, state, stage, ends, (control, until))
         whole = found if whole is None else whole.followed_by(found)
         if found.outcome is not Outcome.BROKEN:
             return whole
         last = marked(assembly, whole.states[-1], whole.events[-1].pair)
         whole = replace(whole, states=(*whole.states[:-1], last))
-        after = released(without_gone(path, last, assembly.ties), last, control, find(solver))
+        after = released(without_gone(path, last, assembly.ties), last, control, find(how.solver))
         if after is None:
             return whole
         name = tie_name(assembly, whole.events[-1].pair)
         fell = "" if control is None else f", where the load falls to {after.parameter:.6g} of the stage's"
         told = f"stage '{stage.name}': tie '{name}' breaks at {last.parameter:.6g}{fell}"
-        notes.append(f"{told}; the path goes on without it")
+        how.notes.append(f"{told}; the path goes on without it")
         whole = replace(whole, states=(*whole.states, after))
         state = after
 
 
 def _walk(
-    assembly: Assembly,
+    how: _How,
     path: LinearPath,
     state: PathState,
     stage: Stage,
-    ends: tuple[Mapping[str, float], Mapping[str, float]],
-    method: str,
-    solver: str,
-    max_events: int,
-    brittle: bool,
-    progress: ProgressCallback | None,
-    notes: list[str],
+    ends: Ends,
     controlled: tuple[Array | None, float | None],
 ) -> StepPath:
     """Follow one stage, by events and where there are too many on in steps; ``ends`` are its load factors.
 
     ``controlled`` is the functional that is controlled, with the value to reach; None for the load.
     """
+    assembly, solver, progress = how.assembly, how.solver, how.progress
     control, until = controlled[0], 1.0 if controlled[1] is None else controlled[1]
-    if method == "steps":
+    if how.method == "steps":
         if control is not None:
             msg = f"stage '{stage.name}' is controlled by a displacement, which steps cannot follow"
             raise InputError(msg, hint="use method='events'")
         found = follow_in_steps(
-            path, state, until=until, steps=stage.steps, solver=find(solver), brittle=brittle, progress=progress
+            path, state, until=until, steps=stage.steps, solver=find(solver), brittle=how.brittle, progress=progress
         )
         return until_a_tie_breaks(assembly, path, found, *ends, solver=solver, exact=False)
     stop = breaking(assembly, *ends)
-    exact = follow_parts(path, state, until=until, control=control, max_events=max_events, progress=progress, stop=stop)
+    exact = follow_parts(
+        path, state, until=until, control=control, max_events=how.max_events, progress=progress, stop=stop
+    )
     found = StepPath(exact.states, exact.events, exact.outcome, exact.direction)
     found = until_a_tie_breaks(assembly, path, found, *ends, solver=solver, exact=True)
-    notes.extend(_finite_steps(stage, exact))
+    how.notes.extend(_finite_steps(stage, exact))
     if control is not None or found.outcome is not Outcome.TOO_MANY:
         return found
-    notes.append(
+    how.notes.append(
         f"stage '{stage.name}': after {len(exact.events)} events, at {exact.end.parameter:.6g} of its load the path "
         f"was continued in {stage.steps} steps"
     )
