@@ -33,6 +33,9 @@ napoleon_use_ivar = True
 napoleon_custom_sections = [("Keys", "params_style")]
 templates_path: list[str] = []
 
+NOTES = ("decisions", "research")
+"""Dated records: read by links, outside the menu and the search."""
+
 TAG = re.compile(r"\\tag\{([^}]*)\}")
 BAR = re.compile(r"(?<![\\`])\|")
 MATH = re.compile(r":math:`[^`]*`|``[^`]*``|`[^`]*`")
@@ -80,7 +83,21 @@ def visit_math_block(self: Any, node: nodes.Element) -> None:
     raise nodes.SkipNode
 
 
+def skip_notes_in_search(app: Any) -> None:
+    """Leave the dated records out of the search index."""
+    if not hasattr(app.builder, "index_page"):
+        return
+    index_page = app.builder.index_page
+
+    def index(pagename: str, doctree: Any, title: str) -> None:
+        if pagename.split("/")[0] not in NOTES:
+            index_page(pagename, doctree, title)
+
+    app.builder.index_page = index
+
+
 def setup(app: Any) -> None:
-    """Connect the docstring filter and the formulas."""
+    """Connect the docstring filter, the formulas and the search."""
+    app.connect("builder-inited", skip_notes_in_search)
     app.add_html_math_renderer("mathml", (visit_math, None), (visit_math_block, None))
     app.connect("autodoc-process-docstring", protect_bars)

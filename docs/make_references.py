@@ -94,7 +94,8 @@ def section(key: str, entry: dict[str, Any], tables: dict[str, Any], told: set[s
         form = f"[[{key}]]"
     elif "additionalProperties" in entry:
         form = f"[{key}.NAME]"
-    lines = ["", f"({anchor(key)})=", f"### `{form}`", "", cell(entry["description"].rstrip(".")) + "."]
+    labels = [f"({anchor(key)})=", *([f"({anchor(name)})="] if name not in told and name != key else [])]
+    lines = ["", *labels, f"### `{form}`", "", cell(entry["description"].rstrip(".")) + "."]
     return lines + body(name, tables, told, defaults_of(key))
 
 

@@ -1,4 +1,4 @@
-"""A block pushed and let go: friction remembers. Exact load path, event by event."""
+"""A block pushed and released: friction depends on the load history. Exact load path, event by event."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def main(figure: Path | None = None) -> dict[str, float]:
     model = replace(block, loads=(*block.loads, push))
     path = run_path(
         model,
-        [Stage("weight", {"dead": 1.0}), Stage("push", {"push": 0.7}), Stage("let go", {"push": 0.0})],
+        [Stage("weight", {"dead": 1.0}), Stage("push", {"push": 0.7}), Stage("released", {"push": 0.0})],
     )
     top = ControlPoint("b01", (0.2, 0.2))
     shift, _ = path.curve(top)

@@ -1,7 +1,7 @@
 """A cross vault one of whose piers settles by 5 mm: cracks along the crowns, sliding at the groin stones.
 
 Two barrels of 3 m, courses bonded round the groins, rigid blocks, friction 0.7. The vault follows the settlement by
-opening joints; its weight is carried all the same, and forces and cracks come with a certificate.
+opening joints; its weight is still carried, and forces and cracks come with a certificate.
 """
 
 from __future__ import annotations

@@ -27,7 +27,9 @@ def test_links_lead_somewhere(page: Path) -> None:
 
 
 def test_every_page_is_in_a_table_of_contents() -> None:
-    listed = set()
+    """But for the two that begin dated records, which are read by links alone."""
+    listed = {DOCS / "decisions.md", DOCS / "research.md"}
+    assert all(page.read_text(encoding="utf-8").startswith("---\norphan: true\n") for page in listed)
     for page in DOCS.rglob("*.md"):
         for block in re.findall(r"```\{toctree\}\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL):
             for line in block.splitlines():

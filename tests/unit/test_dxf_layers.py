@@ -258,7 +258,7 @@ def test_a_row_of_close_corners_does_not_run_together():
 def test_mending_that_would_swallow_blocks_is_refused(tmp_path):
     path = two_storeys().saved(tmp_path)
     options = {"materials": {"stone": STONE, "granite": GRANITE}, "layers": LAYERS}
-    with pytest.raises(InputError, match=r"mend = 5 m would swallow 4 of 4 outlines .the thinnest, entity"):
+    with pytest.raises(InputError, match=r"mend = 5 m would remove 4 of 4 outlines .the thinnest, entity"):
         model_from_dxf(path, mend="5 m", **options)
     with pytest.raises(GeometryError, match=r"layer 'ARCHITRAVI'.* only about 400 mm wide.* would remove it"):
         model_from_dxf(path, mend="0.22 m", **options)

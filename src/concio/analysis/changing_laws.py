@@ -1,7 +1,7 @@
 """Joint laws whose constants depend on what a joint has undergone, in one load step.
 
 The constants and the answer depend on each other: the step is solved with the constants as they are at first, the
-constants are asked anew of the answer, and so on until they stay. The answer then obeys the joint laws with the
+constants are evaluated again at the answer, and so on until they stay. The answer then obeys the joint laws with the
 constants that belong to it, exactly and with a certificate, and no solver knows of it. Where the constants do not stay,
 or a round has no certified answer, nothing is known: constants asked of what is no answer prove nothing.
 """
@@ -128,7 +128,7 @@ def _times(laws: Laws, area: Array) -> Laws:
 
 
 def _stay(laws: Laws, asked: Laws, first: Laws) -> bool:
-    """Tell whether constants that are asked anew are those the answer was found with."""
+    """Tell whether constants that are evaluated again are those the answer was found with."""
     for f in fields(Laws):
         old, new, unit = (getattr(law, f.name) for law in (laws, asked, first))
         finite = np.isfinite(old)

@@ -23,7 +23,7 @@ from concio.verdict.attention import joints_not_made
 Array = np.ndarray
 
 MOST_BLOCKS, MOST_UNKNOWNS = 100, 300
-"""Blocks and unknowns up to which reports and notebooks seek an exact certificate unasked."""
+"""Blocks and unknowns up to which reports and notebooks seek an exact certificate by default."""
 
 
 def collapse_proof(

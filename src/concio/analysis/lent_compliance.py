@@ -4,7 +4,7 @@ Between bodies that do not deform, joined by hard joints, forces are not determi
 opposed by friction only where it is known which way a pair would slip, and without displacements no pair does. Any
 forces within the cones would pass for a solution: a block squeezed between two faces would hang there, though nothing
 ever squeezed it. So such joints are given a compliance, and everybody who solves, follows a path or asks for a margin
-lends the same and says so. It is spread like that of a thin layer, in proportion to one over the area of a pair, and
+adds the same and says so. It is spread like that of a thin layer, in proportion to one over the area of a pair, and
 is tangentially :data:`SHEAR_TO_NORMAL` times the normal one.
 
 Where no support moves and no gap is closed the problem is homogeneous: forces, states and multipliers do not depend on
@@ -41,7 +41,7 @@ def lent_assembly(model: Model | Assembly) -> Assembly:
 
 
 def lend(assembly: Assembly) -> Assembly:
-    """Lend a vanishing compliance to every hard pair neither side of which deforms.
+    """Add a vanishing compliance to every hard pair neither side of which deforms.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ def connected_bodies(assembly: Assembly) -> tuple[Array, Array]:
 
 
 def with_compliance(problem: ContactProblem, live: Array) -> tuple[ContactProblem, float]:
-    """Lend a small compliance to every hard pair of a problem in which nothing deforms; return it and the compliance.
+    """Add a small compliance to every hard pair of a problem in which nothing deforms; return it and the compliance.
 
     Parameters
     ----------

@@ -102,7 +102,7 @@ class LimitResult(Shown):
 
     @property
     def verdict(self) -> Verdict:
-        """The answer with its question: what acts, what to design with, what is an upper bound only."""
+        """The answer with its question: what acts, the design value, what is an upper bound only."""
         return limit_verdict(self)
 
     @property
@@ -118,7 +118,7 @@ class LimitResult(Shown):
 
     @property
     def endless(self) -> bool:
-        """Whether the load grows on in certified steps without end: the associated bound is locked, and rightly so."""
+        """Whether the load grows in certified steps without bound: the associated bound is locked, as it should be."""
         return self.associated.locked and self.steps is not None and bool(np.isfinite(self.steps.endless))
 
     @property
@@ -174,7 +174,7 @@ class LimitResult(Shown):
 
     @property
     def bracket(self) -> tuple[float, float]:
-        """(what to design with, associated multiplier): the least Coulomb multiplier found, and the upper bound.
+        """(design value, associated multiplier): the least Coulomb multiplier found, and the upper bound.
 
         The peak of a path that was lost counts, and the last certified load step: the structure carries it, and
         collapses at it or above.

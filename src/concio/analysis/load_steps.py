@@ -219,7 +219,7 @@ def _endless(path: LinearPath, before: PathState, after: PathState) -> float:
 def in_one_step(
     dead: ContactProblem, live: Array, steps: LoadSteps, *, progress: ProgressCallback | None = None
 ) -> LoadSteps:
-    """Put on in one step the least load that the steps did not reach, by whatever it takes; return them with that.
+    """Apply in one step the least load that the steps did not reach, by whatever it takes; return them with that.
 
     Parameters
     ----------

@@ -58,7 +58,7 @@ def until_a_tie_breaks(
     solver: str,
     exact: bool,
 ) -> StepPath:
-    """Return a stage of a path as far as every tie is whole, the state in which the first one breaks as its last.
+    """Return a stage of a path as far as all ties are intact, the state in which the first one breaks as its last.
 
     Parameters
     ----------

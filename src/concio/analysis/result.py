@@ -226,7 +226,7 @@ class Result(Shown):
         return Stress(self.assembly.disc, self.displacement - self.assembly.expansion(self.factors))
 
     def in_units(self, units: Units | str) -> Result:
-        """Return the same result, told in other units; arrays stay in kN and m.
+        """Return the same result, reported in other units; arrays stay in kN and m.
 
         Parameters
         ----------

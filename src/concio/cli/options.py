@@ -29,7 +29,7 @@ Factors = Annotated[
 
 
 def loaded(file: Path, units: str | None = None, engine: Engine | None = None) -> Model:
-    """Return the model of a file, told in the units of ``--units`` and solved by ``--engine``, where there are any.
+    """Return the model of a file, reported in the units of ``--units`` and solved by ``--engine``, where there are any.
 
     Raises
     ------
@@ -45,7 +45,7 @@ def loaded(file: Path, units: str | None = None, engine: Engine | None = None) -
 
 
 def in_units(model: Model, units: str | None) -> Model:
-    """Return the model told in the units of ``--units``, where there are any.
+    """Return the model reported in the units of ``--units``, where there are any.
 
     Raises
     ------

@@ -186,7 +186,7 @@ def silence() -> None:
 def print_json(data: Mapping[str, Any]) -> None:
     """Print one JSON object on standard output, with its format first; numbers that JSON does not know become null.
 
-    What is odd about the model stands under ``attention``, whatever the command.
+    What is suspicious about the model is listed under ``attention``, whatever the command.
     """
     from concio import __version__
 

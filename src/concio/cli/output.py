@@ -58,7 +58,7 @@ def check_writable(target: Path) -> None:
 
 
 def check_file(target: Path, *, force: bool = False, force_by: str = "--force") -> None:
-    """Raise where a file cannot be written to ``target``, or where one is that concio cannot tell to be its own.
+    """Raise where a file cannot be written to ``target``, or where a file of others exists.
 
     Raises
     ------

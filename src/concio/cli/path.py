@@ -49,8 +49,8 @@ def path(
 ) -> int:
     """Follow a load path from event to event: which joint opens, closes, slips or sticks at which load.
 
-    Without --stage, the [[stages]] of the file are followed; where there are none, each load group is a stage: own
-    weight first, then the others in the order of the file.
+    Without --stage, the [[stages]] of the file are followed; where there are none, each load group is a stage:
+    self-weight first, then the others in the order of the file.
 
     The exit code is 0 where every stage reached its load, 3 where the structure is shown to carry no more before that,
     4 where something asked for was not reached, where self-weight never acts, or where the path was lost.

@@ -96,7 +96,7 @@ def loaded_faces(model: Model, load: Load) -> list[LoadedFace]:
     Raises
     ------
     InputError
-        The load has no edge, lies on no edge of a body, names a face its joint does not have, or lies in an upright
+        The load has no edge, lies on no edge of a body, names a face its joint does not have, or lies in a vertical
         joint and names none.
     """
     where = f"load group '{load.group}'"

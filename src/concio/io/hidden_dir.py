@@ -4,7 +4,7 @@ A hidden directory is called ``.concio-HOST-PROCESS.NUMBER``. It is locked as lo
 that another run can tell whether it was left behind. The lock of the directory itself is held while files change their
 place, not while they are written: runs that write into one directory at the same time put their files there one after
 the other. Locks are those of the system (``flock``), which go when a process dies, however it dies. Where there are
-none, the number of the process says whether it lives, and runs into one directory are not told from each other.
+none, the number of the process says whether it lives, and runs into one directory are not distinguished.
 """
 
 from __future__ import annotations

@@ -203,7 +203,7 @@ def _check(made: PushResult | DynamicsResult, where: str) -> None:
             msg = f"damaged: '{name}' is not what it must be"
             raise InputError(msg, where=where, hint="write the file again")
     if not isinstance(made.ending, Ending if isinstance(made, DynamicsResult) else PushEnding):
-        msg = "damaged: how the motion ended is not told"
+        msg = "damaged: the ending of the motion is missing"
         raise InputError(msg, where=where, hint="write the file again")
     for name, kind in (("end", MotionState), *((("shots", Shots), ("steps", Steps), ("energy", EnergyBalance))
                        if isinstance(made, DynamicsResult) else ())):  # fmt: skip

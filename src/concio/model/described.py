@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 MOST = 6
-"""More materials and joint laws than this are not told one by one."""
+"""More materials and joint laws than this are not listed one by one."""
 
 LAW_KINDS: dict[str, str] = {
     "cohesion": "stress",

@@ -74,8 +74,8 @@ class Model(Shown):
     stages : tuple of Stage
         Load path that comes with the model; :func:`concio.run_path` takes it where it is given no stages.
     periods : ((x1, y1), (x2, y2)) or None
-        The model is a *cell* that these two vectors repeat in the plane without end [m]: its interfaces wrap round, and
-        nothing else may hold or load it. See :mod:`concio.model.interfaces.periodic`.
+        The model is a *cell* that these two vectors repeat periodically in the plane [m]: its interfaces wrap round,
+        and nothing else may hold or load it. See :mod:`concio.model.interfaces.periodic`.
     contact_points : {"auto", "corners"} or int
         Where contact is stated between two blocks in space that are not meshed: at the corners of each patch, or at
         n x n points over it, which distribute pressure. "auto" takes corners for hard joints, 4 x 4 points for joints

@@ -1,4 +1,4 @@
-"""Numbers of fill, road and vehicle that are possible but hardly meant: tonnes for kN, a vehicle wider than its bridge.
+"""Numbers of fill, road and vehicle that are possible but implausible: tonnes for kN, a vehicle wider than its bridge.
 
 Each finding is a sentence for a person; :mod:`concio.model.plausibility` puts them into the one list of attention.
 """

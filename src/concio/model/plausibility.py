@@ -1,4 +1,4 @@
-"""Numbers that are possible but hardly meant: degrees for a coefficient, millimetres for metres, kg for kN.
+"""Numbers that are possible but implausible: degrees for a coefficient, millimetres for metres, kg for kN.
 
 Nothing here is refused. Each finding is a sentence for a person, and part of the one list of attention of
 :mod:`concio.verdict.attention`.

@@ -54,7 +54,7 @@ class JointRule:
             raise InputError(msg, hint="a gap is an opening in m; overlaps are not gaps")
 
     def matches(self, a: Body | Polyhedron, b: Body | Polyhedron) -> bool:
-        """Return whether the rule speaks of interfaces between ``a`` and ``b``."""
+        """Return whether the rule applies to interfaces between ``a`` and ``b``."""
 
         def fits(word: str, body: Body | Polyhedron) -> bool:
             return called(word, body) or (word == body.material != "" and body.kind != "fixed")
@@ -82,7 +82,7 @@ def check_rules(rules: Sequence[JointRule], bodies: Sequence[Body | Polyhedron],
 
 
 def rules_of(rules: Sequence[JointRule], bodies: Sequence[Body | Polyhedron]) -> tuple[JointRule, ...]:
-    """Return the rules that may speak of some bodies: each of whose words names one of them; the first if none does."""
+    """Return the rules that may apply to some bodies: each of whose words names one of them; the first if none does."""
     known = {word for b in bodies for word in _words(b) if word}
 
     def names(word: str) -> bool:

@@ -1,6 +1,6 @@
 """Every limit of work at which an analysis leaves something out, gives up, or hands on to another method.
 
-A limit that is met is told with the answer. Sizes from which one way of computing the same is quicker than another,
+A limit that is met is reported with the answer. Sizes from which one way of computing the same is quicker than another,
 and rounds of refinement that end where they no longer help, stay with their method. All are numbers, of pairs unless
 the sentence says of what; none depends on a clock.
 """
@@ -58,7 +58,7 @@ HOMOTOPY_ITERATIONS = 300
 """Largest number of iterations of the homotopy in dilatancy."""
 
 LAW_ROUNDS = 300
-"""Largest number of times the constants of joint laws are asked anew of an answer."""
+"""Largest number of times the constants of joint laws are evaluated again at an answer."""
 
 # -- programmes of statics, and proofs --------------------------------------------------------------------------------
 

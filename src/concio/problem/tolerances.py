@@ -49,17 +49,17 @@ RELAXED = 1e-10
 """Natural-map residual up to which a step of viscous relaxation is solved."""
 
 MOVING_ON = 1e-9
-"""Natural-map residual up to which a step that looks for a motion without end is solved."""
+"""Natural-map residual up to which a step that looks for an unbounded motion is solved."""
 
 STILL_PAIR = 1e-9
-"""Relative velocities of a pair up to this share of the largest are none, in a motion without end."""
+"""Relative velocities of a pair up to this share of the largest are none, in an unbounded motion."""
 
 RIGID_BODY = 1e-6
-"""Largest scaled displacement, beside a motion without end, that is taken for none; elastic bodies under load move by
+"""Largest scaled displacement, beside an unbounded motion, that is taken for none; elastic bodies under load move by
 about one."""
 
 SLIDES = 1e-6
-"""Share of the largest slip of a step from which on a pair slides in a motion without end."""
+"""Share of the largest slip of a step from which on a pair slides in an unbounded motion."""
 
 RESTING = 1e-6
 """Largest scaled displacement that is tried as zero; elastic bodies under load move by about one."""

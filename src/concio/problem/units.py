@@ -16,7 +16,7 @@ that is not zero is wrong.
 
 Rounding is distinguished from error: y = x + C u + a t is known to a few eps of the sizes it is summed from, and no
 better, whoever solves. :data:`BALANCE_ROUNDING` of these is granted, never more than :data:`GRANTED` of the unit: where
-displacements are so large beside the compliance of a joint that they do not tell its force, nothing is certified.
+displacements are so large beside the compliance of a joint that they do not determine its force, nothing is certified.
 """
 
 from __future__ import annotations

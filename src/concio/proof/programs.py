@@ -21,7 +21,7 @@ def recompute(data: Any) -> str:
         It proves nothing; an entry that is missing or of another kind raises what Python raises.
     """
     if not isinstance(data, dict):
-        msg = "this is no certificate"
+        msg = "this is not a certificate"
         raise ValueError(msg)
     if data.get("claim") == "equilibrium":
         return verify_equilibrium.check(data)

@@ -86,7 +86,7 @@ def model_of(found: object) -> Model | None:
 
 
 def verdict_rows(verdict: Verdict, units: Units) -> Rows:
-    """Return question, what acts, what limits an answer, what was not checked and what is odd, a row each."""
+    """Return question, what acts, what limits an answer, what was not checked and what is suspicious, a row each."""
     question = verdict.question
     parts = (("asked", (question.asked,)), ("acts", question.loads(units)), ("assumed", question.assumptions),
              ("limits", verdict.limits), ("not checked", verdict.unchecked),

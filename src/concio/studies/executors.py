@@ -40,7 +40,7 @@ AHEAD = 2
 """Runs handed out for each worker: one at work, one waiting."""
 
 TRIES = 2
-"""Times that a run may take its worker with it."""
+"""Times that a run may crash its worker."""
 
 NAMES = ("serial", "processes", "dask")
 

@@ -39,7 +39,7 @@ class Settings:
     factors : mapping of str to float
         Load factors of every analysis; a group that is not named has 1.
     live : tuple of str
-        Load groups that limits and margins multiply, from nothing on, whatever their factors.
+        Load groups that limits and margins multiply from zero, whatever their factors.
     """
 
     method: str = "auto"
@@ -148,7 +148,7 @@ class Analyses:
 
     @property
     def attention(self) -> tuple[str, ...]:
-        """What is odd about the model, where it was assembled."""
+        """What is suspicious about the model, where it was assembled."""
         from concio.verdict.attention import attention
 
         return attention(self.assembly) if self.made("assembly") else ()
@@ -234,7 +234,7 @@ class Output:
     event : bool
         Whether it is 1 or 0 for yes or no, so that a share of the runs is a probability.
     multiplies : bool
-        Whether it multiplies the live groups, from nothing on, rather than let them act with their factors.
+        Whether it multiplies the live groups from zero, rather than let them act with their factors.
     """
 
     name: str

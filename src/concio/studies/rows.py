@@ -31,7 +31,7 @@ GRACE = 5.0
 
 @dataclass(frozen=True)
 class Row:
-    """What came of one run.
+    """Outcome of one run.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class Row:
         Number of the run, from 0.
     verdict : str
         "solved", "no_equilibrium", "collapses" ... of its load step; "done" where none was asked for; "bad_input",
-        "raised", "time_limit", "worker_lost" where it came to no end of its own.
+        "raised", "time_limit", "worker_lost" where it did not end by itself.
     message : str
         Why, in a sentence; empty where all is well.
     outputs : mapping of str to float
@@ -52,7 +52,7 @@ class Row:
     acting : mapping
         Load groups with their forces at factor 1, as :class:`concio.verdict.question.Acting` has them.
     attention : tuple of str
-        What is odd about the model of the run.
+        What is suspicious about the model of the run.
     """
 
     index: int
@@ -67,7 +67,7 @@ class Row:
 
     @property
     def failed(self) -> bool:
-        """Whether the run came to no verdict on the structure, or to none on one of its outputs because of a fault."""
+        """Whether the run has no verdict on the structure, or none on one of its outputs because of a fault."""
         return self.verdict in FAILURES or bool(self.errors)
 
     def placed(self, output: Output) -> float:
@@ -85,7 +85,7 @@ class Row:
 
     @classmethod
     def from_dict(cls, told: Mapping[str, Any]) -> Row:
-        """Return the row that :meth:`as_dict` told."""
+        """Return the row that :meth:`as_dict` wrote."""
         outputs = {str(k): float(v) for k, v in told["outputs"].items()}
         return cls(
             int(told["index"]), str(told["verdict"]), str(told["message"]), outputs, float(told["seconds"]),

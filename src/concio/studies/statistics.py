@@ -25,7 +25,7 @@ class Probability:
     low, high : float
         Interval that covers the probability with at least ``confidence``; undecided runs count against both ends.
     yes, runs, undecided : int
-        Runs with the event, runs in all, and runs that came to no answer.
+        Runs with the event, runs in all, and runs without an answer.
     confidence : float
     """
 
@@ -98,7 +98,7 @@ class Spread:
 
     @property
     def unanswered(self) -> int:
-        """Runs that came to no answer."""
+        """Runs without an answer."""
         nan = int(np.isnan(self.values).sum())
         return nan if self.end else nan - self.fails
 
@@ -178,7 +178,7 @@ class Fragility:
     runs : int
         Runs that it was fitted to.
     left_out : int
-        Runs that came to no answer, and were not.
+        Runs without an answer, and runs that were not made.
     """
 
     median: float
@@ -214,7 +214,7 @@ def fragility(intensity: Array, failed: Array) -> Fragility:
     intensity : (n,) array
         Positive.
     failed : (n,) array
-        1, 0, or ``nan`` for runs that came to no answer, which are left out.
+        1, 0, or ``nan`` for runs without an answer, which are left out.
 
     Raises
     ------

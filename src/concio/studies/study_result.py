@@ -96,7 +96,7 @@ class StudyResult(Shown):
 
     @property
     def failures(self) -> tuple[Row, ...]:
-        """Rows that came to no verdict on the structure or on an output, each with its sentence."""
+        """Rows without a verdict on the structure or on an output, each with its sentence."""
         return tuple(row for row in self.rows if row.failed)
 
     @cached_property

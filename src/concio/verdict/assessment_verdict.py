@@ -31,10 +31,10 @@ APART = 0.01
 CUT = {
     "joints end": "its joints reach the end of their travel",
     "joint opens": "a joint opens, or a tie goes slack or yields",
-    "several motions": "its joints leave more than one way to move, or none",
+    "several motions": "its joints allow more than one motion, or none",
     "no forces": "its joints carry no forces in equilibrium",
     "not asked": "no limit state asks for it",
-    "no state": "no collapse state is found to go on with",
+    "no state": "no collapse state is found from which to continue",
     "long": "too many changes of its joints to follow",
     "far": "it does not end",
 }

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 EN = {
-    "asked": "every local mechanism at {levels}, {code}, FC {FC}: the earthquake multiplies what pushes, all else "
-    "acts as it is",
+    "asked": "every local mechanism at {levels}, {code}, FC {FC}: the earthquake multiplies the horizontal loads, all "
+    "other loads are constant",
     "headline_holds": "Verified: zeta_E = {zeta} at {level}",
     "headline_fails": "Not verified: zeta_E = {zeta} at {level}",
     "headline_incomplete": "Incomplete: zeta_E = {zeta} at {level} of what was checked",
@@ -45,13 +45,13 @@ EN = {
     "what_changes": "other lines",
     "part": "the weakest of all is one in which only some blocks move, {bodies}; the search among all motions ended "
     "at a larger multiplier",
-    "brittle": "tie '{tie}' breaks before it yields: it counts with the {force} kN it has then, not with its yield "
+    "brittle": "tie '{tie}' breaks before it yields: its force at break, {force} kN, is used instead of its yield "
     "force",
     "corner": "'{name}', {level}: zeta_E = {zeta} is a ratio of accelerations, capacity over demand in "
     "displacements is {ratio}: as a_g is scaled the corner periods move with it, so that the displacement demanded "
     "does not grow like a_g",
-    "cut": "the curve of '{name}', push {way}, is cut at {d} m of its control point: {reason}; its zeta_E counts "
-    "nothing beyond",
+    "cut": "the curve of '{name}', push {way}, is cut at {d} m of its control point: {reason}; its zeta_E ignores what "
+    "lies beyond",
     "elsewhere": "left to the author, who answers for it: {items}",
     "open_levels": "{levels}: no hazard is given (or say which limit states are asked for)",
     "open_hazard": "{numbers} of {level} were not given: the spectrum uses default values that belong to no site",
@@ -75,8 +75,8 @@ EN = {
 }
 
 IT = {
-    "asked": "ogni meccanismo locale allo {levels}, {code}, FC {FC}: il sisma moltiplica ciò che spinge, tutto il "
-    "resto agisce com'è",
+    "asked": "ogni meccanismo locale allo {levels}, {code}, FC {FC}: il sisma moltiplica i carichi orizzontali, tutti "
+    "gli altri sono costanti",
     "headline_holds": "Verificato: zeta_E = {zeta} allo {level}",
     "headline_fails": "Non verificato: zeta_E = {zeta} allo {level}",
     "headline_incomplete": "Incompleto: zeta_E = {zeta} allo {level} per ciò che è stato esaminato",
@@ -116,24 +116,24 @@ IT = {
     "what_changes": "altre linee",
     "part": "il più debole di tutti è uno in cui si muovono solo alcuni blocchi, {bodies}; la ricerca fra tutti i "
     "moti finiva a un moltiplicatore maggiore",
-    "brittle": "la catena «{tie}» si rompe prima di snervarsi: conta per i {force} kN che ha allora, non per lo "
-    "snervamento",
+    "brittle": "la catena «{tie}» si rompe prima di snervarsi: si considera la forza alla rottura, {force} kN, non "
+    "quella di snervamento",
     "corner": "«{name}», {level}: zeta_E = {zeta} è un rapporto di accelerazioni, capacità su domanda in "
     "spostamento vale {ratio}: scalando a_g si spostano i periodi dello spettro, e lo spostamento richiesto non "
     "cresce come a_g",
-    "cut": "la curva di «{name}», spinta {way}, è troncata a {d} m del punto di controllo: {reason}; il suo zeta_E non "
-    "conta nulla oltre",
+    "cut": "la curva di «{name}», spinta {way}, è troncata a {d} m del punto di controllo: {reason}; il suo zeta_E "
+    "trascura quanto segue",
     "elsewhere": "lasciato all'autore, che ne risponde: {items}",
     "open_levels": "{levels}: pericolosità non data (oppure indicare quali stati limite sono richiesti)",
-    "open_hazard": "{numbers} dello {level} non dati: lo spettro è fatto con numeri di nessun sito",
+    "open_hazard": "{numbers} dello {level} non dati: lo spettro usa valori predefiniti, non riferiti a un sito",
     "open_height": "l'amplificazione in quota di {names}: indicare [site.building]",
     "open_out of plane": "la facciata fuori dal suo piano: il modello è più largo che spesso, e si muove solo nel "
     "piano",
-    "open_curve": "«{name}», spinta {way}, allo {levels}: la curva non lo dice ({reason})",
+    "open_curve": "«{name}», spinta {way}, allo {levels}: la curva non è conclusiva ({reason})",
     "open_bound": "se «{name}», spinta {way}, si muova sotto {alpha}, che è solo un limite superiore",
     "open_tie": "la catena «{tie}», senza forza di snervamento: si è ammesso che tiri fino a {force} kN",
     "open_unseen": "se {names} stiano in equilibrio: i carichi su quei corpi sono meno di {share} di quelli della "
-    "struttura intorno, ed è quanto i residui possono dire",
+    "struttura intorno, sotto la risoluzione dei residui",
     "open_locked": "«{name}», spinta {way}: con giunti che si aprono scorrendo è bloccato, con l'attrito di Coulomb "
     "non è una risposta, e non è stato trovato alcuno stato di collasso",
     "high": "«{name}» (z = {z} m)",

@@ -1,4 +1,4 @@
-"""What is odd about a model: one list, which every command, result, exception, ``--json`` and report carries.
+"""What is suspicious about a model: one list, which every command, result, exception, ``--json`` and report carries.
 
 Nothing here is refused. Each finding is a sentence for a person: joints that were not made, blocks that touch nothing,
 loads or parts of them that act nowhere, weights that are missing or act twice, and implausible numbers

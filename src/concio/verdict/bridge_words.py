@@ -20,7 +20,7 @@ ENGLISH: Mapping[str, str] = {
     "a_load": "a uniform load of {uniform}",
     "head_holds": "The vehicle is carried at every position that was looked at.",
     "head_fails": "The vehicle is not carried.",
-    "head_open": "Whether the vehicle is carried is open.",
+    "head_open": "It was not established whether the vehicle is carried.",
     "fails": "{required} times the vehicle is not carried at x = {x}, travelling to the {way}: nothing is in "
     "equilibrium beyond {upper} times.",
     "fails_coulomb": "{required} times the vehicle is not carried at x = {x}, travelling to the {way}: applied in one "
@@ -37,9 +37,9 @@ ENGLISH: Mapping[str, str] = {
     "there ({bound_axle}); the part that Coulomb friction carries was not found.",
     "no_soil": "Without the pressure of the soil the bound is {multiplier} times, at x = {x}.",
     "no_soil_none": "Without the pressure of the soil the bridge does not stand even without a vehicle.",
-    "rests": "the answer rests on the pressure of the soil: without it no equilibrium exists beyond {multiplier} "
+    "rests": "the answer depends on the pressure of the soil: without it no equilibrium exists beyond {multiplier} "
     "times the vehicle, less than the {required} asked for",
-    "rests_none": "the answer rests on the pressure of the soil: without it the bridge does not stand",
+    "rests_none": "the answer depends on the pressure of the soil: without it the bridge does not stand",
     "shares": "of the bound at the worst position {soil} % is due to the pressure of the soil and {spread} % to the "
     "spread of the load through the fill",
     "width": "a strip of {width} carries the vehicle: {by}",
@@ -76,10 +76,9 @@ ITALIAN: Mapping[str, str] = {
     "a_load": "un carico uniforme di {uniform}",
     "head_holds": "Il veicolo è portato in ogni posizione esaminata.",
     "head_fails": "Il veicolo non è portato.",
-    "head_open": "Resta aperto se il veicolo sia portato.",
-    "fails": "{required} volte il veicolo non è portato in x = {x}, con marcia verso {way}: oltre {upper} volte "
-    "nulla è "
-    "in equilibrio.",
+    "head_open": "Non è stabilito se il veicolo sia portato.",
+    "fails": "{required} volte il veicolo non è portato in x = {x}, con marcia verso {way}: oltre {upper} volte non "
+    "esiste equilibrio.",
     "fails_coulomb": "{required} volte il veicolo non è portato in x = {x}, con marcia verso {way}: applicato "
     "in un solo "
     "passo con attrito di Coulomb, la struttura si muove.",
@@ -89,15 +88,14 @@ ITALIAN: Mapping[str, str] = {
     "unasked": "Nessun meccanismo esclude {required} volte il veicolo in alcuna di {all} posizioni; quanto porta "
     "l'attrito di Coulomb non è stato chiesto.",
     "worst": "La posizione peggiore è x = {x}, con marcia verso {way}: l'attrito di Coulomb vi porta {design} volte il "
-    "veicolo, {axle}, e oltre {bound} volte ({bound_axle}) nulla è in equilibrio.",
+    "veicolo, {axle}, e oltre {bound} volte ({bound_axle}) non esiste equilibrio.",
     "worst_unknown": "La posizione peggiore è x = {x}, con marcia verso {way}: oltre {bound} volte il veicolo "
-    "({bound_axle}) nulla vi è in equilibrio; quanto ne porti l'attrito di Coulomb non è stato trovato.",
+    "({bound_axle}) non esiste equilibrio; la parte portata con attrito di Coulomb non è stata trovata.",
     "no_soil": "Senza la spinta del terreno il limite è {multiplier} volte, in x = {x}.",
     "no_soil_none": "Senza la spinta del terreno il ponte non sta in piedi neppure senza veicolo.",
-    "rests": "la risposta poggia sulla spinta del terreno: senza di essa nulla è in equilibrio oltre "
-    "{multiplier} volte "
-    "il veicolo, meno delle {required} chieste",
-    "rests_none": "la risposta poggia sulla spinta del terreno: senza di essa il ponte non sta in piedi",
+    "rests": "la risposta dipende dalla spinta del terreno: senza di essa non esiste equilibrio oltre {multiplier} "
+    "volte il veicolo, meno delle {required} richieste",
+    "rests_none": "la risposta dipende dalla spinta del terreno: senza di essa il ponte non sta in piedi",
     "shares": "del limite nella posizione peggiore il {soil} % è dovuto alla spinta del terreno e il {spread} % alla "
     "diffusione del carico nel riempimento",
     "width": "il veicolo è portato da una striscia di {width}: {by}",

@@ -16,7 +16,7 @@ BEARS = 1e-3
 
 
 def apart(model: Model, detection: Detection) -> list[str]:
-    """Return sentences on blocks that touch nothing that stands, on groups that do not touch, and on what hangs."""
+    """Return sentences on blocks not connected to any support, on groups that do not touch, and on what hangs."""
     number = {body.name: k for k, body in enumerate(model.bodies)}
     ground = len(model.bodies)
     links = [(i.a, i.b) for i in detection.interfaces]

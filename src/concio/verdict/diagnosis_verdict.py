@@ -1,4 +1,4 @@
-"""The verdict on the cause of cracks: which motions explain what was measured, and what these cannot tell."""
+"""The verdict on the cause of cracks: which motions explain what was measured, and what these cannot determine."""
 
 from __future__ import annotations
 

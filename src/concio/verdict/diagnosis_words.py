@@ -12,7 +12,7 @@ EN = {
     "headline_several": "{count} causes explain the measurements, and these do not tell them apart",
     "headline_none": "None of the possible motions explains the measurements",
     "headline_doubt": "One measurement contradicts all others: {names}",
-    "headline_loose": "One cause explains the measurements, which do not tell how far it went: {cause}",
+    "headline_loose": "One cause explains the measurements, which do not determine its size: {cause}",
     "headline_coarse": "The steps of the settlement paths are too coarse for these errors",
     "headline_lost": "No cause was found, and not every choice of motions could be computed",
     "headline_partly": "One cause explains the measurements, and not every choice of motions could be computed: "
@@ -56,9 +56,9 @@ EN = {
     "meaning": "A cause is a motion of supports, or a change of loads, after which the model is in equilibrium and "
     "shows what was measured within the errors. It is one among the candidates that were given: what is not among "
     "them was not looked at.",
-    "unseen": "not told by these measurements: {motions} changes them by {change} errors in all",
+    "unseen": "not determined by these measurements: {motions} changes them by {change} errors in all",
     "unseen_part": "'{name}' by {motion}",
-    "coarse": "walked in finer steps, a reading of the simplest cause changes by {change} errors: give more steps",
+    "coarse": "with finer steps, a reading of the simplest cause changes by {change} errors: give more steps",
     "orders": "where its motions come one after the other instead of together, a reading changes by {change} errors",
     "together": "the motions are taken to have grown together, after all loads: another history may crack it otherwise",
     "sparse": "causes of more than {size} motions were not looked at",
@@ -126,7 +126,7 @@ IT = {
     "meaning": "Una causa è un movimento di appoggi, o una variazione di carichi, dopo il quale il modello è in "
     "equilibrio e mostra quanto misurato entro gli errori. È una fra le possibilità date: ciò che non è fra queste "
     "non è stato considerato.",
-    "unseen": "non rilevato da queste misure: {motions} le cambia di {change} errori in tutto",
+    "unseen": "non determinato da queste misure: {motions} le cambia di {change} errori in tutto",
     "unseen_part": "'{name}' di {motion}",
     "coarse": "con passi più fini una lettura della causa più semplice cambia di {change} errori: servono più passi",
     "orders": "se i movimenti avvengono uno dopo l'altro anziché insieme, una lettura cambia di {change} errori",

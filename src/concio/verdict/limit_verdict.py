@@ -1,4 +1,4 @@
-"""The verdict of a limit load: what to design with and why, what is an upper bound only, and what stays open."""
+"""The verdict of a limit load: the design value and why, what is an upper bound only, and what stays open."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def _status(found: LimitResult, outcome: Outcome) -> str:
 
 
 def _answer(found: LimitResult, question: Question) -> str:
-    """Return what to design with and why, then what is an upper bound only."""
+    """Return the design value and why, then what is an upper bound only."""
     if found.dead in PROVEN_FAILURES:
         assert found.dead is not None
         said = found.dead.value.rstrip(".")
@@ -129,7 +129,7 @@ def _answer(found: LimitResult, question: Question) -> str:
 
 
 def _design(found: LimitResult, question: Question) -> str:
-    """Return what to design with, and why, in one sentence."""
+    """Return the design value, and why, in one sentence."""
     low, groups = found.design, named(found)
     if found.dead is not None and found.dead is not Status.SOLVED:
         return (

@@ -192,8 +192,8 @@ def spread_lines(found: LimitResult) -> list[str]:
     n, steps = found.spread.points, found.spread.steps
     above = "" if math.isnan(steps.failed) else f", {found.spread.not_reached:.6g} not reached"
     said = (
-        f"carried up to {found.spread.carried:.6g}{above}" if steps.multipliers else "none: the dead load came to no "
-        "certified state"
+        "carried up to "
+        f"{found.spread.carried:.6g}{above}" if steps.multipliers else "none: the dead load reached no certified state"
     )
     if not n:
         return [f"  pressure spread      {said}, in finer steps, less the overestimate in joints that twist"]

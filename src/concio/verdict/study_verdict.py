@@ -138,7 +138,7 @@ def _unanswered(study: StudyResult) -> list[str]:
 def _why(study: StudyResult, name: str) -> list[str]:
     rows = [row for row in study.rows if math.isnan(row.outputs.get(name, math.nan)) and name not in row.fails]
     told = [row.errors.get(name) or row.message or row.verdict.replace("_", " ") for row in rows]
-    return ["its analysis came to no number" if text in ("done", "solved") else text for text in told]
+    return ["its analysis gave no number" if text in ("done", "solved") else text for text in told]
 
 
 def _bounds(study: StudyResult) -> tuple[str, ...]:

@@ -70,7 +70,8 @@ class Verdict:
     unchecked : tuple of str
         What was asked for, or would be expected, and was not checked.
     attention : tuple of str
-        What is odd about the model or the numbers: :func:`concio.verdict.attention.attention` and what the result adds.
+        What is suspicious about the model or the numbers: :func:`concio.verdict.attention.attention` and what the
+        result adds.
     next_steps : tuple of str
         What to do next, for a report.
     """

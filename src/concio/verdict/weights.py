@@ -1,4 +1,4 @@
-"""Own weight that is missing, acts twice, or is not multiplied by 1: what a certificate can never see."""
+"""Self-weight that is missing, acts twice, or is not multiplied by 1: what a certificate can never see."""
 
 from __future__ import annotations
 

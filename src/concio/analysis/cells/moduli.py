@@ -6,8 +6,8 @@ the columns of the matrix A,
 .. math:: (\Sigma_{xx}, \Sigma_{yy}, \Sigma_{xy}) = A\,(E_{xx}, E_{yy}, \Gamma_{xy}), \qquad \Gamma_{xy} = 2 E_{xy}.
 
 With all joints closed (the default) A is symmetric. It holds as long as all joints stay closed and none slips: a
-polyhedron of stresses, which comes with the moduli. Unilateral joints without tensile strength have moduli all the
-same, but in compression only.
+polyhedron of stresses, which comes with the moduli. Unilateral joints without tensile strength still have moduli, but
+in compression only.
 
 What is shown has been checked from the original equations: balance at every node, joints that keep their states, the
 macroscopic stress a symmetric tensor (turning moments of the contact forces cancel), the energy stored in bodies and

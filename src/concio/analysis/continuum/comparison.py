@@ -91,7 +91,7 @@ class ContinuumComparison(Shown):
 
     @property
     def checked(self) -> bool:
-        """Whether everything that is reported has been proven or certified, be it that the blocks do not stand."""
+        """Whether everything that is reported has been proven or certified, including that the blocks do not stand."""
         limits = self.strength is None or (all(self.strength.proven) and self.strength.blocks.associated.checked)
         return limits and (self.elastic is None or self.elastic.blocks.status.exit_code in (0, 3))
 

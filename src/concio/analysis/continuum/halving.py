@@ -1,4 +1,4 @@
-"""What becomes of a wall as its blocks are made smaller at fixed outline: the way to its homogenised continuum."""
+"""A wall whose blocks are made smaller at fixed outline: the way to its homogenised continuum."""
 
 from __future__ import annotations
 

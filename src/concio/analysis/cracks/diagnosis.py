@@ -52,7 +52,7 @@ class Diagnosis(Shown):
     nearest : Cause or None
         The best fit, where none is within the errors.
     unseen : tuple of Unseen
-        Combinations of motions that these measurements cannot tell.
+        Combinations of motions that these measurements cannot determine.
     places : tuple of Place
         Where to measure next.
     future : Future or None

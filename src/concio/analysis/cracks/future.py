@@ -36,7 +36,7 @@ GROUP = "the motion that goes on"
 
 @dataclass(frozen=True, eq=False)
 class Future:
-    """What becomes of a structure whose supports go on moving as a cause says.
+    """What happens to a structure whose supports go on moving as a cause says.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What the measurements cannot tell: combinations of motions that change none of them by more than its error."""
+"""What the measurements cannot determine: combinations of motions that change none of them by more than its error."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PART = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Unseen:
-    """A combination of motions that these measurements do not tell from rest.
+    """A combination of motions that these measurements do not distinguish from rest.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class Unseen:
 
 
 def unseen_of(fitter: Fitter, cause: Cause, names: Sequence[str]) -> tuple[Unseen, ...]:
-    """Return the combinations of motions that the measurements do not tell where a cause has brought the structure.
+    """Return the combinations of motions that the measurements leave open beside a cause.
 
     Parameters
     ----------

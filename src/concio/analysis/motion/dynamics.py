@@ -103,7 +103,7 @@ def dynamics(
     velocities : mapping of body to (v_x, v_y, spin), optional
         Initial velocities [m/s, m/s, rad/s].
     restitution : float
-        Share of the normal velocity that comes back from an impact of hard joints, 0 to 1.
+        Coefficient of restitution of impacts of hard joints, 0 to 1.
     theta : float
         1/2 conserves energy; up to 1 damps high frequencies.
     mass_damping, stiffness_damping : float

@@ -1,6 +1,6 @@
 """What contact pairs remember of a step or of an equilibrium, and the energy they took in it.
 
-The slip of a step is partly elastic (of compliant joints, their own or lent) and partly plastic; plastic slip opens
+The slip of a step is partly elastic (of compliant joints, their own or added) and partly plastic; plastic slip opens
 joints that dilate and breaks brittle bonds. What presses a pair beyond its cap crushes it. The work of the forces goes,
 but for what the springs store, into friction, impacts, damping and crushing.
 

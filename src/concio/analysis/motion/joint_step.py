@@ -38,7 +38,7 @@ class JointStep:
     springy : (m,) boolean array
         Pairs with a stiffness of their own.
     a_n, a_t : (m,) arrays
-        Compliances, own or lent [m/kN].
+        Compliances, own or added [m/kN].
     gap : (m,) array
         In the middle of the step, by constant velocities [m].
     y0 : (m, d) array

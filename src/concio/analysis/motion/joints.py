@@ -71,7 +71,7 @@ class Joints:
     lent : float
         Compliance added to hard joints of rigid bodies [m/kN].
     yielding : (B,) array
-        That lent on behalf of each elastic body, zero for others [m/kN].
+        That added on behalf of each elastic body, zero for others [m/kN].
     """
 
     def __init__(
@@ -106,7 +106,7 @@ class Joints:
         return self._dry[1]
 
     def compliances(self, slots: Slots, area: Array, tension: Array) -> tuple[Array, Array, Springs | None]:
-        """Return compliances (m,) along normal and tangent [m/kN], lent ones too, and the springs of joints.
+        """Return compliances (m,) along normal and tangent [m/kN], with added ones, and the springs of joints.
 
         Parameters
         ----------

@@ -97,7 +97,7 @@ class Mover:
 
     @property
     def lent(self) -> float:
-        """Compliance lent to hard joints of rigid bodies [m/kN]."""
+        """Compliance added to hard joints of rigid bodies [m/kN]."""
         return self.stepper.maker.joints.lent if len(self.structure.reference.rigid) else 0.0
 
     def begin(self, state: MotionState, origin: Array) -> None:

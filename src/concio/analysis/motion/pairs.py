@@ -127,7 +127,7 @@ class PairMaker:
 
 
 def yielding(reference: Reference) -> Array:
-    """Return the compliance that elastic bodies lend their hard joints (B,) [m/kN]."""
+    """Return the compliance that elastic bodies add to their hard joints (B,) [m/kN]."""
     disc = reference.disc
     found = np.zeros(len(disc.shape_of))
     for b in reference.meshed.tolist():

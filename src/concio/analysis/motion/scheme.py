@@ -24,7 +24,7 @@ class Scheme:
     theta : float
         1/2 conserves energy; up to 1 damps high frequencies.
     restitution : float
-        e, share of the normal velocity that comes back from an impact of hard joints.
+        e, coefficient of restitution of impacts of hard joints.
     mass_damping, stiffness_damping : float
         Rayleigh's alpha [1/s] and beta [s] of elastic bodies; beta also of compliant joints and ties.
     brittle : bool

@@ -97,7 +97,7 @@ class Anchor:
                 msg = f"{name} = {value} must be positive"
                 raise InputError(msg, where=where)
         if not self.capacities:
-            msg = "nothing of this anchor can be checked"
+            msg = "this anchor has no data to check"
             hint = "steel: steel_area and steel_strength; punching: plate, wall_thickness and shear_strength"
             raise InputError(msg, where=where, hint=hint)
 

@@ -88,7 +88,7 @@ def assess(
         What is not checked here and need not be, for the author answers for it: "out of plane" of a facade in
         elevation, "height" of mechanisms above the ground without a building, "ties" without yield force.
     progress : callable, optional
-        Told of each mechanism that is sought and followed.
+        Called for each mechanism that is sought and followed.
 
     Raises
     ------

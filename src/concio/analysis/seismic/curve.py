@@ -23,13 +23,13 @@ FARTHEST = 2.0
 REASONS = {
     "falls": "the multiplier vanishes",
     "far": f"the control point has moved by {FARTHEST:g} times the size of the mechanism",
-    "joints end": "its joints reach the end of their travel; what may stand beyond does not count",
-    "joint opens": "a joint opens or a tie goes slack or yields; what may stand beyond does not count",
-    "several motions": "its joints leave more than one way to move, or none",
+    "joints end": "its joints reach the end of their travel; equilibria beyond are ignored",
+    "joint opens": "a joint opens or a tie goes slack or yields; equilibria beyond are ignored",
+    "several motions": "its joints allow more than one motion, or none",
     "no forces": "its joints carry no forces in equilibrium",
     "not asked": "no limit state asks for it",
-    "no state": "no collapse state is found to go on with; what may stand beyond does not count",
-    "long": "too many changes of its joints to follow; what may stand beyond does not count",
+    "no state": "no collapse state is found from which to continue; equilibria beyond are ignored",
+    "long": "too many changes of its joints to follow; equilibria beyond are ignored",
 }
 """Why a curve ends where it ends."""
 

@@ -40,7 +40,7 @@ class LevelOutcome:
     zeta : float
         That over the acceleration of the site.
     T_R : float
-        Its return period [years]; ``nan`` where the hazards known do not tell.
+        Its return period [years]; ``nan`` where it cannot be computed from the hazards known.
     check : Check
         The one that decides.
     """

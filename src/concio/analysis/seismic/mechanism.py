@@ -64,7 +64,7 @@ class Found:
         Bodies that were let move; None for all.
     needs_friction : bool
         Of what is locked: whether only friction holds it, so that the associated programme, in which joints open as
-        they slide, does not tell what Coulomb friction holds.
+        they slide, does not show what Coulomb friction holds.
     """
 
     associated: LimitLoad

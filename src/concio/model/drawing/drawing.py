@@ -149,7 +149,7 @@ def usable_outlines(
     Raises
     ------
     InputError
-        Mending would swallow half of the blocks.
+        Mending would remove half of the blocks.
     """
     faults = list(drawing.faults)
 
@@ -196,7 +196,7 @@ def usable_outlines(
 
 
 def _wider(outlines: list[Outline], mend: float, note: Any, where: str) -> list[Outline]:
-    """Return the outlines that mending does not swallow, the others noted."""
+    """Return the outlines that mending does not remove, the others noted."""
     if not mend:
         return outlines
     kept: list[tuple[float, Outline]] = []
@@ -207,7 +207,7 @@ def _wider(outlines: list[Outline], mend: float, note: Any, where: str) -> list[
         (lost if width <= 2 * mend else kept).append((width, o))
     if len(lost) > len(kept):
         width, o = min(lost, key=lambda found: found[0])
-        msg = f"mend = {mend:g} m would swallow {len(lost)} of {len(outlines)} outlines"
+        msg = f"mend = {mend:g} m would remove {len(lost)} of {len(outlines)} outlines"
         at = o.points[0]
         hint = f"the thinnest, entity {o.handle} at ({at[0]:.6g}, {at[1]:.6g}) m, is about {1e3 * width:.3g} mm wide"
         raise InputError(msg, where=where, hint=hint)

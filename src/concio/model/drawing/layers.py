@@ -134,7 +134,7 @@ class Layers:
             if use.use == "ignore":
                 notes.append(f"layer '{name}' is to be ignored, but the drawing has no such layer")
                 continue
-            msg = f"[drawing.layers] speaks of layer '{name}', which the drawing does not have"
+            msg = f"[drawing.layers] names layer '{name}', which the drawing does not have"
             raise InputError(msg, where=where, hint=closest(name, list(layers)))
         return notes
 

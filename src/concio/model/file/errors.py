@@ -111,7 +111,7 @@ def _short(value: Any) -> str:
 
 
 def _most_telling(faults: Sequence[Any]) -> Any:
-    """Return the fault to speak of: an unknown key before the one that its misspelling leaves missing."""
+    """Return the fault to report: an unknown key before the one that its misspelling leaves missing."""
     first = faults[0]
     if first["type"] == "missing":
         table = first["loc"][:-1]

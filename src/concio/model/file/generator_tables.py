@@ -73,7 +73,7 @@ BY_NAME: Mapping[str, Any] = {
     "elements_per_block": tuple[StrictInt, StrictInt],
     "repeat": tuple[StrictInt, StrictInt],
 }
-"""Types of the keys that their annotation does not tell: pairs of lengths and of numbers look alike there."""
+"""Types of the keys that their annotation does not show: pairs of lengths and of numbers look alike there."""
 
 SIMPLE: Mapping[Any, Any] = {bool: StrictBool, int: StrictInt, str: StrictStr}
 

@@ -2,8 +2,8 @@
 
 Two polyhedra that touch do so where an edge of one, its ends included, lies on a face or on an edge of the other. So of
 every pair of bodies that come within reach of each other, edges are cut by faces and measured against edges. A place is
-told unless a joint of the same two bodies covers it, another near miss tells of it, or it is a corner or an edge along
-an edge at which joints with other bodies connect the two (:mod:`concio.model.interfaces.meeting`).
+reported unless a joint of the same two bodies covers it, another near miss tells of it, or it is a corner or an edge
+along an edge at which joints with other bodies connect the two (:mod:`concio.model.interfaces.meeting`).
 """
 
 from __future__ import annotations
@@ -312,7 +312,7 @@ class _Joints:
 def _told(
     bodies: Sequence[Polyhedron], places: _Places, both: Array, near: Array, known: Sequence[NearMiss]
 ) -> list[NearMiss]:
-    """Return a near miss for each place, the longest first of those that lie on each other, without those told."""
+    """Return a near miss for each place, the longest first of those that lie on each other, without those reported."""
     told: dict[tuple[int, int], list[tuple[Array, float]]] = {}
     for miss in (m for m in known if m.touches):
         told.setdefault(miss.bodies, []).append((miss.at, np.sqrt(miss.length)))

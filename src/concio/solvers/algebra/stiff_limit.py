@@ -39,7 +39,7 @@ NOTHING = 1e-6
 """Where all displacements fall below this share of those that the compliance allowed, nothing moves."""
 
 LOOSE = 1e-12
-"""Stiffness, relative to the lent one, of the springs that keep what nothing holds where it is."""
+"""Stiffness, relative to the added one, of the springs that keep what nothing holds where it is."""
 
 
 def without_compliance(hard: ContactProblem, lent: ContactProblem, answer: Solution) -> tuple[Solution, Array]:

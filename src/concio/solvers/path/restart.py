@@ -64,8 +64,8 @@ class Beyond:
     jump : bool
         Whether it is a finite distance away, however small the increment.
     no_equilibrium : bool
-        Where there is no state: whether a mechanism proves that the load beyond cannot be carried, or a motion without
-        end that the structure, let go at the point under slightly more load, does not come to rest.
+        Where there is no state: whether a mechanism proves that the load beyond cannot be carried, or an unbounded
+        motion that the structure, released at the point under slightly more load, does not come to rest.
     motion : (N,) array or None
         That mechanism or motion.
     cancelled : bool

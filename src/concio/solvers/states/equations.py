@@ -63,7 +63,7 @@ class StateEquations:
 
     @cached_property
     def blocks(self) -> Array:
-        """Stiffness D of each pair (m, 2, 2), compliance DELTA lent: forces change by -D times its displacements."""
+        """Stiffness D of each pair (m, 2, 2), compliance DELTA added: forces change by -D times its displacements."""
         s, delta = self.s, DELTA / self.s.share
         a_n, a_t = s.compliance.T
         d_n = np.where(self.closed, 1.0 / np.maximum(a_n - self.wide * a_t * self.drag, delta), 0.0)

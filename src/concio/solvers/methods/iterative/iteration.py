@@ -185,7 +185,7 @@ def _judge(
         info["accuracy"] = worst
         trace.append(
             f"stopped after {len(record.history)} iterations at an accuracy of {worst:.1e} "
-            f"(worst entry: {entry.replace('_', ' ')}); {CERTIFIED:.0e} is asked of an answer."
+            f"(worst entry: {entry.replace('_', ' ')}); {CERTIFIED:.0e} is required of an answer."
         )
     solution = judge(
         problem,
