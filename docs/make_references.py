@@ -94,7 +94,7 @@ def section(key: str, entry: dict[str, Any], tables: dict[str, Any], told: set[s
         form = f"[[{key}]]"
     elif "additionalProperties" in entry:
         form = f"[{key}.NAME]"
-    labels = [f"({anchor(key)})=", *([f"({anchor(name)})="] if name not in told and name != key else [])]
+    labels = [f"({anchor(key)})=", *([f"({place(name)})="] if name not in told and place(name) != anchor(key) else [])]
     lines = ["", *labels, f"### `{form}`", "", cell(entry["description"].rstrip(".")) + "."]
     return lines + body(name, tables, told, defaults_of(key))
 
@@ -112,7 +112,7 @@ def body(name: str, tables: dict[str, Any], told: set[str], defaults: dict[str, 
     for inner in dict.fromkeys(n for entry in keys.values() for n in tables_of(entry)):
         if inner not in told:
             about = tables[inner].get("description", "").split("\n", 1)[0]
-            lines += ["", f"({anchor(inner)})=", f"#### {title_of(inner)}", "", about]
+            lines += ["", f"({place(inner)})=", f"#### {title_of(inner)}", "", about]
             lines += body(inner, tables, told, {})
     return lines
 
@@ -140,7 +140,7 @@ def kind(entry: dict[str, Any]) -> str:
         return "angle, degrees"
     if "$ref" in entry:
         name = entry["$ref"].rsplit("/", 1)[-1]
-        return f"[table](#{anchor(name)})"
+        return f"[table](#{place(name)})"
     if "enum" in entry or "const" in entry:
         return ", ".join(f'`"{word}"`' for word in entry.get("enum", [entry.get("const")]))
     if "anyOf" in entry or "oneOf" in entry:
@@ -189,6 +189,12 @@ def shown(value: Any) -> str:
 def anchor(name: str) -> str:
     """Return the anchor of a table."""
     return "key-" + re.sub(r"\W+|__?", "-", name).lower()
+
+
+def place(name: str) -> str:
+    """Return the anchor of a table by its name in the schema, which may be that of a key of a file."""
+    taken = any(anchor(key) == anchor(name) and key != name for keys in GROUPS.values() for key in keys)
+    return anchor(name) + ("-table" if taken else "")
 
 
 def title_of(name: str) -> str:

@@ -2,7 +2,7 @@
 
 The checking program :mod:`concio.proof.verify_equilibrium` writes the equations down; here is found what it needs
 beside the model's numbers. The states of the joint points are read off the answer; the equations of states are linear.
-Hard joints of rigid blocks have the compliance that is lent to them: without it any forces in balance would pass.
+Hard joints of rigid blocks have the compliance that is added to them: without it any forces in balance would pass.
 Their solution is enclosed by elimination in the order of a factor in floating point, with as many bits as it takes.
 Where a sign is not strict an enclosure cannot show it, and small models are solved in fractions.
 
@@ -49,7 +49,7 @@ def prove_equilibrium(
     Parameters
     ----------
     assembly : Assembly
-        Hard joints of rigid blocks with the compliance lent to them (:mod:`concio.analysis.lent_compliance`).
+        Hard joints of rigid blocks with the compliance added to them (:mod:`concio.analysis.lent_compliance`).
     factors : mapping of str to float, optional
         Of the load groups.
     states : PairStates

@@ -20,7 +20,7 @@ ASKED = {
     "equilibrium": "an exact Coulomb equilibrium under the loads that act, in one step from rest",
 }
 ONE_STATE = "one equilibrium in one step from rest: others may exist, and a history of loading may end in another"
-LENT = "a compliance lent to hard joints of rigid blocks, in proportion to one over their area"
+LENT = "a compliance added to hard joints of rigid blocks, in proportion to one over their area"
 DILATES = "friction that dilates: forces in balance are necessary for Coulomb friction and not sufficient"
 
 

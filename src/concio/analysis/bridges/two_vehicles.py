@@ -32,7 +32,7 @@ def second_vehicle(model: Model, name: str, apart: Sequence[float]) -> Vehicle:
         raise InputError(msg, hint="add [vehicle]")
     found = model.vehicle if name == SAME else find_vehicle(name)
     if not found.points:
-        msg = f"vehicle '{found.name}' has no axles: uniform load cannot stand twice on one road"
+        msg = f"vehicle '{found.name}' has no axles: a uniform load cannot be on one road twice"
         raise InputError(msg, where="second", hint="give axles, or lanes with a gap between them")
     if not apart or not all(0 < d < np.inf for d in apart):
         msg = "a second vehicle needs distances from the first, all of them positive"
