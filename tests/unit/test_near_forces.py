@@ -136,9 +136,14 @@ def test_a_state_far_away_is_no_excuse_for_a_wrong_answer(panel):
 
 @pytest.mark.long
 def test_steps_from_the_last_keep_to_the_exact_path_where_stones_come_loose():
-    """From nothing, the last of twenty steps ends in another equilibrium: a loose stone 5 % of the motion away."""
+    """From nothing, the last of twenty steps ends in another equilibrium: a loose stone 5 % of the motion away.
+
+    The load ends before the path jumps, at 0.999: what is reached behind a jump is one of several equilibria.
+    """
     model = dry_wall(10, 8, 0.5)
     weight = Stage("weight", {"dead": 1.0}, steps=1)
-    exact = run_path(model, [weight, Stage("push", {"live": 1.0})]).steps[-1].state
-    steps = run_path(model, [weight, Stage("push", {"live": 1.0}, steps=20)], method="steps").steps[-1].state
-    assert np.abs(steps.displacement - exact.displacement).max() <= 1e-2 * np.abs(exact.displacement).max()
+    path = run_path(model, [weight, Stage("push", {"live": 0.99})])
+    assert not any(event.kind == "jumps" for event in path.events)
+    steps = run_path(model, [weight, Stage("push", {"live": 0.99}, steps=20)], method="steps").steps[-1].state
+    exact = path.steps[-1].state
+    assert np.abs(steps.displacement - exact.displacement).max() <= 2e-3 * np.abs(exact.displacement).max()
