@@ -152,6 +152,15 @@ def check_chapel_corner(found):
     assert max(v for name, v in found.items() if name.endswith("error")) <= 1e-9
 
 
+def check_which_abutment_gave_way(found):
+    assert found["named"]
+    assert found["causes"] == 1
+    assert found["low"] < found["moved"] < found["high"]
+    assert found["moved"] == pytest.approx(found["crown"], abs=0.6e-3)  # two errors
+    assert found["either"] == 2
+    assert found["error"] <= 1e-9
+
+
 LONG = {
     "04_settlement",  # quick: test_settle, test_path
     "15_panel_and_its_continuum",  # test_continuum

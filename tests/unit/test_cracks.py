@@ -120,6 +120,16 @@ def test_what_no_candidate_explains_is_told() -> None:
     assert "explains the measurements" in found.verdict.sentence
 
 
+def test_that_there_is_no_cause_is_told_of_fine_paths_alone() -> None:
+    cracks = spread_cracks(0.01)
+    none = diagnosed(flat_arch(), cracks, [SINKS], method="steps")
+    assert none.verdict.status == "no_cause"
+    assert none.forward.steps == 16
+    one = diagnosed(flat_arch(), cracks, [GIVES], method="steps")
+    assert one.verdict.status == "one_cause"
+    assert one.forward.steps == 4
+
+
 @pytest.mark.parametrize(
     ("number", "wrong", "mistake"),
     [(1, lambda v: 10 * v, "unit"), (3, lambda v: -v, "sign"), (1, lambda v: 1.7 * v, "unknown")],

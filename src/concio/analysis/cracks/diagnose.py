@@ -81,8 +81,9 @@ def diagnose(
     method : {"events", "steps"}, optional
         How paths are followed; by default event by event in the plane up to 150 contact pairs, else in steps.
     steps : int, optional
-        Load steps, if the path is followed in steps. By default 4, and 16 where a best fit, followed again in
-        four times as many, changes a reading by more than 0.3 errors; what the change comes to is reported.
+        Load steps, if the path is followed in steps. By default 4, and 16 where no cause was found, or a best
+        fit, followed again in four times as many, changes a reading by more than 0.3 errors; what the change comes to
+        is reported.
     large : bool
         Whether the simplest cause is followed at large displacements, to its limit; in the plane.
     progress : callable, optional
@@ -134,8 +135,11 @@ def diagnose(
         )  # fmt: skip
         trials = searched.trials
         coarse, changed = case.refinement(searched)
-        if coarse <= CHANGED:
+        found_any = bool(searched.accepted or searched.spoiled)
+        if coarse <= CHANGED and found_any:
             break
+        if not found_any:  # a true cause may be turned down on coarse paths: nothing of them is taken over
+            trials, changed = (), np.inf
     fitter = case.fitter
     causes = tuple(case.cause(fit) for fit in searched.accepted)
     doubts = case.doubts(searched)

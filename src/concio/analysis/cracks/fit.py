@@ -29,6 +29,8 @@ SLOW = 0.03
 """Relative decrease of the misfit below which a descent far from what is allowed ends."""
 TRUST = 2.0
 """Longest step over the size of a motion."""
+NEAR_BY = 4.0
+"""Times the size of a motion within which a descent begins: the responses of rest say little of what lies further."""
 DISTANT = 4.0
 """Times the misfit allowed from which on a descent is far from it."""
 FAR = 20.0
@@ -137,7 +139,11 @@ class Fitter:
             low = [0.0 if s > 0 else self.low[c] for c, s in zip(chosen, signs, strict=True)]
             high = [self.high[c] if s > 0 else 0.0 for c, s in zip(chosen, signs, strict=True)]
             step = self._step(J[kept], rest[kept], np.array(low), np.array(high), self.scale[list(chosen)])
-            found.append((float(_without_each((rest + J @ step)[kept], J[kept]).min()), step, J))
+            expected = float(_without_each((rest + J @ step)[kept], J[kept]).min())
+            near = NEAR_BY * self.scale[list(chosen)]
+            ends = [np.clip(np.array(end), -near, near) for end in (low, high)]
+            step = self._step(J[kept], rest[kept], ends[0], ends[1], self.scale[list(chosen)])
+            found.append((expected, step, J))
         return sorted(found, key=lambda item: item[0])
 
     def fit(
