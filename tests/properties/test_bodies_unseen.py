@@ -68,6 +68,29 @@ def test_every_command_says_of_which_body_nothing_is_shown(command: str, tmp_pat
     assert not any("pebble" in line for line in found["unchecked"]), "a part of its own is seen by its own loads"
 
 
+STUDY = """
+[study]
+size = 2
+outputs = [{outputs}]
+[[study.variables]]
+name = "friction"
+distribution = "choice"
+keys = "joints.dry.friction"
+values = [0.7]
+"""
+
+
+@pytest.mark.parametrize("outputs", ['"stands"', '"associated_multiplier"'])
+def test_a_study_says_so_of_its_runs(outputs: str, tmp_path: Path) -> None:
+    path = tmp_path / "model.toml"
+    for share, light in ((1e-11, True), (1e-4, False)):
+        path.write_text(with_pebble(share) + STUDY.format(outputs=outputs))
+        code, out, err = run("study", path, "--no-figures", "--json", "--out", tmp_path / f"study{light}")
+        found = json.loads(out)["verdict"]
+        assert any("in 2 of 2 runs: whether pebble is held" in line for line in found["unchecked"]) == light, err
+        assert (code, found["outcome"]) == ((4, "incomplete") if light else (0, "holds"))
+
+
 def test_an_assessment_says_so_in_both_languages() -> None:
     wall = overturning()
     light = concio.Body("pebble", [(0.2, 6.0), (0.22, 6.0), (0.22, 6.02), (0.2, 6.02)], kind="rigid", material="dust")

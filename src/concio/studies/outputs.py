@@ -153,6 +153,18 @@ class Analyses:
 
         return attention(self.assembly) if self.made("assembly") else ()
 
+    @property
+    def unseen(self) -> tuple[str, ...]:
+        """Bodies too light for the certificates of what was computed, where that says that something holds."""
+        from concio.verdict.unseen import unseen_bodies
+
+        multiplied = any(self.made(name) for name in ("limit", "coulomb", "load_margin"))
+        stepped = self.made("result") and self.result.solved
+        at = [dict(self.settings.factors)] if stepped or multiplied else []
+        if multiplied:
+            at.append({**self.settings.factors, **dict.fromkeys(self.settings.live, 0.0)})
+        return unseen_bodies(self.assembly, at) if at else ()
+
     def made(self, name: str) -> bool:
         """Return whether an analysis was asked for."""
         return name in self.__dict__

@@ -53,6 +53,8 @@ class Row:
         Load groups with their forces at factor 1, as :class:`concio.verdict.question.Acting` has them.
     attention : tuple of str
         What is suspicious about the model of the run.
+    unseen : tuple of str
+        Bodies too light for the certificates of the run.
     """
 
     index: int
@@ -64,6 +66,7 @@ class Row:
     errors: Mapping[str, str] = field(default_factory=dict)
     acting: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     attention: tuple[str, ...] = ()
+    unseen: tuple[str, ...] = ()
 
     @property
     def failed(self) -> bool:
@@ -90,7 +93,7 @@ class Row:
         return cls(
             int(told["index"]), str(told["verdict"]), str(told["message"]), outputs, float(told["seconds"]),
             tuple(told.get("fails", ())), dict(told.get("errors", {})), dict(told.get("acting", {})),
-            tuple(told.get("attention", ())),
+            tuple(told.get("attention", ())), tuple(told.get("unseen", ())),
         )  # fmt: skip
 
 
@@ -183,7 +186,7 @@ def run_row(task: Task, index: int, numbers: tuple[float, ...], seed: int) -> Ro
         made.verdict, made.message = "time_limit", f"the run did not end within {task.time_limit:g} s"
     return Row(
         index, made.verdict, made.message, made.outputs, round(time.monotonic() - start, 6), tuple(made.fails),
-        made.errors, made.acting, made.attention,
+        made.errors, made.acting, made.attention, made.unseen,
     )  # fmt: skip
 
 
@@ -198,6 +201,7 @@ class _Made:
     errors: dict[str, str] = field(default_factory=dict)
     acting: dict[str, dict[str, Any]] = field(default_factory=dict)
     attention: tuple[str, ...] = ()
+    unseen: tuple[str, ...] = ()
 
 
 def _fault(error: Exception) -> tuple[str, str]:
@@ -256,7 +260,7 @@ def _analyse(analyses: Analyses, wanted: tuple[Output, ...], row: _Made) -> None
         row.verdict, row.message = ("no_equilibrium", proven) if proven else (first, "")
     if row.errors:
         row.message = "; ".join(dict.fromkeys(text.split(": ", 1)[1] for text in row.errors.values()))
-    row.acting, row.attention = analyses.acting, analyses.attention
+    row.acting, row.attention, row.unseen = analyses.acting, analyses.attention, analyses.unseen
 
 
 @contextmanager

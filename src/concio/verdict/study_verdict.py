@@ -11,6 +11,7 @@ import numpy as np
 from concio.contact.factors import load_factor
 from concio.display import number
 from concio.verdict.question import Acting, Question, Role
+from concio.verdict.unseen import unseen_words
 from concio.verdict.verdict import Outcome, Verdict
 
 if TYPE_CHECKING:
@@ -42,6 +43,8 @@ def study_verdict(study: StudyResult) -> Verdict:
     unchecked = list(open_outputs)
     if missing:
         unchecked.insert(0, f"{missing} of the {len(study.sample)} runs that were planned: the study did not end")
+    answered = not unchecked
+    unchecked += _unseen(study)
     done = not unchecked
     runs = f"{len(study)} of {len(study.sample)} runs" if len(study) < len(study.sample) else f"{len(study)} runs"
     answers = " ".join(f"{o.name}: {output_words(study, o)}." for o in study.outputs)
@@ -50,7 +53,7 @@ def study_verdict(study: StudyResult) -> Verdict:
         outcome=Outcome.HOLDS if done else Outcome.INCOMPLETE,
         status="done" if done else "incomplete",
         question=_question(study),
-        headline=f"{runs}, each with an answer." if done else f"{runs}, not all of which have an answer.",
+        headline=f"{runs}, each with an answer." if answered else f"{runs}, not all of which have an answer.",
         answer=f"{runs}: {verdict_counts(study)}.{early} {answers}",
         proof="each row has the verdict of its own analyses; nothing is added to it",
         meaning="Every run is a row, whatever its outcome. A structure that is proven not to stand counts as worse "
@@ -133,6 +136,12 @@ def _unanswered(study: StudyResult) -> list[str]:
             reason = f": {why.most_common(1)[0][0]}" if why else ""
             found.append(f"{o.name} in {count} of {len(study)} runs{reason}")
     return found
+
+
+def _unseen(study: StudyResult) -> list[str]:
+    """Return a sentence for the bodies that certificates do not see, with how many runs it is said of."""
+    said = Counter(row.unseen for row in study.rows if row.unseen)
+    return [f"in {count} of {len(study)} runs: {line}" for names, count in said.items() for line in unseen_words(names)]
 
 
 def _why(study: StudyResult, name: str) -> list[str]:

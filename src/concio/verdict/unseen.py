@@ -48,7 +48,11 @@ def unseen(
     groups : sequence of sequences of int
         Bodies that were solved as one, where these are not the connected parts.
     """
-    names = unseen_bodies(loaded, factors or (None,), groups)
+    return unseen_words(unseen_bodies(loaded, factors or (None,), groups))
+
+
+def unseen_words(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the sentence on bodies that no certificate can see; none where there are none."""
     if not names:
         return ()
     verb = "is" if len(names) == 1 else "are"
