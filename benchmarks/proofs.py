@@ -1,6 +1,6 @@
 """Exact certificates of random models: share proved, refusals by name, cost over the solve; walls and arches.
 
-    python benchmarks/proofs.py [--count 1000] [--seed 0] [--walls] [--out docs/validation/exact_proofs_table.md]
+    python benchmarks/proofs.py [--count 1000] [--seed 0] [--walls] [--out docs/exact_proofs_table.md]
 
 For each model a load step is solved, or a limit multiplier, and ``proof()`` asked of what came out. What is made is
 recomputed by the checking program. Prints a table by family, the refusals with their sentences, names left out, and
@@ -133,6 +133,16 @@ def asked(family: str, model: concio.Model, rng: np.random.Generator) -> tuple[s
     return outcome, how, (end - solved) / (solved - start), len(model.free_bodies)
 
 
+TITLE = """# Exact certificates of random models, walls and arches
+
+Written by `benchmarks/proofs.py --count 1000 --walls`. For each random model a load step is solved or a limit
+multiplier found, and an [exact certificate](howto/exact_proofs.md) asked for; what was made was recomputed by the
+checking programs. The cost is the time of making the certificate over that of the solve, in the same run.
+
+"Bounds that differ" are those of round cones in space, or of a corner of a linear programme with several bases.
+
+"""
+
 HEAD = ("| family | models | proved exactly | enclosed | bounds that differ | one bound | not proved "
         "| blocks, most | cost over the solve, median | 9 in 10 below |")  # fmt: skip
 
@@ -213,7 +223,7 @@ def main() -> None:
         lines += ["", *fractions()]
     print("\n".join(lines))
     if given.out:
-        given.out.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        given.out.write_text(TITLE + "\n".join(lines) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -34,7 +34,7 @@ SHARP = 64
 """Bits of a unit to which every number is enclosed at least."""
 ALWAYS_EXACT = 120
 """Equations up to which the solution is given in fractions, which are short then."""
-LARGEST_EXACT = 600
+LARGEST_EXACT = 1_200
 """Equations up to which a solution is sought in fractions where an enclosure does not decide a sign."""
 LARGEST_ENCLOSED = 12_000
 """Equations up to which a solution is enclosed: the checking program runs in Python alone."""

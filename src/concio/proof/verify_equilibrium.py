@@ -270,11 +270,14 @@ def main(path: str) -> int:
     try:
         with open(path, encoding="ascii") as file:
             print(check(json.load(file)))
-    except (ValueError, KeyError, IndexError, TypeError, ArithmeticError, OSError) as error:
+    except KeyError as error:
+        print(f"REFUSED: an entry {error} is missing")
+        return 1
+    except (ValueError, IndexError, TypeError, ArithmeticError, OSError) as error:
         print(f"REFUSED: {error}")
         return 1
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:2]))
+    sys.exit(main(sys.argv[1]) if len(sys.argv) == 2 else "give one certificate file")
