@@ -153,6 +153,14 @@ def test_forces_chosen_at_will_are_refused_by_the_program() -> None:
         checker.check(sealed(false))
 
 
+@pytest.mark.parametrize("name", ["friction", "normal_compliance", "tangential_compliance"])
+def test_a_joint_with_a_negative_number_is_refused(name: str) -> None:
+    made = block().proof()
+    joints = [{**joint, name: "-1/1000"} for joint in made["joints"]]
+    with pytest.raises(ValueError, match="below 0"):
+        checker.check(sealed({**made, "joints": joints}))
+
+
 def wall(number: int) -> concio.Result:
     """Return the answer for a wall of elastic blocks of random friction, weight and push."""
     rng = np.random.default_rng(number)

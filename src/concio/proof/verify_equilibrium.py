@@ -126,6 +126,8 @@ def system(data: Data) -> tuple[list[Row], list[Fraction], list[Condition]]:
                 rows[unknown][force] = -value
         y_n[p], y_t[q] = law(joint, "normal_compliance"), law(joint, "tangential_compliance")
         gap = law(joint, "gap")
+        if min(mu, cohesion, tension, y_n[p], y_t[q]) < 0:
+            raise ValueError(f"joint point {k} has a strength or a compliance below 0")
         rigid = not any("shape" in data["bodies"][joint[side]] for side in "ab")
         if rigid and bounded and (y_n[p] <= 0 or (y_t[q] <= 0 and max(mu, cohesion) > 0)):
             raise ValueError(f"joint point {k} of blocks that do not deform has no compliance: any forces would pass")
