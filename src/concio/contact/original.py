@@ -19,7 +19,7 @@ from concio.contact.rows import Rows
 from concio.contact.search import Layout
 from concio.contact.slots import KINDS, LONE, Slots
 from concio.fem.discretisation import FIXED, RIGID
-from concio.kinematics.frames import cross, turned, turned_left
+from concio.kinematics.frames import turned, turned_left
 from concio.kinematics.placement import Placement
 from concio.model.interfaces.detect import SLIVER_SHARE
 
@@ -283,7 +283,7 @@ class OriginalContacts:
             moving = self.rigid[body]
             for k, way in enumerate((normal, turned_left(normal))):
                 arm = place - centre[body]
-                moment = cross(arm, way) / disc.reach[body]
+                moment = (arm[:, 0] * way[:, 1] - arm[:, 1] * way[:, 0]) / disc.reach[body]
                 values[:, k, first : first + 3] = sign * moving[:, None] * np.column_stack([way, moment])
                 imposed[:, k] += sign * still[body] * (velocity[body] * way).sum(axis=1)
                 if side is not None:

@@ -25,7 +25,7 @@ from concio.contact.points import MaterialPoints
 from concio.contact.reference import Reference
 from concio.contact.rows import Rows
 from concio.contact.slots import Slots
-from concio.kinematics.frames import cross, turned, turned_left
+from concio.kinematics.frames import turned, turned_left
 from concio.kinematics.turns import Turns
 from concio.problem.cone import Cone
 from concio.solvers.stepping.matrix import StepMatrix
@@ -336,6 +336,6 @@ def _rows(points: MaterialPoints, way: Array, rotation: Array) -> Array:
     arm, local = turned(points.arm, rotation[body]), turned(way, -rotation[body])
     values = np.zeros(points.columns.shape)
     values[:, :2] = way
-    values[:, 2] = cross(arm, way) / points.reach
+    values[:, 2] = (arm[:, 0] * way[:, 1] - arm[:, 1] * way[:, 0]) / points.reach
     values[:, 3:] = (points.weight[:, :, None] * local[:, None, :]).reshape(len(body), -1)
     return values
