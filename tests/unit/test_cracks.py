@@ -282,7 +282,7 @@ def test_a_measurement_that_cannot_be_meant_is_refused(change, words) -> None:
         ({"body": "a"}, "exactly one"),
         ({"body": "a", "direction": (0, -1), "rotation": 1.0}, "exactly one"),
         ({"body": "a", "group": "live"}, "exactly one"),
-        ({"group": "live", "direction": (0, -1)}, "not a direction"),
+        ({"group": "live", "direction": (0, -1)}, "no direction"),
         ({"group": "live", "low": 1.0}, "allowed to be zero"),
         ({"body": "a", "direction": (0, -1), "base": 1.0}, "base is"),
     ],
