@@ -213,8 +213,8 @@ def test_a_model_without_fill_or_vehicle_is_refused(tmp_path: Path) -> None:
     assert "no vehicle" in err
 
 
-def test_the_same_fill_acts_in_one_step_in_a_path_and_in_a_push() -> None:
-    """Soil presses in all of them: with it each carries what the ring alone does not."""
+def test_the_same_fill_acts_in_one_step_and_in_a_path_and_a_push_refuses_its_pressure() -> None:
+    """Soil presses in both: with it each carries what the ring alone does not."""
     model = placed(small(load=165.0), 0.7)
     alone = without_pressure(model)
     assert concio.solve(model).verdict.holds
@@ -222,6 +222,8 @@ def test_the_same_fill_acts_in_one_step_in_a_path_and_in_a_push() -> None:
     stages = [concio.Stage("fill", {"dead": 1.0, "fill": 1.0}), concio.Stage("axle", {"live": 1.0})]
     assert concio.run_path(model, stages).verdict.holds
     assert not concio.run_path(alone, stages).verdict.holds
+    with pytest.raises(concio.InputError, match="does not follow the pressure of soil"):
+        concio.push(model, until=0.001)
 
 
 def test_a_study_varies_ring_and_fill_with_the_bridge_as_its_model(tmp_path: Path) -> None:
