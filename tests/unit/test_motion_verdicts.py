@@ -62,8 +62,8 @@ def test_a_block_between_walls_that_nothing_presses_does_not_stand_and_falls():
     push = concio.Load("pressure", (10.0,), bodies=("b0", "b1"), edge=((0.0, 1.0), (1.0, 1.0)), group="live")
     found = concio.dynamics(model_of(*walls, *blocks, law=0.6, loads=(weight(), push)), duration=0.5, gravity=G)
     assert found.stands is False
-    assert found.verdict.outcome is Outcome.FAILS
     assert len(found.fallen) == 2
+    assert found.verdict.outcome is Outcome.FAILS, "what fell has fallen, whether or not it is followed further"
     assert found.energy.error < 1e-9  # the pressure turns with the blocks: what it works is put in
 
 
@@ -190,3 +190,14 @@ def test_every_place_says_what_the_verdict_says(tmp_path):
         assert out.splitlines()[0] == summary["sentence"] == again["sentence"] == again["verdict"]["sentence"]
         assert summary["verdict"]["exit_code"] == code
         assert summary["sentence"].split(". ")[0] in (tmp_path / command / "report.html").read_text()
+
+
+def test_elastic_blocks_that_slide_past_the_end_of_a_wall_fall_on():
+    """Faces that have slid past each other share no length: that ended in an index error."""
+    walls = [box("left", -1.0, 0.0, 0.5, 1.5, kind="fixed"), box("right", 1.0, 2.0, 0.5, 1.5, kind="fixed")]
+    stiff = concio.Elastic(E=5e6, nu=0.2, unit_weight=20.0)
+    blocks = [box(name, x, x + 0.5, 0.4, 1.4, material="stiff") for name, x in (("a", 0.0), ("b", 0.5))]
+    model = model_of(*walls, *blocks, law=0.6, loads=(weight(),), materials={"stiff": stiff})
+    found = concio.dynamics(model, gravity=G, duration=0.55)
+    assert len(found.fallen) == 2
+    assert found.verdict.outcome is Outcome.FAILS, "what fell has fallen, whether or not it is followed further"

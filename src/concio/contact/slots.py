@@ -7,12 +7,12 @@ touches nothing at the moment stays in the layout and carries no force.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from concio.contact.candidates import Candidates
-from concio.contact.coupling import Coupling, Side, couple
+from concio.contact.coupling import Coupling, Line, Side, couple
 from concio.contact.edges import MovingEdges, PlacedEdges
 from concio.contact.joint_points import joint_rule
 from concio.contact.laws import LawTable, RuleBook
@@ -186,12 +186,15 @@ class SlotMaker:
             t = placed.tangent[a] - placed.tangent[b]
             t /= norm(t)
             start, length = touch.point[i], float(touch.length[i])
-            if length <= 0.0:
+            past = length <= 0.0
+            if past:
                 length = 1e-9 * float(self.edges.length[a])
             lines = [
                 line_of(self.disc, int(own[e]), int(number[e]), float(dot(t, placed.start[e] - start)), forwards)
                 for e, forwards in ((a, True), (b, False))
             ]
+            if past:
+                lines = [None if line is None else _reaching(line, length) for line in lines]
             result.add(i, couple(lines[0], lines[1], length), length, self.edges.body[[a, b]], self.first_node)
         for corner, edge in zip(found.corner.tolist(), found.edge.tolist(), strict=True):
             result.add_corner(self._on_edge(edge, placed.start[corner], placed), self._at_corner(corner))
@@ -268,3 +271,9 @@ class _MeshedSlots:
         nodes_of, weights = np.full((total, wide), nodes), np.zeros((total, wide))
         nodes_of[before + pair, place], weights[before + pair, place] = node, weight
         return MeshedSide(meshed, nodes_of, weights)
+
+
+def _reaching(line: Line, length: float) -> Line:
+    """Return a line moved along itself until it meets a segment: faces that slid past each other share no length."""
+    before, behind = max(0.5 * length - float(line.at[-1]), 0.0), max(float(line.at[0]) - 0.5 * length, 0.0)
+    return line if before == behind == 0.0 else replace(line, at=line.at + (before - behind))

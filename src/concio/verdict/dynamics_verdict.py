@@ -76,10 +76,12 @@ def _headline(found: DynamicsResult, outcome: Outcome) -> str:
 def _outcome(found: DynamicsResult) -> Outcome:
     """Return what the motion shows."""
     ending = found.ending.name
-    if not found.certified or ending == "UNSOLVED":
+    if not found.certified:
         return Outcome.UNDECIDED
-    if found.fallen or found.stands is False:
+    if found.fallen or (found.stands is False and ending != "UNSOLVED"):
         return Outcome.FAILS
+    if ending == "UNSOLVED":
+        return Outcome.UNDECIDED
     if ending == "STOPPED":
         return Outcome.INCOMPLETE
     return Outcome.HOLDS if found.rests and found.end.time >= found.ground_ends * (1 - 1e-9) else Outcome.MOVING
@@ -120,6 +122,8 @@ def _answer(found: DynamicsResult, outcome: Outcome) -> str:
     if found.fallen:
         more = f", and {len(found.fallen) - MOST_FALLEN} more" if len(found.fallen) > MOST_FALLEN else ""
         told.append(f"At {time} it has fallen: {'; '.join(found.fallen[:MOST_FALLEN])}{more}.")
+        if found.ending.name == "UNSOLVED":
+            told.append("It was not followed further: after that no step, however small, satisfies its equations.")
     elif outcome is Outcome.UNDECIDED:
         told.append(f"After {time} no step, however small, satisfies its equations.")
     elif found.ending.name == "STOPPED":
