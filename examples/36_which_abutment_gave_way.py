@@ -2,7 +2,7 @@
 
 The survey stands in the model file. One crack is first written down in the wrong unit, and the diagnosis names it. Put
 right, one cause is left, with an interval, how far it can go on, and where to measure next. With
-the right abutment among those that may have moved, the cracks cannot tell which of them it was.
+the right abutment among those that may have moved, the cracks cannot distinguish which of them it was.
 """
 
 from __future__ import annotations

@@ -123,8 +123,8 @@ def test_an_answer_that_rests_on_the_soil_says_so() -> None:
     assert found.without_soil is not None
     between = 0.5 * (found.worst.multiplier + found.without_soil.multiplier)
     rests = [bridge_verdict(replace(found, required=r)).attention for r in (between, 0.5)]
-    assert any("rests on the pressure of the soil" in line for line in rests[0])
-    assert not any("rests on the pressure of the soil" in line for line in rests[1])
+    assert any("depends on the pressure of the soil" in line for line in rests[0])
+    assert not any("depends on the pressure of the soil" in line for line in rests[1])
 
 
 def test_more_than_the_bound_fails_and_no_coulomb_states_leave_it_open() -> None:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from concio.contact.assembly import Assembly
 from concio.verdict.attention import attention, joints_not_made
 from concio.verdict.question import question_of
+from concio.verdict.unseen import listed, unseen_bodies, unseen_words
 from concio.verdict.verdict import Outcome, Verdict
 
 BY_A_MECHANISM = "a mechanism proves it"
@@ -15,7 +16,7 @@ BY_A_MECHANISM = "a mechanism proves it"
 
 def not_standing(
     assembly: Assembly, asked: str, answer: str, *, factors: Mapping[str, float] | None = None,
-    multiplied: Iterable[str] = (), proof: str = "",
+    multiplied: Iterable[str] = (), proof: str = "", moving: Iterable[str] = (),
 ) -> Verdict:  # fmt: skip
     """Return the verdict that an exception carries where the constant loads alone are not carried.
 
@@ -31,7 +32,23 @@ def not_standing(
     multiplied : names
         Groups that would have been multiplied.
     proof : str
+    moving : names
+        Bodies that move away. Where no certificate can see any of them, nothing is shown of the others.
     """
+    multiplied = tuple(multiplied)
+    constant = dict(factors or {}) | dict.fromkeys(multiplied, 0.0)
+    if moving and set(moving) <= set(small := unseen_bodies(assembly, (constant,))):
+        return Verdict(
+            outcome=Outcome.INCOMPLETE,
+            status="not_checked",
+            question=question_of(asked, assembly, factors, multiplied=multiplied),
+            headline="Whether it stands before the load that was asked about acts was not shown.",
+            answer=f"No equilibrium was found from which to begin: {listed(tuple(moving))} moved away.",
+            proof="Nothing is certified.",
+            limits=joints_not_made(assembly.detection),
+            unchecked=unseen_words(small),
+            attention=attention(assembly),
+        )
     sentence = f"{answer[0].upper()}{answer[1:].rstrip('.')}."
     return Verdict(
         outcome=Outcome.FAILS,

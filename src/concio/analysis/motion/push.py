@@ -25,13 +25,14 @@ from concio.contact.applied import free_group, pushed
 from concio.contact.assembly import assemble
 from concio.contact.points import Followed
 from concio.contact.reference import Reference
-from concio.errors import InputError, NoEquilibriumError
+from concio.errors import InputError, NoEquilibriumError, SolverError
 from concio.model.model import Model
 from concio.model.stages import ControlPoint
 from concio.problem.contact_problem import Engine
 from concio.problem.solution import ProgressCallback
 from concio.units import GRAVITY
 from concio.verdict.not_standing import not_standing
+from concio.verdict.verdict import Outcome
 
 Array = np.ndarray
 
@@ -143,7 +144,9 @@ def push(
     except NoStartError as lost:
         hint = "see 'concio run' for its collapse; the factors of dead loads may be meant otherwise"
         wanted = "a capacity curve at large displacements"
-        told = not_standing(assemble(model), wanted, str(lost), factors=chosen, multiplied=stated)
+        told = not_standing(assemble(model), wanted, str(lost), factors=chosen, multiplied=stated, moving=lost.moving)
+        if told.outcome is not Outcome.FAILS:
+            raise SolverError(told.answer, hint=f"not checked: {told.unchecked[0]}", verdict=told) from None
         raise NoEquilibriumError(str(lost), hint=hint, verdict=told) from None
     return PushResult(
         model=model, gravity=gravity, ending=run.ending, displacement=np.array(run.displacement),

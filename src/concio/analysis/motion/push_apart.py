@@ -42,7 +42,11 @@ PARTS = 4096
 
 
 class NoStartError(Exception):
-    """A structure does not stand before it is pushed."""
+    """A structure does not stand before it is pushed; the bodies of the names move away."""
+
+    def __init__(self, message: str, moving: tuple[str, ...]) -> None:
+        super().__init__(message)
+        self.moving = moving
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,10 +234,11 @@ def _begun(asked: PushAsked, structure: Structure) -> _One:
     statics = asked.statics(reference)
     start, share, _ = begun(statics, at_rest(reference))
     if not start.found:
-        msg = "the structure does not stand before it is pushed" + what_moves(reference, start)
+        words, moving = what_moves(reference, start)
+        msg = f"the structure does not stand before it is pushed{words}"
         if 0.0 < share < 1.0:
             msg += f", where its supports have moved by {share:.3g} of what was asked for"
-        raise NoStartError(msg)
+        raise NoStartError(msg, moving)
     unit = statics.unit(reference.at_rest().placement.turns)
     return _One(structure, statics, start, bool(unit.any()))
 

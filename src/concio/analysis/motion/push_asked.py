@@ -24,16 +24,18 @@ ASIDE = 1e-6
 """Share of a resultant along a direction below which it points aside."""
 
 
-def what_moves(reference: Reference, found: Balanced) -> str:
-    """Return the name of the block that moves away most, and how many others go with it."""
+def what_moves(reference: Reference, found: Balanced) -> tuple[str, tuple[str, ...]]:
+    """Return words on the block that moves away most and how many others go with it, and the names of them all."""
     size = np.abs(found.moved)
     offsets = reference.disc.offsets
     away = {b: float(size[offsets[b] : offsets[b + 1]].max()) for b in reference.free.tolist()}
     first = max(away, key=away.__getitem__)
-    others = sum(v > 0.1 * away[first] for v in away.values()) - 1
     if not away[first] > 0:
-        return ""
-    return f": '{reference.model.bodies[first].name}' moves away" + (f", and {others} others" if others else "")
+        return "", ()
+    bodies = reference.model.bodies
+    names = (bodies[first].name, *(bodies[b].name for b, v in away.items() if b != first and v > 0.1 * away[first]))
+    others = len(names) - 1
+    return f": '{names[0]}' moves away" + (f", and {others} others" if others else ""), names
 
 
 def control_asked(control: object) -> tuple[ControlPoint | None, bool]:
