@@ -72,7 +72,11 @@ def prove_equilibrium(
     if assembly.lent_compliance:
         made["lent"] = text_of(assembly.lent_compliance, numbers)
     made["states"] = _words(assembly, states, len(made["joints"]))
-    rows, right, signs = checker.system(made)
+    try:
+        rows, right, signs = checker.system(made)
+    except ValueError as refused:
+        hint = "the certificate of 'concio run' holds for it, in floating point"
+        raise SolverError(str(refused), hint=hint) from None
     if len(rows) > LARGEST_ENCLOSED:
         msg = f"the model has {len(rows):,} equations, more than the {LARGEST_ENCLOSED:,} that a proof may have"
         raise InputError(msg, hint="the certificate of 'concio run' holds for it, in floating point")

@@ -140,10 +140,17 @@ def _of_all(
         if k != least and np.isfinite(multiplier):
             loads = part.problem.f + multiplier * live[part.unknowns]
             state = statically_admissible(part.problem.with_loads(loads))
-            if not state.exists:
-                nothing = np.zeros(m), np.zeros((m, s))
-                return LimitLoad(np.nan, np.nan, *nothing, np.inf, None)  # what one carries is too little for another
-            normal, friction, error = state.normal_force, state.friction_force, state.residual
+            if state.exists:
+                normal, friction, error = state.normal_force, state.friction_force, state.residual
+            else:
+                dead = statically_admissible(part.problem)
+                if not (dead.exists and 0.0 < multiplier <= one.multiplier):
+                    nothing = np.zeros(m), np.zeros((m, s))
+                    return LimitLoad(np.nan, np.nan, *nothing, np.inf, None)  # what one carries is too little for it
+                share = multiplier / one.multiplier  # what is admissible is convex: forces between those of two loads
+                normal = share * normal + (1.0 - share) * dead.normal_force
+                friction = share * friction + (1.0 - share) * dead.friction_force
+                error = max(error, dead.residual)
         t_n[part.pairs], t_t[part.pairs], residual = normal, friction, max(residual, error)
     if mechanism is not None:
         velocity = np.zeros(problem.unknowns)
