@@ -52,6 +52,11 @@ test: $(VENV)/.installed-dev
 test-all:
 	$(MAKE) test SELECT="long or not long"
 
+# The properties with cases drawn afresh; the other runs draw the same ones every time, so that they judge the code alone.
+.PHONY: fresh
+fresh: $(VENV)/.installed-dev
+	CONCIO_CASES=fresh OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal tests
+
 # Small faults put into the core on purpose: those that once passed unseen must be seen, a new sample is printed.
 .PHONY: mutants
 mutants: $(VENV)/.installed-dev

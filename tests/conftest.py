@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import io
+import os
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +15,14 @@ import samples
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Draw fewer cases where the long tests are left out: the quick suite."""
+    """Draw fewer cases where the long tests are left out, and the same ones in every run unless fresh ones are wanted.
+
+    A run then judges the code, not the draw, and what passed here passes elsewhere; ``make fresh`` looks for new cases.
+    """
     samples.whole = "not long" not in config.getoption("markexpr").replace("long or not long", "")
-    settings.register_profile("untimed", deadline=None)  # a busy machine is not a fault of what is tested
-    settings.load_profile("untimed")
+    settings.register_profile("same", deadline=None, derandomize=True)  # a busy machine is not a fault of what is tested
+    settings.register_profile("fresh", deadline=None, print_blob=True)
+    settings.load_profile(os.environ.get("CONCIO_CASES", "same"))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

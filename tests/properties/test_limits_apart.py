@@ -18,7 +18,7 @@ import concio
 from concio.verdict.verdict import Outcome
 from samples import sample
 
-few = settings(max_examples=sample(2, 8), deadline=None, derandomize=True)
+few = settings(max_examples=sample(2, 8), deadline=None)
 
 
 @few

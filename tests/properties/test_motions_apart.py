@@ -22,7 +22,7 @@ from concio.model.model import Load, Tie
 from concio.model.rules import JointRule
 from samples import sample
 
-few = settings(max_examples=sample(2, 8), deadline=None, derandomize=True)
+few = settings(max_examples=sample(2, 8), deadline=None)
 SHAKEN = {"duration": 0.3, "step": 4e-3, "every": 4e-3, "stop_overturned": False}
 
 

@@ -24,7 +24,7 @@ from concio.solvers.relaxation.free_motion import free_motion
 from concio.studies.compare import compare
 from samples import sample
 
-few = settings(max_examples=sample(4, 40), deadline=None, derandomize=True)
+few = settings(max_examples=sample(4, 40), deadline=None)
 
 FALLS = (Status.NO_EQUILIBRIUM, Status.COLLAPSES, Status.NO_COULOMB_STATE)
 

@@ -16,7 +16,7 @@ from concio.model.model import Load, Support
 from models import box, model_of, turned
 from samples import sample
 
-few = settings(max_examples=sample(5, 10), deadline=None, derandomize=True)
+few = settings(max_examples=sample(5, 10), deadline=None)
 Q = 30.0
 
 

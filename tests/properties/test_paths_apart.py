@@ -22,7 +22,7 @@ from concio.solvers.path.apart import put_together, state_of_part
 from concio.solvers.path.record import Outcome
 from samples import sample
 
-few = settings(max_examples=sample(2, 40), deadline=None, derandomize=True)
+few = settings(max_examples=sample(2, 40), deadline=None)
 NAMES = ("normal_force", "friction_force", "slip", "offset")
 
 

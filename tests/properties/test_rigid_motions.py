@@ -16,7 +16,7 @@ from concio.model.materials import Elastic, Rigid
 from models import turned
 from samples import sample
 
-few = settings(max_examples=sample(6, 15), deadline=None, derandomize=True)
+few = settings(max_examples=sample(6, 15), deadline=None)
 
 
 structures = st.fixed_dictionaries(
