@@ -20,7 +20,8 @@ def pytest_configure(config: pytest.Config) -> None:
     A run then judges the code, not the draw, and what passed here passes elsewhere; ``make fresh`` looks for new cases.
     """
     samples.whole = "not long" not in config.getoption("markexpr").replace("long or not long", "")
-    settings.register_profile("same", deadline=None, derandomize=True)  # a busy machine is not a fault of what is tested
+    # No deadline: a busy machine is not a fault of what is tested.
+    settings.register_profile("same", deadline=None, derandomize=True)
     settings.register_profile("fresh", deadline=None, print_blob=True)
     settings.load_profile(os.environ.get("CONCIO_CASES", "same"))
 

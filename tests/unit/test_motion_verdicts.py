@@ -10,6 +10,10 @@ import pytest
 
 import concio
 from commands import run
+from concio.analysis.motion import push as push_module
+from concio.analysis.motion import push_apart
+from concio.errors import NoEquilibriumError, SolverError
+from concio.verdict.not_standing import FOLLOWED_AWAY
 from concio.verdict.verdict import Outcome
 from models import box, model_of, weight
 from motion_models import G, standing
@@ -201,3 +205,26 @@ def test_elastic_blocks_that_slide_past_the_end_of_a_wall_fall_on():
     found = concio.dynamics(model, gravity=G, duration=0.55)
     assert len(found.fallen) == 2
     assert found.verdict.outcome is Outcome.FAILS, "what fell has fallen, whether or not it is followed further"
+
+
+def test_a_push_that_does_not_begin_says_what_shows_it(tmp_path, monkeypatch):
+    """A mechanism proves it at rest; what is followed away is told as that; what was merely not found shows nothing."""
+    with pytest.raises(NoEquilibriumError, match="does not stand") as proven:
+        concio.push(concio.load(file_of(tmp_path, LEANS)))
+    told = proven.value.verdict
+    assert told.outcome is Outcome.FAILS
+    assert told.proof == concio.solve(concio.load(file_of(tmp_path, LEANS)), on_failure="return").verdict.proof
+    monkeypatch.setattr(push_module, "_proof_at_rest", lambda *_: "")
+    with pytest.raises(NoEquilibriumError) as seen:
+        concio.push(concio.load(file_of(tmp_path, LEANS)))
+    assert seen.value.verdict.proof == FOLLOWED_AWAY
+
+    def not_found(statics, state):
+        found = statics.balance(state, 0.0)
+        return replace(found, found=False, moved=0.0 * found.moved), 1.0, state
+
+    monkeypatch.setattr(push_apart, "begun", not_found)
+    with pytest.raises(SolverError) as lost:
+        concio.push(standing())
+    assert lost.value.verdict.outcome is Outcome.UNDECIDED
+    assert lost.value.verdict.exit_code == 4

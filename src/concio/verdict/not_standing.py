@@ -13,10 +13,16 @@ from concio.verdict.verdict import Outcome, Verdict
 BY_A_MECHANISM = "a mechanism proves it"
 """What shows that no joint forces balance the constant loads, in exceptions of analyses that begin with them."""
 
+FOLLOWED_AWAY = (
+    "The bodies were followed from their last position against a vanishing viscous resistance: they moved by more than "
+    "half the width of a body and came to no equilibrium. That there is none elsewhere was not shown."
+)
+"""What shows that a structure moves away where the search for its first equilibrium ends far from where it began."""
+
 
 def not_standing(
     assembly: Assembly, asked: str, answer: str, *, factors: Mapping[str, float] | None = None,
-    multiplied: Iterable[str] = (), proof: str = "", moving: Iterable[str] = (),
+    multiplied: Iterable[str] = (), proof: str = "", moving: Iterable[str] = (), shown: bool = True,
 ) -> Verdict:  # fmt: skip
     """Return the verdict that an exception carries where the constant loads alone are not carried.
 
@@ -34,6 +40,8 @@ def not_standing(
     proof : str
     moving : names
         Bodies that move away. Where no certificate can see any of them, nothing is shown of the others.
+    shown : bool
+        Whether anything shows that it is not carried; otherwise an equilibrium was merely not found.
     """
     multiplied = tuple(multiplied)
     constant = dict(factors or {}) | dict.fromkeys(multiplied, 0.0)
@@ -47,6 +55,17 @@ def not_standing(
             proof="Nothing is certified.",
             limits=joints_not_made(assembly.detection),
             unchecked=unseen_words(small),
+            attention=attention(assembly),
+        )
+    if not shown:
+        return Verdict(
+            outcome=Outcome.UNDECIDED,
+            status="undecided",
+            question=question_of(asked, assembly, factors, multiplied=multiplied),
+            headline="Whether it stands before the load that was asked about acts was not shown.",
+            answer="No equilibrium was found from which to begin, and nothing shows that there is none.",
+            proof="Nothing is certified.",
+            limits=joints_not_made(assembly.detection),
             attention=attention(assembly),
         )
     sentence = f"{answer[0].upper()}{answer[1:].rstrip('.')}."

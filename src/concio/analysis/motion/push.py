@@ -20,18 +20,19 @@ from concio.analysis.motion.push_asked import (
 )
 from concio.analysis.motion.push_result import PushResult
 from concio.analysis.motion.scheme import Scheme
+from concio.analysis.step import solve
 from concio.arguments import strict
 from concio.contact.applied import free_group, pushed
-from concio.contact.assembly import assemble
+from concio.contact.assembly import Assembly, assemble
 from concio.contact.points import Followed
 from concio.contact.reference import Reference
-from concio.errors import InputError, NoEquilibriumError, SolverError
+from concio.errors import ConcioError, InputError, NoEquilibriumError, SolverError
 from concio.model.model import Model
 from concio.model.stages import ControlPoint
 from concio.problem.contact_problem import Engine
-from concio.problem.solution import ProgressCallback
+from concio.problem.solution import PROVEN_FAILURES, ProgressCallback
 from concio.units import GRAVITY
-from concio.verdict.not_standing import not_standing
+from concio.verdict.not_standing import FOLLOWED_AWAY, not_standing
 from concio.verdict.verdict import Outcome
 
 Array = np.ndarray
@@ -102,7 +103,9 @@ def push(
     InputError
         The model or an argument cannot be used.
     NoEquilibriumError
-        The structure does not stand at multiplier zero.
+        The structure does not stand at multiplier zero: a certificate proves it, or it moves away.
+    SolverError
+        Neither an equilibrium at multiplier zero nor anything that excludes one was found.
 
     Examples
     --------
@@ -142,12 +145,7 @@ def push(
         with Interruption() as interruption:
             run = followed(asked, interruption)
     except NoStartError as lost:
-        hint = "see 'concio run' for its collapse; the factors of dead loads may be meant otherwise"
-        wanted = "a capacity curve at large displacements"
-        told = not_standing(assemble(model), wanted, str(lost), factors=chosen, multiplied=stated, moving=lost.moving)
-        if told.outcome is not Outcome.FAILS:
-            raise SolverError(told.answer, hint=f"not checked: {told.unchecked[0]}", verdict=told) from None
-        raise NoEquilibriumError(str(lost), hint=hint, verdict=told) from None
+        raise _not_begun(model, lost, chosen, stated) from None
     return PushResult(
         model=model, gravity=gravity, ending=run.ending, displacement=np.array(run.displacement),
         multiplier=np.array(run.multiplier), residual=np.array(run.residual),
@@ -159,3 +157,28 @@ def push(
         end=run.states[-1], until=asked.until if np.isfinite(asked.until) else None, by_load=by_load, reversed=sign < 0,
         structures=run.structures,
     )  # fmt: skip
+
+
+def _not_begun(model: Model, lost: NoStartError, factors: Mapping[str, float], live: tuple[str, ...]) -> ConcioError:
+    """Return what to raise where no equilibrium was found before the push: proven, seen or open."""
+    assembly, wanted = assemble(model), "a capacity curve at large displacements"
+    proof = _proof_at_rest(assembly, {**factors, **dict.fromkeys(live, 0.0)}) if lost.share in (0.0, 1.0) else ""
+    proof = proof or (FOLLOWED_AWAY if lost.away else "")
+    told = not_standing(
+        assembly, wanted, str(lost), factors=factors, multiplied=live, moving=lost.moving, proof=proof,
+        shown=bool(proof),
+    )  # fmt: skip
+    if told.outcome is not Outcome.FAILS:
+        hint = f"not checked: {told.unchecked[0]}" if told.unchecked else "ask 'concio run' whether it stands"
+        return SolverError(told.answer, hint=hint, verdict=told)
+    hint = "see 'concio run' for its collapse; the factors of dead loads may be meant otherwise"
+    return NoEquilibriumError(str(lost), hint=hint, verdict=told)
+
+
+def _proof_at_rest(assembly: Assembly, factors: Mapping[str, float]) -> str:
+    """Return what proves that the constant loads are not carried where the bodies stand; empty where nothing does."""
+    try:
+        result = solve(assembly, factors=factors, on_failure="return")
+    except ConcioError:
+        return ""
+    return result.verdict.proof if result.solution.status in PROVEN_FAILURES else ""

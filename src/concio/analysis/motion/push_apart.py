@@ -21,7 +21,7 @@ from concio.analysis.motion.push_curve import PushCurve
 from concio.analysis.motion.push_result import PushEnding
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.state import MotionState
-from concio.analysis.motion.statics import Balanced, Statics
+from concio.analysis.motion.statics import FAR, Balanced, Statics
 from concio.analysis.motion.stepper import at_rest
 from concio.analysis.motion.structures import Structure, near_now, structures_of, together
 from concio.contact.reference import Reference
@@ -42,11 +42,22 @@ PARTS = 4096
 
 
 class NoStartError(Exception):
-    """A structure does not stand before it is pushed; the bodies of the names move away."""
+    """No equilibrium of a structure was found before it is pushed.
 
-    def __init__(self, message: str, moving: tuple[str, ...]) -> None:
+    Parameters
+    ----------
+    message : str
+    moving : tuple of str
+        Bodies that move away.
+    away : bool
+        Whether they were followed for half the width of a body.
+    share : float
+        Part of the motion of supports at which an equilibrium was found last.
+    """
+
+    def __init__(self, message: str, moving: tuple[str, ...], *, away: bool, share: float) -> None:
         super().__init__(message)
-        self.moving = moving
+        self.moving, self.away, self.share = moving, away, share
 
 
 @dataclass(frozen=True, eq=False)
@@ -238,7 +249,8 @@ def _begun(asked: PushAsked, structure: Structure) -> _One:
         msg = f"the structure does not stand before it is pushed{words}"
         if 0.0 < share < 1.0:
             msg += f", where its supports have moved by {share:.3g} of what was asked for"
-        raise NoStartError(msg, moving)
+        away = float(abs(start.moved).max(initial=0.0)) > FAR * statics.width
+        raise NoStartError(msg, moving, away=away, share=share)
     unit = statics.unit(reference.at_rest().placement.turns)
     return _One(structure, statics, start, bool(unit.any()))
 
