@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from concio.analysis.contacts import STATE_NAMES, Contacts, JointResultants, joint_resultants
+from concio.analysis.contacts import Contacts, JointResultants, joint_resultants
+from concio.analysis.joint_motion import JointMotion
 from concio.analysis.joints_in_space import SpaceResultants, joint_resultants_in_space
+from concio.analysis.step_numbers import step_numbers
 from concio.analysis.stress import Stress
 from concio.analysis.tie_forces import TieForces, tie_forces
 from concio.arguments import closest
@@ -23,9 +25,7 @@ from concio.fem.discretisation import FIXED, RIGID
 from concio.kinematics.rigid import rigid_operator, swept
 from concio.model.model import Model
 from concio.problem.certificate import Certificate
-from concio.problem.limits_of_work import LARGEST_EXISTENCE
 from concio.problem.solution import Mechanism, Solution, Status, pair_states
-from concio.representation import short_repr
 from concio.solvers.statics.self_stress import SelfStress
 from concio.solvers.statics.sufficient import SufficientCondition, sufficient_condition
 from concio.verdict.step_verdict import result_lines, self_stress, step_verdict
@@ -37,42 +37,6 @@ if TYPE_CHECKING:
     from concio.post.tables import Tables
 
 Array = np.ndarray
-
-LARGE = 0.1
-"""Share of a joint's length from which on its motion is called large."""
-
-
-@short_repr
-@dataclass(frozen=True)
-class JointMotion:
-    """How far the joint that moves most beside its length has opened or slid.
-
-    Parameters
-    ----------
-    joint : str
-        The names of its bodies, "a|b"; empty where nothing moves.
-    motion : float
-        Opening beyond the initial gap or slip, whichever is larger [m].
-    share : float
-        The same over the length of the joint, in space over its least width.
-    """
-
-    joint: str
-    motion: float
-    share: float
-
-    @property
-    def large(self) -> bool:
-        """Whether small displacements, on which the analysis rests, can no longer be meant."""
-        return self.share > LARGE
-
-    @property
-    def sentence(self) -> str:
-        """What to think of a large motion, in one sentence."""
-        return (
-            f"joint {self.joint} opens or slides by {1e3 * self.motion:.4g} mm, {100 * self.share:.3g} % of its "
-            "length: too far for small displacements, in which contacts stay where they were"
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -415,47 +379,4 @@ class Result(Shown):
         >>> numbers["status"], numbers["pairs"]["stick"]
         ('solved', 8)
         """
-        contacts = self.contacts if self.solved else None
-        data: dict[str, Any] = {
-            "status": self.status.name.lower(),
-            "sentence": self.sentence,
-            "verdict": self.verdict.as_dict(),
-            "method": self.method,
-            "engine": self.engine,
-            "title": self.model.title,
-            "bodies": len(self.model.free_bodies),
-            "contacts": len(self.assembly.pairs),
-            "contact_model": self.assembly.pairs.contact_model,
-            "interfaces": len(self.assembly.detection.interfaces),
-            "unknowns": self.assembly.disc.unknowns,
-            "certificate": {k: _finite(v) for k, v in self.certificate.as_dict().items()},
-            "iterations": self.solution.iterations,
-            "factorisations": self.solution.factorisations,
-            "seconds": {k: round(v, 6) for k, v in self.seconds.items()},
-            "load_factors": {g: load_factor(self.factors, g) for g in self.assembly.groups},
-            "total_load": list(self.total_load),
-            "trace": list(self.solution.trace),
-            "lent_compliance": self.lent_compliance,
-            "attention": list(self.attention),
-            "broken_ties": [{"name": name, "elongation": far} for name, far in self.broken_ties],
-            "units": {"force": "kN", "length": "m", "stress": "kN/m2"},
-        }
-        if contacts is not None:
-            data["max_settlement"] = self.max_settlement
-            data["joint_motion"] = asdict(self.joint_motion)
-            data["outline_gap_difference"] = _finite(self.outline_gap_difference)
-            data["reactions"] = {name: list(force) for name, force in self.reactions.items()}
-            data["ties"] = self.ties.as_list()
-            data["pairs"] = {name: contacts.count(name) for name in STATE_NAMES}
-        if 0 < len(self.assembly.pairs) <= LARGEST_EXISTENCE:  # without pairs there is nothing to guarantee
-            condition = self.existence
-            data["sufficient_condition"] = {"holds": condition.holds, "margin": _finite(condition.margin)}
-        if self.self_stress is not None:
-            data["self_stress"] = {"compression": self.self_stress.compression, "load": self.self_stress.load}
-        if self.mechanism is not None:
-            data["mechanism"] = {"power": self.mechanism.power, "violation": self.mechanism.violation}
-        return data
-
-
-def _finite(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
+        return step_numbers(self)

@@ -22,7 +22,8 @@ from concio.errors import ConcioError, InputError, NoEquilibriumError, SolverErr
 from concio.model.file.keys import KeyPath, with_values
 from concio.model.file.reading import model_from_tables
 from concio.model.model import Model
-from concio.studies.outputs import Analyses, Output, Settings, verdict_of
+from concio.studies.analyses import Analyses, Settings
+from concio.studies.outputs import Output, verdict_of
 from concio.studies.variables import Variable
 
 GRACE = 5.0

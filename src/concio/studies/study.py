@@ -25,9 +25,10 @@ from concio.model.file.study_table import StudyTable, study_table
 from concio.model.file.writing import dumps
 from concio.model.model import Model
 from concio.representation import short_repr
+from concio.studies.analyses import Settings
 from concio.studies.bridges import variables_of_salib
 from concio.studies.executors import check_executor, run_rows
-from concio.studies.outputs import Settings, outputs_of
+from concio.studies.outputs import outputs_of
 from concio.studies.rows import Row, Tables, Task
 from concio.studies.sampling import Correlation, Sample, draw, given_sample
 from concio.studies.statistics import probability
@@ -150,7 +151,7 @@ def study(
         problem dictionary of SALib (for functions, whose arguments need no keys).
     outputs : str, sequence of str, or mapping of str to function
         Names as in :data:`concio.studies.outputs.KNOWN`, or functions of the run's
-        :class:`~concio.studies.outputs.Analyses`.
+        :class:`~concio.studies.analyses.Analyses`.
     sample : str, Sample or (n, k) array
         A design of :data:`concio.studies.sampling.DESIGNS`, "latin-hypercube" by default, or values made elsewhere.
     size : int, optional

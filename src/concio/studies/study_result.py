@@ -18,7 +18,8 @@ from concio.arguments import closest, strict
 from concio.errors import InputError
 from concio.model.file.keys import KeyPath, find_key
 from concio.model.file.writing import toml_of
-from concio.studies.outputs import KNOWN, NAN, Analyses, Output, Settings
+from concio.studies.analyses import Analyses, Settings
+from concio.studies.outputs import KNOWN, NAN, Output
 from concio.studies.rows import Row, Tables
 from concio.studies.sampling import Sample
 from concio.studies.statistics import (

@@ -10,8 +10,9 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import Field, StrictInt, StrictStr, ValidationError
 
+from concio.model.file.acting_tables import ControlTable
 from concio.model.file.errors import first_fault
-from concio.model.file.tables import ControlTable, Name, Table
+from concio.model.file.tables import Name, Table
 from concio.model.file.values import FileUnits, Force, Length, Number, Stress, UnitWeight
 
 Acceleration = Annotated[StrictStr | float, Field(description="in g, or a text with m/s2")]

@@ -16,6 +16,7 @@ from concio.arguments import closest
 from concio.display import Units
 from concio.errors import InputError
 from concio.model.drawing.drawing import model_from_dxf
+from concio.model.file.acting_tables import LoadTable, StageTable, SupportTable, TemperatureTable, TieTable
 from concio.model.file.block_table import read_blocks
 from concio.model.file.bodies import Materials, body_of, rigid_where_its_material_is
 from concio.model.file.bridge_drawing_table import drawn_barrel, with_drawn_road
@@ -23,17 +24,7 @@ from concio.model.file.errors import placed
 from concio.model.file.file_table import FileTable
 from concio.model.file.parts import assembled_parts
 from concio.model.file.road_tables import crossed
-from concio.model.file.tables import (
-    CourseTable,
-    JointTable,
-    LoadTable,
-    MaterialTable,
-    StageTable,
-    SupportTable,
-    Table,
-    TemperatureTable,
-    TieTable,
-)
+from concio.model.file.tables import CourseTable, JointTable, MaterialTable, Table
 from concio.model.generate.bonds import Course
 from concio.model.generate.extrusion import extrude
 from concio.model.generate.generators import GENERATORS

@@ -8,6 +8,17 @@ from typing import Any
 
 from pydantic import Field, StrictStr, create_model
 
+from concio.model.file.acting_tables import (
+    AnalysisTable,
+    ExtrusionTable,
+    LoadTable,
+    PartTable,
+    SolverTable,
+    StageTable,
+    SupportTable,
+    TemperatureTable,
+    TieTable,
+)
 from concio.model.file.assessment_table import AssessmentEntry, SiteEntry
 from concio.model.file.bridge_drawing_table import BridgeDrawingTable
 from concio.model.file.descriptions import described
@@ -18,25 +29,16 @@ from concio.model.file.road_tables import FillTable, VehicleTable
 from concio.model.file.study_table import Study
 from concio.model.file.survey_table import SurveyEntry
 from concio.model.file.tables import (
-    AnalysisTable,
     BlockTable,
-    ExtrusionTable,
     JointTable,
-    LoadTable,
     MaterialTable,
     Name,
-    PartTable,
     Point,
     ReportTable,
     RuleTable,
-    SolverTable,
-    StageTable,
-    SupportTable,
     Table,
-    TemperatureTable,
-    TieTable,
     UnitsTable,
-)  # fmt: skip
+)
 from concio.model.generate.generators import GENERATORS
 
 

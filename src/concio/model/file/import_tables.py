@@ -6,7 +6,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, StrictBool, StrictStr, Tag, ValidationInfo, field_validator
 
-from concio.model.file.tables import Name, Table, load_value, word_or_table
+from concio.model.file.acting_tables import load_value
+from concio.model.file.tables import Name, Table, word_or_table
 from concio.model.file.values import Length
 from concio.model.model import Face
 

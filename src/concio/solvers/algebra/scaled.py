@@ -22,12 +22,12 @@ from weakref import WeakKeyDictionary
 import numpy as np
 import scipy.sparse as sp
 
-from concio.errors import MethodError
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array, ContactProblem, Engine
 from concio.problem.natural_map import natural_map
 from concio.problem.tolerances import BALANCE_ROUNDING, GRANTED, SMOOTH
 from concio.solvers.algebra.block_factor import BlockFactor
+from concio.solvers.algebra.scales import compliances, interleaved, softness, typical_stiffness
 
 LOOSE = 1e-10
 """Stiffness of the springs that keep unknowns which nothing holds where they are, scaled units."""
@@ -260,48 +260,11 @@ class Scaled:
     @cached_property
     def start(self) -> Array:
         """Forces of the glued structure brought into the cones (m, d): where iterations start."""
-        springs = 1.0 / (_softness(self.problem) + self.compliance)
+        springs = 1.0 / (softness(self.problem) + self.compliance)
         held = self.x if not self.problem.f.any() else np.minimum(self.x, 0.0)
         t = -springs * (held + self.along(self.glued))
         t += self.unstressed
         return self.cone.project(t)
-
-
-def require_plane(problem: ContactProblem) -> None:
-    """Refuse a problem in space.
-
-    Raises
-    ------
-    MethodError
-        The problem is not plane.
-    """
-    if problem.dim != 2:
-        msg = "this method solves plane problems"
-        raise MethodError(msg, hint="use a method that works in three dimensions, such as alart-curnier")
-
-
-def interleaved(problem: ContactProblem) -> sp.csr_array:
-    """Return C with the rows of each pair together, normal first, shape (m d, N)."""
-    m, d = problem.pairs, problem.dim
-    order = np.column_stack([np.arange(m), m + np.arange(m * (d - 1)).reshape(m, d - 1)]).ravel()
-    return sp.csr_array(sp.csr_array(problem.C)[order])
-
-
-def typical_stiffness(problem: ContactProblem) -> float:
-    """Return the geometric mean of the stiffnesses met at the pairs [kN/m]; 1 for rigid bodies with hard joints.
-
-    In space that of a node is the mean of its three, which no turn of the structure changes.
-    """
-    met = np.asarray(abs(problem.C).sum(axis=0)).ravel()
-    diagonal = problem.K.diagonal()
-    if problem.dim == 3 and diagonal.size % 3 == 0:
-        met, diagonal = met.reshape(-1, 3).sum(axis=1), diagonal.reshape(-1, 3).mean(axis=1)
-    diagonal = diagonal[met > 0]
-    springs = [c[c > 0] for c in (problem.laws.normal_compliance, problem.laws.tangential_compliance)]
-    found = np.concatenate([diagonal[diagonal > 0], *(1.0 / c for c in springs)])
-    if found.size:
-        return float(np.exp(np.log(found).mean()))
-    return float(np.abs(problem.f).sum()) or 1.0
 
 
 def scale(problem: ContactProblem, *, loads: Array | None = None) -> Scaled:
@@ -315,7 +278,7 @@ def scale(problem: ContactProblem, *, loads: Array | None = None) -> Scaled:
     """
     m, d = problem.pairs, problem.dim
     stiffness, K, C, factor = _matrices(problem, problem.engine)
-    springs = 1.0 / (_softness(problem) + compliances(problem) * stiffness)
+    springs = 1.0 / (softness(problem) + compliances(problem) * stiffness)
     factor.factorise(springs[:, :, None] * np.eye(d), LOOSE)
     measured = problem.f if loads is None else loads
     gaps = np.column_stack([problem.gap, -problem.slip_origin])
@@ -385,23 +348,3 @@ def _in_units(
         "dilatancy": np.where(cone.rough, law.dilatancy, 0.0),
         "compliance": compliance,
     }
-
-
-def compliances(problem: ContactProblem) -> Array:
-    """Return a_n and a_t of each pair, (m, d) [m/kN]."""
-    law = problem.laws
-    return np.column_stack([law.normal_compliance, *[law.tangential_compliance] * (problem.dim - 1)])
-
-
-def _softness(problem: ContactProblem) -> Array:
-    """Return how much the glued structure gives way at each pair before its own compliance counts, (m, d), scaled.
-
-    In space one. In the plane what the interior point gives way where it begins, every slack equal to its multiplier:
-    1 + 2 d along the normal, and 2 / mu in the joint where there is friction.
-    """
-    softness = np.ones((problem.pairs, problem.dim))
-    if problem.dim == 2:
-        rough, mu = problem.laws.cone.rough, problem.laws.cone.friction
-        softness[:, 0] += np.where(rough, 2.0 * problem.laws.dilatancy, 0.0)
-        softness[:, 1] = 2.0 / np.where(rough & (mu > SMOOTH), mu, 2.0)
-    return softness

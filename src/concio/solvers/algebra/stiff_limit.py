@@ -29,7 +29,7 @@ from concio.problem.solution import Solution, judge, pair_states
 from concio.problem.tolerances import AT_BOUND
 from concio.problem.units import measure
 from concio.solvers.algebra.block_factor import BlockFactor
-from concio.solvers.algebra.scaled import compliances, interleaved
+from concio.solvers.algebra.scales import compliances, interleaved
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 
 ROUNDS = 12

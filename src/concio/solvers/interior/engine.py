@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from concio.problem.contact_problem import ContactProblem, Engine
 from concio.problem.solution import ProgressCallback, Solution, Status
-from concio.solvers.algebra.scaled import require_plane, scale
+from concio.solvers.algebra.scaled import scale
+from concio.solvers.algebra.scales import require_plane
 from concio.solvers.interior.run import SIZES, Cancelled, Run, Start, at_rest
 
 

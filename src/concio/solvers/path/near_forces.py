@@ -28,7 +28,8 @@ from concio.problem.certificate import certify
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.solution import ProgressCallback, Solution, judge
 from concio.problem.tolerances import RESTING
-from concio.solvers.algebra.scaled import Scaled, scale, typical_stiffness
+from concio.solvers.algebra.scaled import Scaled, scale
+from concio.solvers.algebra.scales import typical_stiffness
 from concio.solvers.interior import engine, newton_finish, space
 from concio.solvers.interior.run import SIZES, WEIGHTS, Run
 from concio.solvers.states.reading import read_states

@@ -31,7 +31,8 @@ import scipy.sparse as sp
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array
 from concio.problem.pair_state import Normal
-from concio.solvers.algebra.scaled import Scaled, require_plane
+from concio.solvers.algebra.scaled import Scaled
+from concio.solvers.algebra.scales import require_plane
 from concio.solvers.algebra.updated_factor import Row
 
 COMPLIANCE = 1e-5

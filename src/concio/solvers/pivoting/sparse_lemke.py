@@ -40,7 +40,8 @@ from concio.errors import InputError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.pair_state import PairStates
 from concio.problem.solution import ProgressCallback, Solution, Status, failed
-from concio.solvers.algebra.scaled import Scaled, require_plane, scale
+from concio.solvers.algebra.scaled import Scaled, scale
+from concio.solvers.algebra.scales import require_plane
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.pivoting.covering import cold_states, cover_point, cover_states, named_states, open_states
 from concio.solvers.pivoting.lemke_outcome import no_solution

@@ -19,7 +19,7 @@ import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.tolerances import PROGRAMME_ROUNDING, PROGRAMME_SETTLED
-from concio.solvers.algebra.scaled import interleaved
+from concio.solvers.algebra.scales import interleaved
 from concio.solvers.algebra.second_order_cone import determinant, times
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.statics.cone_interior import ConeAnswer, maximise
