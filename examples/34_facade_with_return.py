@@ -26,12 +26,12 @@ def main(figure: Path | None = None) -> dict[str, float]:
         from matplotlib.figure import Figure
 
         from concio.plot.assessment_figures import demand_figure, mechanism_figure
-        from concio.report.assessment_texts import words_of
+        from concio.report.language import words_of
 
         sheet = Figure(figsize=(9.0, 4.6), layout="constrained")
         left, right = sheet.subplots(1, 2)
         mechanism_figure(worst, left)
-        demand_figure(worst, words_of("en"), right)
+        demand_figure(worst, words_of("assessment_words", "en"), right)
         sheet.savefig(figure)
     return {
         "alpha": worst.multiplier,

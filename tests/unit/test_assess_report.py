@@ -18,7 +18,7 @@ from concio.analysis.seismic.asked import Head, read_asked
 from concio.analysis.seismic.variations import tie_force, variations
 from concio.errors import InputError
 from concio.report.assessment_page import AssessmentReport
-from concio.report.assessment_texts import words_of
+from concio.report.language import words_of
 from seismic_walls import overturning, site
 
 TEMPLATE = (files("concio.model") / "templates" / "assessment.toml").read_text(encoding="utf-8")
@@ -42,7 +42,7 @@ def test_the_languages_have_the_same_keys_and_places() -> None:
     for key, text in table["en"].items():
         assert set(re.findall(r"\{(\w+)\}", text)) == set(re.findall(r"\{(\w+)\}", table["it"][key])), key
     with pytest.raises(InputError, match="language 'fr'"):
-        words_of("fr")
+        words_of("assessment_words", "fr")
 
 
 @pytest.mark.parametrize("language", ["en", "it"])

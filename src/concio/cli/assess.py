@@ -47,10 +47,10 @@ def assess(
     import concio
     from concio.analysis.seismic.asked import read_asked
     from concio.analysis.seismic.variations import tie_force, variations
-    from concio.report.assessment_texts import words_of
+    from concio.report.language import words_of
 
     if language is not None:
-        words_of(language)
+        words_of("assessment_words", language)
     if out is not None:
         check_directory(out)
     asked = read_asked(file)

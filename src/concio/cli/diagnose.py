@@ -43,10 +43,10 @@ def diagnose(
     """
     import concio
     from concio.analysis.cracks.asked import read_survey
-    from concio.report.diagnosis_page import words_of
+    from concio.report.language import words_of
 
     if language is not None:
-        words_of(language)
+        words_of("diagnosis_words", language)
     if out is not None:
         check_directory(out)
     asked = read_survey(file)

@@ -4,18 +4,14 @@ from __future__ import annotations
 
 import math
 import re
-import tomllib
-from collections.abc import Iterable, Mapping, Sequence
-from functools import cache
+from collections.abc import Iterable, Sequence
 from html import escape
-from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 from concio.analysis.seismic.searching import ALL_FREE, EVERY
-from concio.arguments import closest
 from concio.display import number
-from concio.errors import InputError
 from concio.report.html_parts import figure_html
+from concio.report.language import words_of
 from concio.verdict.assessment_verdict import check_words, ratio_words
 
 if TYPE_CHECKING:
@@ -33,23 +29,6 @@ PART = {
 """Names of parts of a structure, as :class:`concio.analysis.seismic.parts.Part` gives them."""
 
 
-@cache
-def words_of(language: str) -> Mapping[str, str]:
-    """Return the words of a language.
-
-    Raises
-    ------
-    InputError
-        There is no such language.
-    """
-    table = tomllib.loads((files("concio.report") / "assessment_words.toml").read_text(encoding="utf-8"))
-    if language not in table:
-        msg = f"there is no report in the language '{language}'"
-        raise InputError(msg, hint=closest(language, tuple(table)))
-    found: Mapping[str, str] = table[language]
-    return found
-
-
 class Texts:
     """Words, numbers and pieces of HTML of one language; figures are numbered as they come.
 
@@ -60,7 +39,7 @@ class Texts:
 
     def __init__(self, language: str) -> None:
         self.language = language
-        self.words = words_of(language)
+        self.words = words_of("assessment_words", language)
         self.figures = 0
 
     def n(self, value: float, digits: int = 4) -> str:

@@ -5,26 +5,22 @@ from __future__ import annotations
 import base64
 import io
 import math
-import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from functools import cache
 from html import escape
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 import concio
-from concio.arguments import closest
 from concio.display import number
-from concio.errors import InputError
 from concio.plot.bridge_figures import change_name, plot_changes, plot_curve, plot_standing
 from concio.plot.model_figure import plot_model
 from concio.problem.solution import PROVEN_FAILURES, Status
 from concio.report.bridge_data import data_rows
 from concio.report.html_parts import figure_html, page_html
+from concio.report.language import words_of
 from concio.verdict.bridge_verdict import bridge_verdict, heaviest_words
 from concio.verdict.bridge_words import Words
 
@@ -47,23 +43,6 @@ STYLE = (
     "@media print{.film input{display:none}.film img{display:none!important}"
     ".film img.printed{display:inline-block!important;width:49%;break-inside:avoid}}"
 )
-
-
-@cache
-def words_of(language: str) -> Mapping[str, str]:
-    """Return the words of a language.
-
-    Raises
-    ------
-    InputError
-        There is no such language.
-    """
-    table = tomllib.loads((files("concio.report") / "bridge_words.toml").read_text(encoding="utf-8"))
-    if language not in table:
-        msg = f"there is no report in the language '{language}'"
-        raise InputError(msg, hint=closest(language, tuple(table)))
-    found: Mapping[str, str] = table[language]
-    return found
 
 
 def write_bridge_report(found: BridgeResult, path: Path | str, *, language: Literal["en", "it"] = "en") -> Path:
@@ -91,7 +70,7 @@ class BridgeReport:
 
     def __init__(self, found: BridgeResult, language: Literal["en", "it"]) -> None:
         self.found, self.language = found, language
-        self.words, self.units = words_of(language), found.model.report
+        self.words, self.units = words_of("bridge_words", language), found.model.report
         self.drawn = {key[2:]: text for key, text in self.words.items() if key.startswith("f_")}
         self.said = Words(language, self.units)
 

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Iterable, Mapping, Sequence
-from functools import cache
 from html import escape
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import concio
-from concio.arguments import closest
 from concio.display import number
-from concio.errors import InputError
 from concio.plot.diagnosis_figure import plot_causes, plot_cracks, plot_readings
 from concio.report.html_parts import figure_html, page_html
+from concio.report.language import words_of
 from concio.verdict.diagnosis_verdict import diagnosis_verdict
 
 if TYPE_CHECKING:
@@ -27,23 +23,6 @@ MOST_TRIALS = 60
 """Choices of motions listed."""
 MOST_DRAWN = 4
 """Causes drawn on the structure."""
-
-
-@cache
-def words_of(language: str) -> Mapping[str, str]:
-    """Return the words of a language.
-
-    Raises
-    ------
-    InputError
-        There is no such language.
-    """
-    table = tomllib.loads((files("concio.report") / "diagnosis_words.toml").read_text(encoding="utf-8"))
-    if language not in table:
-        msg = f"there is no report in the language '{language}'"
-        raise InputError(msg, hint=closest(language, tuple(table)))
-    found: Mapping[str, str] = table[language]
-    return found
 
 
 def write_diagnosis_report(
@@ -81,7 +60,7 @@ class DiagnosisReport:
 
     def __init__(self, found: Diagnosis, language: str, head: Mapping[str, str]) -> None:
         self.found, self.language, self.head = found, language, head
-        self.words = words_of(language)
+        self.words = words_of("diagnosis_words", language)
         self.units = found.model.report
         within = [(c, self.say("cause", n=str(k))) for k, c in enumerate(found.causes, 1)]
         within += [(d.cause, self.say("doubt", name=d.measurement)) for d in found.doubts]
