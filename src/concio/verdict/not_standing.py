@@ -15,7 +15,7 @@ BY_A_MECHANISM = "a mechanism proves it"
 
 FOLLOWED_AWAY = (
     "The bodies were followed from their last position against a vanishing viscous resistance: they moved by more than "
-    "half the width of a body and came to no equilibrium. That there is none elsewhere was not shown."
+    "half the width of a body and reached no equilibrium. That there is none elsewhere was not shown."
 )
 """What shows that a structure moves away where the search for its first equilibrium ends far from where it began."""
 

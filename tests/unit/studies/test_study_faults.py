@@ -20,7 +20,7 @@ from commands import run
 from concio.studies.rows import Row
 from study_functions import VARIABLES, deaf, dying, dying_once, formula, hanging, raising
 
-HERE = Path(__file__).parent.parent
+HERE = Path(__file__).parents[2]
 EXECUTORS = ["serial", "processes", "dask"]
 RUNS = 24
 

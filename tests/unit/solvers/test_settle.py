@@ -153,7 +153,7 @@ def test_right_states_need_no_factor_of_their_own() -> None:
 def test_facade_under_its_dead_load():
     """Slivers of a drawing leave pairs all but redundant: refinement stops above rounding, no state is contradicted."""
     pytest.importorskip("ezdxf")
-    assembly = concio.assemble(concio.load(Path(__file__).parents[2] / "examples" / "facade.toml"))
+    assembly = concio.assemble(concio.load(Path(__file__).parents[3] / "examples" / "facade.toml"))
     result = concio.solve(assembly, "interior-point", factors={"live": 0.0})
     assert result.solved
     assert result.solution.factorisations <= 45

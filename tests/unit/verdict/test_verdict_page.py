@@ -11,7 +11,7 @@ import concio
 from concio.cli.main import app
 from concio.verdict.unanswered import ASKED
 
-PAGE = Path(__file__).parents[2] / "docs" / "howto" / "verdicts.md"
+PAGE = Path(__file__).parents[3] / "docs" / "howto" / "verdicts.md"
 
 
 def rows() -> list[list[str]]:

@@ -106,7 +106,7 @@ def test_laws_and_materials_that_nothing_uses_are_not_judged():
 
 
 def test_examples_are_plausible():
-    for path in sorted((Path(__file__).resolve().parents[2] / "examples").glob("*.toml")):
+    for path in sorted((Path(__file__).resolve().parents[3] / "examples").glob("*.toml")):
         assert implausible(concio.load(path)) == (), path.name
 
 

@@ -15,7 +15,7 @@ import concio
 from commands import run
 from concio.analysis.cracks.asked import read_measurements, read_survey
 
-EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "cracked_arch.toml"
+EXAMPLE = Path(__file__).resolve().parents[3] / "examples" / "cracked_arch.toml"
 TABLE = """name,kind,value [mm],error [mm],body_a,body_b,x,y
 K1,opening,9.7,0.3,v03,v04,0,0
 K2,opening,0.55 cm,0.3,v01,left abutment,-0.7091911,0.3

@@ -9,24 +9,24 @@ import pytest
 
 import concio
 
-NAMED = tomllib.loads((Path(__file__).parents[1] / "mutants_named.toml").read_text(encoding="utf-8"))["named"]
+NAMED = tomllib.loads((Path(__file__).parents[2] / "mutants_named.toml").read_text(encoding="utf-8"))["named"]
 
 
 @pytest.mark.parametrize("fault", NAMED, ids=[fault["what"] for fault in NAMED])
 def test_a_named_fault_has_its_place(fault):
     source = Path(concio.__file__).parent / fault["path"]
     assert source.read_text(encoding="utf-8").count(fault["old"]) == 1
-    assert all((Path(__file__).parents[2] / name).is_file() for name in fault["tests"])
+    assert all((Path(__file__).parents[3] / name).is_file() for name in fault["tests"])
 
 
 def test_every_file_belongs_to_a_room_or_has_no_numerics():
     """What no room holds is never tried: the whole of analysis/seismic once was not."""
-    table = tomllib.loads((Path(__file__).parents[1] / "mutants_rooms.toml").read_text(encoding="utf-8"))
+    table = tomllib.loads((Path(__file__).parents[2] / "mutants_rooms.toml").read_text(encoding="utf-8"))
     rooms, without = set(table["rooms"]), set(table["without_numerics"])
     package = Path(concio.__file__).parent
     assert not rooms & without
     assert all((package / place).exists() for place in rooms | without)
-    assert all((Path(__file__).parents[2] / name).exists() for tests in table["rooms"].values() for name in tests)
+    assert all((Path(__file__).parents[3] / name).exists() for tests in table["rooms"].values() for name in tests)
     for file in package.rglob("*.py"):
         path = file.relative_to(package)
         places = {p.as_posix() for p in (path, *path.parents)}

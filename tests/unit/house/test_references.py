@@ -11,7 +11,7 @@ import pytest
 
 import concio
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 PACKAGE = Path(concio.__file__).parent
 DECISIONS = {p.stem[:4]: p.stem for p in (ROOT / "docs" / "decisions").glob("*.md")}
 PAGES = sorted({*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")} - {ROOT / "CHANGELOG.md"})

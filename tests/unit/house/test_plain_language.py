@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 STYLE = ROOT / "docs" / "contributing" / "style.md"
 ROW = re.compile(r"^\| `(.+)` \| (.+) \|$", re.MULTILINE)
 LINK = re.compile(r"``[^`]*``|\]\([^)]*\)|`[^`\n]*`|\b\d{4}-[a-z0-9-]+|research/[a-z0-9-]+")

@@ -12,7 +12,7 @@ import pytest
 
 from sources import source
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 NAMES = {
     "skfem": "scikit-fem", "mpl_toolkits": "matplotlib", "docutils": "sphinx",
     "PIL": "pillow", "vtkmodules": "vtk",

@@ -14,7 +14,7 @@ from concio.model.file.file_table import json_schema
 from concio.model.file.tables import JointTable
 from concio.model.materials import JointLaw
 
-DOCS = Path(__file__).resolve().parents[2] / "docs"
+DOCS = Path(__file__).resolve().parents[3] / "docs"
 
 
 def script() -> Any:

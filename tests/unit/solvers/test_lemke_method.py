@@ -14,7 +14,7 @@ from concio.solvers.lcp.lemke_method import Outcome, equilibrate, lemke
 from concio.solvers.lcp.linear_problem import GeneralisedComplementarity, LinearComplementarity
 from lcp_oracles import infeasibility, solution
 
-CORPUS = Path(os.environ.get("CONCIO_LCP_CORPUS", Path(__file__).parents[3] / "shared" / "data" / "lcp_corpus"))
+CORPUS = Path(os.environ.get("CONCIO_LCP_CORPUS", Path(__file__).parents[4] / "shared" / "data" / "lcp_corpus"))
 
 
 def _numbers(path: Path) -> list[float]:
