@@ -130,7 +130,7 @@ def margin_line(margin: FrictionBounds) -> str:
         return f"{head}no friction carries the load as given" if shown else f"{head}undecided: no factor could be shown"
     if not margin.settled:
         low = f"{margin.below:.6g} is shown to be too little" if margin.below > 0 else "none is shown to be too little"
-        return f"{head}{margin.factor:.6g} times the coefficients given is shown to suffice, {low}: undecided between"
+        return f"{head}forces balance the load as given within {margin.factor:.6g} times the coefficients given; {low}"
     return f"{head}the load as given needs at least {margin.factor:.6g} times the coefficients given"
 
 

@@ -140,6 +140,16 @@ def test_elastic_pillar_tends_to_the_rigid_one():
     assert found[1e5] > rigid * (1 + 1e-4)
 
 
+def test_an_elastic_pillar_without_weight_is_pushed_by_what_presses_on_it():
+    """The frame of a body without mass was its moment over nothing: a force that is not finite, exit 2."""
+    q = concio.Load("pressure", (50.0,), bodies=("block",), edge=((-0.1, 1.0), (0.1, 1.0)))
+    model = standing(0.2, 1.0, kind="elastic", mesh_size=0.1)
+    model = replace(model, materials={**model.materials, "block": concio.Elastic(E=1e7, nu=0.2)}, loads=(q,))
+    found = concio.push(model, until=0.02, step=0.005)
+    assert found.certified
+    assert found.peak == pytest.approx(0.1 / 1.0, rel=1e-3)  # half the width over the height at which it acts
+
+
 def test_what_does_not_stand_is_refused():
     leaning = model_of(
         box("floor", -5, 5, -1, 0, kind="fixed"),

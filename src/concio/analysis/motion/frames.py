@@ -42,8 +42,9 @@ class Frames:
         self.nodes = reference.node_column[:-1]
         self.body, self.arm, self.mass = reference.body_of_node, reference.node_arm, reference.mass
         self.node_mass = reference.mass[self.nodes[:, 0]]
-        body_mass = np.bincount(self.body, self.node_mass, self.count) if len(self.body) else np.zeros(self.count)
-        self._share = self.node_mass / body_mass[self.body] if len(self.body) else self.node_mass
+        self._weight = reference.resisting.mass[self.nodes[:, 0]]  # frames of bodies without mass move with their nodes
+        total = np.bincount(self.body, self._weight, self.count) if len(self.body) else np.zeros(self.count)
+        self._share = self._weight / total[self.body] if len(self.body) else self._weight
 
     @property
     def elastic(self) -> bool:
@@ -90,7 +91,7 @@ class Frames:
         """
         middle, velocity = self.mean(place), self.mean(nodal)
         r, w = place - middle[self.body], nodal - velocity[self.body]
-        spin = self._moment(r, self.node_mass[:, None] * w) / self._inertia(r)
+        spin = self._moment(r, self._weight[:, None] * w) / self._inertia(r)
         return velocity - swept(spin, middle), spin
 
     def rate(self, nodal: Array, place: Array, turn: Turns) -> tuple[Array, Array, Array]:
@@ -105,7 +106,7 @@ class Frames:
 
     def _inertia(self, arm: Array) -> Array:
         """Return the moments of inertia (B,) of nodes at arms (nodes, d); 1 where there are none."""
-        found = np.bincount(self.body, self.node_mass * dot(arm, arm), self.count)
+        found = np.bincount(self.body, self._weight * dot(arm, arm), self.count)
         return np.where(found > 0, found, 1.0)
 
     # -- forces --------------------------------------------------------------------------------------------------------
@@ -169,5 +170,5 @@ class Frames:
         r = r - self.mean(r)[b]
         share = self._moment(r, force[self.nodes]) / self._inertia(r)
         undone = np.zeros(self.n)
-        undone[self.nodes] = -self.node_mass[:, None] * swept(share[b], r)
+        undone[self.nodes] = -self._weight[:, None] * swept(share[b], r)
         return undone
