@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from concio.contact.load_faces import line_tolerance, loaded_faces
+from concio.contact.edge_loads import line_tolerance, loaded_faces
 from concio.display import number
 from concio.errors import InputError
 from concio.model.described import law_words, material_words, tie_words

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from concio.contact.edge_loads import loaded_bodies, loaded_faces
 from concio.contact.face_loads import loaded_parts, plane_of
 from concio.contact.factors import load_factor
-from concio.contact.load_faces import loaded_bodies, loaded_faces
 from concio.errors import InputError
 from concio.model.model import Load, Model
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from concio.contact.load_faces import line_tolerance, loaded_bodies, prefers
+from concio.contact.edge_loads import line_tolerance, loaded_bodies, prefers
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID, Discretisation
 from concio.fem.solid import SolidShape

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from concio.contact.edge_loads import loaded_bodies, loaded_faces
 from concio.contact.face_loads import add_face_load
-from concio.contact.load_faces import loaded_bodies, loaded_faces
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID, Discretisation
 from concio.fem.edge_integral import edge_weights

@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from concio.contact.assembly import Assembly
-from concio.contact.load_faces import loaded_bodies
+from concio.contact.edge_loads import loaded_bodies
 from concio.contact.loads import load_vectors
 from concio.contact.supports import points_held
 from concio.errors import InputError

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
+from concio.contact.edge_loads import covered, line_tolerance, loaded_faces
 from concio.contact.face_loads import loaded_parts, plane_of
-from concio.contact.load_faces import covered, line_tolerance, loaded_faces
 from concio.errors import InputError
 from concio.model.model import Load, Model
 

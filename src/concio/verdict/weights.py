@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from concio.contact.load_faces import loaded_bodies
+from concio.contact.edge_loads import loaded_bodies
 from concio.display import counted
 from concio.errors import InputError
 from concio.model.model import Model

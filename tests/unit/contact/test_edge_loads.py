@@ -8,7 +8,7 @@ import pytest
 import concio
 from commands import run
 from concio.contact.assembly import assemble
-from concio.contact.load_faces import covered, loaded_faces
+from concio.contact.edge_loads import covered, loaded_faces
 from concio.errors import InputError
 from concio.model.model import Load
 from models import box, on_ground
