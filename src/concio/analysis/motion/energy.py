@@ -41,12 +41,13 @@ class EnergyBalance:
 
     @property
     def turned_over(self) -> float:
-        """Energy by which the error of the balance is measured: the largest range of any column [kN m]."""
-        return max(float(np.ptp(v)) if len(v) else 0.0 for v in self.values.values())
+        """Energy by which the error of the balance is measured: the largest range or the largest motion [kN m]."""
+        moving = float(self.values["kinetic"].max(initial=0.0))  # an elastic impact in free flight turns nothing over
+        return max(moving, *(float(np.ptp(v)) if len(v) else 0.0 for v in self.values.values()))
 
     @property
     def error(self) -> float:
-        """Largest deviation of the balance from its beginning over the energy exchanged."""
+        """Largest deviation of the balance from its beginning over :attr:`turned_over`."""
         total = self.total
         worst = float(np.abs(total - total[0]).max()) if len(total) else 0.0
         return worst / self.turned_over if self.turned_over > 0 else 0.0
