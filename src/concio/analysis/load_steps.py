@@ -25,7 +25,7 @@ from concio.problem.parts import Part
 from concio.problem.solution import ProgressCallback, Solution, Status
 from concio.problem.tolerances import CERTIFIED
 from concio.representation import short_repr
-from concio.solvers.interior import engine, space
+from concio.solvers.interior import engine
 from concio.solvers.methods import find
 from concio.solvers.path.near_forces import needed, solve_near
 from concio.solvers.path.ray import homogeneous, solve_from_rest
@@ -46,11 +46,8 @@ FAR = 1e6
 FURTHER = (1.0, 1e3, 1e6)
 """Times the last step that one further step of the same direction is certified at, to show that loads grow on."""
 
-START = (10.0,)
-"""Starting points of the interior point: a step that needs others is halved instead."""
-
-CONE_STARTS = 2
-"""The same in space."""
+STARTS = {2: 1, 3: 2}
+"""Starts of the interior point by dimension: a step that needs more is halved instead."""
 
 
 @short_repr
@@ -243,11 +240,9 @@ def _part_step(part: Part, state: PathState, progress: ProgressCallback | None) 
     problem = part.problem
     u, t_n, t_t = own(part, state.displacement, state.normal_force, state.friction_force)
     near = u, t_n, t_t
-    if problem.dim == 3 and not needed(problem):
-        return space.solve(problem, progress=progress, starts=CONE_STARTS, near=near)
-    solution = solve_near(problem, *near, starts=START, progress=progress)
-    if solution.solved or solution.status is Status.CANCELLED or not needed(problem):
-        return solution
-    if problem.dim == 3:
-        return space.solve(problem, progress=progress, starts=CONE_STARTS, near=near)
-    return engine.solve(problem, homotopy=False, starts=START, progress=progress)
+    starts = STARTS[problem.dim]
+    if problem.dim == 2 or needed(problem):
+        solution = solve_near(problem, *near, starts=starts, progress=progress)
+        if solution.solved or solution.status is Status.CANCELLED or not needed(problem):
+            return solution
+    return engine.solve(problem, homotopy=False, starts=starts, near=near, progress=progress)

@@ -421,7 +421,7 @@ def test_the_bar_tells_the_time_left_of_long_runs() -> None:
 
 
 WAITING = """
-import time
+import signal, time
 import concio.analysis.step
 from concio.cli.main import main
 
@@ -429,6 +429,7 @@ def wait(*_, **__):
     print("solving", flush=True)
     time.sleep(60)
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in the background of a shell
 concio.analysis.step.solve = wait
 main()
 """

@@ -208,6 +208,7 @@ def test_ctrl_c_keeps_what_was_computed(tmp_path):
 import os, signal, sys
 from concio.analysis.motion.stepper import Stepper
 from concio.cli.main import main
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where the tests run in the background of a shell
 step, made = Stepper.step, []
 def counted(*arguments):
     made.append(1)

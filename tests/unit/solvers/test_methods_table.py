@@ -84,7 +84,10 @@ def test_a_method_of_ones_own() -> None:
 def test_a_method_may_be_another_function_in_space_and_wait_to_be_imported() -> None:
     register("two", {2: silent, 3: "concio.solvers.auto.chain"}, dimensions=(2, 3), laws=LAWS)
     assert find("two").options == ("patience", "engine")
-    assert find("two")(wall(2, 1, kn=1e3).problem).solved
+    problem = wall(2, 1, kn=1e3).problem
+    assert find("two")(problem).solved
+    with pytest.raises(MethodError, match="no option 'patience' for problems in space"):
+        find("two")(problem, patience=3)
     register("later", "no.such.module", load=False)
     with pytest.raises(MethodError, match="cannot be imported"):
         find("later").solver(2)
@@ -139,7 +142,6 @@ def test_the_table_says_which_joint_laws_a_method_refuses(name: str, law: str) -
         (lambda: register("mine", "no.such.module"), "cannot be imported"),
         (lambda: register("mine", "concio.errors"), "has no function 'solve'"),
         (lambda: register("mine", lambda problem: problem), "does not take progress"),
-        (lambda: find("interior-point")(wall(2, 1, kn=1e3).problem, homotopy=False), "no option 'homotopy' for prob"),
     ],
 )
 def test_calls_that_cannot_be_meant(call: object, said: str) -> None:

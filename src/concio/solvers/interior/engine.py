@@ -1,12 +1,11 @@
-"""Method ``interior-point`` in the plane: interior point, exact finish, and a homotopy for jammed states."""
+"""Method ``interior-point``: starts tried in turn, each finished exactly; in the plane a homotopy for jammed states."""
 
 from __future__ import annotations
 
-from concio.problem.contact_problem import ContactProblem, Engine
+from concio.problem.contact_problem import Array, ContactProblem, Engine
 from concio.problem.solution import ProgressCallback, Solution, Status
 from concio.solvers.algebra.scaled import scale
-from concio.solvers.algebra.scales import require_plane
-from concio.solvers.interior.run import SIZES, Cancelled, Run, Start, at_rest
+from concio.solvers.interior.run import WEIGHTS, Cancelled, Run, at_rest, starts_for
 
 
 def solve(
@@ -14,10 +13,11 @@ def solve(
     *,
     progress: ProgressCallback | None = None,
     engine: Engine | None = None,
+    starts: int | None = None,
     homotopy: bool = True,
-    starts: tuple[float, ...] = SIZES,
+    near: tuple[Array, Array, Array] | None = None,
 ) -> Solution:
-    """Solve one load step.
+    """Solve one load step of a problem of any dimension.
 
     Parameters
     ----------
@@ -25,10 +25,12 @@ def solve(
     progress : callable, optional
     engine : {"superlu", "pardiso"}, optional
         Sparse factorisation.
+    starts : int, optional
+        How many starts are tried in turn, at most; by default all.
     homotopy : bool
-        Walk from associated flow where the plain iteration fails.
-    starts : tuple of float
-        Sizes of the starting points tried in turn.
+        Walk from associated flow where the plain iteration fails, in the plane.
+    near : arrays, optional
+        Displacements [m], t_n and t_t [kN] of a state from which Newton's method is tried first, in space.
 
     Returns
     -------
@@ -38,14 +40,13 @@ def solve(
     rest = at_rest(problem)
     if rest is not None:
         return rest
-    require_plane(problem)
     scaled = scale(problem.by(engine))
     run = Run(scaled, progress)
     try:
-        found = None
-        for start in starts:
-            found = found or run.from_start(Start(start, start))
-        if found is None and homotopy and scaled.rough.any():
+        found = None if near is None or scaled.dim == 2 else run.newton(*scaled.bring(*near), WEIGHTS[:1])
+        for start in starts_for(scaled)[:starts]:
+            found = found or run.from_start(start)
+        if found is None and homotopy and scaled.dim == 2 and scaled.rough.any():
             found = run.homotopy()
     except Cancelled:
         return run.solution(None, Status.CANCELLED)

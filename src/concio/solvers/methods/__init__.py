@@ -16,11 +16,7 @@ def _enter(name: str, module: str, dimensions: tuple[int, ...] = BOTH, *, withou
 
 
 _enter("auto", "auto.chain")
-register(
-    "interior-point",
-    {2: "concio.solvers.interior.engine", 3: "concio.solvers.interior.space"},
-    dimensions=BOTH, laws=LAWS, load=False,
-)  # fmt: skip
+_enter("interior-point", "interior.engine")
 _enter("lemke", "methods.forms.lemke", PLANE, without=("cap",))
 _enter("sparse-lemke", "pivoting.sparse_lemke", PLANE)
 _enter("exhaustive", "methods.exhaustive.search", PLANE, without=("cohesion", "tension", "dilatancy", "cap"))

@@ -30,8 +30,8 @@ from concio.problem.solution import ProgressCallback, Solution, judge
 from concio.problem.tolerances import RESTING
 from concio.solvers.algebra.scaled import Scaled, scale
 from concio.solvers.algebra.scales import typical_stiffness
-from concio.solvers.interior import engine, newton_finish, space
-from concio.solvers.interior.run import SIZES, WEIGHTS, Run
+from concio.solvers.interior import engine, newton_finish
+from concio.solvers.interior.run import WEIGHTS, Run
 from concio.solvers.states.reading import read_states
 from concio.solvers.states.settle import Settler
 
@@ -140,7 +140,7 @@ def solve_near(
     t_n: Array,
     t_t: Array,
     *,
-    starts: tuple[float, ...] = SIZES,
+    starts: int | None = None,
     nearby: Nearby | None = None,
     begin: State | None = None,
     progress: ProgressCallback | None = None,
@@ -154,8 +154,8 @@ def solve_near(
         Displacements of the last state [m].
     t_n, t_t : (m,), (m,) or (m, d-1) arrays
         Its forces [kN].
-    starts : tuple of float
-        Sizes of the interior point's starting points, in the plane.
+    starts : int, optional
+        How many starts of the interior point are tried at most, in the plane.
     nearby : Nearby, optional
         What the steps before kept, where they are small: the states of a point nearby are then tried first.
     begin : arrays, optional
@@ -171,9 +171,7 @@ def solve_near(
 
     def solve(step: ContactProblem, which: str) -> Solution:
         found = None if nearby is None else nearby.solve(step, begin, which)
-        if not plane:
-            return found or space.solve(step, progress=progress)
-        return found or engine.solve(step, homotopy=False, starts=starts, progress=progress)
+        return found or engine.solve(step, homotopy=False, starts=starts if plane else None, progress=progress)
 
     if not needed(problem):
         return solve(problem, "as it is")

@@ -17,7 +17,7 @@ from concio.problem.contact_problem import ContactProblem
 from concio.problem.limits_of_work import SMALL_PATH
 from concio.problem.solution import ProgressCallback, Solution, Status
 from concio.solvers.auto import chain as auto
-from concio.solvers.interior import engine, space
+from concio.solvers.interior import engine
 from concio.solvers.path.state import LinearPath, PathState, state_of
 
 
@@ -51,10 +51,7 @@ def ray(
 
 def solve_from_rest(problem: ContactProblem, progress: ProgressCallback | None) -> Solution:
     """Solve one load step quickly; small problems by whatever else it takes."""
-    if problem.dim == 2:
-        solution = engine.solve(problem, homotopy=False, progress=progress)
-    else:
-        solution = space.solve(problem, progress=progress)
+    solution = engine.solve(problem, homotopy=False, progress=progress)
     if solution.solved or problem.pairs > SMALL_PATH or solution.status is Status.CANCELLED:
         return solution
     return auto.solve(problem, progress=progress)

@@ -33,8 +33,8 @@ from concio.solvers.statics.existence import find_mechanism
 SHARES = (1e-6, 3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 2e-3, 4e-3, 7e-3, 1e-2, 2e-2)
 """Load increments tried in turn, as shares of the present load."""
 
-QUICK = (10.0,)
-"""Starting points of the quick tries."""
+QUICK = 1
+"""Starts of the quick tries."""
 
 NEXT = 1e-4
 """Increment up to which the proof that there is no equilibrium counts for the point itself."""
