@@ -8,7 +8,6 @@ from typing import Any
 from pydantic import Field, StrictStr
 
 from concio.errors import InputError
-from concio.model.drawing.bridge_lines import read_lines
 from concio.model.file.errors import placed
 from concio.model.file.road_tables import FillTable
 from concio.model.file.tables import Name, Table
@@ -80,6 +79,8 @@ def with_drawn_road(fill: FillTable | None, drawing: BridgeDrawingTable | None, 
 
 def _read(drawing: BridgeDrawingTable, folder: Path) -> dict[str, list[list[list[float]]]]:
     """Return the lines of a drawing by layer, the left springing of the first at (0, 0) [m]."""
+    from concio.model.drawing.bridge_lines import read_lines
+
     single = [name for name in (drawing.road, drawing.fill_line) if name is not None]
     path = folder / drawing.file
     return read_lines(path, drawing.lines, unit=drawing.unit, chord=drawing.chord_tolerance, single=single)

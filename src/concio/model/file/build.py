@@ -15,7 +15,6 @@ from typing import Any
 from concio.arguments import closest
 from concio.display import Units
 from concio.errors import InputError
-from concio.model.drawing.drawing import model_from_dxf
 from concio.model.file.acting_tables import LoadTable, StageTable, SupportTable, TemperatureTable, TieTable
 from concio.model.file.block_table import read_blocks
 from concio.model.file.bodies import Materials, body_of, rigid_where_its_material_is
@@ -26,12 +25,10 @@ from concio.model.file.parts import assembled_parts
 from concio.model.file.road_tables import crossed
 from concio.model.file.tables import CourseTable, JointTable, MaterialTable, Table
 from concio.model.generate.bonds import Course
-from concio.model.generate.extrusion import extrude
 from concio.model.generate.generators import GENERATORS
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Body, JointRule, Load, Model, Support, Temperature, Tie, check_rules
 from concio.model.polyhedron import Polyhedron
-from concio.model.solids.importing import model_from_solids
 from concio.model.stages import ControlPoint, Stage
 
 Laws = dict[str, JointLaw]
@@ -71,6 +68,8 @@ def build(data: FileTable, folder: Path, where: str, read: Callable[[str], Model
         model = crossed(model, with_drawn_road(data.fill, data.bridge_drawing, folder), data.vehicle)
         _check_names(model)
         if data.extrusion is not None:
+            from concio.model.generate.extrusion import extrude
+
             with placed("[extrusion]", own="extrude"):
                 model = extrude(model, data.extrusion.thickness, held=data.extrusion.held)
     return model
@@ -220,6 +219,8 @@ def _named(word: str, place: str, table: Mapping[str, Any], what: str) -> Any:
 
 
 def _from_solids(data: FileTable, materials: Materials, laws: Laws, folder: Path) -> Model:
+    from concio.model.solids.importing import model_from_solids
+
     table = data.solids
     options: dict[str, Any] = {} if table is None else {key: getattr(table, key) for key in table.model_fields_set}
     if materials:
@@ -232,6 +233,8 @@ def _from_solids(data: FileTable, materials: Materials, laws: Laws, folder: Path
 
 
 def _from_drawing(data: FileTable, materials: Materials, laws: Laws, folder: Path) -> Model:
+    from concio.model.drawing.drawing import model_from_dxf
+
     table = data.drawing
     options: dict[str, Any] = {"thickness": data.analysis.thickness}
     if table is not None:

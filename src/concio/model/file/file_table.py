@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from types import GenericAlias
 from typing import Any
@@ -19,15 +20,10 @@ from concio.model.file.acting_tables import (
     TemperatureTable,
     TieTable,
 )
-from concio.model.file.assessment_table import AssessmentEntry, SiteEntry
 from concio.model.file.bridge_drawing_table import BridgeDrawingTable
-from concio.model.file.descriptions import described
 from concio.model.file.generator_tables import generator_table
 from concio.model.file.import_tables import DrawingTable, SolidsTable
-from concio.model.file.motion_table import Motion
 from concio.model.file.road_tables import FillTable, VehicleTable
-from concio.model.file.study_table import Study
-from concio.model.file.survey_table import SurveyEntry
 from concio.model.file.tables import (
     BlockTable,
     JointTable,
@@ -95,22 +91,61 @@ class FileTable(Table):
     record: dict[str, Any] = Field(default_factory=dict, description="how the model was made; not read by concio")
 
 
+ANALYSES = frozenset({"study", "site", "assessment", "survey", "motion"})
+"""Tables of analyses, which are not part of the model."""
+
+
+def _analyses() -> dict[str, Any]:
+    """Return type and default of the tables of :data:`ANALYSES`."""
+    from concio.model.file.assessment_table import AssessmentEntry, SiteEntry
+    from concio.model.file.motion_table import Motion
+    from concio.model.file.study_table import Study
+    from concio.model.file.survey_table import SurveyEntry
+
+    types = {"study": Study, "site": SiteEntry, "assessment": AssessmentEntry, "survey": SurveyEntry, "motion": Motion}
+    return {name: (kind, None) for name, kind in types.items()}
+
+
 @cache
 def file_table() -> type[FileTable]:
     """Return the table of a whole model file, generators included."""
     members: dict[str, Any] = {name: (generator_table(name), Field(None)) for name in GENERATORS}
     part = create_model("part", __base__=PartTable, __doc__=PartTable.__doc__, **members)
-    members["study"] = (Study, None)
-    members["site"] = (SiteEntry, None)
-    members["assessment"] = (AssessmentEntry, None)
-    members["survey"] = (SurveyEntry, None)
-    members["parts"] = (GenericAlias(list, (part,)), Field(default_factory=list))
-    members["motion"] = (Motion, None)
+    members |= {"parts": (GenericAlias(list, (part,)), Field(default_factory=list)), **_analyses()}
     return create_model("concio model", __base__=FileTable, __doc__=FileTable.__doc__, **members)
+
+
+def table_for(data: Mapping[str, Any]) -> type[FileTable]:
+    """Return the table of files that state the keys of ``data`` alone, which is made sooner than that of all keys.
+
+    Keys without a check keep their default; what this table refuses, :func:`file_table` refuses with the right words.
+    """
+    parts = data.get("parts")
+    inside = (key for entry in parts if isinstance(entry, dict) for key in entry) if isinstance(parts, list) else ()
+    return _narrow_table(frozenset(data), frozenset(inside))
+
+
+@cache
+def _narrow_table(stated: frozenset[str], inside: frozenset[str]) -> type[FileTable]:
+    named = [name for name in GENERATORS if name in stated]
+    members: dict[str, Any] = {name: (generator_table(name), Field(None)) for name in named}
+    if "parts" in stated:
+        own: dict[str, Any] = {name: (generator_table(name), Field(None)) for name in GENERATORS if name in inside}
+        part = create_model("part", __base__=PartTable, **own)
+        members["parts"] = (GenericAlias(list, (part,)), Field(default_factory=list))
+    if stated & ANALYSES:
+        members |= {name: entry for name, entry in _analyses().items() if name in stated}
+    anything: Any = Field  # its overloads know either a default or a factory
+    for name, field in FileTable.model_fields.items():
+        if name not in stated:
+            members[name] = (Any, anything(field.default, default_factory=field.default_factory))
+    return create_model("concio model", __base__=FileTable, **members)
 
 
 def json_schema() -> dict[str, Any]:
     """Return the JSON Schema of a model file (draft 2020-12)."""
+    from concio.model.file.descriptions import described
+
     schema = _any_of(file_table().model_json_schema())
     schema = described(schema)
     return {

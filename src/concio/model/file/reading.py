@@ -27,6 +27,7 @@ import os
 import re
 import sys
 import tomllib
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -37,7 +38,7 @@ from concio.errors import InputError
 from concio.files import read_text
 from concio.model.file.build import build
 from concio.model.file.errors import check_depth, check_finite, first_fault
-from concio.model.file.file_table import file_table
+from concio.model.file.file_table import FileTable, file_table, table_for
 from concio.model.file.tables import UnitsTable
 from concio.model.file.values import FileUnits
 from concio.model.model import Model
@@ -143,12 +144,19 @@ def model_from_tables(
     InputError
         As :func:`load`.
     """
-    units = file_units(data, name)
+    table = _checked(data, file_units(data, name), name)
+    return build(table, Path(folder), name, lambda part: _read_part(Path(folder) / part, chain))
+
+
+def _checked(data: dict[str, Any], units: FileUnits, name: str) -> FileTable:
+    """Return the tables of a file, checked; words for a fault come from the table of all keys."""
+    context = {"units": units}
+    with suppress(ValidationError):
+        return table_for(data).model_validate(data, context=context)
     try:
-        table = file_table().model_validate(data, context={"units": units})
+        return file_table().model_validate(data, context=context)
     except ValidationError as error:
         raise first_fault(error, data, file_table(), name) from None
-    return build(table, Path(folder), name, lambda part: _read_part(Path(folder) / part, chain))
 
 
 def _read_part(path: Path, chain: tuple[Path, ...]) -> Model:

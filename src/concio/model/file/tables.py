@@ -37,9 +37,9 @@ Name = Annotated[StrictStr, Field(min_length=1)]
 
 
 class Table(BaseModel):
-    """A table of a file: unknown keys are an error."""
+    """A table of a file: unknown keys are an error. Its checks are made when a file is read that has it."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", defer_build=True)
 
 
 class UnitsTable(Table):

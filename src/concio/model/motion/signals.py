@@ -9,13 +9,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal, Protocol
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
-from scipy.interpolate import CubicSpline, PPoly
 
 from concio.arguments import strict_class
 from concio.errors import InputError
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 Array = np.ndarray
 Quantity = Literal["acceleration", "velocity", "displacement"]
@@ -100,6 +102,8 @@ class Record:
     @cached_property
     def _pieces(self) -> tuple[PPoly, PPoly, PPoly]:
         """Acceleration, velocity and displacement as piecewise polynomials."""
+        from scipy.interpolate import CubicSpline, PPoly
+
         time = self.step * np.arange(len(self.values))
         v = self.values
         if self.quantity == "displacement":
