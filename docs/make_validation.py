@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import importlib
 import inspect
+import json
 import re
 import sys
 from pathlib import Path
@@ -118,6 +119,27 @@ def section(name: str, title: str) -> tuple[str, list[Row]]:
     return "\n\n".join(parts) + figure(name, module), rows
 
 
+IN_REPORTS = (
+    "local_mechanisms", "ferris_tin_loi", "semicircular_arch", "block_on_base", "blocks_in_space", "corner_walls",
+)  # fmt: skip
+"""Cases whose rows stand in the annex of assessment reports."""
+
+
+def report_rows() -> str:
+    """Run the cases of the annex of reports; return their rows as the package carries them."""
+    found = {}
+    for name in IN_REPORTS:
+        module = importlib.import_module(f"validation_cases.{name}")
+        rows = [
+            {"name": r.name, "expected": r.expected, "computed": float(f"{r.computed:.9g}"),
+             "difference": float(f"{abs(r.difference):.1e}") if abs(r.difference) >= ROUNDING else 0.0,
+             "tolerance": r.tolerance, "unit": r.unit, "check": r.check}
+            for r in module.rows() if r.asserted
+        ]  # fmt: skip
+        found[name] = {"source": module.SOURCE.removesuffix("."), "rows": rows}
+    return json.dumps(found, indent=1, ensure_ascii=False) + "\n"
+
+
 def main() -> int:
     """Write the book; return 1 where a row is outside its tolerance."""
     parts, wrong, count = [], [], 0
@@ -133,6 +155,7 @@ def main() -> int:
     summary = f"{count} rows in {len(CASES)} cases; {len(wrong)} outside their tolerance.\n\n"
     (HERE / "validation" / "book.md").write_text(HEAD + summary + "\n".join(parts), encoding="utf-8")
     (HERE / "validation_table.md").write_text("\n".join(every), encoding="utf-8")
+    (HERE.parent / "src" / "concio" / "report" / "validation_rows.json").write_text(report_rows(), encoding="utf-8")
     for line in wrong:
         print("outside its tolerance:", line, file=sys.stderr)
     return 1 if wrong else 0

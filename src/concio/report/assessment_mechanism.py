@@ -31,6 +31,18 @@ def mechanism_html(t: Texts, m: LocalMechanism, place: int, used: str) -> str:
     )
 
 
+def brief_html(t: Texts, m: LocalMechanism, place: int) -> str:
+    """Return the checks of one mechanism alone."""
+    title = f"{place}. " + t.words["mechanism"].format(name=t.name(m), direction=t.way(m.direction))
+    return f'<section class=brief id="m{place}"><h3>{escape(title)}</h3>{_lines(t, m)}</section>'
+
+
+def _lines(t: Texts, m: LocalMechanism) -> str:
+    """Return the table of its checks."""
+    head = [t.words[k] for k in ("level", "check", "where", "clause", "demand", "capacity", "ratio")]
+    return t.table(head, [_line(t, c, m) for c in m.checks], 4)
+
+
 def _chain(t: Texts, m: LocalMechanism) -> str:
     """Return the tables of forces."""
     w = t.words
@@ -127,13 +139,11 @@ def _curve(t: Texts, m: LocalMechanism, used: str) -> str:
 def _checks(t: Texts, m: LocalMechanism) -> str:
     """Return the lines capacity over demand, and the acceleration of capacity."""
     w = t.words
-    rows = [_line(t, c, m) for c in m.checks]
-    head = [w[k] for k in ("level", "check", "where", "clause", "demand", "capacity", "ratio")]
     found = [[o.level, t.n(o.a_g), t.n(o.zeta), t.n(o.T_R), t.verdict(o.zeta, o.holds)] for o in m.outcomes]
     found += [[level, *[t.words["unknown"]] * 3, t.say("unchecked")] for level in m.unchecked]
     names = [w[k] for k in ("level", "a_cap", "zeta", "T_cap", "outcome")]
     return (
-        f"<h3>{t.say('checks')}</h3>{t.table(head, rows, 4)}<h3>{t.say('outcomes')}</h3>"
+        f"<h3>{t.say('checks')}</h3>{_lines(t, m)}<h3>{t.say('outcomes')}</h3>"
         f"<p>{t.say('outcomes_text')}</p>{t.table(names, found)}"
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from functools import cached_property
 from html import escape
@@ -16,9 +17,11 @@ from concio.analysis.seismic.asked import Head
 from concio.analysis.seismic.floor import Storeys
 from concio.contact.applied import applied_forces
 from concio.plot.assessment_figures import model_figure
-from concio.report.assessment_mechanism import mechanism_html
+from concio.report.assessment_annex import annex_html
+from concio.report.assessment_mechanism import brief_html, mechanism_html
 from concio.report.assessment_texts import Texts
 from concio.report.html_parts import page_html
+from concio.report.typeset import typeset
 from concio.verdict.assessment_verdict import assessment_verdict
 from concio.verdict.verdict import Verdict
 
@@ -28,6 +31,10 @@ if TYPE_CHECKING:
     from concio.analysis.seismic.variations import TieForce, Variation
 
 UNITS = {"weight": "-", "pressure": "kN/m2", "traction": "kN/m2", "point": "kN", "body": "kN/m3"}
+
+
+IN_DETAIL = 2
+"""Mechanisms that are printed in detail unless all are asked for."""
 
 
 def write_assessment_report(found: Assessment, path: Path | str, **options: Any) -> Path:
@@ -72,15 +79,30 @@ class AssessmentReport(Texts):
         """Return the page."""
         title = self.head.project or self.found.model.title or self.words["title"]
         parts = [self.header(title), self.top(), self.site(), self.model(), self.search()]
-        parts += [mechanism_html(self, m, k, self.found.curve) for k, m in enumerate(self.found.mechanisms, 1)]
-        parts += [self.varied_part(), self.tie_part()]
+        parts += self.mechanisms()
+        parts += [self.varied_part(), self.tie_part(), annex_html(self, self.found, self.head, self.told)]
         footer = self.say("footer", version=concio.__version__)
         parts.append(f"<footer>{footer}</footer>")
-        return page_html(title, "".join(parts), language=self.language, kind="assessment")
+        return page_html(title, typeset("".join(parts)), language=self.language, kind="assessment")
+
+    def mechanisms(self) -> list[str]:
+        """Return what decides in detail, what has a name or is below one by its checks; on request all in detail."""
+        mine, made = self.found.arguments.get("mechanisms") or {}, []
+        every = self.found.mechanisms
+        lowest = (min(range(len(every)), key=lambda k: every[k].zeta_at(v), default=0) for v in self.found.levels)
+        shown = sorted({0, *lowest})[:IN_DETAIL]
+        for k, m in enumerate(every):
+            if self.head.full or k in shown:
+                made.append(mechanism_html(self, m, k + 1, self.found.curve))
+            elif m.name in mine or m.least < 1.0:
+                made.append(brief_html(self, m, k + 1))
+        if len(every) > len(shown) and not self.head.full:
+            made.append(f"<p class=note>{self.say('not_full')}</p>")
+        return made
 
     def header(self, title: str) -> str:
         """Return the head: title, project, author, date, code."""
-        rows = [(key, getattr(self.head, key)) for key in ("project", "place", "author", "date")]
+        rows = [(key, getattr(self.head, key)) for key in ("project", "place", "author", "revision", "date")]
         rows = [(self.words[key], value) for key, value in rows if value]
         rows.append((self.words["code"], f"{self.found.site.rules.name}"))
         facts = "".join(f"<tr><th>{escape(k)}</th><td>{escape(v)}</td></tr>" for k, v in rows)
@@ -94,7 +116,7 @@ class AssessmentReport(Texts):
         """The verdict in the language of the report."""
         return assessment_verdict(
             self.found, self.language, write=self.n, name=self.named,
-            reason=lambda key: self.words["reason_" + key.replace(" ", "_")],
+            reason=lambda key: self.words["reason_" + key.replace(" ", "_")], way=self.way,
         )  # fmt: skip
 
     def top(self) -> str:
@@ -117,7 +139,9 @@ class AssessmentReport(Texts):
             key = "acts_multiplied" if a.role == "multiplied" else "acts_constant"
             what = self.way(a.group.removeprefix("push ")) if a.role == "multiplied" else a.group
             size = self.n(math.hypot(*a.force) if a.force else 0.0)
-            lines.append(self.words[key].format(group=what, size=size, force=self.pair(a.force), parts=a.what))
+            parts = re.sub("^weights of ", self.words["acts_weights"] + " ", a.what)
+            parts = re.sub(r"([\d.,]+(?:e-?\d+)?) kN", lambda m: f"{self.n(float(m[1].replace(',', '')))} kN", parts)
+            lines.append(self.words[key].format(group=what, size=size, force=self.pair(a.force), parts=parts))
         return tuple(lines)
 
     def site(self) -> str:

@@ -39,7 +39,7 @@ class Texts:
 
     def __init__(self, language: str) -> None:
         self.language = language
-        self.words = words_of("assessment_words", language)
+        self.words = {**words_of("assessment_words", language), **words_of("annex_words", language)}
         self.figures = 0
 
     def n(self, value: float, digits: int = 4) -> str:
@@ -106,8 +106,8 @@ class Texts:
         """Return words in the colour of what holds, or of what does not."""
         return f'<b class="{"good" if good else "bad"}">{escape(text)}</b>'
 
-    def pair(self, vector: Any) -> str:
+    def pair(self, vector: Any, digits: int = 4) -> str:
         """Return the numbers of a vector."""
         numbers = [float(v) for v in vector]
         size = math.hypot(*numbers)
-        return "(" + "; ".join(self.n(0.0 if abs(v) < 1e-9 * size else v) for v in numbers) + ")"
+        return "(" + "; ".join(self.n(0.0 if abs(v) < 1e-9 * size else v, digits) for v in numbers) + ")"

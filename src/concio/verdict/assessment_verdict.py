@@ -47,7 +47,7 @@ Write = Callable[[float, int], str]
 
 def assessment_verdict(
     found: Assessment, language: str = "en", *, write: Write = number, name: Callable[[str], str] | None = None,
-    reason: Callable[[str], str] | None = None,
+    reason: Callable[[str], str] | None = None, way: Callable[[str], str] | None = None,
 ) -> Verdict:  # fmt: skip
     """Return the verdict of an assessment.
 
@@ -57,10 +57,10 @@ def assessment_verdict(
     language : {"en", "it"}
     write : callable, optional
         Writes a number with some digits, as the language does.
-    name, reason : callable, optional
-        Names of mechanisms, and why a curve ends, in the language.
+    name, reason, way : callable, optional
+        Names of mechanisms, why a curve ends, and which way is pushed, in the language.
     """
-    return _Words(found, language, write, name or str, reason or _reason).verdict()
+    return _Words(found, language, write, name or str, reason or _reason, way or str).verdict()
 
 
 def none_sentence(none: NoMechanism, language: str = "en", largest: float = 2.0, write: Write = number) -> str:
@@ -68,6 +68,35 @@ def none_sentence(none: NoMechanism, language: str = "en", largest: float = 2.0,
     if math.isinf(none.multiplier):
         return WORDS[language]["locked"]
     return WORDS[language]["large"].format(largest=f"{largest:g}", alpha=write(none.multiplier, 4))
+
+
+def grounds(
+    found: Assessment, language: str = "en", *, write: Write = number, name: Callable[[str], str] = str,
+    way: Callable[[str], str] = str,
+) -> tuple[str, ...]:  # fmt: skip
+    """Return on what a judgement of acceptability can stand: the check by hand, the proofs, what is open.
+
+    Parameters
+    ----------
+    found : Assessment
+    language : {"en", "it"}
+    write, name, way : callable, optional
+        As :func:`assessment_verdict`.
+    """
+    words, lines = WORDS[language], []
+    for m, check in zip(found.mechanisms[:1], found.hand_checks[:1], strict=True):
+        lines.append(words["ground_hand"].format(name=name(m.name), hand=write(check.alpha, 9),
+                     alpha=write(check.program, 9), difference=f"{check.difference:.0e}"))  # fmt: skip
+    worst = max((check.difference for check in found.hand_checks), default=0.0)
+    wrong = sum(not check.agrees for check in found.hand_checks)
+    if wrong or len(found.mechanisms) > 1:
+        key, n = ("ground_differs", wrong) if wrong else ("ground_all", len(found.mechanisms))
+        lines.append(words[key].format(n=n, difference=f"{worst:.0e}"))
+    lines += [words["ground_bound"].format(way=way(push), alpha=write(bound.multiplier, 6), gap=f"{bound.gap:.0e}")
+              for push, bound in found.bounds.items() if bound.checked and math.isfinite(bound.multiplier)]  # fmt: skip
+    if found.open:
+        lines.append(words["ground_open"].format(n=len(found.open)))
+    return tuple(lines)
 
 
 def check_words(check: Check, language: str = "en", *, decides: bool = True, write: Write = number) -> str:
@@ -98,9 +127,11 @@ class _Words:
     """Puts the verdict of one assessment into words."""
 
     def __init__(
-        self, found: Assessment, language: str, write: Write, name: Callable[[str], str], reason: Callable[[str], str]
-    ) -> None:
+        self, found: Assessment, language: str, write: Write, name: Callable[[str], str], reason: Callable[[str], str],
+        way: Callable[[str], str],
+    ) -> None:  # fmt: skip
         self.found, self.words, self.write, self.name, self.reason = found, WORDS[language], write, name, reason
+        self.way = way
 
     def say(self, key: str, **values: Any) -> str:
         """Return a sentence; numbers in it are written as the language does."""
@@ -150,12 +181,12 @@ class _Words:
         """Return the answer in sentences."""
         worst = self.found.worst
         if worst is None:
-            why = "; ".join(self.say("none", name=self.name(n.name), way=n.direction, why=self.none(n))
+            why = "; ".join(self.say("none", name=self.name(n.name), way=self.way(n.direction), why=self.none(n))
                             for n in self.found.locked)  # fmt: skip
             text = self.say("answer_none", why=why)
             return text if outcome is Outcome.HOLDS else f"{text} {self.say('incomplete')}"
         level, zeta = self.decisive(worst)
-        parts = [self.say("answer", level=level, zeta=zeta, name=self.name(worst.name), way=worst.direction,
+        parts = [self.say("answer", level=level, zeta=zeta, name=self.name(worst.name), way=self.way(worst.direction),
                           alpha=self.write(worst.multiplier, 6))]  # fmt: skip
         levels = self.by_level()
         if len(levels) > 1:
@@ -181,7 +212,7 @@ class _Words:
         bound = worst.found.associated
         if flow == "Coulomb":
             bound = self.found.bounds.get(worst.direction, bound)
-        return self.say(f"proof_{flow}", name=self.name(worst.name), way=worst.direction, upper=bound.upper,
+        return self.say(f"proof_{flow}", name=self.name(worst.name), way=self.way(worst.direction), upper=bound.upper,
                         gap=f"{bound.gap:.0e}")  # fmt: skip
 
     def limits(self) -> tuple[str, ...]:
@@ -210,7 +241,7 @@ class _Words:
                 and o.check.a_g >= o.check.least and abs(o.zeta / o.check.ratio - 1.0) > APART
             ]  # fmt: skip
         limits += [
-            self.say("cut", name=self.name(m.name), way=m.direction, d=float(m.followed.end),
+            self.say("cut", name=self.name(m.name), way=self.way(m.direction), d=float(m.followed.end),
                      reason=self.reason(m.followed.reason))
             for m in found.mechanisms[:MOST_NAMES] if m.followed.ends and m.followed.reason != "falls"
         ]  # fmt: skip
@@ -224,6 +255,8 @@ class _Words:
         values = dict(item.values)
         if "name" in values:
             values["name"] = self.name(values["name"])
+        if "way" in values:
+            values["way"] = self.way(values["way"])
         if "reason" in values:
             values["reason"] = self.reason(values["reason"])
         if item.kind == "height":

@@ -60,11 +60,21 @@ EN = {
     "alone",
     "open_curve": "'{name}', push {way}, at {levels}: its curve is not conclusive ({reason})",
     "open_bound": "whether '{name}', push {way}, begins to move below {alpha}, which is an upper bound only",
+    "open_hand": "'{name}', push {way}: by virtual work, computed once more from the coordinates, alpha_0 is {hand} "
+    "and not {alpha}",
     "open_tie": "tie '{tie}', which has no yield force: it was taken to pull with up to {force} kN",
     "open_unseen": "whether anything holds {names}: the loads there are less than {share} of those of the structure "
     "around, below the resolution of the residuals",
     "open_locked": "'{name}', push {way}: with joints that open as they slide it is locked, with Coulomb friction "
     "that is no answer, and no collapse state was found",
+    "ground_hand": "alpha_0 of '{name}' by virtual work, block by block from the coordinates of the model, is {hand}; "
+    "the program has {alpha} (difference {difference})",
+    "ground_all": "the same was done for all {n} mechanisms that are reported; largest difference {difference}",
+    "ground_differs": "for {n} of the mechanisms that are reported the check by hand and the program differ by up to "
+    "{difference}: the results are not to be accepted before that is understood",
+    "ground_bound": "forces in equilibrium and a motion prove the least multiplier of push {way} over all motions, "
+    "{alpha}, with a duality gap of {gap}",
+    "ground_open": "things that were asked for or are to be expected and were not checked: {n}; they are listed below",
     "high": "'{name}' (z = {z} m)",
     "and_more": "{n} more",
     "row_holds": "verified, {ratio}",
@@ -131,11 +141,21 @@ IT = {
     "piano",
     "open_curve": "«{name}», spinta {way}, allo {levels}: la curva non è conclusiva ({reason})",
     "open_bound": "se «{name}», spinta {way}, si muova sotto {alpha}, che è solo un limite superiore",
+    "open_hand": "«{name}», spinta {way}: con i lavori virtuali, ricalcolati dalle coordinate, alpha_0 vale {hand} e "
+    "non {alpha}",
     "open_tie": "la catena «{tie}», senza forza di snervamento: si è ammesso che tiri fino a {force} kN",
     "open_unseen": "se {names} stiano in equilibrio: i carichi su quei corpi sono meno di {share} di quelli della "
     "struttura intorno, sotto la risoluzione dei residui",
     "open_locked": "«{name}», spinta {way}: con giunti che si aprono scorrendo è bloccato, con l'attrito di Coulomb "
     "non è una risposta, e non è stato trovato alcuno stato di collasso",
+    "ground_hand": "alpha_0 di «{name}» con i lavori virtuali, blocco per blocco dalle coordinate del modello, vale "
+    "{hand}; il programma dà {alpha} (differenza {difference})",
+    "ground_all": "lo stesso è stato fatto per tutti gli {n} meccanismi riportati; differenza massima {difference}",
+    "ground_differs": "per {n} dei meccanismi riportati il calcolo a mano e il programma differiscono fino a "
+    "{difference}: i risultati non vanno accettati prima di averne capito il motivo",
+    "ground_bound": "forze in equilibrio e un moto dimostrano il moltiplicatore minimo della spinta {way} fra tutti i "
+    "moti, {alpha}, con uno scarto di dualità di {gap}",
+    "ground_open": "cose richieste o da attendersi e non esaminate: {n}; sono elencate sotto",
     "high": "«{name}» (z = {z} m)",
     "and_more": "altri {n}",
     "row_holds": "verificato, {ratio}",

@@ -35,8 +35,9 @@ def edited(folder: Path, *changes: tuple[str, str]) -> Path:
     return path
 
 
-def test_the_languages_have_the_same_keys_and_places() -> None:
-    table = tomllib.loads((files("concio.report") / "assessment_words.toml").read_text(encoding="utf-8"))
+@pytest.mark.parametrize("name", ["assessment_words.toml", "annex_words.toml"])
+def test_the_languages_have_the_same_keys_and_places(name: str) -> None:
+    table = tomllib.loads((files("concio.report") / name).read_text(encoding="utf-8"))
     assert set(table) == {"en", "it"}
     assert list(table["en"]) == list(table["it"])
     for key, text in table["en"].items():
@@ -65,7 +66,7 @@ def test_report_holds_what_was_computed_and_never_verified_without_a_ratio(langu
 
 def test_a_result_writes_its_own_report(tmp_path: Path) -> None:
     found = concio.assess(overturning(), site=site(), direction="left", levels=["SLD"])
-    assert "zeta_E" in found.report(tmp_path / "r.html", language="it").read_text(encoding="utf-8")
+    assert "ζ<sub>E</sub>" in found.report(tmp_path / "r.html", language="it").read_text(encoding="utf-8")
 
 
 def test_command_writes_report_numbers_and_curves(tmp_path: Path) -> None:

@@ -22,9 +22,13 @@ class Head:
 
     Parameters
     ----------
-    project, place, author, date : str
+    project, place, author, date, revision : str
     knowledge : str
         Why the level of knowledge is what it is.
+    judgement : str
+        Whether and why the author accepts the results; printed in the annex.
+    full : bool
+        Whether everything is printed: all mechanisms in detail, all blocks of the check by hand.
     language : {"en", "it"}
     """
 
@@ -32,7 +36,10 @@ class Head:
     place: str = ""
     author: str = ""
     date: str = ""
+    revision: str = ""
     knowledge: str = ""
+    judgement: str = ""
+    full: bool = False
     language: str = "en"
 
 

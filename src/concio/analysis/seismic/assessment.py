@@ -10,6 +10,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from concio.analysis.seismic.hand_check import HandCheck, hand_check
+from concio.analysis.seismic.hand_forces import hand_forces
 from concio.analysis.seismic.local_mechanism import LevelOutcome, LocalMechanism, NoMechanism
 from concio.analysis.seismic.open_items import OpenItem, open_items
 from concio.analysis.seismic.site import Site
@@ -98,6 +100,12 @@ class Assessment(Shown):
     def least(self) -> float:
         """The least zeta_E at all limit states asked for, those of serviceability included."""
         return min((m.least for m in self.mechanisms), default=math.inf)
+
+    @cached_property
+    def hand_checks(self) -> tuple[HandCheck, ...]:
+        """For each mechanism alpha_0 once more, by virtual work from the coordinates of the model."""
+        forces = hand_forces(self.model)
+        return tuple(hand_check(m, self.model, self.arguments.get("live"), forces) for m in self.mechanisms)
 
     @cached_property
     def open(self) -> tuple[OpenItem, ...]:

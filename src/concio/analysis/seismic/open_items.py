@@ -28,8 +28,8 @@ class OpenItem:
     Parameters
     ----------
     kind : str
-        "levels", "hazard", "height", "out of plane", "curve", "bound", "tie", "unseen" or "locked"; the words are in
-        :mod:`concio.verdict.assessment_words`.
+        "levels", "hazard", "height", "out of plane", "curve", "bound", "hand", "tie", "unseen" or "locked"; the
+        words are in :mod:`concio.verdict.assessment_words`.
     values : mapping
         What the words name.
     """
@@ -68,6 +68,8 @@ def open_items(found: Assessment) -> tuple[OpenItem, ...]:
             items.append(OpenItem("curve", {**where, "levels": levels, "reason": m.followed.reason}))
         if m.found.flow == "associated":
             items.append(OpenItem("bound", {**where, "alpha": m.multiplier}))
+    items += [OpenItem("hand", {"name": m.name, "way": m.direction, "alpha": m.multiplier, "hand": check.alpha})
+              for m, check in zip(found.mechanisms, found.hand_checks, strict=True) if not check.agrees]  # fmt: skip
     if "ties" not in excused:
         items += [OpenItem("tie", {"tie": t.name, "force": t.strength}) for t in found.model.ties
                   if t.yield_force is None]  # fmt: skip

@@ -157,10 +157,14 @@ class ReportTextTable(Table):
 
     Keys
     ----
-    project, place, author, date :
+    project, place, author, date, revision :
         Printed in the head of the report.
     knowledge :
         What is known of the structure, and from where.
+    judgement :
+        Whether and why the author accepts the results; printed in the annex, where a place is left for it otherwise.
+    full :
+        Whether everything is printed: all mechanisms in detail, all blocks of the check by hand.
     language :
         Language of the report.
     """
@@ -169,7 +173,10 @@ class ReportTextTable(Table):
     place: StrictStr = ""
     author: StrictStr = ""
     date: StrictStr = ""
+    revision: StrictStr = ""
     knowledge: StrictStr = ""
+    judgement: StrictStr = ""
+    full: bool = False
     language: Literal["en", "it"] = "en"
 
 
