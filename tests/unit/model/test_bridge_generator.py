@@ -141,3 +141,14 @@ def test_the_table_of_a_file_takes_one_value_or_a_list() -> None:
     text = "[bridge]\nspan = [5.0, '600 cm']\nrise = [1.2, 1.5]\nring = ['215 mm', 0.215]\nvoussoirs = 18\n"
     model = concio.loads(text + "pier_width = 1.2\nblock = 'rigid'\n")
     assert len(model.free_bodies) == 2 * 2 * 18
+
+
+def test_a_list_of_one_ring_is_that_ring() -> None:
+    """A ring of blocks that laps no other follows its curve by two chords a stone, however it was written."""
+    one, listed, text = made(ring=0.4), made(ring=[0.4]), made(ring="400 mm")
+    for other in (listed, text):
+        assert [len(b.outline) for b in other.bodies] == [len(b.outline) for b in one.bodies]
+        for a, b in zip(one.bodies, other.bodies, strict=True):
+            np.testing.assert_allclose(b.outline, a.outline, atol=1e-12)
+    assert len(made(ring=[0.2, 0.2]).free_bodies[0].outline) == 4
+    assert len(one.free_bodies[0].outline) == 6

@@ -54,6 +54,20 @@ def test_the_l_wall_of_the_benchmark() -> None:
     assert volume(model) == pytest.approx(130)
 
 
+@pytest.mark.parametrize("scale", [1e-3, 1e3])
+def test_walls_of_any_size_have_the_same_corners(scale: float) -> None:
+    """Two walls that end a block before the third meet nothing, in millimetres as in metres."""
+    lines = np.array([[(0, 0), (4, 0)], [(1, 0.6), (1, 3)], [(3, 0), (3, 3)]])
+    size = np.array([0.5, 0.25, 0.2])
+    one = concio.walls(lines=lines.tolist(), height=1.0, block_size=size.tolist(), **RIGID)
+    other = concio.walls(
+        lines=(scale * lines).tolist(), height=scale, block_size=(scale * size).tolist(), **RIGID
+    )  # fmt: skip
+    assert [b.name for b in other.bodies] == [b.name for b in one.bodies]
+    for a, b in zip(one.polyhedra, other.polyhedra, strict=True):
+        np.testing.assert_allclose(b.vertices, scale * a.vertices, atol=1e-9 * scale)
+
+
 WALLS: dict[str, tuple[dict[str, object], float, float]] = {
     "corner": ({"lines": ROOM[:2], "block_size": (0.5, 0.25, 0.2)}, 0.25, (4.125 + 2.875) * 0.25 * 2 + 0.25**2 * 2),
     "room with a cross wall": ({"lines": ROOM, "block_size": (0.5, 0.25, 0.2)}, 0.25, 0.0),
