@@ -11,7 +11,7 @@ import typer
 from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
-from concio.cli.progress import progress_bar
+from concio.cli.progress import found_so_far, progress_bar
 from concio.problem.limits_of_work import LARGEST_MARGIN
 
 if TYPE_CHECKING:
@@ -87,6 +87,7 @@ def limit(
             )
             for _, known in stages:
                 found = known
+                found_so_far(lambda: limit_lines(known))  # noqa: B023 - called at once
     except KeyboardInterrupt:
         if found is not None:
             tell(limit_lines(found))

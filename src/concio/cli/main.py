@@ -29,6 +29,7 @@ from concio.cli import (
     study,
     verify,
     view,
+    window,
 )
 
 EXIT_CODES = (
@@ -69,7 +70,7 @@ def _common(
 COMMANDS = (
     new.new, check.check, run.run, path.path, limit.limit, push.push, shake.shake, cell.cell, continuum.continuum,
     assess.assess, diagnose.diagnose, bridge.bridge, prove.prove, verify.verify, compare.compare, study.study,
-    view.view, export.export, schema.schema,
+    view.view, window.window, export.export, schema.schema,
 )  # fmt: skip
 for command in COMMANDS:
     app.command(command.__name__, epilog=EXIT_CODES)(command)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from contextvars import ContextVar
+from typing import TYPE_CHECKING, Any
 
 from concio.cli.outcome import QUIET
 
@@ -17,8 +18,14 @@ if TYPE_CHECKING:
 TARGET = 1e-6
 """Residual at which the bar is full: where the exact finish begins, at the latest."""
 
+OFTEN = 0.1
+"""A listener receives progress at most once in this time [s]."""
 SOON = 5.0
 """Seconds after which the time left is reported."""
+
+
+LISTENER: ContextVar[Callable[[str, Any], None] | None] = ContextVar("listener", default=None)
+"""Receives what is known on the way in place of a terminal: ("progress", {...}) and ("found", lines)."""
 
 
 @contextmanager
@@ -28,6 +35,19 @@ def progress_bar(*, shown: bool) -> Iterator[ProgressCallback | None]:
     The bar shows how far the residual has fallen on a logarithmic scale; it never goes back. Long runs tell how much
     time is left if the residual goes on falling as it did.
     """
+    listener, share, left = LISTENER.get(), Share(), TimeLeft()
+    if listener is not None:
+        sent = 0.0
+
+        def report(state: Progress) -> None:
+            nonlocal sent
+            text = share.after(state) + left.after(share.best, time.monotonic())
+            if time.monotonic() - sent >= OFTEN:
+                sent = time.monotonic()
+                listener("progress", {"share": share.best, "text": text})
+
+        yield report
+        return
     if not shown or QUIET.get() or not sys.stderr.isatty():
         yield None
         return
@@ -38,24 +58,39 @@ def progress_bar(*, shown: bool) -> Iterator[ProgressCallback | None]:
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
     with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("assembling", total=1.0)
-        first = best = 0.0
-        left = TimeLeft()
 
         def move(state: Progress) -> None:
-            nonlocal first, best
-            text = f"{state.method}: iteration {state.iteration}"
-            if state.method in ("dynamics", "push", "assessment", "diagnose"):  # what is left to do, not a residual
-                best = max(best, 1.0 - state.residual)
-                text = state.method
-            elif math.isfinite(state.residual) and state.residual > 0:
-                first = first or max(state.residual, 10 * TARGET)
-                share = math.log(first / state.residual) / math.log(first / TARGET)
-                best = max(best, min(share, 1.0))
-                text += f", residual {state.residual:.1e}"
-            text += (f", {state.message}" if state.message else "") + left.after(best, time.monotonic())
-            bar.update(task, completed=best, description=text)
+            text = share.after(state) + left.after(share.best, time.monotonic())
+            bar.update(task, completed=share.best, description=text)
 
         yield move
+
+
+def found_so_far(lines: Callable[[], list[str]]) -> None:
+    """Send lines that are known already to the listener, where there is one."""
+    listener = LISTENER.get()
+    if listener is not None:
+        listener("found", lines())
+
+
+class Share:
+    """Estimates the share of the work that is done; it never goes back."""
+
+    def __init__(self) -> None:
+        self.first = self.best = 0.0
+
+    def after(self, state: Progress) -> str:
+        """Take in what a solver reports; return it in words."""
+        text = f"{state.method}: iteration {state.iteration}"
+        if state.method in ("dynamics", "push", "assessment", "diagnose"):  # what is left to do, not a residual
+            self.best = max(self.best, 1.0 - state.residual)
+            text = state.method
+        elif math.isfinite(state.residual) and state.residual > 0:
+            self.first = self.first or max(state.residual, 10 * TARGET)
+            share = math.log(self.first / state.residual) / math.log(self.first / TARGET)
+            self.best = max(self.best, min(share, 1.0))
+            text += f", residual {state.residual:.1e}"
+        return text + (f", {state.message}" if state.message else "")
 
 
 class TimeLeft:

@@ -165,7 +165,7 @@ def _loads(ax: Axes, model: Model, size: float) -> bool:
     for load in model.loads:
         if load.group in own and load.kind == "point":  # drawn as fill and as axles on the road
             continue
-        arrows = _arrows(load, model.report)
+        arrows = load_arrows(load, model.report)
         if arrows is None:
             continue
         tips, direction, word = arrows
@@ -181,7 +181,8 @@ def _loads(ax: Axes, model: Model, size: float) -> bool:
     return drawn
 
 
-def _arrows(load: Load, units: Units) -> tuple[Array, Array, str] | None:
+def load_arrows(load: Load, units: Units) -> tuple[Array, Array, str] | None:
+    """Return the tips (n, 2) [m] of the arrows of a load, their unit directions (n, 2), and its size in words."""
     value = np.array(load.value, dtype=float)
     size = float(np.hypot(*value)) if len(value) > 1 else abs(float(value[0]))
     if not size > 0:

@@ -28,7 +28,7 @@ ORDER = (
     "solvers/methods/forms", "solvers/methods/iterative", "solvers/methods/exhaustive", "solvers/methods",
     "proof", "verdict", "analysis", "analysis/motion", "analysis/cells", "analysis/continuum",
     "analysis/seismic", "analysis/bridges", "analysis/cracks", "post", "plot", "report", "io",
-    "studies", "bridges", "cells", "cracks", "generate", "motion", "seismic", "cli", "__main__",
+    "studies", "bridges", "cells", "cracks", "generate", "motion", "seismic", "window", "cli", "__main__",
 )  # fmt: skip
 """Rooms in the order in which things flow: each imports from itself and from those before it."""
 MODULES = sorted(ROOT.rglob("*.py"))

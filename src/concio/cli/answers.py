@@ -1,0 +1,73 @@
+"""The process behind the window: it answers with the commands themselves, in the words that the terminal prints."""
+
+from __future__ import annotations
+
+import io
+import json
+import time
+from collections.abc import Mapping
+from contextlib import redirect_stderr, redirect_stdout, suppress
+from pathlib import Path
+from typing import Any
+
+from concio.cli.progress import LISTENER
+from concio.window.worker import Tell, work
+
+
+def ask(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+    """Run a command; return exit code, the lines it printed, its message, and its verdict.
+
+    Parameters
+    ----------
+    request : mapping
+        ``argv``, the arguments of the command; ``out``, the directory it writes to; ``file`` and ``name``, the file
+        that the command reads and what messages call it.
+    tell : callable
+        Receives progress, and lines that are known on the way.
+    """
+    from concio.cli.main import app
+
+    begun, printed, said = time.monotonic(), io.StringIO(), io.StringIO()
+    token = LISTENER.set(tell)
+    try:
+        with redirect_stdout(printed), redirect_stderr(said):
+            try:
+                code = app(list(request["argv"]), standalone_mode=False) or 0
+            except Exception as error:  # what is wrong with an option is told by the command line's own exceptions
+                if not hasattr(error, "format_message"):
+                    raise
+                code = 2
+                said.write(f"Error: {error.format_message()}\n")
+    finally:
+        LISTENER.reset(token)
+    out = Path(request["out"])
+    lines = [line for line in printed.getvalue().splitlines() if str(out) not in line]
+    summary: dict[str, Any] = {}
+    with suppress(OSError, ValueError):
+        summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    message = said.getvalue().replace(request["file"], request["name"]).strip()
+    return {
+        "code": code, "lines": lines, "message": message, "verdict": summary.get("verdict"),
+        "seconds": time.monotonic() - begun,
+    }  # fmt: skip
+
+
+def warm(_: Mapping[str, Any], __: Tell) -> bool:
+    """Load what every question needs, before one is asked."""
+    import concio
+
+    concio.solve(concio.column(width=0.5, height=1.0, blocks=2, block="rigid", unit_weight=20.0))
+    return True
+
+
+def main() -> None:
+    """Answer requests of a window until it closes."""
+    from concio.window.drag import dragged
+    from concio.window.drawing import layers
+    from concio.window.picture import picture
+
+    work({"ask": ask, "warm": warm, "picture": picture, "drag": dragged, "layers": layers})
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,130 @@
+"""A drawing that is opened: its layers with what they seem to mean, and the model file that names it."""
+
+from __future__ import annotations
+
+import tomllib
+from collections import Counter
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from concio.errors import InputError
+from concio.model.drawing.dxf_entities import Entity, read_sheet
+from concio.model.drawing.layers import LayerUse, named_use
+from concio.window.folder import check_files
+from concio.window.toml_edits import literal
+from concio.window.worker import Tell
+
+COARSE = 0.01
+"""Largest distance of a chord from its arc in the picture of the layers [m]."""
+MOST_LINES = 4000
+FIXED = ("ground", "terren", "fondaz", "found", "suolo", "soil", "fixed", "base", "spall", "abutment")
+IGNORED = ("quot", "dim", "text", "test", "ass", "axis", "axes", "grid", "retin", "hatch", "annot", "cartigl", "frame")
+NAMED = ("nomi", "name", "numer", "label")
+
+
+def starting_text(drawing: Path) -> str:
+    """Return the text of a model file that names a drawing."""
+    return f"""# Blocks of the drawing {drawing.name}.
+# State what its layers mean, the thickness, the material and the joints.
+title = {literal(drawing.stem)}
+blocks_file = {literal(drawing.name)}
+
+[analysis]
+thickness = 1.0                   # out of plane
+
+[materials.block]
+kind = "rigid"
+unit_weight = "20 kN/m3"
+
+[joints.joint]
+friction = 0.6
+
+[drawing.layers]
+"""
+
+
+def layers(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+    """Return the layers of the drawing that a model text names.
+
+    Parameters
+    ----------
+    request : mapping
+        As for :func:`concio.window.reading.read`.
+    tell : callable
+        Not used.
+
+    Returns
+    -------
+    dict
+        ``layers``: name, entities by kind, whether it is off, what is stated and what is proposed, lines to draw [m];
+        ``metres``, the length of a drawing unit; ``unit``, false where the drawing states none; ``known``, the size
+        of one block, to ask whether it is right.
+
+    Raises
+    ------
+    InputError
+        The text names no drawing, or it cannot be read.
+    """
+    data = tomllib.loads(request["text"])
+    name = data.get("blocks_file")
+    if not isinstance(name, str) or not name.lower().endswith(".dxf"):
+        msg = "the model does not name a drawing"
+        raise InputError(msg, hint="drop a DXF file on the page")
+    check_files(data, Path(request["base"]), Path(request["folder"]))
+    table = data.get("drawing", {})
+    unit, stated = table.get("unit"), True
+    path = Path(request["base"]) / name
+    try:
+        sheet = read_sheet(path, unit, COARSE)
+    except InputError as error:
+        if unit is not None or "unit" not in error.what:
+            raise
+        sheet, stated = read_sheet(path, "m", COARSE), False
+    found: dict[str, dict[str, Any]] = {
+        layer: {"name": layer, "count": Counter(), "off": layer.upper() in sheet.hidden, "lines": [],
+                "stated": table.get("layers", {}).get(layer)}
+        for layer in sheet.layers
+    }  # fmt: skip
+    room = MOST_LINES
+    for entity in sheet.entities:
+        own = found[entity.layer]
+        own["count"][entity.kind] += 1
+        if room and len(entity.points) > 1:
+            room -= 1
+            ends = entity.points if not entity.closed else np.vstack([entity.points, entity.points[:1]])
+            own["lines"].append(np.round(ends, 6).tolist())
+    for layer in found.values():
+        layer["proposed"] = proposed(layer["name"], layer["count"])
+    shown = [layer for layer in found.values() if layer["count"]]
+    return {"layers": shown, "metres": sheet.metres, "unit": stated, "known": _known(sheet.entities)}
+
+
+def proposed(name: str, count: Mapping[str, int]) -> str:
+    """Return what a layer seems to be: a word of ``[drawing.layers]``, or "" where its name or content says it."""
+    known = named_use(name.upper())
+    if not isinstance(known, LayerUse) or known != LayerUse():
+        return ""
+    low = name.lower()
+    kinds = (("names", NAMED), ("fixed", FIXED), ("ignore", IGNORED))
+    for word, beginnings in kinds:
+        if any(part.startswith(b) for b in beginnings for part in low.replace("-", "_").replace(" ", "_").split("_")):
+            return word
+    closed = {"LWPOLYLINE", "POLYLINE", "CIRCLE", "ELLIPSE", "SPLINE"}
+    return "" if closed & set(count) else "ignore"
+
+
+def _known(entities: tuple[Entity, ...]) -> list[float] | None:
+    """Return width and height of the block of middle size [m]."""
+    sizes = []
+    for entity in entities:
+        with suppress(ValueError):
+            if entity.closed and len(entity.points) > 2:
+                sizes.append(np.ptp(entity.points, axis=0))
+    if not sizes:
+        return None
+    sizes.sort(key=lambda s: float(s.prod()))
+    return [round(float(v), 6) for v in sizes[len(sizes) // 2]]

@@ -1,0 +1,158 @@
+/* Questions: what will act before they run, progress, the verdict in its own words, report and files. */
+import { t, el, field, say, language } from "./words.js";
+import { call } from "./net.js";
+import { view } from "./picture.js";
+
+let questions = [], chosen = "run", controls = {}, asked = () => {}, doc = () => null;
+const answers = [];
+export let answer = null;
+
+export function setAsk(list, sender, document_) { questions = list; asked = sender; doc = document_; }
+
+function fits(q) { return !q.needs.length || (view.shown && q.needs.some((n) => view.shown.tables.includes(n) || (n === "vehicle" && view.shown.tables.includes("bridge") && view.shown.tables.includes("vehicle")))); }
+
+export function questionPane(pane) {
+  const buttons = questions.map((q) => el("button", {
+    "aria-pressed": String(q.name === chosen), "data-question": q.name, disabled: !fits(q), title: fits(q) ? t(`a_${q.name}`) : t("needs", { table: q.needs[0] }),
+    onclick: () => { chosen = q.name; questionPane(pane); pane.querySelector(`[data-question="${q.name}"]`).focus(); },
+  }, t(`q_${q.name}`)));
+  const now = questions.find((q) => q.name === chosen);
+  controls = {};
+  const acts = el("div", { id: "acts" });
+  const fields = now.options.map((o) => optionField(o, () => showActs(acts, now)));
+  pane.replaceChildren(
+    el("div", { class: "choices", role: "group", "aria-label": t("ask") }, ...buttons), el("p", {}, t(`a_${now.name}`)),
+    ...fields, el("section", {}, el("h2", {}, t("acts_on")), acts),
+    el("div", { class: "row" }, el("button", { class: "main", id: "run", disabled: !view.shown || Boolean(view.shown.fault), onclick: run }, t("run_it"))),
+    el("p", { class: "quiet" }, t("all_options", { question: now.name })),
+  );
+  showActs(acts, now);
+}
+
+function optionField(option, changed) {
+  const name = option.name, word = t(name === "language" ? "language_report" : name);
+  if (option.kind === "groups") {
+    const groups = view.shown ? view.shown.groups : [];
+    const first = groups.includes("live") ? ["live"] : [];
+    const boxes = groups.map((g) => el("label", {}, el("input", { type: "checkbox", value: g, checked: first.includes(g), onchange: changed }), ` ${g} `));
+    controls[name] = () => boxes.map((b) => b.querySelector("input")).filter((i) => i.checked).map((i) => i.value);
+    return el("fieldset", {}, el("legend", {}, word), ...boxes, el("p", { class: "quiet" }, t("constant_groups")));
+  }
+  if (option.kind === "flag") {
+    const box = el("input", { type: "checkbox", onchange: changed });
+    controls[name] = () => box.checked;
+    return el("label", { class: "row" }, box, word);
+  }
+  const one = option.kind === "choice" ? el("select", {}, ...["", ...option.choices].map((c) => el("option", { value: c }, c))) : el("input", {});
+  if (name === "language") one.value = language;
+  controls[name] = () => one.value.trim();
+  return field(word, one);
+}
+
+function options() {
+  const found = {};
+  for (const [name, read] of Object.entries(controls)) {
+    const value = read();
+    if (value && (!Array.isArray(value) || value.length)) found[name] = value;
+  }
+  return found;
+}
+
+/* sentences of the question's loads, as the verdict will write them */
+function showActs(place, question) {
+  const shown = view.shown;
+  if (!shown) return place.replaceChildren();
+  const live = question.options.some((o) => o.kind === "groups") ? options().groups || [] : [];
+  const lines = shown.acting.map((g) => (live.includes(g.group) ? g.multiplied : g.constant));
+  place.replaceChildren(el("ul", {}, ...[...lines, ...shown.assumed].map((line) => el("li", {}, line))));
+}
+
+export async function run() {
+  const found = await asked(chosen, options());
+  if (found) say(t("working"));
+}
+
+/* the state of the question in the verdict's place */
+let shownKey = "";
+export async function follow(state, after) {
+  const running = document.getElementById("running"), now = state.asked;
+  const busy = Boolean(now) && (now.state === "working" || now.state === "waiting");
+  running.hidden = !busy;
+  if (busy) {
+    const bar = document.getElementById("progress"), share = now.progress?.share;
+    if (share > 0) bar.value = share; else bar.removeAttribute("value");
+    document.getElementById("progress-text").textContent = `${t("working")}: ${t(`q_${now.question}`)}, ${Math.round(now.seconds || 0)} ${t("seconds")}. ${now.progress?.text || ""}`;
+    document.getElementById("found").textContent = (now.found || []).join("\n");
+    shownKey = "";
+    return;
+  }
+  if (!now) { if (answer) { answer = null; shownKey = ""; } return verdict(after); }
+  if (now.state === "cancelled") { if (shownKey !== "cancelled") { shownKey = "cancelled"; say(t("cancelled")); verdict(after, t("cancelled")); } return; }
+  const key = `${now.key} ${state.document?.hash} ${language}`;
+  if (key === shownKey) return;
+  shownKey = key;
+  if (!answer || answer.key !== now.key || answer.question !== now.question) {
+    try { if (answer) answers.unshift(answer); answer = await call("result", { key: now.key }); } catch { shownKey = ""; return; }
+  }
+  verdict(after);
+}
+
+function toneOf(found) {
+  if (found.code === 0) return "good";
+  return found.code === 3 ? "bad" : "unsure";
+}
+
+function block(found, old) {
+  const box = el("div", { class: `${toneOf(found)}${old ? " old" : ""}` });
+  const v = found.verdict;
+  if (old) box.append(el("p", { class: "stamp" }, t("changed_since")));
+  if (v) {
+    box.append(el("p", { class: "headline", lang: "en" }, v.headline), el("p", { class: "sentence", lang: "en" }, v.sentence));
+    for (const line of v.attention) box.append(el("p", { lang: "en" }, `${t("attention")}: ${line}`));
+  }
+  if (found.message) box.append(el("pre", { lang: "en" }, found.message));
+  if (!v && found.lines.length) box.append(el("pre", { lang: "en" }, found.lines.slice(0, 3).join("\n")));
+  box.append(el("details", {}, el("summary", {}, t("all_lines") + (found.kept ? ` (${t("kept")})` : "")), el("pre", { lang: "en" }, found.lines.join("\n"))));
+  return box;
+}
+
+function verdict(after, note = "") {
+  const place = document.getElementById("verdict-text"), now = doc();
+  const parts = note ? [el("p", {}, note)] : [];
+  if (answer) parts.push(block(answer, now && answer.hash !== now.hash));
+  else if (!note) parts.push(el("p", { class: "quiet" }, t("no_verdict")));
+  if (answer && t("verdict_language")) parts.push(el("p", { class: "quiet" }, t("verdict_language")));
+  if (answers.length && answer) {
+    const before = answers.find((a) => a.key !== answer.key);
+    if (before) parts.push(el("details", {}, el("summary", {}, `${t("earlier")}: ${before.command}`), block(before, now && before.hash !== now.hash)));
+  }
+  const text = parts.map((p) => p.textContent).join("");
+  if (place.textContent !== text || place.dataset.note !== note) { place.replaceChildren(...parts); place.dataset.note = note; }
+  after();
+}
+
+export function reportPane(pane) {
+  pane.replaceChildren();
+  if (!answer || !answer.files.length) return pane.append(el("p", { class: "quiet" }, t("no_report")));
+  const report = answer.files.find((f) => f.endsWith("report.html")), base = new URL("..", location.href);
+  const bar = el("div", { class: "row" }, el("button", { onclick: () => write(bar) }, t("export")));
+  pane.append(bar);
+  if (report) {
+    const address = new URL(report, base).href;
+    bar.append(el("a", { href: address, target: "_blank", rel: "noopener" }, t("open_report")), el("a", { href: address, download: "report.html" }, t("save_report")));
+    pane.append(el("iframe", { src: address, title: t("report"), sandbox: "allow-scripts allow-modals" }));
+  } else for (const file of answer.files) pane.append(el("p", {}, el("img", { class: "answer", src: new URL(file, base).href, alt: file.split("/").pop() })));
+}
+
+async function write(bar) {
+  try {
+    const found = await call("export", { key: answer.key });
+    const text = t("exported", { folder: found.folder });
+    bar.append(el("span", { role: "status" }, text));
+  } catch (error) { bar.append(el("span", { role: "alert" }, error.text || error.message)); }
+}
+
+export function programs(file) {
+  if (answer) return { python: answer.python, command: answer.command };
+  return { python: `import concio\n\nmodel = concio.load(${JSON.stringify(file)})\nresult = concio.solve(model)\nprint(result.verdict)\n`, command: `concio run ${file} --out result` };
+}

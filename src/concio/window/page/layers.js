@@ -1,0 +1,46 @@
+/* What the layers of a drawing mean: counts, what is proposed, a small picture of each; the unit asked with a block. */
+import { t, el, field, digits } from "./words.js";
+import { call } from "./net.js";
+import { boxOf } from "./geometry.js";
+
+const USES = ["", "block", "rigid", "fixed", "hole", "names", "ignore"], NS = "http://www.w3.org/2000/svg";
+let send = async () => false;
+export function setLayers(sender) { send = sender; }
+
+function thumbnail(lines, box) {
+  const svg = document.createElementNS(NS, "svg");
+  svg.setAttribute("viewBox", `${box[0]} ${-box[3]} ${box[2] - box[0]} ${box[3] - box[1]}`);
+  svg.setAttribute("width", 120); svg.setAttribute("height", 70); svg.setAttribute("aria-hidden", "true");
+  const path = document.createElementNS(NS, "path");
+  path.setAttribute("d", lines.map((l) => "M" + l.map(([x, y]) => `${x} ${-y}`).join("L")).join(""));
+  path.setAttribute("fill", "none"); path.setAttribute("stroke", "currentColor"); path.setAttribute("vector-effect", "non-scaling-stroke");
+  svg.append(path);
+  return svg;
+}
+
+export async function layersPane(pane) {
+  let found;
+  try { const answered = await call("layers"); if (answered.error) throw Object.assign(new Error(answered.error.what), {}); found = answered.done; }
+  catch (error) { return pane.replaceChildren(el("p", { role: "alert" }, error.text || error.message)); }
+  if (!found) return;
+  const points = found.layers.flatMap((l) => l.lines.flat()), box = points.length ? boxOf(points) : [0, 0, 1, 1];
+  const proposals = found.layers.filter((l) => l.proposed && l.stated === null);
+  const unit = el("select", { onchange: () => send([{ do: "set", path: ["drawing", "unit"], value: unit.value }]) }, ...["mm", "cm", "m", "in", "ft"].map((u) => el("option", { value: u }, u)));
+  const size = { 0.001: "mm", 0.01: "cm", 1: "m", 0.0254: "in", 0.3048: "ft" }[found.metres];
+  if (size && found.unit) unit.value = size; else unit.selectedIndex = -1;
+  const rows = found.layers.map((layer) => {
+    const stated = typeof layer.stated === "string" ? layer.stated : layer.stated ? layer.stated.use || layer.stated.load || layer.stated.support || layer.stated.material : "";
+    const words = USES.includes(stated) ? USES : [...USES, stated];
+    const pick = el("select", { "aria-label": `${t("layer_meaning")}: ${layer.name}`, onchange: () => send([pick.value ? { do: "set", path: ["drawing", "layers", layer.name], value: pick.value } : { do: "remove", path: ["drawing", "layers", layer.name] }]) },
+      ...words.map((w) => el("option", { value: w }, USES.includes(w) ? t(`layer_${w || "none"}`) : w)));
+    pick.value = stated;
+    const note = layer.proposed && layer.stated === null ? el("p", { class: "quiet" }, `${t("layer_proposed")}: ${t(`layer_${layer.proposed}`)}`) : null;
+    return el("tr", {}, el("th", { scope: "row" }, layer.name, layer.off ? el("p", { class: "quiet" }, t("layer_off")) : null),
+      el("td", {}, Object.entries(layer.count).map(([k, n]) => `${n} ${k}`).join(", ")), el("td", {}, pick, note), el("td", {}, thumbnail(layer.lines, box)));
+  });
+  pane.replaceChildren(
+    field(t("layer_unit"), unit, found.known ? t("layer_known", { width: digits(found.known[0]), height: digits(found.known[1]) }) : ""),
+    el("button", { disabled: !proposals.length, onclick: () => send(proposals.map((l) => ({ do: "set", path: ["drawing", "layers", l.name], value: l.proposed }))) }, t("layer_apply")),
+    el("table", {}, el("caption", {}, t("layers")), el("thead", {}, el("tr", {}, ...["layer", "layer_count", "layer_meaning", "picture"].map((h) => el("th", { scope: "col" }, t(h))))), el("tbody", {}, ...rows)),
+  );
+}

@@ -1,0 +1,42 @@
+/* The words of the page in the chosen language, and small helpers that build elements without writing HTML text. */
+let table = {};
+export let language = localStorage.getItem("language") || (navigator.language.startsWith("it") ? "it" : "en");
+
+export function setWords(words) { table = words; }
+export function setLanguage(to) { language = to; localStorage.setItem("language", to); document.documentElement.lang = to; }
+
+export function t(key, values = {}) {
+  const pair = table[key] || [key, key];
+  return pair[language === "it" ? 1 : 0].replace(/\{(\w+)\}/g, (_, name) => values[name] ?? "");
+}
+
+export function label(root = document) {
+  for (const one of root.querySelectorAll("[data-t]")) one.textContent = t(one.dataset.t);
+  for (const one of root.querySelectorAll("[data-label]")) one.setAttribute("aria-label", t(one.dataset.label));
+}
+
+/* el("p", {class: "quiet"}, "text", child...): attributes, listeners ("onclick") and children */
+export function el(tag, attributes = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) made.addEventListener(name.slice(2), value);
+    else if (value === true) made.setAttribute(name, "");
+    else if (value !== false && value !== null && value !== undefined) made.setAttribute(name, value);
+  }
+  made.append(...children.filter((c) => c !== null && c !== undefined));
+  return made;
+}
+
+let fields = 0;
+export function field(word, control, help = "") {
+  const id = `field-${(fields += 1)}`;
+  control.id = id;
+  const row = el("div", { class: "field" }, el("label", { for: id }, word), control);
+  if (!help) return row;
+  control.setAttribute("aria-describedby", `${id}-help`);
+  return el("div", {}, row, el("p", { class: "quiet", id: `${id}-help` }, help));
+}
+
+export function say(text) { document.getElementById("say").textContent = text; }
+
+export const digits = (value) => String(Number(Number(value).toPrecision(6)));

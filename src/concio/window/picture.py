@@ -1,0 +1,161 @@
+"""What the page draws of a model, and what its tables list: plain numbers and the words of the house.
+
+Colours are those of the figures and reports (:mod:`concio.plot.style`); sentences are those of verdicts. The page
+writes no sentence about a structure itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import nan
+from typing import Any
+
+import numpy as np
+
+from concio.contact.assembly import assemble
+from concio.contact.detection import detect
+from concio.errors import ConcioError
+from concio.model.body import Body
+from concio.model.described import law_words, material_words, tie_words
+from concio.model.interfaces.detect import Detection
+from concio.model.interfaces.patch import Patch
+from concio.model.model import Model
+from concio.plot.model_figure import load_arrows
+from concio.verdict.attention import attention_of
+from concio.verdict.question import acting_groups, thickness_words
+from concio.window.reading import own_loads, read
+from concio.window.worker import Tell
+
+DIGITS = 9
+MOST_FINDINGS = 200
+
+
+def picture(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+    """Return the picture of a model; ``tell`` gets the bodies before the joints and the forces are known.
+
+    Raises
+    ------
+    ConcioError
+        The text is not a model.
+    """
+    data, model = read(request, fresh=True)
+    shown: dict[str, Any] = {
+        "dim": model.dim, "title": model.title, "tables": sorted(data), "bodies": _bodies(model),
+        "materials": {n: material_words(m, model.report) for n, m in model.materials.items()},
+        "laws": {n: law_words(law, model.report) for n, law in model.laws.items()},
+        "loads": _loads(model, data), "supports": _supports(model, data), "ties": _ties(model, data),
+        "groups": sorted({load.group for load in model.loads} | {s.group for s in model.supports if s.moves}),
+        "fixed": sum(b.kind == "fixed" for b in model.bodies),
+    }  # fmt: skip
+    detection = detect(model)
+    shown["joints"] = _joints(model, detection)
+    shown["attention"] = list(attention_of(model, detection))
+    places = [(o.at, o.sentence) for o in detection.overlaps] + [(m.at, m.sentence) for m in detection.near_misses]
+    shown["findings"] = [
+        {"at": np.round(at, DIGITS).tolist(), "sentence": sentence} for at, sentence in places[:MOST_FINDINGS]
+    ]
+    shown["notes"] = [str(s) for key in ("faults", "left_out") for s in _noted(model, key)]
+    shown["acting"], shown["fault"] = _acting(model)
+    shown["assumed"] = list(thickness_words(model))
+    if model.dim == 3:
+        shown["figure"] = _figure(model)
+    return shown
+
+
+def _noted(model: Model, key: str) -> list[str]:
+    found = model.generator.get(key, ())
+    return [str(s) for s in found[:MOST_FINDINGS]] if isinstance(found, list | tuple) else []
+
+
+def _bodies(model: Model) -> list[dict[str, Any]]:
+    return [
+        {
+            "name": b.name, "kind": b.kind, "role": b.role, "layer": b.layer, "material": b.material,
+            "thickness": getattr(b, "thickness", None), "size": b.volume,
+            "rings": [np.round(r, DIGITS).tolist() for r in b.rings] if isinstance(b, Body) else [],
+            "centre": np.round(b.centroid, DIGITS).tolist(),
+        }
+        for b in model.bodies
+    ]  # fmt: skip
+
+
+def _joints(model: Model, detection: Detection) -> list[dict[str, Any]]:
+    found = []
+    for joint in detection.interfaces:
+        a, b = model.bodies[joint.a], model.bodies[joint.b]
+        ends = [] if isinstance(joint, Patch) else np.round([joint.start, joint.end], DIGITS).tolist()
+        try:
+            law = model.rule_between(a, b).law
+        except ConcioError:
+            law = ""
+        found.append(
+            {"a": joint.a, "b": joint.b, "ends": ends, "law": law, "size": joint.size, "gap": float(np.max(joint.gap))}
+        )
+    return found
+
+
+def _loads(model: Model, data: Mapping[str, Any]) -> list[dict[str, Any]]:
+    numbers = {mine: k for k, mine in own_loads(data, model).items()}
+    road = {part.group for part in (model.fill, model.vehicle) if part is not None}
+    found = []
+    for k, load in enumerate(model.loads):
+        if load.group in road and load.kind == "point":
+            continue
+        arrows = load_arrows(load, model.report) if model.dim == 2 else None
+        entry = {"table": numbers.get(k), "kind": load.kind, "group": load.group, "value": list(load.value),
+                 "bodies": list(load.bodies), "at": load.at, "edge": load.edge}  # fmt: skip
+        if arrows is not None:
+            tips, ways, words = arrows
+            entry |= {"tips": tips.tolist(), "ways": ways.tolist(), "words": words}
+        found.append(entry)
+    return found
+
+
+def _supports(model: Model, data: Mapping[str, Any]) -> list[dict[str, Any]]:
+    names = [t.get("name") for t in data.get("supports", [])]
+    return [
+        {"table": names.index(s.name) if s.name in names else None, "name": s.name, "body": s.body, "edge": s.edge,
+         "directions": s.directions, "displacement": list(s.displacement), "group": s.group,
+         "at": np.round(model.body(s.body).centroid, DIGITS).tolist()}
+        for s in model.supports
+    ]  # fmt: skip
+
+
+def _ties(model: Model, data: Mapping[str, Any]) -> list[dict[str, Any]]:
+    names = [t.get("name") for t in data.get("ties", [])]
+    return [
+        {"table": names.index(t.name) if t.name in names else None, "name": t.name, "body_a": t.body_a,
+         "body_b": t.body_b, "at_a": t.at_a, "at_b": t.at_b, "words": tie_words(t, model.report)}
+        for t in model.ties if t.kind == "bar"
+    ]  # fmt: skip
+
+
+def _acting(model: Model) -> tuple[list[dict[str, Any]], dict[str, str] | None]:
+    """Return the sentences of every load group, constant and multiplied, or why there are none."""
+    try:
+        groups = acting_groups(assemble(model))
+    except ConcioError as error:
+        return [], {"what": error.what, "where": error.where or "", "hint": error.hint or ""}
+    units = model.report
+    found = [
+        {"group": g.group, "constant": g.sentence(units), "force": list(g.force), "size": g.size,
+         "multiplied": replace(g, role="multiplied", factor=nan).sentence(units)}
+        for g in groups
+    ]  # fmt: skip
+    return found, None
+
+
+def _figure(model: Model) -> str:
+    """Return the figure of a model in space as SVG."""
+    import io
+
+    from matplotlib.figure import Figure
+
+    from concio.plot.space_figures import plot_space_model
+
+    figure = plot_space_model(model).figure
+    assert isinstance(figure, Figure)
+    into = io.StringIO()
+    figure.savefig(into, format="svg")
+    return into.getvalue()
