@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
@@ -9,9 +10,14 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from concio.analysis.exact_proofs import against_slips
+from concio.analysis.lent_compliance import lent_assembly
 from concio.analysis.limit_torsion import SPREAD, SpreadSteps, twisting
 from concio.analysis.load_steps import LoadSteps
+from concio.analysis.parameters import own_parameters, parameters_of
+from concio.analysis.sensitivity import Sensitivity, sensitivity_of
 from concio.contact.assembly import Assembly
+from concio.model.model import Model
+from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import PROVEN_FAILURES, Status
 from concio.solvers.path.record import EventPath
 from concio.solvers.statics.collapse_state import CollapseState
@@ -104,6 +110,41 @@ class LimitResult(Shown):
     def verdict(self) -> Verdict:
         """The answer with its question: what acts, the design value, what is an upper bound only."""
         return limit_verdict(self)
+
+    def sensitivity(self, changes: Mapping[str, Callable[[float], Model]] | None = None) -> Sensitivity:
+        """Return the derivative of the associated multiplier with respect to every number of the model, by duality.
+
+        Where the optimum is degenerate the multiplier has another derivative to either side, and both are given.
+
+        Parameters
+        ----------
+        changes : mapping of str to callable, optional
+            Numbers of your own in place of those of the model: for each name what returns the model that a change by
+            so much makes, 0.0 being none. Its blocks and joints must stay in their order.
+
+        Raises
+        ------
+        InputError
+            There is no multiplier.
+
+        Examples
+        --------
+        A pillar tips at width over height. One per cent more width is one per cent more:
+
+        >>> import concio
+        >>> pillar = concio.column(width=0.5, height=2.0, blocks=4, block="rigid", horizontal=1.0)
+        >>> found = concio.limit(pillar, path=False).sensitivity()
+        >>> [round(v, 6) for v in found["length of x"].per_percent]
+        [-1.0, 1.0]
+        """
+        model = self.assembly.model
+        own = parameters_of(model, self.groups) if changes is None else own_parameters(changes)
+
+        def split(assembly: Assembly) -> tuple[ContactProblem, Array]:
+            dead = assembly.problem(dict.fromkeys(self.groups, 0.0))
+            return dead, assembly.problem(dict.fromkeys(self.groups, 1.0), like=dead).f - dead.f
+
+        return sensitivity_of(split(self.assembly), lambda m: split(lent_assembly(m)), self.associated, own)
 
     @property
     def carried(self) -> float:

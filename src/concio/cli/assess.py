@@ -62,6 +62,7 @@ def assess(
             arguments = {**asked.arguments, "progress": progress}
             tie = tie_force(model, asked.size_tie, largest=asked.largest_tie, **arguments)
         varied: tuple[Variation, ...] = ()
+        sensitivity = found.sensitivity() if asked.sensitivity else None
         if asked.sensitivity and out is not None:
             varied = variations(found, progress=progress)
     verdict = found.verdict
@@ -69,21 +70,31 @@ def assess(
     if tie is not None:
         finite = tie.force if tie.force < float("inf") else None
         told["tie_force"] = {"tie": tie.tie, "force": finite, "zeta_E": tie.reached}
+    if sensitivity is not None:
+        told["sensitivity"] = {row.name: {"value": row.value, "below": finite_or_none(row.below),
+                                          "above": finite_or_none(row.above)} for row in sensitivity.rows}  # fmt: skip
     written: list[str] = []
     if out is not None:
         from concio.cli.assess_files import write_assessment
 
         with replaced_directory(out) as fresh:
             written = write_assessment(found, told, fresh, language or asked.head.language, head=asked.head, tie=tie,
-                                       anchors=asked.anchors, varied=varied)  # fmt: skip
+                                       anchors=asked.anchors, varied=varied, sensitivity=sensitivity)  # fmt: skip
     if json:
         print_json(told)
     else:
         for line in assess_lines(found, tie):
             say(line)
+        if sensitivity is not None:
+            say(f"  depends on           {sensitivity.sentence}")
         if written:
             say(f"  written              {out}: {', '.join(written)}")
     return verdict.exit_code
+
+
+def finite_or_none(value: float) -> float | None:
+    """Return a number, or None for what is none."""
+    return value if value == value and abs(value) != float("inf") else None
 
 
 def assess_lines(found: Assessment, tie: TieForce | None = None) -> list[str]:

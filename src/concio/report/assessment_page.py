@@ -21,6 +21,7 @@ from concio.report.assessment_annex import annex_html
 from concio.report.assessment_mechanism import brief_html, mechanism_html
 from concio.report.assessment_texts import Texts
 from concio.report.html_parts import page_html
+from concio.report.sensitivity_part import sensitivity_html
 from concio.report.typeset import typeset
 from concio.verdict.assessment_verdict import assessment_verdict
 from concio.verdict.verdict import Verdict
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from concio.analysis.seismic.anchors import Anchor
     from concio.analysis.seismic.assessment import Assessment
     from concio.analysis.seismic.variations import TieForce, Variation
+    from concio.analysis.sensitivity import Sensitivity
 
 UNITS = {"weight": "-", "pressure": "kN/m2", "traction": "kN/m2", "point": "kN", "body": "kN/m3"}
 
@@ -55,6 +57,8 @@ class AssessmentReport(Texts):
     tie : TieForce, optional
     anchors : sequence of Anchor
     varied : sequence of Variation
+    sensitivity : Sensitivity, optional
+        Of the weakest mechanism.
     language : str, optional
         Instead of that of the head.
     """
@@ -67,11 +71,13 @@ class AssessmentReport(Texts):
         tie: TieForce | None = None,
         anchors: Sequence[Anchor] = (),
         varied: Sequence[Variation] = (),
+        sensitivity: Sensitivity | None = None,
         language: str | None = None,
     ) -> None:
         self.found, self.head = found, head or Head()
         super().__init__(language or self.head.language)
         self.tie, self.anchors, self.varied = tie, tuple(anchors), tuple(varied)
+        self.sensitivity = sensitivity
 
     # -- the whole ----------------------------------------------------------------------------------------------------
 
@@ -248,9 +254,13 @@ class AssessmentReport(Texts):
     # -- what if ------------------------------------------------------------------------------------------------------
 
     def varied_part(self) -> str:
-        """Return how the weakest mechanism changes with the joints."""
-        if not self.varied or self.found.worst is None:
+        """Return what the weakest mechanism depends on, and how it changes with the joints."""
+        if self.found.worst is None or not (self.varied or self.sensitivity):
             return ""
+        title = f"<h2>{self.say('sensitivity')}</h2>"
+        derivatives = sensitivity_html(self, self.sensitivity) if self.sensitivity else ""
+        if not self.varied:
+            return f"<section id=sensitivity>{title}{derivatives}</section>"
         rows = [[self.say("as_given"), self.n(self.found.worst.multiplier, 6), self.n(self.found.zeta)]]
         for v in self.varied:
             stands = v.multiplier == v.multiplier
@@ -258,7 +268,7 @@ class AssessmentReport(Texts):
             rows.append([self.say(f"vary_{v.what}", factor=self.n(v.factor)), text, self.n(v.zeta)])
         head = [self.words[k] for k in ("sensitivity", "alpha0", "zeta")]
         return (
-            f"<section id=sensitivity><h2>{self.say('sensitivity')}</h2><p>{self.say('sensitivity_text')}</p>"
+            f"<section id=sensitivity>{title}{derivatives}<p>{self.say('sensitivity_text')}</p>"
             f"{self.table(head, rows)}</section>"
         )
 

@@ -15,6 +15,8 @@ from concio.analysis.seismic.hand_forces import hand_forces
 from concio.analysis.seismic.local_mechanism import LevelOutcome, LocalMechanism, NoMechanism
 from concio.analysis.seismic.open_items import OpenItem, open_items
 from concio.analysis.seismic.site import Site
+from concio.analysis.seismic.what_if import sensitivity_of_mechanism
+from concio.analysis.sensitivity import Sensitivity
 from concio.contact.assembly import Assembly
 from concio.model.model import Model
 from concio.solvers.statics.limit import LimitLoad
@@ -106,6 +108,22 @@ class Assessment(Shown):
         """For each mechanism alpha_0 once more, by virtual work from the coordinates of the model."""
         forces = hand_forces(self.model)
         return tuple(hand_check(m, self.model, self.arguments.get("live"), forces) for m in self.mechanisms)
+
+    def sensitivity(self, mechanism: LocalMechanism | None = None) -> Sensitivity | None:
+        """Return the derivative of alpha_0 with respect to every number of the model, by duality.
+
+        Parameters
+        ----------
+        mechanism : LocalMechanism, optional
+            By default the weakest.
+
+        Returns
+        -------
+        Sensitivity or None
+            None where a joint slides in the mechanism: alpha_0 is not an optimum then, and duality says nothing.
+        """
+        m = self.worst if mechanism is None else mechanism
+        return None if m is None else sensitivity_of_mechanism(self.model, m, self.arguments.get("live"))
 
     @cached_property
     def open(self) -> tuple[OpenItem, ...]:

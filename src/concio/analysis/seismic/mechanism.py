@@ -186,6 +186,11 @@ class Mechanisms:
         found = self._found(columns, rows, problem, quick=quick)
         return replace(found, moving=chosen)
 
+    def loaded(self, moving: Sequence[int] | None = None) -> tuple[ContactProblem, Array]:
+        """Return the problem in which only some bodies may move, under the constant loads, and the push on them."""
+        columns, _, problem = _held(self.whole, None if moving is None else tuple(moving))
+        return problem, self.push[columns]
+
     def _check_stands(self, problem: ContactProblem, moving: tuple[int, ...] | None) -> None:
         """Raise where the bodies fall without a push; what stands as a whole stands in parts."""
         if None in self.stands or moving in self.stands:

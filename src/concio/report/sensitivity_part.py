@@ -1,0 +1,33 @@
+"""What alpha_0 depends on, in the assessment report: a sentence and a chart of bars."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from concio.plot.sensitivity_figure import sensitivity_figure
+
+if TYPE_CHECKING:
+    from concio.analysis.sensitivity import Sensitivity, SensitivityRow
+    from concio.report.assessment_texts import Texts
+
+TOLD, SHOWS = 3, 5e-4
+"""Numbers in the sentence at most, and the least change in per cent that is stated."""
+
+
+def sensitivity_html(t: Texts, found: Sensitivity) -> str:
+    """Return the part of a report on what a multiplier depends on."""
+
+    def name(row: SensitivityRow) -> str:
+        return t.words[f"par_{row.kind.replace(' ', '_')}"].format(of=row.of)
+
+    told = []
+    for row in found.rows[:TOLD]:
+        less, more = row.per_percent
+        change = more if math.isfinite(more) else -less
+        if abs(change) > SHOWS:
+            told.append(t.words["sens_part"].format(name=name(row), change=f"{'+' * (change > 0)}{t.n(change, 2)}"))
+    sides = " " + t.say("sens_sides") if any(row.one_sided for row in found.rows) else ""
+    text = t.say("sens_sentence", parts="; ".join(told) or t.words["sens_none"])
+    drawn = t.figure(sensitivity_figure(found, t.words["sens_axis"], name), "figure_sensitivity", "bars")
+    return f"<p>{t.say('sens_text')}{sides}</p>{drawn}<p>{text}</p>"
