@@ -87,7 +87,8 @@ def limit(
     steps : bool, optional
         Whether the load grows in certified Coulomb steps; by default where ``path`` was left open and is not followed.
         In space the least load that they did not reach is then applied in one step, by default up to
-        :data:`UNASKED_IN_SPACE` pairs: a motion may prove that it is not carried.
+        :data:`UNASKED_IN_SPACE` pairs, but not where a collapse state is known below what the steps carry: a motion may
+        prove that it is not carried.
     search : bool, optional
         Whether collapse states are searched for; by default where ``path`` is not False, and then only as long as the
         other numbers take; in space up to :data:`UNASKED_IN_SPACE` pairs.
@@ -194,7 +195,7 @@ def limit_stages(
             found = replace(found, collapse_state=state, search=said)
             yield "collapse state", found
     if found.steps is not None and dead.dim == 3 and found.steps.failed < bound:
-        if steps or quick:
+        if steps or (quick and not _begins_below(found)):
             tell("the least load not reached, in one step")
             found = replace(found, steps=in_one_step(dead, load, found.steps, progress=progress))
         yield "in one step", found
@@ -236,6 +237,15 @@ def _with_steps(
     if not steps.multipliers and alone is not Status.CANCELLED and alone not in PROVEN_FAILURES:
         alone = find("auto")(dead, progress=progress).status
     return replace(found, steps=steps, dead=alone)
+
+
+def _begins_below(found: LimitResult) -> bool:
+    """Return whether a state begins to move below what the steps carry.
+
+    It makes the design value then, of which a load that the steps did not reach says nothing.
+    """
+    state, steps = found.collapse_state, found.steps
+    return state is not None and steps is not None and found.state_counts and state.multiplier <= steps.carried
 
 
 def _motions(found: LimitResult) -> list[Array]:

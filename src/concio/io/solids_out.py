@@ -14,6 +14,7 @@ import numpy as np
 from concio.arguments import strict
 from concio.errors import InputError
 from concio.files import whole_file
+from concio.io.compas_json import block_model
 from concio.io.gltf import glb_bytes
 from concio.kinematics.frames import cross
 from concio.model.model import Model
@@ -50,7 +51,7 @@ def write_solids(path: str | Path, what: Model | Result, *, scale: float = 1.0) 
     ----------
     path : str or Path
         Its end gives the format: ``.obj`` (an object for each block), ``.stl`` (a named solid for each), ``.json``
-        (a COMPAS assembly), ``.glb`` (glTF, a node for each), ``.dxf`` (a MESH for each, ``dxf`` extra) or ``.3dm``
+        (a COMPAS BlockModel), ``.glb`` (glTF, a node for each), ``.dxf`` (a MESH for each, ``dxf`` extra) or ``.3dm``
         (a mesh for each, ``rhino`` extra). An existing file is replaced only when the new one is complete.
     what : Model or Result
     scale : float
@@ -129,19 +130,8 @@ def _stl(path: Path, blocks: Sequence[Drawn]) -> None:
 
 
 def _compas(path: Path, blocks: Sequence[Drawn]) -> None:
-    nodes = {}
-    for k, block in enumerate(blocks):
-        mesh = {
-            "attributes": {"name": block.name},
-            "vertex": {str(v): dict(zip("xyz", p, strict=True)) for v, p in enumerate(block.points.tolist())},
-            "face": {str(f): list(map(int, face)) for f, face in enumerate(block.faces)},
-        }
-        nodes[str(k)] = {
-            "block": {"dtype": "compas_assembly.datastructures/Block", "data": mesh}, "is_support": block.fixed
-        }  # fmt: skip
-    graph = {"dtype": "compas.datastructures/Graph", "data": {"node": nodes, "edge": {}}}
-    whole = {"dtype": "compas_assembly.datastructures/Assembly", "data": {"graph": graph}}
-    path.write_text(json.dumps(whole), encoding="utf-8")
+    shapes = [(b.name, b.fixed, b.points, b.faces) for b in blocks]
+    path.write_text(json.dumps(block_model(shapes, path.stem)), encoding="utf-8")
 
 
 def _glb(path: Path, blocks: Sequence[Drawn]) -> None:

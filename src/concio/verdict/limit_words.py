@@ -177,7 +177,9 @@ def one_step_lines(found: LimitResult) -> list[str]:
         return []
     head = f"  in one step          {steps.failed:.6g} "
     if steps.outcome is None:
-        return [f"{head}was not tried by default (--steps tries it)"]
+        known = found.collapse_state is not None and found.collapse_state.multiplier <= steps.carried
+        why = "by default, since a collapse state below it is known" if known else "by default"
+        return [f"{head}was not tried {why} (--steps tries it)"]
     if steps.outcome is Status.SOLVED:
         return [f"{head}also has an equilibrium, which the growing load did not reach"]
     said = steps.outcome.value[0].lower() + steps.outcome.value[1:]

@@ -18,7 +18,7 @@ NAMES = {
     "PIL": "pillow", "vtkmodules": "vtk",
 }  # fmt: skip
 """Distributions of packages of another name, or that cannot do without them."""
-OPTIONAL = ("fast", "dxf", "rhino", "study", "uq")
+OPTIONAL = ("fast", "dxf", "rhino", "study", "uq", "compas")
 """Extras whose packages the core may import where it first asks whether they are there."""
 
 

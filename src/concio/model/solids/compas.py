@@ -1,9 +1,14 @@
-"""COMPAS JSON: every mesh or polyhedron of it is a block; ``is_support`` of an assembly makes it fixed."""
+"""COMPAS JSON: every mesh or polyhedron of it is a block; ``is_support`` makes it fixed.
+
+Elements of a model (compas_model, compas_dem) stand where their transformation, those of the groups that hold them and
+that of the model put them.
+"""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +16,7 @@ import numpy as np
 
 from concio.errors import InputError
 from concio.files import read_text
-from concio.model.solids.shapes import Scene, Shape, check_size
+from concio.model.solids.shapes import Array, Scene, Shape, check_size
 
 
 def read_compas(path: Path) -> Scene:
@@ -35,31 +40,104 @@ def read_compas(path: Path) -> Scene:
     return Scene(shapes)
 
 
+NAMELESS = frozenset({"", "Mesh", "Block", "BlockElement", "Box", "Polyhedron", "Assembly", "Element", "Group"})
+"""Names that COMPAS gives to what has none: those of classes."""
+
+
+@dataclass(frozen=True)
+class _Place:
+    """What is known of a part of a file from what holds it: its name, whether it is fixed, and where it stands."""
+
+    name: str = ""
+    fixed: bool = False
+    matrix: Array | None = None
+
+    def within(self, thing: dict[str, Any], where: str) -> _Place:
+        """Return the place of what ``thing`` holds."""
+        attributes = thing.get("attributes")
+        tables = (thing, attributes) if isinstance(attributes, dict) else (thing,)
+        names = [table.get("name") for table in tables if table is attributes or "geometry" in table]
+        name = next((n for n in names if isinstance(n, str) and n not in NAMELESS), self.name)
+        fixed = self.fixed or any(table.get("is_support") is True for table in tables)
+        return _Place(name, fixed, self.moved(thing.get("transformation"), where))
+
+    def moved(self, transformation: Any, where: str) -> Array | None:
+        """Return the matrix (4, 4) with a transformation of the file within it."""
+        own = _matrix(transformation, where)
+        if own is None or self.matrix is None:
+            return self.matrix if own is None else own
+        return np.asarray(self.matrix @ own)
+
+
+def _matrix(transformation: Any, where: str) -> Array | None:
+    """Return the matrix of a transformation; None for none."""
+    if not isinstance(transformation, dict):
+        return None
+    data: Any = transformation.get("data")
+    try:
+        matrix: Array = np.array(data["matrix"], dtype=float)
+        if matrix.shape == (4, 4) and np.array_equal(matrix[3], (0.0, 0.0, 0.0, 1.0)):
+            return matrix
+    except (KeyError, TypeError, ValueError):
+        pass
+    msg = "a transformation is not a matrix of 4 x 4 numbers whose last row is 0, 0, 0, 1"
+    raise InputError(msg, where=where, hint="write the model again with compas.json_dump")
+
+
 def _shapes(data: Any, where: str) -> Iterator[Shape]:
-    waiting: list[tuple[Any, str, bool]] = [(data, "", False)]
+    waiting: list[tuple[Any, _Place]] = [(data, _Place())]
     while waiting:
-        thing, name, fixed = waiting.pop()
+        thing, place = waiting.pop()
         if isinstance(thing, list):
-            waiting += [(value, f"{name or 'b'}{k}", fixed) for k, value in reversed(list(enumerate(thing, 1)))]
+            named = ((value, replace(place, name=f"{place.name or 'b'}{k}")) for k, value in enumerate(thing, 1))
+            waiting += reversed(list(named))
         if not isinstance(thing, dict):
             continue
-        fixed = fixed or thing.get("is_support") is True
-        attributes = thing.get("attributes")
-        if isinstance(attributes, dict):
-            own = attributes.get("name")
-            name = own if isinstance(own, str) and own not in ("", "Mesh", "Block", "Assembly") else name
-            fixed = fixed or attributes.get("is_support") is True
+        inside = place.within(thing, where)
         points, faces = (thing.get(a, thing.get(b)) for a, b in (("vertex", "vertices"), ("face", "faces")))
         if points and faces and isinstance(points, dict | list) and isinstance(faces, dict | list):
-            yield _mesh(points, faces, name, fixed, where)
+            yield _mesh(points, faces, inside, where)
+            continue
+        if isinstance(thing.get("elements"), dict) and isinstance(thing.get("tree"), dict):
+            waiting += reversed(list(_elements(thing, inside, where)))
             continue
         waiting += [
-            (value, f"b{key}" if str(key).isdigit() else name, fixed)
+            (value, replace(inside, name=f"b{key}") if str(key).isdigit() else inside)
             for key, value in reversed(list(thing.items())) if key not in ("edge", "adjacency", "attributes")
         ]  # fmt: skip
 
 
-def _mesh(points: Any, faces: Any, name: str, fixed: bool, where: str) -> Shape:
+def _elements(model: dict[str, Any], place: _Place, where: str) -> Iterator[tuple[Any, _Place]]:
+    """Return the elements of a model with their places, in the order of its graph."""
+    elements, groups = model["elements"], _groups(model["tree"].get("root"), model["elements"], place, where)
+    graph = model.get("graph")
+    nodes = graph.get("node") if isinstance(graph, dict) else None
+    order = {node.get("element"): key for key, node in (nodes or {}).items() if isinstance(node, dict)}
+    for key in sorted(elements, key=lambda k: (k not in order, list(order).index(k) if k in order else 0)):
+        own = groups.get(key, place)
+        yield elements[key], replace(own, name=f"b{order[key]}") if key in order else own
+
+
+def _groups(root: Any, elements: dict[str, Any], place: _Place, where: str) -> dict[str, _Place]:
+    """Return the place of each element that stands in a group of a model's tree."""
+    found: dict[str, _Place] = {}
+    waiting = [(root, place)]
+    while waiting:
+        node, around = waiting.pop()
+        if not isinstance(node, dict):
+            continue
+        found[str(node.get("element"))] = around
+        held = elements.get(str(node.get("element")))
+        data = held.get("data") if isinstance(held, dict) else None
+        inside = around
+        if isinstance(data, dict):
+            inside = replace(around, matrix=around.moved(data.get("transformation"), where))
+        waiting += [(child, inside) for child in node.get("children") or []]
+    return found
+
+
+def _mesh(points: Any, faces: Any, at_place: _Place, where: str) -> Shape:
+    name, matrix = at_place.name, at_place.matrix
     place = f"{where}, block '{name}'" if name else where
     try:
         table = points if isinstance(points, dict) else dict(enumerate(points))
@@ -78,4 +156,8 @@ def _mesh(points: Any, faces: Any, name: str, fixed: bool, where: str) -> Shape:
     if short is not None:
         msg = f"face {short} has {len(found[short - 1])} vertices, which bound nothing"
         raise InputError(msg, where=place, hint="a face needs three vertices or more")
-    return Shape(name, "", points_at, found, fixed)
+    if matrix is not None:
+        points_at = points_at @ matrix[:3, :3].T + matrix[:3, 3]
+        if np.linalg.det(matrix[:3, :3]) < 0:  # a mirror turns faces inwards
+            found = [loop[::-1] for loop in found]
+    return Shape(name, "", points_at, found, at_place.fixed)
