@@ -19,6 +19,8 @@ import numpy as np
 from concio.analysis.step import solve
 from concio.errors import InputError
 from concio.io.compas_json import block_model
+from concio.kinematics.frames import cross
+from concio.kinematics.rigid import rotation_matrix
 from concio.model.materials import JointLaw, Rigid
 from concio.model.model import Load, Model, Support
 from concio.model.solids.importing import model_from_solids
@@ -190,9 +192,9 @@ def _couple(name: str, moment: Array, at: Array, group: str) -> Iterator[Load]:
     """Return two opposite forces 1 m apart with a moment [kN m]."""
     size = float(np.linalg.norm(moment))
     if size > 0:
-        arm = np.cross(moment / size, np.eye(3)[int(np.argmin(np.abs(moment)))])
+        arm = cross(moment / size, np.eye(3)[int(np.argmin(np.abs(moment)))])
         arm /= np.linalg.norm(arm)
-        force = np.cross(moment, arm)
+        force = cross(moment, arm)
         yield from _force(name, force, at + 0.5 * arm, group)
         yield from _force(name, -force, at - 0.5 * arm, group)
 
@@ -216,21 +218,13 @@ def _motion(result: Result, name: str) -> Array:
     points, moved = result.nodes(name), result.node_displacement(name)
     centre, mean = points.mean(0), moved.mean(0)
     arms = points - centre
-    rows = np.concatenate([_skew(arm) for arm in arms])
-    turn = -np.linalg.lstsq(rows, (moved - mean).ravel(), rcond=None)[0]
-    angle = float(np.linalg.norm(turn))
-    spin = np.eye(3)
-    if angle > 0:
-        axis = _skew(turn / angle)
-        spin = np.eye(3) + np.sin(angle) * axis + (1.0 - np.cos(angle)) * axis @ axis
+    turned = cross(np.eye(3), arms[:, None, :])  # (n, axis, 3): what a unit turn about each axis does
+    rows = turned.transpose(0, 2, 1).reshape(-1, 3)
+    turn = np.linalg.lstsq(rows, (moved - mean).ravel(), rcond=None)[0]
+    spin = rotation_matrix(turn)
     matrix = np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = spin, centre + mean - spin @ centre
     return matrix
-
-
-def _skew(v: Array) -> Array:
-    """Return the matrix that multiplies a vector by ``v`` from the left: v x."""
-    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
 
 
 def _edges(result: Result, node: Mapping[str, int], graph: Any) -> Iterator[tuple[tuple[int, int], dict[str, Any]]]:
@@ -252,7 +246,7 @@ def _forces(result: Result, rows: Array, on_b: bool) -> dict[str, Any]:
     sign = 1.0 if on_b else -1.0
     force = sign * contacts.force_on_b[rows] / NEWTON
     normal, first = sign * pairs.normal[rows[0]], pairs.tangents[rows[0], 0]
-    second = np.cross(normal, first)
+    second = cross(normal, first)
     points = contacts.point[rows]
     frame = geometry.Frame(points.mean(0).tolist(), first.tolist(), second.tolist())
     local = [{"c_np": float(f @ normal), "c_nn": 0.0, "c_u": float(f @ first), "c_v": float(f @ second)} for f in force]

@@ -136,7 +136,7 @@ class Step:
         matrix = sp.block_array([[sp.eye_array(m * d), FC, None], [FC.T, loose, g], [None, g.T, None]], format="csc")
         splu: Any = sla.splu
         try:
-            return splu(sp.csc_matrix(matrix))
+            return splu(sp.csc_matrix(matrix), permc_spec="MMD_ATA")  # a third of the fill of the default
         except RuntimeError:
             return None
 
