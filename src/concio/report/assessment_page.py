@@ -20,6 +20,7 @@ from concio.plot.assessment_figures import model_figure
 from concio.report.assessment_annex import annex_html
 from concio.report.assessment_mechanism import brief_html, mechanism_html
 from concio.report.assessment_texts import Texts
+from concio.report.decisions_part import coverage_html, decisions_html
 from concio.report.html_parts import page_html
 from concio.report.sensitivity_part import sensitivity_html
 from concio.report.typeset import typeset
@@ -135,7 +136,7 @@ class AssessmentReport(Texts):
         return (
             f'<section id=verdict><div class="verdict {told.tone}"><h2>{escape(told.headline)}</h2>'
             f"<p>{escape(told.answer)}</p><p class=cert>{escape(told.proof)}</p></div>"
-            f"<table class=facts><tbody>{rows}</tbody></table></section>"
+            f"{coverage_html(self, self.found)}<table class=facts><tbody>{rows}</tbody></table></section>"
         )
 
     def acting(self) -> tuple[str, ...]:
@@ -166,6 +167,10 @@ class AssessmentReport(Texts):
                         use=site.use_class, clause=rules.clause("spectrum"))  # fmt: skip
         asked = [v for v in self.found.levels if rules.tables["levels"][v].get("on_request", False)]
         text += "".join(f" {self.say('on_request', level=v)}" for v in asked)
+        text += " " + (self.say("hazard_source", source=site.source) if site.source else self.say("hazard_no_source"))
+        if site.assumed:
+            given = (self.words[f"assumed_{k}"].format(value=getattr(site, k)) for k in site.assumed)
+            text += " " + self.say("hazard_assumed", what=", ".join(given))
         building = ""
         if site.building:
             modes = "; ".join(self.mode(m) for m in site.building)
@@ -176,7 +181,8 @@ class AssessmentReport(Texts):
         why = self.say(f"FC_{self.found.confidence_by}")
         return (
             f"<section id=site><h2>{self.say('site')}</h2><p>{text}</p>{self.table(head, rows)}{building}"
-            f"<h3>{self.say('knowledge')}</h3><p>{known} {why}</p></section>"
+            f"<h3>{self.say('knowledge')}</h3><p>{known} {why}</p>"
+            f"{decisions_html(self, self.found, self.head.reasons)}</section>"
         )
 
     def mode(self, mode: Any) -> str:

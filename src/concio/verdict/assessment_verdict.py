@@ -153,8 +153,14 @@ class _Words:
             meaning=self.say("meaning"),
             limits=self.limits(),
             unchecked=tuple(self.item(item) for item in found.open),
-            attention=(*attention_of(found.model, found.assembly.detection), *found.notes),
+            attention=(*attention_of(found.model, found.assembly.detection), *found.notes, *self.assumed()),
         )
+
+    def assumed(self) -> tuple[str, ...]:
+        """Return what of the site was not given."""
+        site = self.found.site
+        what = ", ".join(f"{key} = {getattr(site, key)}" for key in site.assumed)
+        return (self.say("assumed", what=what),) if what else ()
 
     def by_level(self) -> dict[str, float]:
         """Return the least zeta_E of all mechanisms at each limit state."""

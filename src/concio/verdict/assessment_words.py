@@ -75,6 +75,7 @@ EN = {
     "ground_bound": "forces in equilibrium and a motion prove the least multiplier of push {way} over all motions, "
     "{alpha}, with a duality gap of {gap}",
     "ground_open": "things that were asked for or are to be expected and were not checked: {n}; they are listed below",
+    "assumed": "not given, and assumed: {what}",
     "high": "'{name}' (z = {z} m)",
     "and_more": "{n} more",
     "row_holds": "verified, {ratio}",
@@ -156,6 +157,7 @@ IT = {
     "ground_bound": "forze in equilibrio e un moto dimostrano il moltiplicatore minimo della spinta {way} fra tutti i "
     "moti, {alpha}, con uno scarto di dualità di {gap}",
     "ground_open": "cose richieste o da attendersi e non esaminate: {n}; sono elencate sotto",
+    "assumed": "non dati, e assunti: {what}",
     "high": "«{name}» (z = {z} m)",
     "and_more": "altri {n}",
     "row_holds": "verificato, {ratio}",

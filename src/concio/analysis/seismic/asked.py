@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from concio.analysis.seismic.anchors import Anchor
+from concio.analysis.seismic.hazard_grid import hazard_at
 from concio.analysis.seismic.site import Site
 from concio.errors import InputError
 from concio.model.file.assessment_table import AssessmentTable, HeightsTable, SiteTable, assessment_tables
@@ -27,6 +28,8 @@ class Head:
         Why the level of knowledge is what it is.
     judgement : str
         Whether and why the author accepts the results; printed in the annex.
+    reasons : mapping of str to str
+        Why the author decided as he did, by the key of the decision.
     full : bool
         Whether everything is printed: all mechanisms in detail, all blocks of the check by hand.
     language : {"en", "it"}
@@ -41,6 +44,7 @@ class Head:
     judgement: str = ""
     full: bool = False
     language: str = "en"
+    reasons: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,12 +101,24 @@ def read_asked(path: str | os.PathLike[str]) -> Asked:
         raise InputError(error.what, where=where, hint=error.hint) from None
     return Asked(
         model, _arguments(asked, place), asked.size_tie, asked.largest_tie, asked.sensitivity, anchors,
-        Head(**asked.report.model_dump()),
+        Head(**asked.report.model_dump(), reasons=asked.reasons),
     )  # fmt: skip
+
+
+ASSUMED = ("soil", "topography", "nominal_life", "use_class")
+"""What of a site has a value where none is given, which reports then say."""
 
 
 def _site(table: SiteTable, folder: Path) -> Site:
     given = table.model_dump(exclude_none=True)
+    grid, place = given.pop("grid"), given.pop("coordinates", None)
+    if bool(grid) == ("hazard" in given) or (grid and place is None):
+        msg = "the hazard is not given" if not grid else "the hazard is given twice, or the grid has no place"
+        raise InputError(msg, hint="give [site.hazard], or grid = 'grid.csv' with coordinates = [longitude, latitude]")
+    if grid:
+        given["hazard"] = hazard_at(folder / grid, place)
+        given["source"] = given["source"] or f"{grid}, longitude {place[0]:g}, latitude {place[1]:g}"
+    given["assumed"] = tuple(key for key in ASSUMED if key not in table.model_fields_set)
     if given["code"].endswith(".toml"):
         given["code"] = str(folder / given["code"])
     return Site(**given)
@@ -118,5 +134,6 @@ def _arguments(table: AssessmentTable, site: Site) -> dict[str, Any]:
         "site": site, "levels": table.levels, "mechanisms": mechanisms, "direction": table.direction,
         "live": table.live, "knowledge": table.knowledge, "confidence": table.confidence, "control": control,
         "limits": table.limits, "curve": table.curve, "elsewhere": tuple(table.elsewhere),
+        "accept_linear": table.accept_linear,
         "free_standing": {k: v.model_dump(exclude_none=True) for k, v in table.free_standing.items()},
     }  # fmt: skip

@@ -48,6 +48,7 @@ def assess(
     curve: Literal["followed", "straight"] = "followed",
     free_standing: Mapping[str, FreeStanding | Mapping[str, Any]] | None = None,
     elsewhere: Several[str] = (),
+    accept_linear: bool = False,
     progress: ProgressCallback | None = None,
 ) -> Assessment:
     """Find the local mechanisms of a model and check them against the demand of a site.
@@ -87,6 +88,9 @@ def assess(
     elsewhere : sequence of str
         What is not checked here and need not be, for the author answers for it: "out of plane" of a facade in
         elevation, "height" of mechanisms above the ground without a building, "ties" without yield force.
+    accept_linear : bool
+        Whether a limit state counts as met where the linear check with the behaviour factor is, as the code allows; by
+        default the check in displacements decides wherever there is one.
     progress : callable, optional
         Called for each mechanism that is sought and followed.
 
@@ -151,7 +155,7 @@ def assess(
     if control is not None:
         _check_control(model, control)
     chosen = {name: chosen_bodies(model, name, words) for name, words in sought.items() if name != EVERY}
-    terms = Terms(site, wanted, factor, control, limits or {}, curve)
+    terms = Terms(site, wanted, factor, control, limits or {}, curve, accept_linear)
     acting = acting_in(model, ways)
     try:
         found = search_all(searches, chosen, terms, elements, progress)
@@ -162,12 +166,13 @@ def assess(
     arguments = {
         "levels": levels, "mechanisms": mechanisms, "direction": direction, "live": live, "knowledge": knowledge,
         "confidence": confidence, "control": control, "limits": limits, "curve": curve,
-        "free_standing": free_standing, "elsewhere": tuple(elsewhere),
+        "free_standing": free_standing, "elsewhere": tuple(elsewhere), "accept_linear": accept_linear,
     }  # fmt: skip
     return Assessment(
         model, site, wanted, found.shown, found.locked, knowledge, factor, reason, curve,
         _notes(site, wanted, knowledge, factor, reason), arguments, others=found.others, sought=found.sought,
-        parts=found.parts, places=found.places, bounds=found.bounds, acting=acting, assembly=searches[0].assembly,
+        parts=found.parts, places=found.places, bounds=found.bounds, acting=acting, covered=found.covered,
+        assembly=searches[0].assembly,
     )  # fmt: skip
 
 

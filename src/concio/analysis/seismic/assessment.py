@@ -10,6 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from concio.analysis.seismic.coverage import Covered
 from concio.analysis.seismic.hand_check import HandCheck, hand_check
 from concio.analysis.seismic.hand_forces import hand_forces
 from concio.analysis.seismic.local_mechanism import LevelOutcome, LocalMechanism, NoMechanism
@@ -65,6 +66,8 @@ class Assessment(Shown):
         For each push the associated limit over all motions: no multiplier of a collapse lies above it.
     acting : tuple of Acting
         What is multiplied, and what acts as it is.
+    covered : tuple of Covered
+        What the search covered, kind by kind: places, motions that were met, the least multiplier.
     assembly : Assembly
         One of the model, with what it was found to hold.
     """
@@ -86,6 +89,7 @@ class Assessment(Shown):
     places: Mapping[str, tuple[int, int]]
     bounds: Mapping[str, LimitLoad]
     acting: tuple[Acting, ...]
+    covered: tuple[Covered, ...]
     assembly: Assembly
 
     @property
@@ -190,11 +194,15 @@ class Assessment(Shown):
             "sought": self.sought,
             "parts": list(self.parts),
             "sought_at": {kind: {"sought": a, "there": b} for kind, (a, b) in self.places.items()},
+            "covered": [
+                {"kind": c.kind, "there": c.there, "sought": c.sought, "searches": c.searches,
+                 "least_multiplier": _number(c.multiplier), "motions": list(c.motions)} for c in self.covered
+            ],
             "followed_beside": [m.summary() for m in self.others],
             "upper_bounds": {way: _number(bound.upper) for way, bound in self.bounds.items()},
             "attention": list(self.verdict.attention),
             "verdict": self.verdict.as_dict(),
-        }
+        }  # fmt: skip
 
 
 def _number(value: float) -> float | None:

@@ -54,6 +54,8 @@ class Terms:
     control : (body, point) or None
     limits : mapping
     curve : {"followed", "straight"}
+    accept_linear : bool
+        Whether the linear check decides where it is met.
     """
 
     site: Site
@@ -62,6 +64,7 @@ class Terms:
     control: Control | None
     limits: Mapping[str, float]
     curve: str
+    accept_linear: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,7 +233,7 @@ def examined(ready: Prepared, terms: Terms, element: FreeStanding | None = None)
         chain=chain, dead=ready.dead, control=ready.control, level=z, multiplier=alpha, confidence=terms.confidence,
         factor=factor, followed=followed, straight=line, limits=reached, checks=tuple(checks),
         periods={level: site.at(level) for level in levels}, site=site, velocity=ready.motion.ravel(),
-        branch=branch,
+        branch=branch, accept_linear=terms.accept_linear,
     )  # fmt: skip
 
 

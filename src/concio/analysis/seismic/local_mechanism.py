@@ -99,6 +99,8 @@ class LocalMechanism:
         Motion of the macro-blocks, for a control point that moves by one.
     branch : ElasticBranch or None
         Of an element that is free to vibrate.
+    accept_linear : bool
+        Whether the linear check decides a limit state where it is met at every place and gives the larger zeta_E.
     """
 
     name: str
@@ -121,6 +123,7 @@ class LocalMechanism:
     site: Site
     velocity: Array = field(repr=False)
     branch: ElasticBranch | None = None
+    accept_linear: bool = False
 
     @property
     def mechanics(self) -> Mechanics:
@@ -164,19 +167,25 @@ class LocalMechanism:
         """Return what the mechanism can take at a limit state, over all places where it is checked.
 
         Of a limit state of displacement the check in displacements decides where there is one, but its acceleration is
-        never less than that of the onset.
+        never less than that of the onset. A linear check that is met decides only where the author accepts it.
         """
         own = [c for c in self.checks if c.level == level]
-        decisive = [c for c in own if c.kind == "displacement"] or own
-        best: list[tuple[float, Check]] = []
-        for check in decisive:
-            best.append((max(check.a_g, check.least), check))
-        a_g, check = min(best, key=lambda pair: pair[0])
+        a_g, check = _least_of([c for c in own if c.kind == "displacement"] or own)
+        linear = self._accepted(level)
+        if linear:
+            a_g, check = max((a_g, check), _least_of(linear), key=lambda pair: pair[0])
         zeta = a_g / self.periods[level].a_g
         return LevelOutcome(level, a_g, zeta, return_period(self.site, a_g), check)
 
+    def _accepted(self, level: str) -> list[Check]:
+        """Return the linear checks of a limit state that decide it: all are met, and the author accepts them."""
+        linear = [c for c in self.checks if c.level == level and c.kind == "linear"]
+        return linear if self.accept_linear and all(c.holds for c in linear) else []
+
     def decided_by(self, check: Check) -> bool:
         """Return whether a check may decide its limit state: a linear one does not beside one in displacements."""
+        if check in self._accepted(check.level):
+            return True
         own = [c for c in self.checks if c.level == check.level]
         return check.kind == "displacement" or not any(c.kind == "displacement" for c in own)
 
@@ -256,6 +265,11 @@ class LocalMechanism:
                 for o in self.outcomes
             },
         }  # fmt: skip
+
+
+def _least_of(checks: list[Check]) -> tuple[float, Check]:
+    """Return the acceleration that is reached first, and the check that it is of."""
+    return min(((max(c.a_g, c.least), c) for c in checks), key=lambda pair: pair[0])
 
 
 @dataclass(frozen=True)

@@ -53,12 +53,15 @@ class Part:
     bodies : tuple of int
     of : str
         Its first body where the model holds several structures.
+    what : str
+        Which kind of place it is: "levels", "openings", "returns", "changes" or "alone".
     """
 
     kind: str
     at: float
     bodies: tuple[int, ...]
     of: str = ""
+    what: str = "levels"
 
     @property
     def name(self) -> str:
@@ -106,27 +109,27 @@ def parts_of(assembly: Assembly, along: Array) -> Parts:
     found: dict[tuple[int, ...], Part] = {tuple(free.tolist()): Part("above", -np.inf, tuple(free.tolist()))}
     sought, there = Counter[str](), Counter[str]()
 
-    def cut(group: tuple[int, ...], kind: str, axis: Array, at: float, of: str) -> None:
+    def cut(group: tuple[int, ...], kind: str, axis: Array, at: float, of: str, what: str) -> None:
         sign = -1.0 if kind == "short of" else 1.0
         bodies = tuple(i for i in group if sign * (float(np.asarray(model.bodies[i].centroid) @ axis) - at) > 0)
         if bodies:
-            found.setdefault(bodies, Part(kind, at, bodies, of))
+            found.setdefault(bodies, Part(kind, at, bodies, of, what))
 
     for group in groups[:most]:
         of = model.bodies[group[0]].name if len(groups) > 1 else ""
-        found.setdefault(group, Part("alone", np.nan, group, of))
+        found.setdefault(group, Part("alone", np.nan, group, of, "alone"))
         levels = _lines(model, list(group), up, len(pairs) + MOST_LEVELS, changes_only=False)
         kept = _lines(model, list(group), up, each, changes_only=False)
         lines = _lines_of(model, group, along)
         chosen = [lines[k] for k in _spread(list(range(len(lines))), MOST_LINES)]
         changes = _lines(model, list(group), along, MOST_CHANGES, changes_only=True)
         for at in kept:
-            cut(group, "above", up, at, of)
+            cut(group, "above", up, at, of, "levels")
         for line in chosen:
             for kind in ("past", "short of") if line.across else ("beyond",):
-                cut(group, kind, line.axis, line.at, of)
+                cut(group, kind, line.axis, line.at, of, line.kind)
         for at in changes:
-            cut(group, "beyond", along, at, of)
+            cut(group, "beyond", along, at, of, "changes")
         sought.update({"levels": len(kept), "changes": len(changes), **Counter(line.kind for line in chosen)})
         there.update({"levels": len(levels), "changes": len(changes), **Counter(line.kind for line in lines)})
     return Parts(tuple(found.values())[1:], sought, there)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from concio.analysis.seismic.coverage import Covered, Sought, covered, motion_of
 from concio.analysis.seismic.directions import Push
 from concio.analysis.seismic.examine import Prepared, Terms, examined, prepared
 from concio.analysis.seismic.free_standing import FreeStanding
@@ -68,6 +69,8 @@ class Searched:
         how many there are, over all pushes.
     bounds : mapping of str to LimitLoad
         For each way of pushing the associated limit over all motions.
+    covered : tuple of Covered
+        What was covered, kind by kind.
     """
 
     shown: tuple[LocalMechanism, ...]
@@ -77,6 +80,7 @@ class Searched:
     parts: tuple[str, ...]
     places: Mapping[str, tuple[int, int]]
     bounds: Mapping[str, LimitLoad]
+    covered: tuple[Covered, ...]
 
 
 class _Teller:
@@ -132,8 +136,9 @@ def search_all(
     locked: list[NoMechanism] = []
     waiting: list[Prepared] = []
     bounds: dict[str, LimitLoad] = {}
+    records: list[Sought] = []
     for search, own in zip(searches, parts, strict=True):
-        ready, none, candidates, bounds[search.push.way] = _of_push(search, named, own, terms, teller)
+        ready, none, candidates, bounds[search.push.way] = _of_push(search, named, own, terms, teller, records)
         locked += none
         waiting += candidates
         for one in ready:
@@ -148,12 +153,14 @@ def search_all(
     kinds = dict.fromkeys(kind for c in cuts for kind in c.there)
     places = {kind: (sum(c.sought.get(kind, 0) for c in cuts), sum(c.there.get(kind, 0) for c in cuts))
               for kind in kinds}  # fmt: skip
-    return Searched(tuple(ranked), others, tuple(locked), sought, names, places, bounds)
+    what = covered(records, places)
+    return Searched(tuple(ranked), others, tuple(locked), sought, names, places, bounds, what)
 
 
 def _of_push(
-    search: Search, named: Mapping[str, tuple[int, ...]], parts: tuple[Part, ...], terms: Terms, teller: _Teller
-) -> tuple[list[Prepared], list[NoMechanism], list[Prepared], LimitLoad]:
+    search: Search, named: Mapping[str, tuple[int, ...]], parts: tuple[Part, ...], terms: Terms, teller: _Teller,
+    records: list[Sought],
+) -> tuple[list[Prepared], list[NoMechanism], list[Prepared], LimitLoad]:  # fmt: skip
     """Return of one push: the mechanisms to follow, what gave none, those of parts, and the bound of all motions."""
     way, assembly = search.push.way, search.assembly
     seek = Mechanisms(assembly, search.push.groups, search.push.sign)
@@ -168,6 +175,10 @@ def _of_push(
     for part in parts:
         teller.tell(f"{part.name}, push {way}: sought")
         met[part.name] = seek.find(part.bodies, quick=True)
+    records += [Sought("whole" if n == EVERY else "named", n, way, f.multiplier, motion_of(f, search.along))
+                for n, f in every.items()]  # fmt: skip
+    records += [Sought(p.what, p.name, way, met[p.name].multiplier, motion_of(met[p.name], search.along))
+                for p in parts]  # fmt: skip
     candidates = {n: f for n, f in met.items() if not f.locked and f.multiplier <= LARGEST and f.flow != "associated"}
     sure = [f for n, f in (*every.items(), *candidates.items()) if not f.locked and f.flow != "associated"]
     least = min([*sure, every[EVERY]], key=lambda f: f.multiplier)

@@ -85,6 +85,10 @@ class Site:
         ground. ``{"height": 6.0, "storeys": 2, "T1": 0.25, "xi": 10}`` is the first mode of a regular building, whose
         shape follows from the height of each mechanism; ``{"T": ..., "participation": ..., "shape": ..., "xi": ...}``
         one mode with its shape at the height of the mechanism.
+    source : str
+        Where the hazard comes from: a map, a grid with its coordinates, a study.
+    assumed : tuple of str
+        Which of soil, topography, nominal life and class of use were not given; reports say that they were assumed.
 
     Raises
     ------
@@ -109,6 +113,8 @@ class Site:
     code: str = "ntc2018"
     spectrum_type: str = "1"
     building: Any = ()
+    source: str = ""
+    assumed: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         rules = self.rules

@@ -71,9 +71,24 @@ class BuildingTable(Table):
 
 
 class SiteTable(Table):
-    """The arguments of :class:`concio.Site`."""
+    """The arguments of :class:`concio.Site`, or the place in a grid that gives the hazard.
 
-    hazard: dict[str, HazardTable] | list[HazardTable]
+    Keys
+    ----
+    hazard :
+        By limit state, or a row for each return period.
+    grid :
+        File of a grid of hazards, with columns ``lon``, ``lat``, and ``ag475``, ``F0475``, ``Tc475`` and so on.
+    coordinates :
+        Longitude and latitude of the place in degrees, as the grid has them.
+    source :
+        Where the hazard comes from; printed in the report.
+    """
+
+    hazard: dict[str, HazardTable] | list[HazardTable] | None = None
+    grid: StrictStr = ""
+    coordinates: tuple[Number, Number] | None = None
+    source: StrictStr = ""
     soil: Name = "A"
     topography: Name = "T1"
     nominal_life: Number = 50.0
@@ -206,6 +221,13 @@ class AssessmentTable(Table):
     curve: Literal["followed", "straight"] = "followed"
     free_standing: Annotated[
         dict[str, FreeStandingTable], Field(description="by mechanism: parapets, chimneys, gables; see the how-to")
+    ] = Field(default_factory=dict)
+    accept_linear: Annotated[
+        bool, Field(description="whether a limit state is met where the linear check is")
+    ] = False
+    reasons: Annotated[
+        dict[str, StrictStr],
+        Field(description="why the author decided so: of levels, direction, knowledge, accept_linear, curve, ..."),
     ] = Field(default_factory=dict)
     elsewhere: Annotated[
         list[StrictStr], Field(description="what the author answers for: out of plane, height, ties")
