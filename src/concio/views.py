@@ -28,6 +28,7 @@ VIEWS: dict[str, dict[str, str]] = {
         "Model": "concio.report.notebook:model_html",
         "Shown": "concio.report.notebook:result_html",
     },
+    "viewer": {"Result": "concio.report.inline:inline_report"},
     "report": {
         "Assessment": "concio.report.assessment_page:write_assessment_report",
         "Diagnosis": "concio.report.diagnosis_page:write_diagnosis_report",
@@ -44,7 +45,7 @@ def view(shown: object, name: str, *args: Any, **options: Any) -> Any:
     Parameters
     ----------
     shown : object
-    name : {"plot", "tables", "notebook", "report"}
+    name : {"plot", "tables", "notebook", "viewer", "report"}
     *args, **options
         Handed to what makes the view, after the object.
 

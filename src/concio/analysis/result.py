@@ -296,6 +296,19 @@ class Result(Shown):
         plots: Plots = view(self, "plot")
         return plots
 
+    def viewer(self, height: int = 640) -> Shown:
+        """Return the interactive report, which a notebook shows in a frame of a height [pixel].
+
+        Examples
+        --------
+        >>> import concio
+        >>> found = concio.solve(concio.column(width=0.5, height=2.0, blocks=2, block="rigid")).viewer(height=400)
+        >>> found._repr_html_().startswith("<iframe srcdoc=")
+        True
+        """
+        shown: Shown = view(self, "viewer", height)
+        return shown
+
     @property
     def tables(self) -> Tables:
         """Tables by name, as dicts of arrays: ``pandas.DataFrame(result.tables.joints())``."""

@@ -174,11 +174,9 @@ def _thrust(ax: Axes, result: Result, words: Mapping[str, str]) -> Any:
 def _plain(ax: Axes | None) -> Axes:
     if ax is not None:
         return ax
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
+    from concio.plot.shown import new_figure
 
-    figure = Figure(figsize=(7.6, 3.6), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure((7.6, 3.6), layout="constrained")
     axes: Axes = figure.add_subplot()
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)

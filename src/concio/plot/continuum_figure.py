@@ -225,15 +225,13 @@ def _panels(box: Array, count: int, axes: Sequence[Axes] | None) -> list[Axes]:
             msg = f"axes are {len(found)}, not {count}"
             raise InputError(msg, hint="leave them out for a new figure")
         return found
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
+    from concio.plot.shown import new_figure
 
     width, height = np.maximum(box[1] - box[0], 1e-9)
     wide = float(np.clip(5.2 * width / height, 3.6, 5.6 if count == 2 else 4.8))
     tall = float(np.clip(wide * height / width, 0.9, 6.5))
     size = (count * wide + (count + 1) * GAP, tall + TOP + BELOW)
-    figure = Figure(figsize=size)
-    FigureCanvasAgg(figure)
+    figure = new_figure(size)
     return [
         figure.add_axes(((GAP + k * (wide + GAP)) / size[0], BELOW / size[1], wide / size[0], tall / size[1]))
         for k in range(count)

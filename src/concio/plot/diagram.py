@@ -16,12 +16,9 @@ GRID = "#E8E4DC"
 
 def figure_of(size: tuple[float, float]) -> Figure:
     """Return a new figure of a width and a height [in] that no window shows."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
+    from concio.plot.shown import new_figure
 
-    figure = Figure(figsize=size, layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure
+    return new_figure(size, layout="constrained")
 
 
 def diagram_axes(ax: Axes | None, size: tuple[float, float]) -> Axes:

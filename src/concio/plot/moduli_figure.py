@@ -50,11 +50,9 @@ def polar_axes(ax: Axes | None) -> Axes:
     """Return ``ax``, or polar axes of a new figure."""
     if ax is not None:
         return ax
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
+    from concio.plot.shown import new_figure
 
-    figure = Figure(figsize=(6.4, 6.6))
-    FigureCanvasAgg(figure)
+    figure = new_figure((6.4, 6.6))
     axes: Axes = figure.add_axes((0.1, 0.1, 0.8, 0.76), projection="polar")
     return axes
 

@@ -61,13 +61,11 @@ class PathPlots:
         point : ControlPoint, optional
             By default the point that moved most in the end.
         """
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
+        from concio.plot.shown import new_figure
 
         chosen = most_moving(self.path) if point is None else point
         numbers = list(range(len(self.path.outcomes)))[-MOST_STAGES:]
-        figure = Figure(figsize=(max(7.6, 4.6 * len(numbers)), 4.8), layout="constrained")
-        FigureCanvasAgg(figure)
+        figure = new_figure((max(7.6, 4.6 * len(numbers)), 4.8), layout="constrained")
         return [
             self.curve(ax, point=chosen, stage=number)
             for number, ax in zip(numbers, figure.subplots(1, len(numbers), squeeze=False)[0], strict=True)

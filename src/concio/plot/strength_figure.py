@@ -197,9 +197,9 @@ def plot_surface(domain: StrengthDomain, ax: Any | None = None, *, reach: float 
     -------
     Axes3D
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    from concio.plot.shown import new_figure
 
     faces = domain.faces
     reach = typical(faces, domain.base) if reach is None else reach
@@ -218,8 +218,7 @@ def plot_surface(domain: StrengthDomain, ax: Any | None = None, *, reach: float 
         polygons.append(on[np.argsort(turn)])
         cut.append(bool(np.isclose(offset, reach) and np.isclose(np.abs(normal).max(), 1.0)))
     if ax is None:
-        figure = Figure(figsize=(7.0, 6.4))
-        FigureCanvasAgg(figure)
+        figure = new_figure((7.0, 6.4))
         ax = figure.add_subplot(projection="3d")
     colours = ["#F4F4F4" if c else "#9CC3E0" for c in cut]
     alpha = [0.15 if c else 0.75 for c in cut]

@@ -64,16 +64,14 @@ def axes_for(box: Array, ax: Axes | None) -> Axes:
     """Return ``ax``, or the axes of a new figure whose shape suits ``box`` = ((x0, y0), (x1, y1)) [m]."""
     if ax is not None:
         return ax
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
+    from concio.plot.shown import new_figure
 
     width, height = np.maximum(box[1] - box[0], 1e-9)
     wide = float(np.clip(TALLEST * width / height, NARROWEST, WIDEST))
     tall = float(np.clip(wide * height / width, 0.9, TALLEST))
     left, right, top, bottom = MARGINS
     size = (wide + left + right, tall + top + bottom)
-    figure = Figure(figsize=size)
-    FigureCanvasAgg(figure)
+    figure = new_figure(size)
     axes: Axes = figure.add_axes((left / size[0], bottom / size[1], wide / size[0], tall / size[1]))
     return axes
 
