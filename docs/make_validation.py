@@ -12,6 +12,7 @@ import inspect
 import json
 import re
 import sys
+from collections import Counter
 from pathlib import Path
 from types import ModuleType
 
@@ -19,14 +20,13 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "tests" / "validation"), str(HERE.parent / "tests")]
 
 from validation_cases import CASES  # noqa: E402
-from validation_cases.row import Row  # noqa: E402
+from validation_cases.row import CHECKS, Row  # noqa: E402
 
 HEAD = """# The validation book
 
 Written by `docs/make_validation.py`; the same rows are asserted by `tests/validation`. *Difference* is relative to the
 expected value unless marked "abs". *Allowed* is the tolerance of the test, with its reason in the section of the case.
-Rows marked *experiment* compare a model with a test, those marked *other model* with another model of the same
-structure: they are discussed, not asserted.
+*Checked by* says where the expected number comes from:
 
 """
 
@@ -140,20 +140,30 @@ def report_rows() -> str:
     return json.dumps(found, indent=1, ensure_ascii=False) + "\n"
 
 
+def counted(kinds: Counter[str]) -> str:
+    """What each word of the column "checked by" means, and how many rows have it."""
+    lines = ["| checked by | rows | the expected number is |", "|---|---|---|"]
+    lines += [f"| {word} | {kinds[word]} | {meaning} |" for word, meaning in CHECKS.items()]
+    return "\n".join(lines) + "\n"
+
+
 def main() -> int:
     """Write the book; return 1 where a row is outside its tolerance."""
     parts, wrong, count = [], [], 0
+    kinds: Counter[str] = Counter()
     every = [TABLE_HEAD]
     for name, title in CASES.items():
         text, rows = section(name, title)
         parts.append(text)
         count += len(rows)
+        kinds.update(r.check for r in rows)
         source = importlib.import_module(f"validation_cases.{name}").SOURCE
         every += [f"## {title}\n", f"Source: {source}\n", table(rows)]
         wrong += [f"{name}: {r.name}" for r in rows if not r.passes and r.asserted]
         print(f"{name}: {len(rows)} rows")
     summary = f"{count} rows in {len(CASES)} cases; {len(wrong)} outside their tolerance.\n\n"
-    (HERE / "validation" / "book.md").write_text(HEAD + summary + "\n".join(parts), encoding="utf-8")
+    head = HEAD + counted(kinds) + "\n" + summary
+    (HERE / "validation" / "book.md").write_text(head + "\n".join(parts), encoding="utf-8")
     (HERE / "validation_table.md").write_text("\n".join(every), encoding="utf-8")
     (HERE.parent / "src" / "concio" / "report" / "validation_rows.json").write_text(report_rows(), encoding="utf-8")
     for line in wrong:

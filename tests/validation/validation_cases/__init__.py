@@ -11,6 +11,7 @@ CASES: dict[str, str] = {
     "ercolano_panel": "Ercolano's panel",
     "ferris_tin_loi": "Walls of Ferris and Tin-Loi",
     "semicircular_arch": "Least thickness of a semicircular arch",
+    "arch_and_friction": "A semicircular arch at falling friction, and with vertical joints",
     "flat_arch": "Flat arch with spreading abutments",
     "arch_bridges": "Arch bridges with fill under an axle",
     "fill_as_blocks": "Fill as blocks beside fill as a rule",

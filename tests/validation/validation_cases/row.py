@@ -4,6 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+CHECKS = {
+    "published": "a number printed in the source, at the page given there",
+    "closed form": "a formula, evaluated by the case",
+    "another program": "computed with a program of others on the same statement",
+    "second method": "another method of concio, or a short independent program of the project",
+    "experiment": "a test on a structure; compared, not asserted",
+    "other model": "another model of the same structure; compared, not asserted",
+}
+"""Where an expected number comes from."""
+
 
 @dataclass(frozen=True)
 class Row:
@@ -22,8 +32,7 @@ class Row:
     unit : str
     absolute : bool
     check : str
-        "closed form", "published", "second method", "experiment" or "other model"; the last two are compared, not
-        asserted.
+        One of :data:`CHECKS`; "experiment" and "other model" are compared, not asserted.
     """
 
     name: str
