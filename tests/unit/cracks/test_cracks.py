@@ -322,3 +322,12 @@ def test_a_structure_that_does_not_stand_is_told_before_anything_is_sought() -> 
     with pytest.raises(concio.NoEquilibriumError, match="does not stand") as caught:
         diagnosed(thin, measured, [GIVES])
     assert caught.value.verdict.exit_code == 3
+
+
+def test_how_many_motions_were_looked_at_together_is_told_where_there_are_more() -> None:
+    few = diagnosed(flat_arch(), spread_cracks(0.01), [GIVES])
+    assert not [line for line in few.verdict.limits if "were not looked at" in line]
+    many = diagnosed(flat_arch(), spread_cracks(0.01), [GIVES, OTHER, SINKS, TURNS])
+    looked = max(len(t.chosen) for t in many.trials)
+    assert 0 < looked < 4
+    assert f"causes of more than {looked} motions were not looked at" in many.verdict.limits

@@ -160,3 +160,15 @@ def test_the_shape_of_triangles_at_a_point_is_that_of_the_worst():
     found = _worst_around(third, np.array([(0, 1, 2), (1, 3, 2), (0, 4, 1)]))
     assert found == pytest.approx([flat, flat, 1.0, 1.0, flat], rel=1e-9)
     assert _worst_around(third, np.array([(0, 2, 1)]))[:3] == pytest.approx(-np.ones(3), rel=1e-12)
+
+
+@pytest.mark.parametrize("turn", [0, 1])
+def test_breaks_that_all_but_coincide_are_one_node_of_a_slender_body(turn: int) -> None:
+    """What is a millionth of its length apart is one place, however thin the body is."""
+    strip = np.array([(0, 0), (4, 0), (4, 0.02), (0, 0.02)])
+    if turn:
+        strip = strip[:, ::-1] * [-1.0, 1.0]
+    breaks = [np.array([1.0, 1.0 + 1e-6]), np.zeros(0), np.zeros(0), np.zeros(0)]
+    points, cells = mesh_polygon(strip, 0.5, breaks)
+    assert_good_mesh(strip, points, cells)
+    assert min(np.hypot(*np.diff(points[np.append(cell, cell[0])], axis=0).T).min() for cell in cells) > 1e-3

@@ -285,3 +285,39 @@ def test_a_published_load_does_not_depend_on_the_chords():
         for options in ({}, {"chord_tolerance": 1e-6})
     ]
     assert found[0] == pytest.approx(found[1], rel=2e-7)
+
+
+@pytest.mark.parametrize("off", [2e-9, -2e-9])
+def test_an_opening_that_misses_a_bed_joint_by_rounding_makes_no_slivers(off):
+    door = {"x": 0.75, "y": 0.5, "width": 1.0, "height": 1.5}
+    sizes = {"length": 2.5, "height": 2.5, "block_size": (0.25, 0.25), "block": "rigid"}
+    exact = concio.wall(openings=[door], **sizes)
+    rounded = concio.wall(openings=[{**door, "height": 1.5 + off}], **sizes)
+    assert [(b.name, len(b.outline)) for b in rounded.bodies] == [(b.name, len(b.outline)) for b in exact.bodies]
+
+
+def test_no_wall_of_more_blocks_than_the_limit_is_begun(monkeypatch):
+    """Of 154 blocks most are short: a count by the long ones would let them pass."""
+    monkeypatch.setattr("concio.model.generate.arguments.LARGEST_BLOCKS", 120)
+    sizes = {"length": 4.0, "height": 1.0, "block_size": (0.4, 0.2), "bond": [(1.0, 0.1, 0.1, 0.1)]}
+    monkeypatch.setattr("concio.model.generate.walls.panel_pieces", lambda *_: pytest.fail("blocks were made"))
+    with pytest.raises(InputError, match="blocks are more than 120"):
+        concio.wall(**sizes)
+
+
+@pytest.mark.parametrize("shape", ["semicircular", "segmental", "pointed", "flat"])
+def test_abutments_stand_behind_their_springing_joint_at_right_angles(shape):
+    """Half a ring deep, and on the side where the arch is not."""
+    rise = {"segmental": 0.5}.get(shape)
+    model = concio.arch(span=2.0, ring=0.3, voussoirs=9, shape=shape, block="rigid", **({"rise": rise} if rise else {}))
+    free = np.concatenate([b.outline for b in model.free_bodies])
+    for body in (b for b in model.bodies if b.kind == "fixed"):
+        sides = np.roll(body.outline, -1, axis=0) - body.outline
+        assert abs(sides[0] @ sides[1]) < 1e-9
+        assert min(np.hypot(*sides.T)) == pytest.approx(0.15)
+        joint = max((i for i in detected(model).interfaces if model.bodies[i.a] is body or model.bodies[i.b] is body),
+                    key=lambda i: i.length)  # fmt: skip
+        assert joint.length == pytest.approx(max(np.hypot(*sides.T)))
+        outside = np.sign(body.centroid[0])
+        assert (outside * free[:, 0] <= outside * body.outline[:, 0].mean() + 1.0).all()
+        assert abs(body.centroid[0]) > 1.0 - 1e-9

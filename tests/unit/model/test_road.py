@@ -254,3 +254,15 @@ def test_a_fill_line_is_the_layer_that_lies_above_it() -> None:
     for at, words in ((top + 0.1, "above the road"), (top - 0.5, "below the masonry")):
         with pytest.raises(InputError, match=words):
             covered(Fill(cover=0.4, fill_line=((-9.0, at), (9.0, at))))
+
+
+@pytest.mark.parametrize("direction", ["right", "left"])
+def test_footprints_press_with_all_factors_of_their_vehicle(direction: str) -> None:
+    lorry = Vehicle(
+        "lorry", (Axle(0.0, 60.0), Axle(-4.0, 90.0, length=0.5)), direction=direction, factor=1.5, dynamic=1.2
+    )  # fmt: skip
+    (x, length, load, stretch), (x2, length2, load2, _) = lorry.footprints(10.0)
+    assert (x, x2) == (10.0, 6.0 if direction == "right" else 14.0)
+    assert (length, length2) == (lorry.footprint, 0.5)
+    assert (load, load2) == pytest.approx((60.0 * 1.8, 90.0 * 1.8))
+    assert not stretch

@@ -10,7 +10,14 @@ import scipy.sparse as sp
 
 from concio.problem.contact_problem import ContactProblem, Laws
 from concio.solvers.statics.existence import find_mechanism, statically_admissible
-from concio.solvers.statics.mechanism import mechanism_from, polish, proves, verify_mechanism
+from concio.solvers.statics.mechanism import (
+    Mechanism,
+    mechanism_from,
+    polish,
+    proves,
+    total_load,
+    verify_mechanism,
+)
 from concio.solvers.statics.programme import StaticProgramme
 from concio.solvers.statics.sufficient import sufficient_condition
 from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, running_bond, wall
@@ -216,3 +223,14 @@ def test_polish_is_the_nearest_motion_whose_active_pairs_are_exact(dim):
         np.testing.assert_allclose(polished, nearest, rtol=0, atol=1e-10)
     assert 1e-7 < np.abs(polished - rough).max() < 1e-3
     np.testing.assert_array_equal(polish(p, rough, 1e-14), rough)  # none is that close to its cone
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+def test_a_motion_proves_no_more_than_its_violation_could_hide(unit):
+    """Forces do work on what bodies move into each other; in which unit they are measured decides nothing."""
+    p = single([unit, -2.0 * unit])
+    motion, violation = np.array([1.0, 0.0]), 1e-9
+    hidden = violation * total_load(p)
+    assert not proves(p, Mechanism(motion, 30.0 * hidden, violation))
+    assert proves(p, Mechanism(motion, 300.0 * hidden, violation))
+    assert proves(p, Mechanism(motion, 30.0 * hidden, 0.0))

@@ -166,3 +166,29 @@ def test_a_structure_without_any_load_is_told_so() -> None:
     result = concio.solve(stack(loads=()))
     assert "In equilibrium under no load at all" in result.sentence
     assert "Self-weight does not act" in result.sentence
+
+
+def test_three_groups_are_told_in_a_row() -> None:
+    live = [Load("point", (0.0, -1.0), bodies=("b",), at=(0.5, 2.0), group=g) for g in ("q", "s")]
+    sentence = concio.solve(stack(loads=(*DOWN, *live))).sentence
+    assert "dead (16 kN), q (1 kN) and s (1 kN)" in sentence
+
+
+@pytest.mark.parametrize("weight", [0.02, 20.0, 2e5])
+def test_forces_as_large_as_the_loads_are_not_told_as_huge(weight: float) -> None:
+    """What two blocks weigh their joints carry, in any unit of force."""
+    result = concio.solve(stack(materials={"block": Rigid(weight)}))
+    assert not [line for line in (*result.verdict.limits, *result.attention) if "times all loads" in line]
+
+
+def test_torsion_is_told_of_blocks_between_parallel_joints_alone() -> None:
+    """A block on the ground can turn about its joint; one that leans against a wall as well cannot."""
+    ground = Polyhedron.box("ground", (-1, -1, -1), (2, 2, 0), kind="fixed")
+    wall = Polyhedron.box("wall", (-1, -1, 0), (0, 2, 2), kind="fixed")
+    block = Polyhedron.box("a", (0, 0, 0), (1, 1, 1), kind="rigid")
+    for bodies, told in (((ground, block), True), ((ground, wall, block), False)):
+        model = Model(
+            bodies, {"block": Rigid(20.0)}, {"joint": JointLaw(0.6)}, loads=(Load("weight", (0, 0, -1)),),
+        )  # fmt: skip
+        limits = concio.solve(model).verdict.limits
+        assert any("1 block held by parallel joints alone" in line for line in limits) is told
