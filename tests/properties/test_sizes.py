@@ -1,7 +1,7 @@
-"""What is a thousand times larger is the same thing: generators, joints, meshes and contact points, in millimetres as in kilometres.
+"""A structure of any size has the same shape: generators, joints, meshes, contact points, in millimetres as in metres.
 
-Lengths are scaled by powers of two, which change no digit. A tolerance that is not measured by the size of the model, or
-a length taken twice or not at all, makes another model of it.
+Lengths are scaled by powers of two, which change no digit. A tolerance that is not measured by the size of the model
+makes another model of it, and so does a length that is taken twice or not at all.
 """
 
 from __future__ import annotations
@@ -96,9 +96,12 @@ CASES = {
         {"voussoirs": 14, "pier_courses": 2},
     ),
     "bridge of rings": Made(
-        generate.bridge, {"span": 6.0, "rise": 1.5, "ring": [0.2, 0.25]}, {"voussoirs": [14, 17], "shape": "elliptical"}
+        generate.bridge, {"span": 6.0, "rise": 1.5, "ring": [0.2, 0.25]},
+        {"voussoirs": [14, 17], "shape": "elliptical"},
     ),
-    "column": Made(generate.column, {"width": 0.5, "height": 2.0, "eccentricity": 0.1}, {"blocks": 4, "top_force": 2.0}),
+    "column": Made(
+        generate.column, {"width": 0.5, "height": 2.0, "eccentricity": 0.1}, {"blocks": 4, "top_force": 2.0}
+    ),
     "buttress": Made(
         generate.buttress, {"base": 1.2, "top": 0.7, "height": 3.0, "block_length": 0.5, "thrust_at": 2.3},
         {"courses": 5, "thrust": 1.0},
@@ -123,9 +126,12 @@ CASES = {
     "cloister vault": Made(
         generate.cloister_vault, {"span": 3.0, "ring": 0.3, "block_length": 1.0}, {"courses": 3}
     ),
-    "cross vault": Made(generate.cross_vault, {"span": 3.0, "ring": 0.3, "block_length": 1.0}, {"courses": 2, "springing": 50.0}),
+    "cross vault": Made(
+        generate.cross_vault, {"span": 3.0, "ring": 0.3, "block_length": 1.0}, {"courses": 2, "springing": 50.0}
+    ),
     "walls in plan": Made(
-        generate.walls, {"lines": [((0, 0), (2, 0)), ((0, 0), (0, 2))], "height": 0.75, "block_size": (0.5, 0.25, 0.25)},
+        generate.walls,
+        {"lines": [((0, 0), (2, 0)), ((0, 0), (0, 2))], "height": 0.75, "block_size": (0.5, 0.25, 0.25)},
         {"top_pressure": 2.0},
     ),
     "tower": Made(

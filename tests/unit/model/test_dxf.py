@@ -157,6 +157,20 @@ def test_supports_loads_and_names_by_layers(tmp_path):
     assert (force.kind, force.value, force.group, force.at) == ("point", (3.0, 0.0), "live", (0.0, 1.5))
 
 
+def test_a_name_is_that_of_the_smallest_block_around_it(tmp_path):
+    """Stones that fill the hole of another lie within its outline as well."""
+    sheet = Sheet(unit=6)
+    sheet.box(0, 0, 3, 3, "CONCIO_RIGID")
+    sheet.box(1, 1, 2, 2, "CONCIO_HOLE")
+    sheet.box(1, 1, 1.6, 2, "CONCIO_RIGID")
+    sheet.box(1.6, 1, 2, 2, "CONCIO_RIGID")
+    sheet.space.add_text("core", dxfattribs={"layer": "CONCIO_NAMES", "insert": (1.3, 1.5)})
+    sheet.space.add_text("rest", dxfattribs={"layer": "CONCIO_NAMES", "insert": (1.9, 1.5)})
+    sheet.space.add_text("shell", dxfattribs={"layer": "CONCIO_NAMES", "insert": (0.5, 0.5)})
+    model = model_from_dxf(sheet.saved(tmp_path))
+    assert {b.name: b.area for b in model.bodies} == pytest.approx({"core": 0.6, "rest": 0.4, "shell": 8.0})
+
+
 @pytest.mark.parametrize(
     ("draw", "message"),
     [

@@ -33,6 +33,13 @@ def test_pillar_loses_its_strength_where_its_centroid_is_above_its_toe(pushed):
     assert pushed.capacity == pytest.approx(0.1, rel=1e-3)  # the centroid moves by half the width, less what sinks in
 
 
+def test_the_numbers_of_a_push_end_where_its_curve_does(pushed):
+    told = pushed.summary()
+    assert told["end"] == {"multiplier": pytest.approx(0.0, abs=1e-6), "displacement": pushed.capacity}
+    assert told["curve"]["displacement"][-1] == told["capacity"] > told["peak"]["displacement"]
+    assert np.array_equal(pushed.configuration().outline(1), pushed.configuration(len(pushed) - 1).outline(1))
+
+
 def test_mechanism_of_the_pillar_is_its_rotation_about_the_toe(pushed):
     """Half way: a centroid at height z above the toe moves by z for a unit rotation, and the rate is per unit of it."""
     k = len(pushed) // 2

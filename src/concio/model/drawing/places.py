@@ -44,9 +44,7 @@ def supports_and_loads(
     def under(place: Point) -> list[str]:
         """Return the block that a point lies in; of several that it lies between, the lowest."""
         point = shapely.Point(place)
-        near = np.flatnonzero(shapely.distance(shapes, point) <= tolerance)
-        within = near[shapely.distance(rings[near], point) > tolerance]
-        chosen = within if len(within) else near
+        chosen = np.flatnonzero(shapely.distance(shapes, point) <= tolerance)
         heights = shapely.get_y(shapely.centroid(shapes[chosen]))
         return [pieces[int(chosen[np.argmin(heights)])].name] if len(chosen) else []
 
