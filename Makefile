@@ -52,6 +52,11 @@ test: $(VENV)/.installed-dev
 test-all:
 	$(MAKE) test SELECT="long or not long"
 
+# The window in a real browser: Chromium is installed from Debian's package where it is missing and apt is there.
+.PHONY: journeys
+journeys: $(VENV)/.installed-dev
+	@tests/journeys/run.sh $(BIN)/python
+
 # The properties with cases drawn afresh; the other runs draw the same ones every time, so that they judge the code alone.
 .PHONY: fresh
 fresh: $(VENV)/.installed-dev

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,7 @@ MOST_LINES = 4000
 FIXED = ("ground", "terren", "fondaz", "found", "suolo", "soil", "fixed", "base", "spall", "abutment")
 IGNORED = ("quot", "dim", "text", "test", "ass", "axis", "axes", "grid", "retin", "hatch", "annot", "cartigl", "frame")
 NAMED = ("nomi", "name", "numer", "label")
+LOADED = ("solai", "copert", "floor", "roof", "caric", "load", "tett")
 
 
 def starting_text(drawing: Path) -> str:
@@ -100,21 +101,26 @@ def layers(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     for layer in found.values():
         layer["proposed"] = proposed(layer["name"], layer["count"])
     shown = [layer for layer in found.values() if layer["count"]]
-    return {"layers": shown, "metres": sheet.metres, "unit": stated, "known": _known(sheet.entities)}
+    mend = table.get("mend", "")
+    return {"layers": shown, "mend": mend, "metres": sheet.metres, "unit": stated, "known": _known(sheet.entities)}
 
 
-def proposed(name: str, count: Mapping[str, int]) -> str:
-    """Return what a layer seems to be: a word of ``[drawing.layers]``, or "" where its name or content says it."""
+def proposed(name: str, count: Collection[str]) -> str:
+    """Return what a layer seems to be: a word of ``[drawing.layers]``, "load", or "" where nothing is proposed.
+
+    A layer is proposed to be left out only where its name says that it is dimensions, axes or texts: lines on another
+    layer may be loads, and a load must not be lost.
+    """
     known = named_use(name.upper())
     if not isinstance(known, LayerUse) or known != LayerUse():
         return ""
     low = name.lower()
-    kinds = (("names", NAMED), ("fixed", FIXED), ("ignore", IGNORED))
+    lines = set(count) <= {"LINE", "POINT"}
+    kinds = [("names", NAMED), ("fixed", FIXED), ("ignore", IGNORED), ("load", LOADED if lines else ())]
     for word, beginnings in kinds:
         if any(part.startswith(b) for b in beginnings for part in low.replace("-", "_").replace(" ", "_").split("_")):
             return word
-    closed = {"LWPOLYLINE", "POLYLINE", "CIRCLE", "ELLIPSE", "SPLINE"}
-    return "" if closed & set(count) else "ignore"
+    return ""
 
 
 def _known(entities: tuple[Entity, ...]) -> list[float] | None:

@@ -261,7 +261,7 @@ class Session:
         job.over.wait(min(float(told.get("wait", 5.0)), 20.0))
         if job.over.is_set():
             self.asked.warm()
-        return {"hash": doc.hash, "state": job.state, job.state: job.answer}
+        return {"hash": doc.hash, "state": job.state, job.state: _without_folder(job, doc)}
 
     def drag(self, told: Mapping[str, Any]) -> Answer:
         """Return a bound while a load is dragged; newer requests win."""
@@ -288,6 +288,14 @@ class Session:
     def export(self, told: Mapping[str, Any]) -> Answer:
         """Write the project folder: model, the files it names, result."""
         return self.asked.export(self._there(), str(told.get("key", "")))
+
+
+def _without_folder(job: Job, doc: Document) -> Any:
+    """Return an answer whose message names files as the text does."""
+    if job.state != "error":
+        return job.answer
+    folder = f"{doc.file.parent}/"
+    return {key: value.replace(folder, "") if isinstance(value, str) else value for key, value in job.answer.items()}
 
 
 LOOK = {

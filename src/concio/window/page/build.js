@@ -66,8 +66,7 @@ function loadForm() {
     return { to: "loads", table };
   });
   form.kind.addEventListener("change", () => {
-    if (form.kind.value === "pressure" && /,/.test(form.value.value)) form.value.value = "10";
-    if (form.kind.value !== "pressure" && !/,/.test(form.value.value)) form.value.value = form.kind.value === "weight" ? "0.1, 0" : "0, -1";
+    form.value.value = { pressure: "10", weight: "0.1, 0" }[form.kind.value] || "0, -1";
   });
   return made;
 }

@@ -1,9 +1,9 @@
 /* What the layers of a drawing mean: counts, what is proposed, a small picture of each; the unit asked with a block. */
 import { t, el, field, digits } from "./words.js";
 import { call } from "./net.js";
-import { boxOf } from "./geometry.js";
+import { boxOf, numbers } from "./geometry.js";
 
-const USES = ["", "block", "rigid", "fixed", "hole", "names", "ignore"], NS = "http://www.w3.org/2000/svg";
+const USES = ["", "block", "rigid", "fixed", "hole", "names", "ignore", "load"], NS = "http://www.w3.org/2000/svg";
 let send = async () => false;
 export function setLayers(sender) { send = sender; }
 
@@ -24,23 +24,39 @@ export async function layersPane(pane) {
   catch (error) { return pane.replaceChildren(el("p", { role: "alert" }, error.text || error.message)); }
   if (!found) return;
   const points = found.layers.flatMap((l) => l.lines.flat()), box = points.length ? boxOf(points) : [0, 0, 1, 1];
-  const proposals = found.layers.filter((l) => l.proposed && l.stated === null);
+  const proposals = found.layers.filter((l) => l.proposed && l.proposed !== "load" && l.stated === null);
+  const mend = el("input", { value: found.mend, placeholder: "0.5 mm", onchange: () => send([mend.value.trim() ? { do: "set", path: ["drawing", "mend"], value: mend.value.trim() } : { do: "remove", path: ["drawing", "mend"] }]) });
   const unit = el("select", { onchange: () => send([{ do: "set", path: ["drawing", "unit"], value: unit.value }]) }, ...["mm", "cm", "m", "in", "ft"].map((u) => el("option", { value: u }, u)));
   const size = { 0.001: "mm", 0.01: "cm", 1: "m", 0.0254: "in", 0.3048: "ft" }[found.metres];
   if (size && found.unit) unit.value = size; else unit.selectedIndex = -1;
   const rows = found.layers.map((layer) => {
-    const stated = typeof layer.stated === "string" ? layer.stated : layer.stated ? layer.stated.use || layer.stated.load || layer.stated.support || layer.stated.material : "";
+    const stated = typeof layer.stated === "string" ? layer.stated : layer.stated ? layer.stated.use || (layer.stated.load && "load") || layer.stated.support || layer.stated.material : "";
     const words = USES.includes(stated) ? USES : [...USES, stated];
-    const pick = el("select", { "aria-label": `${t("layer_meaning")}: ${layer.name}`, onchange: () => send([pick.value ? { do: "set", path: ["drawing", "layers", layer.name], value: pick.value } : { do: "remove", path: ["drawing", "layers", layer.name] }]) },
+    const pick = el("select", { "aria-label": `${t("layer_meaning")}: ${layer.name}`, onchange: () => {
+      extra.hidden = pick.value !== "load";
+      if (pick.value === "load") return value.focus();
+      if (pick.value || layer.stated !== null) send([pick.value ? { do: "set", path: ["drawing", "layers", layer.name], value: pick.value } : { do: "remove", path: ["drawing", "layers", layer.name] }]);
+    } },
       ...words.map((w) => el("option", { value: w }, USES.includes(w) ? t(`layer_${w || "none"}`) : w)));
     pick.value = stated;
+    const given = stated === "load" ? layer.stated : {}, points = "POINT" in layer.count;
+    const value = el("input", { value: (given.value || []).toString(), placeholder: "0, -10", "aria-label": `${t("layer_value")}: ${layer.name}`, onchange: load });
+    const group = el("input", { value: given.group || "dead", "aria-label": `${t("group")}: ${layer.name}`, onchange: load });
+    function load() {
+      const vector = numbers(value.value, 2);
+      if (vector) send([{ do: "set", path: ["drawing", "layers", layer.name], value: { load: points ? "point" : "traction", value: vector, group: group.value.trim() || "dead" } }]);
+    }
+    const extra = el("div", { hidden: stated !== "load" }, el("p", { class: "quiet" }, t("layer_value")), value, el("p", { class: "quiet" }, t("group")), group);
     const note = layer.proposed && layer.stated === null ? el("p", { class: "quiet" }, `${t("layer_proposed")}: ${t(`layer_${layer.proposed}`)}`) : null;
     return el("tr", {}, el("th", { scope: "row" }, layer.name, layer.off ? el("p", { class: "quiet" }, t("layer_off")) : null),
-      el("td", {}, Object.entries(layer.count).map(([k, n]) => `${n} ${k}`).join(", ")), el("td", {}, pick, note), el("td", {}, thumbnail(layer.lines, box)));
+      el("td", {}, Object.entries(layer.count).map(([k, n]) => `${n} ${k}`).join(", ")), el("td", {}, pick, note, extra), el("td", {}, thumbnail(layer.lines, box)));
   });
+  const held = pane.querySelector(":focus")?.getAttribute("aria-label");
   pane.replaceChildren(
     field(t("layer_unit"), unit, found.known ? t("layer_known", { width: digits(found.known[0]), height: digits(found.known[1]) }) : ""),
+    field(t("layer_mend"), mend),
     el("button", { disabled: !proposals.length, onclick: () => send(proposals.map((l) => ({ do: "set", path: ["drawing", "layers", l.name], value: l.proposed }))) }, t("layer_apply")),
     el("table", {}, el("caption", {}, t("layers")), el("thead", {}, el("tr", {}, ...["layer", "layer_count", "layer_meaning", "picture"].map((h) => el("th", { scope: "col" }, t(h))))), el("tbody", {}, ...rows)),
   );
+  if (held) pane.querySelector(`[aria-label="${CSS.escape(held)}"]`)?.focus();
 }

@@ -94,7 +94,7 @@ function attention() {
   $("attention-list").replaceChildren(
     ...lines.map((line) => el("li", { lang: "en" }, line)),
     ...(shown ? shown.findings : []).slice(0, 20).map((found) => el("li", { lang: "en" }, found.sentence, el("button", { onclick: () => { mark(found.at); } }, t("where")))),
-    ...(shown ? shown.notes : []).slice(0, 20).map((line) => el("li", { lang: "en" }, `${t("left_out")}: ${line}`)),
+    ...(shown && shown.notes.length ? [el("li", {}, el("details", {}, el("summary", {}, `${t("left_out")} (${shown.notes.length})`), ...shown.notes.map((line) => el("p", { lang: "en" }, line))))] : []),
   );
   if (shown && !lines.length && !shown.findings.length && !shown.notes.length) $("attention-list").append(el("li", { class: "quiet" }, t("no_attention")));
 }

@@ -29,7 +29,8 @@ export function fit() {
   const shown = view.shown;
   if (!shown || shown.dim !== 2) return;
   const points = shown.bodies.flatMap((b) => b.rings.flat());
-  shown.loads.forEach((l) => (l.tips || []).forEach((p) => points.push(p)));
+  const [x0, y0, x1, y1] = boxOf(points.length ? points : [[0, 0]], 0), tail = 0.12 * Math.max(x1 - x0, y1 - y0);
+  shown.loads.forEach((l) => (l.tips || []).forEach(([x, y], k) => points.push([x, y], [x - tail * l.ways[k][0], y - tail * l.ways[k][1]])));
   shown.ties.forEach((one) => points.push(one.at_a, one.at_b));
   box = boxOf(points.map((p) => [p[0], p[1]]));
   const wide = svg.clientWidth / Math.max(svg.clientHeight, 1), w = box[2] - box[0], h = box[3] - box[1];

@@ -1,0 +1,376 @@
+"""Journeys through the window in a real browser: what an engineer does, with the mouse or by keyboard alone.
+
+    make journeys
+
+They are no part of `pytest tests`, because they need Chromium; `.ci/run` makes them and tells loudly where it cannot.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import concio
+from browser import Browser, browser
+from windows import LATE, Client, window
+
+ROOT = Path(__file__).resolve().parents[2]
+TEMPLATES = Path(concio.__file__).parent / "model" / "templates"
+PILLAR = """title = "pillar"   # a comment that stays
+[column]
+width = 0.5
+height = 2.0
+blocks = 4
+block = "rigid"
+unit_weight = 20.0
+[[loads]]
+kind = "point"
+value = [1.0, 0.0]
+bodies = ["b04"]
+at = [-0.25, 2.0]
+group = "live"
+"""
+DRAWN = "window.concio && window.concio.pictured()"
+ANSWERED = "document.querySelector('#running').hidden && document.querySelector('#verdict-text .sentence')"
+SETTLED = "window.concio.pictured().startsWith(window.concio.state().document.hash)"
+AUDIT = (Path(__file__).parent / "audit.js").read_text(encoding="utf-8")
+
+
+def test_the_audit_sees_what_is_wrong(page: Browser, client: Client) -> None:
+    opened(page, client)
+    assert page.js(AUDIT) == []
+    page.js("""(() => { const p = document.createElement('p'); p.textContent = 'faint'; p.style.color = '#999';
+        p.style.background = '#fff'; document.querySelector('main section').append(p, document.createElement('input'));
+        const b = document.createElement('button'); b.id = 'undo'; document.querySelector('header').append(b); })()""")
+    assert [line.split(":")[0].split(" ")[0] for line in page.js(AUDIT)] == ["no", "contrast", "no", "twice"]
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Browser]:
+    with browser() as found:
+        yield found
+
+
+@pytest.fixture
+def page(chromium: Browser) -> Iterator[Browser]:
+    """A browser with nothing kept; after the journey: no complaint, and no request left the machine."""
+    chromium.events.clear()
+    yield chromium
+    assert chromium.complaints == []
+    assert [r for r in chromium.requests if not r.startswith(("http://127.0.0.1:", "data:", "about:"))] == []
+    chromium.go("about:blank")
+
+
+@pytest.fixture
+def client(tmp_path: Path) -> Iterator[Client]:
+    file = tmp_path / "pillar.toml"
+    file.write_text(PILLAR, encoding="utf-8")
+    with window(tmp_path, file) as found:
+        yield found
+
+
+def opened(page: Browser, client: Client) -> None:
+    page.go(client.server.address)
+    page.until(DRAWN, "the picture")
+
+
+def text_of(client: Client) -> str:
+    return str(client.call("state")["document"]["text"])
+
+
+def value(page: Browser, selector: str, text: str) -> None:
+    """Write into a field as a person does."""
+    page.js(
+        f"(() => {{ const e = document.querySelector({json.dumps(selector)}); e.focus(); e.select && e.select(); }})()"
+    )
+    page.type(text)
+    page.js("document.activeElement.blur()")
+
+
+def test_a_load_is_clicked_asked_reported_and_survives_a_killed_server(page: Browser, tmp_path: Path) -> None:
+    file = tmp_path / "arch.toml"
+    shutil.copy(TEMPLATES / "arch.toml", file)
+    command = [sys.executable, "-m", "concio", "window", str(file), "--no-open"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        address = process.stdout.readline().split()[-1]
+        page.go(address)
+        page.until(DRAWN)
+        page.click("[data-tool=load]")
+        page.click_at(*page.where(-0.95, 1.6454))
+        page.until("document.querySelector('#pane-build [name=body]').value")
+        value(page, "#pane-build [name=value]", "0, -4")
+        page.click("#pane-build button.main")
+        page.until("window.concio.view.shown.loads.length === 3")
+        page.click("#tab-ask")
+        page.click("[data-question=run]")
+        page.click("#run")
+        page.until(ANSWERED)
+        said = page.js("document.querySelector('#verdict-text .sentence').textContent")
+        text = page.js("window.concio.state().document.text")
+        assert said == concio.solve(concio.loads(text)).verdict.sentence
+        page.click("#tab-report")
+        page.until("document.querySelector('#pane-report iframe')")
+        process.send_signal(signal.SIGKILL)
+    page.until("document.querySelector('[data-banner=gone]')", "the page says that the program has ended")
+    assert file.read_text(encoding="utf-8") != text
+    page.events.clear()
+    with window(tmp_path, file) as again:
+        opened(page, again)
+        assert text_of(again) == text
+        page.until("document.querySelector('[data-banner=recovered]')")
+        page.press("z", ctrl=True)
+        page.until("window.concio.state().document.redo")
+        assert text_of(again) == file.read_text(encoding="utf-8")
+        page.press("y", ctrl=True)
+        page.press("s", ctrl=True)
+        page.until("window.concio.state().document.saved")
+    assert file.read_text(encoding="utf-8") == text
+
+
+def test_from_a_drawing_to_a_limit_load(page: Browser, tmp_path: Path) -> None:
+    shutil.copy(ROOT / "examples" / "facade.dxf", tmp_path / "facade.dxf")
+    with window(tmp_path) as client:
+        page.go(client.server.address)
+        page.until("document.querySelector('#start').open")
+        page.js("[...document.querySelectorAll('#start button')].find((b) => b.textContent === 'facade.dxf').click()")
+        page.until("document.querySelector('#pane-layers table')")
+        page.until(DRAWN)
+        assert "faults" in page.js("document.querySelector('#fault').textContent")
+        assert str(tmp_path) not in page.js("document.querySelector('#fault').textContent")
+        page.js("[...document.querySelectorAll('#pane-layers button')].find((b) => !b.disabled).click()")
+        page.until('/FONDAZIONE = "fixed"/.test(window.concio.state().document.text)')
+        for selector, text in (("#pane-layers input[placeholder='0.5 mm']", "0.5 mm"),):
+            value(page, selector, text)
+        page.until('/mend = "0.5 mm"/.test(window.concio.state().document.text)')
+        for layer, load in (("SOLAIO", "0, -24"), ("COPERTURA", "0, -10")):
+            page.until(f"document.querySelector(\"select[aria-label$='{layer}']\")")
+            page.js(f"(() => {{ const s = document.querySelector(\"select[aria-label$='{layer}']\"); s.value = 'load'; "
+                    "s.dispatchEvent(new Event('change')); })()")  # fmt: skip
+            value(page, f"input[aria-label$='{layer}']", load)
+            page.until(f"/{layer} = .*load/.test(window.concio.state().document.text)")
+        page.until(
+            f"{SETTLED} && window.concio.view.shown && window.concio.view.shown.loads.length === 3", "the facade"
+        )
+        page.click("[data-tool=load]")
+        page.js("(() => { const k = document.querySelector('#pane-build [name=kind]'); k.value = 'weight'; "
+                "k.dispatchEvent(new Event('change')); })()")  # fmt: skip
+        page.click("#pane-build button.main")
+        page.until(f"{SETTLED} && window.concio.view.shown.loads.length === 4")
+        page.click("#tab-ask")
+        page.click("[data-question=limit]")
+        page.js("document.querySelector('#pane-ask label.row input').click()")
+        acts = page.js("document.querySelector('#acts').textContent")
+        assert "live: multiplied" in acts
+        assert "kN" in acts
+        page.click("#run")
+        page.until(ANSWERED)
+        model = concio.loads(text_of(client), folder=tmp_path)
+        found = concio.limit(model, path=False, steps=False, search=False)
+        number = f"{found.associated.multiplier:.6g}"
+        assert number in page.js("document.querySelector('#verdict-text .sentence').textContent")
+        assert page.js(AUDIT) == []
+
+
+def test_what_is_shown_while_a_load_is_dragged_is_certified_or_grey(page: Browser, client: Client) -> None:
+    opened(page, client)
+    page.js("""(() => { window.seen = []; new MutationObserver(() => { const b = document.getElementById('bound');
+        window.seen.push([b.className, b.textContent]); }).observe(document.getElementById('bound'),
+        { attributes: true, childList: true, subtree: true }); })()""")
+    page.mouse("mousePressed", *page.where(-0.25, 2.0))
+    heights = [2.0 - 0.05 * k for k in range(1, 16)]
+    for y in heights:
+        page.mouse("mouseMoved", *page.where(-0.3, y))
+        time.sleep(0.05)
+    page.until("!document.getElementById('bound').hidden && document.getElementById('bound').className === ''")
+    shown = page.js("document.getElementById('bound').textContent")
+    page.mouse("mouseReleased", *page.where(-0.3, heights[-1]))
+    page.until("window.concio.state().document.undo")
+    page.until(SETTLED)
+    text = text_of(client)
+    bound = concio.limit(concio.loads(text), path=False, steps=False, search=False).associated.multiplier
+    assert f"{bound:.6g}" in shown
+    assert text.startswith('title = "pillar"   # a comment that stays\n')
+    fresh = [said for kind, said in page.js("window.seen") if kind == "" and said]
+    assert fresh
+    assert all("no equilibrium beyond it" in said for said in fresh)
+
+
+def test_the_keyboard_alone_leads_from_the_first_page_to_the_verdict(page: Browser, tmp_path: Path) -> None:
+    with window(tmp_path) as client:
+        page.go(client.server.address)
+        page.until("document.querySelector('#start').open")
+
+        def tab_to(condition: str) -> None:
+            for _ in range(80):
+                if page.js(f"(() => {{ const e = document.activeElement; return Boolean({condition}); }})()"):
+                    return
+                page.press("Tab")
+                ring = page.js("getComputedStyle(document.activeElement).outlineStyle")
+                assert ring != "none" or page.js("document.activeElement === document.body")
+            raise AssertionError(condition)
+
+        tab_to("e.textContent === 'column'")
+        page.press("Enter")
+        page.until(f"{DRAWN} && window.concio.view.shown")
+        page.press("p")
+        page.press("ArrowUp")
+        page.press("ArrowUp")
+        assert page.js("window.concio.view.selected.bodies.size") == 1
+        page.press("l")
+        page.press("p")
+        page.press("Enter")
+        assert page.js("document.querySelector('#pane-build [name=body]').value")
+        tab_to("e.matches('#pane-build button.main')")
+        page.press("Enter")
+        page.until("window.concio.state().document.undo")
+        page.press("Escape")
+        page.press("1", alt=True)
+        page.until(SETTLED)
+        tab_to("e.id === 'run' && !e.disabled")
+        page.press("Enter")
+        page.until(ANSWERED)
+        assert page.js("document.querySelector('#verdict-text').getAttribute('aria-live')") == "polite"
+        page.press("?")
+        page.until("document.querySelector('#help').open")
+        page.press("Escape")
+        page.until("!document.querySelector('#help').open")
+
+
+def test_text_and_picture_follow_each_other_and_mistakes_are_told(page: Browser, client: Client) -> None:
+    opened(page, client)
+    page.click("#tab-text")
+    area = "#pane-text textarea"
+    value(page, area, PILLAR.replace("blocks = 4", "blocks = "))
+    page.js("document.querySelector('#pane-text button').click()")
+    page.until("/line 5/.test(document.querySelector('#fault').textContent)")
+    page.js("document.querySelector('#undo').click()")
+    page.until("!document.querySelector('#fault').textContent")
+    value(page, area, PILLAR.replace("blocks = 4", "blocks = 6").replace("b04", "b06"))
+    page.js("document.querySelector('#pane-text button').click()")
+    page.until("window.concio.view.shown.bodies.length === 7")
+    page.click("#tab-data")
+    value(page, "[id='value-column-width']", "60 cm")
+    page.until('/width = "60 cm"/.test(window.concio.state().document.text)')
+    assert 'title = "pillar"   # a comment that stays' in text_of(client)
+    page.click("#tab-tables")
+    page.js("document.querySelector(\"[data-row='bodies 3']\").click()")
+    assert page.js("document.querySelectorAll('#picture .body.on').length") == 1
+    page.click_at(*page.where(0.0, 1.8))
+    chosen = page.js("document.querySelector('tr[aria-selected=true]').textContent")
+    assert chosen.startswith("b06")
+    page.js("document.querySelector(\"[data-row='things load 1'] button\").click()")
+    page.until("window.concio.view.shown.loads.length === 1")
+    page.click("#tab-python")
+    program = page.js("document.querySelector('#pane-python pre').textContent")
+    client.call("save")
+    done = subprocess.run([sys.executable, "-c", program], cwd=client.server.session.folder, capture_output=True,
+                          text=True, timeout=LATE, check=True)  # fmt: skip
+    assert "equilibrium" in done.stdout
+
+
+def test_two_pages_and_a_file_that_changes_underneath(page: Browser, client: Client) -> None:
+    opened(page, client)
+    other = Client(client.server, "another page")
+    assert not other.call("state")["mine"]
+    other.call("take")
+    page.until("document.querySelector('[data-banner=pen]')")
+    assert page.js("document.querySelector('#save').disabled")
+    page.js("document.querySelector('[data-banner=pen] button').click()")
+    page.until("!document.querySelector('[data-banner=pen]')")
+    page.click("#tab-data")
+    value(page, "[id='value-column-width']", "0.7")
+    page.until("window.concio.state().document.undo")
+    file = client.server.session.document.file  # type: ignore[union-attr]
+    file.write_text(PILLAR + "# theirs\n", encoding="utf-8")
+    page.until("document.querySelector('[data-banner=conflict]')")
+    page.js("document.querySelectorAll('[data-banner=conflict] button')[1].click()")
+    page.until("/# theirs/.test(window.concio.state().document.text)")
+    page.press("z", ctrl=True)
+    page.until("/width = 0.7/.test(window.concio.state().document.text)")
+
+
+def test_it_is_read_in_both_languages_in_light_and_dark(page: Browser, client: Client) -> None:
+    opened(page, client)
+    page.js("document.querySelector('#run').click()")
+    page.until(ANSWERED)
+    for scheme in ("light", "dark"):
+        page.send("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+        for _ in range(2):
+            page.click("#language")
+            for tab in ("ask", "build", "tables", "data", "text", "python", "report"):
+                page.click(f"#tab-{tab}")
+                page.until(f"document.querySelector('#pane-{tab}').children.length")
+                assert page.js(AUDIT) == [], (scheme, tab)
+    page.js("document.documentElement.lang === 'it' || document.querySelector('#language').click()")
+    words = page.js("document.body.innerText")
+    assert "Salva" in words
+    assert page.js("document.documentElement.lang") == "it"
+    page.click("#keys")
+    assert page.js(AUDIT) == []
+    page.press("Escape")
+    page.click("#language")
+    page.send("Emulation.setEmulatedMedia", features=[])
+
+
+def test_a_model_in_space_is_opened_looked_at_and_asked(page: Browser, tmp_path: Path) -> None:
+    with window(tmp_path) as client:
+        client.call("new", kind="blocks_in_space")
+        page.go(client.server.address)
+        page.until(f"{DRAWN} && window.concio.view.shown.dim === 3")
+        assert page.js("document.querySelector('#picture image').getAttribute('href').length") > 1000
+        page.js("document.querySelector('#run').click()")
+        page.until(ANSWERED)
+        page.click("#tab-report")
+        page.until("document.querySelector('#pane-report iframe')")
+        model = concio.loads(text_of(client))
+        said = page.js("document.querySelector('#verdict-text .sentence').textContent")
+        assert said == concio.solve(model).verdict.sentence
+
+
+def test_a_question_is_cancelled_and_the_newest_wins(page: Browser, client: Client) -> None:
+    opened(page, client)
+    wall = (TEMPLATES / "wall.toml").read_text(encoding="utf-8").replace("[0.50, 0.25]", "[0.25, 0.125]")
+    client.page = page.js("sessionStorage.getItem('page')")
+    client.do({"do": "text", "text": wall})
+    page.until(f"{SETTLED} && window.concio.view.shown.bodies.length > 200")
+    page.click("[data-question=limit]")
+    page.click("#run")
+    page.until("!document.querySelector('#running').hidden")
+    page.click("#cancel")
+    page.until("document.querySelector('#running').hidden")
+    page.click("[data-question=run]")
+    page.click("#run")
+    page.until(ANSWERED)
+    model = concio.loads(wall)
+    said = page.js("document.querySelector('#verdict-text .sentence').textContent")
+    assert said == concio.solve(model).verdict.sentence
+
+
+def test_pure_functions_of_the_page(page: Browser, client: Client) -> None:
+    opened(page, client)
+    run = "import('./geometry.js').then((g) => {body})"
+    square = "[[[0, 0], [2, 0], [2, 1], [0, 1]]]"
+    assert page.js(run.format(body=f"[g.inside([1, 0.5], {square}), g.inside([3, 0.5], {square})]".join("()"))) == [
+        True,
+        False,
+    ]
+    assert page.js(run.format(body=f"g.nearestEdge([1, -1], {square}).at")) == [1, 0]
+    joints = "[[[0, 0], [2, 0]]]"
+    assert page.js(run.format(body=f"g.nearestEdge([1.9, 0.02], {square}, {joints}, 0.2).at")) == [2, 0.02]
+    assert page.js(run.format(body="g.numbers('1, -2.5', 2)")) == [1, -2.5]
+    assert page.js(run.format(body="g.numbers('1, x', 2)")) is None
+
+
+if __name__ == "__main__":
+    os.chdir(ROOT)
+    sys.exit(pytest.main([__file__, *sys.argv[1:]]))
