@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from concio.analysis.exact_proofs import against_slips
+from concio.analysis.least_strengthening import Kind, LeastStrengthening, least_strengthening
 from concio.analysis.lent_compliance import lent_assembly
 from concio.analysis.limit_torsion import SPREAD, SpreadSteps, twisting
 from concio.analysis.load_steps import LoadSteps
 from concio.analysis.parameters import own_parameters, parameters_of
 from concio.analysis.sensitivity import Sensitivity, sensitivity_of
 from concio.contact.assembly import Assembly
+from concio.errors import InputError
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import PROVEN_FAILURES, Status
@@ -145,6 +147,46 @@ class LimitResult(Shown):
             return dead, assembly.problem(dict.fromkeys(self.groups, 1.0), like=dead).f - dead.f
 
         return sensitivity_of(split(self.assembly), lambda m: split(lent_assembly(m)), self.associated, own)
+
+    def least(
+        self, target: float, *, tie: str | None = None, cohesion: str | None = None, load: str | None = None
+    ) -> LeastStrengthening:
+        """Return the least strengthening that brings the associated multiplier to a target, with a proof.
+
+        Name one thing: the tie whose yield force, the joint law whose cohesion, or the load group whose factor is
+        sought; what the model gives it does not count.
+
+        Parameters
+        ----------
+        target : float
+            Multiplier that is wanted.
+        tie, cohesion, load : str, optional
+
+        Raises
+        ------
+        InputError
+            Nothing, or more than one thing, is named; it does not exist; or the model does not stand without it.
+
+        Examples
+        --------
+        A pillar tips at 0.25 of its weight of 20 kN. A tie at its head, 2 m high, is to bring that to 0.5: the moment
+        that is missing, 0.25 x 20 kN x 1 m, needs 2.5 kN there:
+
+        >>> import concio
+        >>> import dataclasses
+        >>> pillar = concio.column(width=0.5, height=2.0, blocks=1, block="rigid", unit_weight=20.0, horizontal=1.0)
+        >>> rod = concio.Tie("rod", "b01", (0.25, 2.0), "", (-3.0, 2.0), stiffness=1e4, yield_force=1.0)
+        >>> held = concio.limit(dataclasses.replace(pillar, ties=(rod,)), path=False)
+        >>> round(held.least(0.5, tie="rod").amount, 6)
+        2.5
+        """
+        named: list[tuple[Kind, str | None]] = [("tie", tie), ("cohesion", cohesion), ("load", load)]
+        given = [(kind, of) for kind, of in named if of is not None]
+        if len(given) != 1:
+            msg = "name one strengthening: tie, cohesion or load"
+            raise InputError(msg, hint='for example least(0.3, tie="roof tie")')
+        kind, of = given[0]
+        return least_strengthening(self.assembly, self.groups, target, kind, of)
 
     @property
     def carried(self) -> float:

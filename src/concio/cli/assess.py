@@ -35,6 +35,7 @@ def assess(
     language: Annotated[
         str | None, typer.Option("--language", "-l", help="Language of the report, en or it; by default the file's.")
     ] = None,
+    docx: Annotated[bool, typer.Option("--docx", help="Write the report as a docx file as well.")] = False,
     engine: EngineOf = None,
     units: UnitsOf = None,
     json: Json = False,
@@ -79,7 +80,8 @@ def assess(
 
         with replaced_directory(out) as fresh:
             written = write_assessment(found, told, fresh, language or asked.head.language, head=asked.head, tie=tie,
-                                       anchors=asked.anchors, varied=varied, sensitivity=sensitivity)  # fmt: skip
+                                       anchors=asked.anchors, varied=varied, sensitivity=sensitivity,
+                                       docx=docx)  # fmt: skip
     if json:
         print_json(told)
     else:

@@ -13,12 +13,17 @@ from concio.io.csv_table import write_csv
 from concio.report.assessment_page import write_assessment_report
 
 
-def write_assessment(found: Assessment, told: dict[str, Any], place: Path, language: str, **options: Any) -> list[str]:
+def write_assessment(
+    found: Assessment, told: dict[str, Any], place: Path, language: str, *, docx: bool = False, **options: Any
+) -> list[str]:
     """Write report, summary and curves into a directory; return the names of the files."""
     text = json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False)
     (place / "summary.json").write_text(text + "\n", encoding="utf-8")
     write_assessment_report(found, place / "report.html", language=language, **options)
     written = ["report.html", "summary.json"]
+    if docx:
+        write_assessment_report(found, place / "report.docx", language=language, **options)
+        written.append("report.docx")
     curves = [m for m in found.mechanisms if len(m.followed.displacement) > 1]
     if curves:
         columns: dict[str, list[Any]] = {k: [] for k in ("mechanism", "push", "d_C", "alpha", "d", "a")}

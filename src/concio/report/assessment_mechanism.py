@@ -26,8 +26,9 @@ def mechanism_html(t: Texts, m: LocalMechanism, place: int, used: str) -> str:
     drawn = "figure_mechanism_3d" if m.assembly.model.dim == 3 else "figure_mechanism"
     return (
         f'<section class=mechanism id="m{place}"><h2>{escape(title)}</h2>'
-        f"{t.figure(mechanism_figure(m), drawn, 'tall')}<p>{said} {control} {back}</p>"
-        f"{_chain(t, m)}{_quantities(t, m)}{_curve(t, m, used)}{_checks(t, m)}</section>"
+        f"<div class=side>{t.figure(mechanism_figure(m), drawn, 'tall')}"
+        f"<div><p>{said} {control} {back}</p>{_quantities(t, m)}</div></div>"
+        f"{_chain(t, m)}{_curve(t, m, used)}{_checks(t, m)}</section>"
     )
 
 
@@ -63,8 +64,8 @@ def _chain(t: Texts, m: LocalMechanism) -> str:
     head = [w[k] for k in ("block", "kind", "force", "at", "delta")]
     text = t.say("chain_text", clause=m.site.rules.clause("multiplier"))
     return (
-        f"<p>{text}</p>{t.table(head, rows, 2)}<p>{t.say('dead_text')}</p>"
-        f"{t.table([w[k] for k in ('block', 'kind', 'force_xy', 'at')], others, 2)}"
+        f"<div class=pair><div><p>{text}</p>{t.table(head, rows, 2)}</div><div><p>{t.say('dead_text')}</p>"
+        f"{t.table([w[k] for k in ('block', 'kind', 'force_xy', 'at')], others, 2)}</div></div>"
     )
 
 

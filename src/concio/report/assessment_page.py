@@ -21,6 +21,7 @@ from concio.report.assessment_annex import annex_html
 from concio.report.assessment_mechanism import brief_html, mechanism_html
 from concio.report.assessment_texts import Texts
 from concio.report.decisions_part import coverage_html, decisions_html
+from concio.report.docx_file import write_docx
 from concio.report.html_parts import page_html
 from concio.report.sensitivity_part import sensitivity_html
 from concio.report.typeset import typeset
@@ -36,13 +37,15 @@ if TYPE_CHECKING:
 UNITS = {"weight": "-", "pressure": "kN/m2", "traction": "kN/m2", "point": "kN", "body": "kN/m3"}
 
 
-IN_DETAIL = 2
+IN_DETAIL = 1
 """Mechanisms that are printed in detail unless all are asked for."""
 
 
 def write_assessment_report(found: Assessment, path: Path | str, **options: Any) -> Path:
-    """Write the report of an assessment; options as :class:`AssessmentReport`."""
+    """Write the report of an assessment as HTML, or as docx; options as :class:`AssessmentReport`."""
     path = Path(path)
+    if path.suffix.lower() == ".docx":
+        return write_docx(AssessmentReport(found, **options, pictures="png").html(), path)
     path.write_text(AssessmentReport(found, **options).html(), encoding="utf-8")
     return path
 
@@ -62,6 +65,8 @@ class AssessmentReport(Texts):
         Of the weakest mechanism.
     language : str, optional
         Instead of that of the head.
+    pictures : {"svg", "png"}
+        As :class:`Texts`.
     """
 
     def __init__(
@@ -74,9 +79,10 @@ class AssessmentReport(Texts):
         varied: Sequence[Variation] = (),
         sensitivity: Sensitivity | None = None,
         language: str | None = None,
+        pictures: str = "svg",
     ) -> None:
         self.found, self.head = found, head or Head()
-        super().__init__(language or self.head.language)
+        super().__init__(language or self.head.language, pictures)
         self.tie, self.anchors, self.varied = tie, tuple(anchors), tuple(varied)
         self.sensitivity = sensitivity
 
@@ -235,8 +241,8 @@ class AssessmentReport(Texts):
             ties = f"<h3>{self.say('ties_text')}</h3>{self.table(names, made)}"
         drawn = self.figure(model_figure(self.found), "figure_model", "tall")
         return (
-            f"<section id=model><h2>{self.say('model')}</h2><p>{text}</p>{drawn}"
-            f"<h3>{self.say('loads')}</h3>{self.table(head, rows, 2)}{ties}</section>"
+            f"<section id=model><h2>{self.say('model')}</h2><p>{text}</p><div class=side>{drawn}<div>"
+            f"<h3>{self.say('loads')}</h3>{self.table(head, rows, 2)}{ties}</div></div></section>"
         )
 
     def search(self) -> str:

@@ -35,10 +35,12 @@ class Texts:
     Parameters
     ----------
     language : str
+    pictures : {"svg", "png"}
+        Whether drawings are kept as lines where they are small, or are all pictures of dots.
     """
 
-    def __init__(self, language: str) -> None:
-        self.language = language
+    def __init__(self, language: str, pictures: str = "svg") -> None:
+        self.language, self.pictures = language, pictures
         self.words = {**words_of("assessment_words", language), **words_of("annex_words", language)}
         self.figures = 0
 
@@ -88,7 +90,7 @@ class Texts:
     def figure(self, axes: Axes, caption: str, kind: str = "") -> str:
         """Return a figure with its caption under it."""
         self.figures += 1
-        drawn = figure_html(axes, f"assessment-{self.figures}", self.words[caption])
+        drawn = figure_html(axes, f"assessment-{self.figures}", self.words[caption], dots=self.pictures == "png")
         text = f"<figcaption>{self.say(caption)}</figcaption></figure>"
         return drawn.replace("<figure ", f'<figure class="{kind}" ', 1).replace("</figure>", text)
 

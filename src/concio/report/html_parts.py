@@ -114,7 +114,7 @@ def _cell(value: object) -> str:
     return f"<td>{escape(str(value))}</td>"
 
 
-def figure_html(axes: Axes, name: str, caption: str) -> str:
+def figure_html(axes: Axes, name: str, caption: str, *, dots: bool = False) -> str:
     """Return a figure with its drawing inside, as SVG where that is small, else as PNG; its figure is given up."""
     import matplotlib as mpl
 
@@ -124,7 +124,7 @@ def figure_html(axes: Axes, name: str, caption: str) -> str:
         drawing = io.BytesIO()
         figure.savefig(drawing, format="svg", metadata={"Date": None})
     kind = "svg+xml"
-    if drawing.tell() > LARGEST_SVG:
+    if dots or drawing.tell() > LARGEST_SVG:
         drawing, kind = io.BytesIO(), "png"
         figure.savefig(drawing, format="png", dpi=140)
     data = base64.b64encode(drawing.getvalue()).decode("ascii")

@@ -150,3 +150,27 @@ def test_what_was_covered_is_counted_and_named() -> None:
     first = AssessmentReport(found, head=Head(), language="en").html().split("<section id=site")[0]
     assert re.search(r"above levels.*6 / 6", first)
     assert found.summary()["covered"][0]["kind"] == "whole"
+
+
+def test_the_report_as_docx_holds_its_headings_tables_and_pictures(tmp_path: Path) -> None:
+    docx = pytest.importorskip("docx")
+    found = concio.assess(overturning(2), site=site(), direction="left")
+    path = found.report(tmp_path / "r.docx", language="it", head=Head(project="Casa"))
+    read = docx.Document(str(path))
+    page = AssessmentReport(found, language="it", head=Head(project="Casa")).html()
+    titles = [p.text for p in read.paragraphs if p.style.name.startswith("Heading")]
+    assert titles[0] == "Casa"
+    assert len(titles) == len(re.findall(r"<h[123]>|<h[123] ", page))
+    assert len(read.tables) == page.count("<table")
+    assert len(read.inline_shapes) == page.count("<figure")
+    words = " ".join(cell.text for table in read.tables for row in table.rows for cell in row.cells)
+    assert "0,101106" in words
+
+
+def test_without_the_library_docx_is_refused_in_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import sys
+
+    monkeypatch.setitem(sys.modules, "docx", None)
+    found = concio.assess(overturning(2), site=site(), direction="left", levels=["SLD"])
+    with pytest.raises(InputError, match="python-docx"):
+        found.report(tmp_path / "r.docx")

@@ -150,14 +150,15 @@ class Assessment(Shown):
         return assessment_verdict(self)
 
     def report(self, path: str | os.PathLike[str], *, language: str = "en", **options: Any) -> Path:
-        """Write the report, one HTML file that prints to a clean PDF.
+        """Write the report, one HTML file that prints to a clean PDF, or a docx file where the name ends so.
 
         Parameters
         ----------
         path : str or Path
         language : {"en", "it"}
         **options
-            ``head``, ``tie``, ``anchors``, ``varied`` of :class:`concio.report.assessment_page.AssessmentReport`.
+            ``head``, ``tie``, ``anchors``, ``varied``, ``sensitivity`` of
+            :class:`concio.report.assessment_page.AssessmentReport`.
 
         Returns
         -------
