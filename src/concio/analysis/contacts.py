@@ -74,15 +74,13 @@ class Contacts:
 
     @property
     def pressure(self) -> Array:
-        """Contact pressure t_n over tributary area (m,), compression positive [kN/m2]."""
-        pressure: Array = self.normal_force / self.pairs.area
-        return pressure
+        """Contact pressure t_n over tributary area (m,), compression positive [kN/m2]; nan where there is no area."""
+        return _over(self.normal_force, self.pairs.area)
 
     @property
     def shear(self) -> Array:
-        """Friction stress t_t over tributary area (m, d-1) [kN/m2]."""
-        shear: Array = self.friction_force / self.pairs.area[:, None]
-        return shear
+        """Friction stress t_t over tributary area (m, d-1) [kN/m2]; nan where there is no area."""
+        return _over(self.friction_force, self.pairs.area[:, None])
 
     @property
     def force_on_b(self) -> Array:
@@ -101,6 +99,10 @@ class Contacts:
         """How many pairs are in each state, in words; crushed ones are named where there are any."""
         words = [name for name in STATE_NAMES if name != "crushed" or self.count(name)]
         return ", ".join(f"{self.count(name)} {name}" for name in words)
+
+
+def _over(force: Array, area: Array) -> Array:
+    return np.asarray(np.divide(force, area, out=np.full(force.shape, np.nan), where=area > 0))
 
 
 @short_repr
@@ -122,7 +124,7 @@ class JointResultants:
     eccentricity : (j,) array
         Distance of the resultant from the middle along t [m]; nan where N is zero.
     open_share : (j,) array
-        Share of the length whose pairs are open.
+        Share of the length whose pairs are open; of contacts without length the share of the pairs.
     slipping : (j,) boolean array
         True where every closed pair slips.
 
@@ -190,7 +192,9 @@ def joint_resultants(contacts: Contacts) -> JointResultants:
         return np.bincount(index, weights=values[inside], minlength=number)
 
     length = total(pairs.length)
-    safe = np.where(length > 0, length, 1.0)
+    weight = pairs.length.copy()
+    weight[inside] = np.where(length[index] == 0, 1.0, weight[inside])  # contacts at corners count by their pairs
+    safe = np.maximum(total(weight), 1e-300)
     first = np.zeros(number, dtype=int)
     first[index[::-1]] = np.flatnonzero(inside)[::-1]
     tangent = pairs.tangent[first]
@@ -217,6 +221,6 @@ def joint_resultants(contacts: Contacts) -> JointResultants:
         N=N,
         V=V,
         eccentricity=np.where(carries, moment / np.where(carries, N, 1.0), np.nan),
-        open_share=total(pairs.length * ~touching) / safe,
+        open_share=total(weight * ~touching) / safe,
         slipping=(total((touching & ~slips).astype(float)) == 0) & (total(touching.astype(float)) > 0),
     )

@@ -9,11 +9,14 @@ import numpy as np
 
 from concio.analysis.contacts import Contacts, loaded
 from concio.kinematics.frames import cross
+from concio.model.interfaces.detect import Interface
 from concio.model.interfaces.patch import Patch
+from concio.model.interfaces.point_contact import PointContact
 from concio.problem.pair_state import PairState
 from concio.representation import short_repr
 
 Array = np.ndarray
+Joint = Interface | Patch | PointContact
 
 
 @short_repr
@@ -40,7 +43,7 @@ class SpaceResultants:
     point : (j, 3) array
         Where the resultant meets the joint, the centre of pressure; the middle where N is zero [m].
     open_share : (j,) array
-        Share of the area whose pairs are open.
+        Share of the area whose pairs are open; of contacts without area the share of the pairs.
     slipping : (j,) boolean array
         True where every closed pair slips.
 
@@ -85,9 +88,10 @@ class SpaceResultants:
         return np.asarray(np.linalg.norm(self.V, axis=1))
 
 
-def joint_resultants_in_space(contacts: Contacts, patches: Sequence[Patch]) -> SpaceResultants:
+def joint_resultants_in_space(contacts: Contacts, joints: Sequence[Joint]) -> SpaceResultants:
     """Return the resultants of all interfaces of a structure in space."""
     pairs = contacts.pairs
+    patches = [joint for joint in joints if not isinstance(joint, Interface)]
     j = len(patches)
     own = np.flatnonzero(pairs.interface >= 0)
     of = pairs.interface[own]
@@ -108,9 +112,11 @@ def joint_resultants_in_space(contacts: Contacts, patches: Sequence[Patch]) -> S
     # the normal forces alone place the resultant in the plane of the joint
     pressed = summed(contacts.normal_force[own, None] * (pairs.point[own] - middle[of]))
     point = middle + np.where(carries[:, None], pressed / safe[:, None], 0.0)
-    area = summed(pairs.area[own])
+    bare = np.array([p.area == 0 for p in patches], dtype=bool)
+    weight = np.where(bare[of], 1.0, pairs.area[own])  # contacts at corners and edges count by their pairs
+    area = summed(weight)
     closed, slips = ~contacts.states.open[own], contacts.states.slips[own]
-    opened = summed(pairs.area[own] * (contacts.state[own] == PairState.OPEN))
+    opened = summed(weight * (contacts.state[own] == PairState.OPEN))
     return SpaceResultants(
         np.array([p.a for p in patches], dtype=int),
         np.array([p.b for p in patches], dtype=int),

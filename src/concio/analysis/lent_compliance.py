@@ -146,10 +146,12 @@ def with_compliance(problem: ContactProblem, live: Array) -> tuple[ContactProble
 def _softer(law: Laws, area: Array, where: Array, lent: Array | float, part: Array) -> Laws:
     """Return the laws with compliance added to the hard pairs among ``where`` (m,), in proportion to 1 / area.
 
-    ``lent`` (m,) belongs to a pair of the mean area of its ``part`` (m,).
+    ``lent`` (m,) belongs to a pair of the mean area of its ``part`` (m,); pairs without area count as such.
     """
-    total, count = (np.bincount(part[where], weights=w, minlength=part.max() + 1) for w in (area[where], None))
-    compliance = lent * (total / np.maximum(count, 1))[part] / area
+    some = where & (area > 0)
+    total, count = (np.bincount(part[some], weights=w, minlength=part.max() + 1) for w in (area[some], None))
+    mean = np.where(count > 0, total / np.maximum(count, 1), 1.0)[part]
+    compliance = lent * mean / np.where(area > 0, area, mean)
     normal, tangential = where & (law.normal_compliance == 0), where & (law.tangential_compliance == 0)
     return replace(
         law,

@@ -182,7 +182,7 @@ class Result(Shown):
         if self.model.dim != 3:
             msg = "the joints of a plane model have no resultants in space"
             raise InputError(msg, hint="they are in result.joints")
-        return joint_resultants_in_space(self.contacts, self.assembly.detection.patches)
+        return joint_resultants_in_space(self.contacts, self.assembly.detection.interfaces)
 
     @cached_property
     def stress(self) -> Stress:

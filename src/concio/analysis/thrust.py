@@ -103,6 +103,13 @@ def crossing_points(joints: JointResultants) -> Array:
     return points
 
 
+def edge_shares(joints: JointResultants) -> Array:
+    """Return the eccentricities over the lengths (j,), 0.5 at contacts without length; nan without normal force."""
+    some = joints.length > 0
+    share = np.divide(joints.eccentricity, joints.length, out=np.full(len(some), 0.5), where=some)
+    return np.asarray(np.where(np.isnan(joints.eccentricity), np.nan, share))
+
+
 @strict
 def hinges(result: Result, tolerance: float = AT_EDGE) -> list[Hinge]:
     """Return the joints whose resultant crosses them within ``tolerance`` times their length from an edge.
@@ -114,8 +121,7 @@ def hinges(result: Result, tolerance: float = AT_EDGE) -> list[Hinge]:
     """
     joints, bodies = result.joints, result.model.bodies
     found = []
-    for j in range(len(joints.N)):
-        e = joints.eccentricity[j] / joints.length[j]
+    for j, e in enumerate(edge_shares(joints).tolist()):
         if not abs(e) >= 0.5 - tolerance:
             continue
         edge = joints.middle[j] + 0.5 * np.sign(e) * joints.length[j] * joints.tangent[j]
@@ -180,7 +186,7 @@ def thrust_line(result: Result) -> ThrustLine:
         chain,
         crossing_points(joints)[chain],
         np.array(signs)[:, None] * force[chain],
-        np.array(signs) * (joints.eccentricity / joints.length)[chain],
+        np.array(signs) * edge_shares(joints)[chain],
     )
 
 

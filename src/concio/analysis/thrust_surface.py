@@ -90,9 +90,12 @@ def thrust_surface(result: Result) -> ThrustSurface:
         raise InputError(msg, hint="thrust_line gives the line of thrust of an arch")
     joints, names = result.joints_in_space, [body.name for body in result.model.bodies]
     chosen = np.flatnonzero(joints.N / (float(joints.N.max(initial=0.0)) or 1.0) > AT_BOUND)
-    patches = [result.assembly.detection.patches[j] for j in chosen]
-    distance = np.zeros((len(chosen), 2))
-    for k, (patch, j) in enumerate(zip(patches, chosen, strict=True)):
+    patches = result.assembly.detection.patches
+    distance = np.zeros((len(chosen), 2))  # none from the edge of a contact at a corner or along an edge
+    for k, j in enumerate(chosen.tolist()):
+        if j >= len(patches):
+            continue
+        patch = patches[j]
         hull = ConvexHull((patch.polygon - patch.middle) @ patch.frame.T).equations
         at = np.array([(joints.point[j] - patch.middle) @ patch.frame.T, np.zeros(2)])
         distance[k] = np.maximum(-(at @ hull[:, :2].T + hull[:, 2]).max(axis=1), 0.0)

@@ -12,8 +12,7 @@ from concio.contact.edge_loads import line_tolerance, loaded_faces
 from concio.display import number
 from concio.errors import InputError
 from concio.model.described import law_words, material_words, tie_words
-from concio.model.interfaces.detect import Detection
-from concio.model.interfaces.patch import Patch
+from concio.model.interfaces.detect import Detection, Interface
 from concio.model.model import Body, Model
 from concio.model.polyhedron import Polyhedron
 from concio.verdict.attention import attention_of, noted, torsion
@@ -140,12 +139,15 @@ def _interfaces(model: Model, detection: Detection) -> list[str]:
     for interface in detection.interfaces:
         rule = model.rule_between(model.bodies[interface.a], model.bodies[interface.b])
         found[rule.law] += 1
-        length[rule.law] += interface.area if isinstance(interface, Patch) else interface.length
+        length[rule.law] += interface.length if isinstance(interface, Interface) else interface.area
         apart[rule.law] += bool(rule.gap or interface.gap.max() > 0)
     lines = []
     for law, count in found.items():
         text = f"joints       {count:,} with law '{law}', {length[law]:.4g} {'m' if model.dim == 2 else 'm2'} in all"
         lines.append(text + (f", {apart[law]:,} of them open at first" if apart[law] else ""))
+    if bare := Counter(c.kind for c in detection.point_contacts):
+        kinds = ", ".join(f"{count:,} {kind}" for kind, count in bare.items())
+        lines.append(f"             of them contacts without area, at corners and along edges: {kinds}")
     return lines or ["joints       none: no two bodies touch"]
 
 

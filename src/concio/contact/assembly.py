@@ -17,6 +17,7 @@ from concio.contact.inertia import masses
 from concio.contact.loads import load_vectors
 from concio.contact.pairs import CONTACT_MODELS, Pairs, pair_laws
 from concio.contact.periodic import strain_groups
+from concio.contact.point_pairs import add_point_pairs
 from concio.contact.reference import Reference
 from concio.contact.supports import Supported, apply_supports, moved_obstacles
 from concio.contact.ties import add_ties
@@ -270,7 +271,8 @@ def assemble(model: Model) -> Assembly:
             others = len(detection.near_misses) - 1
             msg = f"no joint was made at all: {first}" + (f"; {others} more such places" if others else "")
         raise InputError(msg, hint="look at the model with 'concio check'; raise gap_tolerance if the drawing has gaps")
-    pairs = geometry.pairs(disc, detection) if detection.interfaces else _no_pairs(disc)
+    pairs = geometry.pairs(disc, detection) if detection.faces else _no_pairs(disc)
+    pairs = add_point_pairs(disc, pairs, detection.point_contacts, len(detection.faces))
     laws = pair_laws(model, pairs)
     pairs, laws = add_ties(reference, pairs, laws)
     supported = apply_supports(disc)

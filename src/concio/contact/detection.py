@@ -6,6 +6,7 @@ import numpy as np
 
 from concio.contact.geometry import GEOMETRIES
 from concio.contact.separate import bare, merged, separate_groups
+from concio.contact.touching import law_refusal, with_point_contacts
 from concio.errors import GeometryError
 from concio.model.interfaces.detect import Detection
 from concio.model.model import Model
@@ -27,11 +28,17 @@ def detect(model: Model) -> Detection:
     geometry = GEOMETRIES[model.dim]
     groups = [np.arange(len(model.bodies))] if model.periods is not None else separate_groups(model)
     if not groups or len(groups[0]) == len(model.bodies):
-        return geometry.detect(model, default_tolerance(model))
+        tolerance = default_tolerance(model)
+        whole = geometry.detect(model, tolerance)
+        if model.periods is not None:
+            return whole
+        return with_point_contacts(model, whole, tolerance, law_refusal(model, np.arange(len(model.bodies))))
     found = []
     for group in groups:
         part = bare(model, group)
-        found.append((group, geometry.detect(part, default_tolerance(part))))
+        tolerance = default_tolerance(part)
+        why = law_refusal(model, group)
+        found.append((group, with_point_contacts(part, geometry.detect(part, tolerance), tolerance, why)))
     return merged(found)
 
 

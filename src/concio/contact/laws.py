@@ -64,6 +64,8 @@ class LawTable:
     def laws(self, law: Array, area: Array, bonded: Array) -> Laws:
         """Return the laws of pairs (m,) as forces and lengths: strengths times area, compliance over area.
 
+        Pairs without area are hard, and have neither cohesion nor tensile strength.
+
         Parameters
         ----------
         law : (m,) integer array
@@ -74,14 +76,16 @@ class LawTable:
         """
 
         def compliance(per_area: Array) -> Array:
-            found: Array = np.divide(per_area[law], area, out=np.zeros(len(law)), where=per_area[law] > 0)
+            some = (per_area[law] > 0) & (area > 0)
+            found: Array = np.divide(per_area[law], area, out=np.zeros(len(law)), where=some)
             return found
 
-        held = np.where(bonded, area, 0.0)
+        held, some = np.where(bonded, area, 0.0), area > 0
         return Laws(
             friction=self.friction[law], cohesion=self.cohesion[law] * held, tension=self.tension[law] * held,
             dilatancy=self.dilatancy[law], normal_compliance=compliance(self.normal),
-            tangential_compliance=compliance(self.tangential), cap=self.cap[law] * area,
+            tangential_compliance=compliance(self.tangential),
+            cap=np.where(some, self.cap[law] * np.where(some, area, 1.0), np.inf),
         )  # fmt: skip
 
 

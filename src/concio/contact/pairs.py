@@ -29,10 +29,11 @@ Array = np.ndarray
 
 CONTACT_MODELS = (
     "ends of the joint", "points along the joint", "node pairs", "dual mortar", "corners of the patch",
-    "points over the patch", "tie",
+    "points over the patch", "tie", "corner or edge",
 )  # fmt: skip
 """Where contact is stated: between two blocks that are not meshed at the ends or corners of their interface or at
-quadrature points over it, else at pairs of nodes or at the nodes of one side with dual functions."""
+quadrature points over it, else at pairs of nodes or at the nodes of one side with dual functions; at corners and edges
+that touch without a common face."""
 
 
 @short_repr
@@ -55,7 +56,7 @@ class Pairs:
     length : (m,) array
         Tributary length along the interface [m]; nan in space, where an area is what a pair has.
     area : (m,) array
-        Tributary area [m2].
+        Tributary area [m2]; 0 at corners and edges that touch without a common face.
     gap : (m,) array
         Initial gap [m].
     law : (m,) integer array

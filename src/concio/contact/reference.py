@@ -25,7 +25,7 @@ from concio.contact.supports import apply_supports
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID, Discretisation, discretise
 from concio.kinematics.placement import Placement
-from concio.model.interfaces.detect import Detection, Interface, detect_interfaces
+from concio.model.interfaces.detect import Detection, detect_interfaces
 from concio.model.model import Body, Model, require_model
 from concio.units import GRAVITY
 
@@ -226,8 +226,7 @@ class Reference:
         edges = self.edges
         number = {(int(b), int(k)): e for e, (b, k) in enumerate(zip(edges.body, edges.number, strict=True))}
         found = {}
-        for face in self.detection.interfaces:
-            assert isinstance(face, Interface)
+        for face in self.detection.segments:
             ends = tuple(float(g) if abs(g) <= self.tolerance else 0.0 for g in face.signed_gap)
             found[number[face.a, face.edge_a], number[face.b, face.edge_b]] = (ends[0], ends[1])
         return found

@@ -16,6 +16,7 @@ import shapely
 from scipy.sparse.csgraph import connected_components
 
 from concio.model.interfaces.detect import Detection
+from concio.model.interfaces.point_contact import PointContact
 from concio.model.model import Model
 from concio.model.rules import JointRule
 
@@ -106,7 +107,7 @@ def merged(found: Sequence[tuple[Array, Detection]]) -> Detection:
     interfaces: list[Any] = [
         replace(face, a=int(own[face.a]), b=int(own[face.b])) for own, part in found for face in part.interfaces
     ]
-    ordered = sorted(interfaces, key=lambda face: (face.a, face.b))
+    ordered = sorted(interfaces, key=lambda face: (isinstance(face, PointContact), face.a, face.b))
     misses = [replace(m, bodies=_own(own, m.bodies)) for own, part in found for m in part.near_misses]
     overlaps = [replace(o, bodies=_own(own, o.bodies)) for own, part in found for o in part.overlaps]
     return Detection(

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.fem.mesh import merged
+from concio.kinematics.frames import turned_left
 from concio.model.interfaces.detect import Interface
 from concio.model.model import Body, Model
 
@@ -63,8 +64,11 @@ def interface_breaks(model: Model, interfaces: Sequence[Interface]) -> Mapping[i
         (sides.b, sides.edge_b, sides.p_b, sides.q_b),
     ):
         length = np.hypot(*(q - p).T)
+        wedge, mean = (sides.gap > 0).any(1), turned_left(sides.normal)
+        over = np.where(wedge, ((q - p) * mean).sum(1), 1.0)
         for end in (sides.start, sides.end):
-            at = ((end - p) * (q - p)).sum(1) / length
+            plain = ((end - p) * (q - p)).sum(1) / length
+            at = np.where(wedge, length * ((end - p) * mean).sum(1) / over, plain)
             inside = meshed[body] & (at > 1e-6 * length) & (at < (1 - 1e-6) * length)
             for b, e, mark in zip(body[inside].tolist(), edge[inside].tolist(), at[inside].tolist(), strict=True):
                 found.setdefault(b, [[] for _ in model.outlines[b].vertices])[e].append(mark)

@@ -37,6 +37,7 @@ from concio.io.owned_dir import settle
 from concio.model.interfaces.detect import Detection, Interface
 from concio.model.interfaces.near import NearMiss, Overlap
 from concio.model.interfaces.patch import Patch
+from concio.model.interfaces.point_contact import PointContact
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Body, JointRule, Load, Model, Support, Tie
 from concio.model.polyhedron import Polyhedron
@@ -54,7 +55,7 @@ CLASSES: dict[str, type] = {
     for cls in (
         Assembly, Body, Certificate, Detection, Discretisation, Elastic, Elements, Interface, JointLaw, JointRule,
         Condition, ControlPoint, Departure, Kinematics, Laws, Load, Mechanism, Model, NearMiss, Overlap, Pairs, Patch,
-        Polyhedron, Result, Rigid, Shape, SolidShape, Solution, Stage, Status, Support, Supported, Tie,
+        PointContact, Polyhedron, Result, Rigid, Shape, SolidShape, Solution, Stage, Status, Support, Supported, Tie,
         Units,
     )
 }  # fmt: skip

@@ -54,7 +54,7 @@ def joint_lines(result: Result, shown: Outlines) -> JointLines:
     """
     pairs = result.assembly.pairs
     faces = result.assembly.detection.segments
-    pair = np.flatnonzero(pairs.interface >= 0)
+    pair = np.flatnonzero((pairs.interface >= 0) & (pairs.interface < len(faces)))  # corners have no line
     if not len(pair):
         empty = np.zeros((0, 2, 2))
         return JointLines(pair, empty, empty, empty)

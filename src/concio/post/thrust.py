@@ -88,7 +88,11 @@ def _line(result: Result, chain: list[int], joints: list[list[int]]) -> ThrustLi
         points.append((N[:, None] * place).sum(0) / N.sum())
         vector = (N[:, None] * j.normal[group] + j.V[group][:, None] * j.tangent[group]).sum(0)
         force.append(float(np.hypot(*vector)))
-        middle = (j.length[group][:, None] * j.middle[group]).sum(0) / j.length[group].sum()
+        length = float(j.length[group].sum())
+        if not length:  # contacts at corners: the thrust stands at their edge
+            ratio.append(1.0)
+            continue
+        middle = (j.length[group][:, None] * j.middle[group]).sum(0) / length
         tangent = j.tangent[group[0]]
-        ratio.append(float(2 * abs((points[-1] - middle) @ tangent) / j.length[group].sum()))
+        ratio.append(float(2 * abs((points[-1] - middle) @ tangent) / length))
     return ThrustLine(np.array(points), np.array(force), np.array(ratio), np.array(chain))

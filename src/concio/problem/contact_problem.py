@@ -231,9 +231,13 @@ class ContactProblem:
 
     @cached_property
     def area_share(self) -> Array:
-        """Area of each pair over the mean, kept between 0.05 and 20: weighs forces where these are not unique (m,)."""
-        share: Array = np.clip(self.area / (self.area.mean() if self.pairs else 1.0), 0.05, 20.0)
-        return share
+        """Area of each pair over the mean, kept between 0.05 and 20: weighs forces where these are not unique (m,).
+
+        Pairs without area count as one of mean area.
+        """
+        some = self.area > 0
+        mean = float(self.area[some].mean()) if some.any() else 1.0
+        return np.asarray(np.where(some, np.clip(self.area / mean, 0.05, 20.0), 1.0))
 
     def by(self, engine: Engine | None) -> ContactProblem:
         """Return the problem with another engine; None leaves it as it is."""

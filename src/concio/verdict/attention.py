@@ -67,6 +67,7 @@ def attention_of(model: Model, detection: Detection) -> tuple[str, ...]:
     )
     found = (
         *joints_not_made(detection),
+        *without_area(model, detection),
         *apart(model, detection),
         *drawn,
         *lost_loads(model),
@@ -100,6 +101,41 @@ def joints_not_made(detection: Detection) -> tuple[str, ...]:
     return (
         f"{counted(len(misses), 'joint')} almost made, but not made or made only in part{sorts}: "
         f"{'; '.join(places)}{more}: 'concio check --all' names each",
+    )
+
+
+def without_area(model: Model, detection: Detection) -> tuple[str, ...]:
+    """Return in a sentence how many contacts stand at corners and along edges, and what does not act there.
+
+    Parameters
+    ----------
+    model : Model
+    detection : Detection
+    """
+    bare = detection.point_contacts
+    if not bare:
+        return ()
+    names = [body.name for body in model.bodies]
+    places = "; ".join(
+        f"'{names[c.a]}' and '{names[c.b]}' at {_place(c.middle)} ({c.kind})" for c in bare[:MOST_PLACES]
+    )
+    more = f" and {len(bare) - MOST_PLACES:,} more" if len(bare) > MOST_PLACES else ""
+    laws = dict.fromkeys(model.rule_between(model.bodies[c.a], model.bodies[c.b]).law for c in bare)
+    some = [
+        f"'{name}'"
+        for name in laws
+        if (law := model.laws[name]).cohesion or law.tensile_strength or law.normal_stiffness is not None
+    ]
+    without = f"; cohesion, tensile strength and stiffness of {', '.join(some)} do not act there" if some else ""
+    many = sum(c.ambiguous for c in bare)
+    middle = (
+        f"; of {many:,} without a face on either side the normal is the middle of the directions in which they can part"
+        if many
+        else ""
+    )
+    return (
+        f"{counted(len(bare), 'contact')} at a corner or along an edge, without area: hard, with friction alone, and "
+        f"no pressure is checked there: {places}{more}{without}{middle}",
     )
 
 

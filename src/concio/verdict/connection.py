@@ -61,9 +61,10 @@ def _first(names: list[str], most: int = 3) -> str:
 def _hanging(model: Model, detection: Detection) -> list[str]:
     """Return a sentence on the blocks in space that touch others, none of which is under them to any degree."""
     held = {tie.body_a for tie in model.ties} | {tie.body_b for tie in model.ties} | {s.body for s in model.supports}
-    touched = {k for patch in detection.patches for k in (patch.a, patch.b)}
-    borne = {p.b for p in detection.patches if p.normal[2] > BEARS}
-    borne |= {p.a for p in detection.patches if p.normal[2] < -BEARS}
+    joints = detection.interfaces
+    touched = {k for joint in joints for k in (joint.a, joint.b)}
+    borne = {p.b for p in joints if p.normal[2] > BEARS}
+    borne |= {p.a for p in joints if p.normal[2] < -BEARS}
     bodies = [model.bodies[k] for k in sorted(touched - borne)]
     names = [b.name for b in bodies if b.kind != "fixed" and b.name not in held]
     if not names or not any(load.kind == "weight" for load in model.loads):

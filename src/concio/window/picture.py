@@ -18,8 +18,8 @@ from concio.contact.detection import detect
 from concio.errors import ConcioError
 from concio.model.body import Body
 from concio.model.described import law_words, material_words, tie_words
-from concio.model.interfaces.detect import Detection
-from concio.model.interfaces.patch import Patch
+from concio.model.interfaces.detect import Detection, Interface
+from concio.model.interfaces.point_contact import PointContact
 from concio.model.model import Model
 from concio.plot.model_figure import load_arrows
 from concio.verdict.attention import attention_of
@@ -84,7 +84,11 @@ def _joints(model: Model, detection: Detection) -> list[dict[str, Any]]:
     found = []
     for joint in detection.interfaces:
         a, b = model.bodies[joint.a], model.bodies[joint.b]
-        ends = [] if isinstance(joint, Patch) else np.round([joint.start, joint.end], DIGITS).tolist()
+        ends: list[list[float]] = []
+        if isinstance(joint, Interface):
+            ends = np.round([joint.start, joint.end], DIGITS).tolist()
+        elif isinstance(joint, PointContact) and model.dim == 2:
+            ends = np.round(joint.points[[0, -1]], DIGITS).tolist()
         try:
             law = model.rule_between(a, b).law
         except ConcioError:

@@ -82,7 +82,7 @@ def test_wedge_shaped_gap_is_linear_and_clipped_at_the_reach():
 
 def test_touching_edges_at_a_large_angle_are_reported_not_joined():
     bodies = [box("lower", 0, 0, 1, 1), turned(box("upper", 0, 1, 1, 2), np.deg2rad(8), about=(0, 1))]
-    found = detect_interfaces(bodies, tolerance=1e-6)
+    found = detect_interfaces(bodies, tolerance=1e-6, facing_angle=np.deg2rad(5))
     assert not found.interfaces
     assert [m.kind for m in found.near_misses] == ["angle"]
     assert "8 degrees" in found.near_misses[0].sentence

@@ -111,7 +111,7 @@ def test_a_wedge_shaped_gap_is_cut_where_the_reach_ends() -> None:
 
 
 def test_faces_that_touch_and_are_turned_a_little_are_joined_with_the_gap_between_them() -> None:
-    for degrees in (0.01, 0.1, 3, 4.9):
+    for degrees in (0.01, 0.1, 3, 4.9, 5.1, 19):
         (patch,) = found(A, tilted(degrees)).patches
         half = np.deg2rad(degrees) / 2
         assert patch.area == pytest.approx(1.0, rel=2 * half)
@@ -120,7 +120,7 @@ def test_faces_that_touch_and_are_turned_a_little_are_joined_with_the_gap_betwee
 
 
 def test_faces_at_an_angle_are_told() -> None:
-    for degrees, options in ((3, {"reach": 0.0}), (10, {})):
+    for degrees, options in ((3, {"reach": 0.0}), (10, {"facing_angle": np.deg2rad(5)})):
         detection = found(A, tilted(degrees), **options)
         assert not detection.patches
         assert "turned by" in detection.report()[0]

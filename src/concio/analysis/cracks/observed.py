@@ -184,7 +184,7 @@ def _moving(
 
 def _joint(assembly: Assembly, m: Measurement, where: str) -> Joint:
     """Return the joint between the bodies named that is nearest to the point given."""
-    joints: list[Joint] = list(assembly.detection.interfaces)
+    joints: list[Joint] = list(assembly.detection.faces)
     if m.joint:
         pair = {_number(assembly, name, where) for name in m.joint}
         joints = [j for j in joints if {j.a, j.b} == pair]

@@ -46,7 +46,7 @@ def all_places(forward: Forward) -> list[tuple[str, Reading]]:
     """Return the opening at every corner and the slip in the middle of every joint that is in the plane."""
     assembly = forward.assembly
     found = []
-    for joint in assembly.detection.interfaces:
+    for joint in assembly.detection.faces:
         found += [("opening", joint_reading(assembly, joint, point, joint.normal)) for point in corners(joint)]
         if isinstance(joint, Interface):
             found.append(("slip", joint_reading(assembly, joint, (joint.start + joint.end) / 2, tangent(joint))))

@@ -63,7 +63,7 @@ class Observer:
         self._row = np.full(len(model.bodies) + 1, -1)
         self._row[self.fixed] = np.arange(len(self.fixed))
         self._held_row = {i: len(self.fixed) + k for k, i in enumerate(held)}
-        self.joints = tuple((model.bodies[f.a].name, model.bodies[f.b].name) for f in reference.detection.interfaces)
+        self.joints = tuple((model.bodies[f.a].name, model.bodies[f.b].name) for f in reference.detection.segments)
         self._joint = {key: k for k, key in enumerate(reference.drawn)}
         self._reacting: tuple[Array, Array, Array, Array] | None = None
         self._known: tuple[Array, Array, Array] | None = None

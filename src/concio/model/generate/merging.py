@@ -144,11 +144,11 @@ def _agreed(models: Sequence[Model], whole: Model) -> None:
     else:
         found = detect_patches(whole.polyhedra, tolerance=tolerance, reach=whole.gap_reach)
     part = np.repeat(np.arange(len(models)), [len(m.bodies) for m in models])
-    for face in found.interfaces:
-        p, q = int(part[face.a]), int(part[face.b])
+    for i, j in [*((face.a, face.b) for face in found.interfaces), *(miss.bodies for miss in found.not_made)]:
+        p, q = int(part[i]), int(part[j])
         if p == q or _general_law(models[p]) == _general_law(models[q]):
             continue
-        a, b = whole.bodies[face.a], whole.bodies[face.b]
+        a, b = whole.bodies[i], whole.bodies[j]
         rule = whole.rule_between(a, b)
         if rule.between == ("*", "*"):
             told = [law.friction if (law := _general_law(models[k])) else "none" for k in (p, q)]

@@ -36,6 +36,7 @@ from concio.errors import InputError
 from concio.model.interfaces.corners import find_corner_touches
 from concio.model.interfaces.facing import Edges, FacingPairs, facing_pairs
 from concio.model.interfaces.near import MissKind, NearMiss, Overlap, find_overlaps, size_of_bodies
+from concio.model.interfaces.point_contact import PointContact
 from concio.model.interfaces.sight import visible_parts
 from concio.model.model import Array, Body
 from concio.representation import short_repr
@@ -43,10 +44,10 @@ from concio.representation import short_repr
 if TYPE_CHECKING:
     from concio.model.interfaces.patch import Patch
 
-FACING_ANGLE = np.deg2rad(5.0)
-"""Edges turned against each other by more than this are not joined, only reported [rad]."""
+FACING_ANGLE = np.deg2rad(20.0)
+"""Edges turned against each other by more than this are not joined; they touch with a corner [rad]."""
 NEAR_ANGLE = np.deg2rad(20.0)
-"""Edges that touch and are turned by less than this are reported as a near miss [rad]."""
+"""Edges that touch and are turned by less than this are reported as a near miss, where they are not joined [rad]."""
 SLIVER_SHARE = 1e-3
 """A common length below this share of the smaller body's size (root of its area) is a sliver."""
 REACH_SHARE = 1e-3
@@ -113,15 +114,15 @@ class Detection:
 
     Parameters
     ----------
-    interfaces : tuple of Interface, in space of Patch
-        In order of the bodies a, b and of their edges or faces.
+    interfaces : tuple of Interface, in space of Patch, then of PointContact
+        In order of the bodies a, b and of their edges or faces; after them the contacts at corners and along edges.
     near_misses : tuple of NearMiss
         Every place where bodies come near each other or touch without a joint, or have one of a part only: with the
         bodies, the place and a sentence.
     overlaps : tuple of Overlap
     """
 
-    interfaces: tuple[Interface, ...] | tuple[Patch, ...]
+    interfaces: tuple[Interface | Patch | PointContact, ...]
     near_misses: tuple[NearMiss, ...] = ()
     overlaps: tuple[Overlap, ...] = ()
 
@@ -133,7 +134,17 @@ class Detection:
     @property
     def patches(self) -> tuple[Patch, ...]:
         """The interfaces of a model in space; none in the plane."""
-        return tuple(i for i in self.interfaces if not isinstance(i, Interface))
+        return tuple(i for i in self.interfaces if not isinstance(i, Interface | PointContact))
+
+    @property
+    def faces(self) -> tuple[Interface | Patch, ...]:
+        """The interfaces with a length or an area: segments or patches."""
+        return tuple(i for i in self.interfaces if not isinstance(i, PointContact))
+
+    @property
+    def point_contacts(self) -> tuple[PointContact, ...]:
+        """The contacts at corners and along edges, which have no area."""
+        return tuple(i for i in self.interfaces if isinstance(i, PointContact))
 
     @property
     def not_made(self) -> tuple[NearMiss, ...]:
