@@ -20,9 +20,12 @@ if TYPE_CHECKING:
 def prove(
     file: File,
     claim: Annotated[
-        Literal["limit", "collapse", "balance", "equilibrium"],
-        typer.Option("--claim", help="Claim to prove."),
-    ] = "limit",
+        Literal["limit", "collapse", "balance", "equilibrium"] | None,
+        typer.Option(
+            "--claim",
+            help="Claim to prove; default limit where loads are multiplied, else equilibrium, balance or collapse.",
+        ),
+    ] = None,
     group: Annotated[
         list[str] | None,
         typer.Option("--group", "-g", help="Load group that is multiplied (repeatable); default live."),
@@ -54,19 +57,23 @@ def prove(
     from concio.verdict.proof_verdict import proof_verdict, with_attention
     from concio.verdict.unanswered import with_a_verdict
 
+    if claim is None and group:
+        claim = "limit"
     if factor and claim == "limit":
         msg = "--factor does not go with --claim limit: what is not multiplied acts once"
         raise InputError(msg, hint="write the loads into the file as they are to act")
-    if group and claim != "limit":
+    if group and claim not in ("limit", None):
         msg = f"--group does not go with --claim {claim}: nothing is multiplied"
         raise InputError(msg, hint="give the loads their factors with --factor")
     place = file.with_suffix(".proof.json") if out is None else out
     check_file(place, force=force)
     assembly, live = concio.assemble(loaded(file)), list(group or ["live"])
     factors = factors_of(factor) or None
+    if claim is None and not factors and "live" in assembly.groups:
+        claim = "limit"
     with with_a_verdict(assembly, "prove"):
         if claim != "limit":
-            ways = {"collapse": collapse_proof, "balance": balance_proof, "equilibrium": _equilibrium}
+            ways = {"collapse": collapse_proof, "balance": balance_proof, "equilibrium": _equilibrium, None: _outcome}
             live, made = [], ways[claim](assembly, factors, numbers=numbers)
         else:
             made = limit(assembly, live=live, path=False, steps=False, search=False).proof(numbers)
@@ -77,7 +84,7 @@ def prove(
         fresh.write_text(json_text.dumps(made, indent=1, ensure_ascii=True) + "\n", encoding="ascii")
     if json:
         bounds = {key: made.get(key) for key in ("lower", "upper")}
-        told = {"claim": claim, "sentence": sentence, **bounds, "file": str(place), "digest": made["digest"]}
+        told = {"claim": made["claim"], "sentence": sentence, **bounds, "file": str(place), "digest": made["digest"]}
         print_json({"status": verdict.status, **told, "verdict": verdict.as_dict()})
     else:
         for line in (sentence, *verdict.lines(assembly.model.report)):
@@ -98,3 +105,20 @@ def _equilibrium(
         msg = f"there is no equilibrium to prove: {result.sentence}"
         raise SolverError(msg, hint="ask for the contrary with --claim collapse")
     return result.proof(numbers)
+
+
+def _outcome(
+    assembly: Assembly, factors: dict[str, float] | None, *, numbers: Literal["binary", "decimal"]
+) -> dict[str, Any]:
+    """Return the certificate of an equilibrium, of forces in balance or of a collapse, whichever holds first."""
+    import concio
+    from concio.analysis.exact_proofs import balance_proof, collapse_proof
+    from concio.errors import InputError, SolverError
+
+    result = concio.solve(assembly, factors=factors, on_failure="return")
+    if not result.solved:
+        return collapse_proof(assembly, factors, numbers=numbers)
+    try:
+        return result.proof(numbers)
+    except (InputError, SolverError):  # not of this structure: in space, or on the edge of its states
+        return balance_proof(assembly, factors, numbers=numbers)

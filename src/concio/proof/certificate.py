@@ -13,7 +13,7 @@ import numpy as np
 from concio.contact.assembly import Assembly
 from concio.contact.factors import load_factor
 from concio.errors import InputError, SolverError
-from concio.proof.statement import Numbers, statement
+from concio.proof.statement import Numbers, fraction_text, statement
 from concio.proof.verify import check
 from concio.proof.witness import Witness, forces_below, witness
 
@@ -193,18 +193,19 @@ def _short(value: Fraction) -> Fraction:
 def _lower(found: Witness | None) -> dict[str, Any] | None:
     if found is None or found.forces is None:
         return None
-    return {"lower": str(found.multiplier), "forces": [[str(x) for x in force] for force in found.forces]}
+    forces = [[fraction_text(x) for x in force] for force in found.forces]
+    return {"lower": fraction_text(found.multiplier), "forces": forces}
 
 
 def _upper(found: Witness | None) -> dict[str, Any] | None:
     if found is None or found.motion is None:
         return None
-    return {"upper": str(found.multiplier), "motion": _motion_texts(found)}
+    return {"upper": fraction_text(found.multiplier), "motion": _motion_texts(found)}
 
 
 def _motion_texts(found: Witness) -> list[list[list[str]]]:
     assert found.motion is not None
-    return [[[str(x) for x in v], [str(x) for x in turn]] for v, turn in found.motion]
+    return [[[fraction_text(x) for x in v], [fraction_text(x) for x in turn]] for v, turn in found.motion]
 
 
 def _factor(factors: Mapping[str, float] | None, group: str, numbers: Numbers) -> Fraction:
@@ -213,4 +214,4 @@ def _factor(factors: Mapping[str, float] | None, group: str, numbers: Numbers) -
 
 
 def _texts(factors: Mapping[str, Fraction]) -> dict[str, str]:
-    return {group: str(value) for group, value in factors.items()}
+    return {group: fraction_text(value) for group, value in factors.items()}

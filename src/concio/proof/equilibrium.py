@@ -26,7 +26,7 @@ from concio.proof import verify_equilibrium as checker
 from concio.proof.certificate import FORMAT, factors_of, sealed
 from concio.proof.deformable import deformable_statement
 from concio.proof.exact_solve import Row, scaled, solve_exactly
-from concio.proof.statement import Numbers, statement, text_of
+from concio.proof.statement import Numbers, fraction_text, statement, text_of
 
 BITS = (384, 768, 1536, 3072)
 """Bits of an enclosure, tried in turn."""
@@ -66,7 +66,7 @@ def prove_equilibrium(
         The states are not those of an exact solution, or joints are on the edge of two states, which it names.
     """
     data = statement(assembly, numbers, gaps=True)
-    constant = {g: str(x) for g, x in factors_of(assembly, factors, numbers).items()}
+    constant = {g: fraction_text(x) for g, x in factors_of(assembly, factors, numbers).items()}
     made = {"format": FORMAT, "claim": "equilibrium", **deformable_statement(assembly, data, numbers)}
     made = {**made, "constant": constant}
     if assembly.lent_compliance:
@@ -135,7 +135,7 @@ def _left_out(
             raise SolverError(msg, hint="equal meshes on both sides of a joint, or a joint stiffness, avoid it")
         k, side = divmod(i - n, 2)
         value = float(forces[k, side]) if k < len(forces) else 0.0
-        found.append([i, value.hex(), [[j, str(-v)] for j, v in parts.items() if v]])
+        found.append([i, value.hex(), [[j, fraction_text(-v)] for j, v in parts.items() if v]])
     return found
 
 
@@ -209,7 +209,7 @@ def _in_fractions(made: dict[str, Any], rows: Sequence[Row], right: Sequence[Fra
     if x is None:
         return None
     whole = {k: v for k, v in made.items() if k not in ("left_out", "pivots")}
-    done = sealed({**whole, "solution": [str(v) for v in x]})
+    done = sealed({**whole, "solution": [fraction_text(v) for v in x]})
     try:
         checker.check(done)
     except ValueError:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from typing import Any, Literal
 
 import numpy as np
@@ -26,6 +27,9 @@ FIXED_POINTS = "fixed points"
 """Name of the body to which ties and supports are fastened that end at no body."""
 
 REFUSED = "this is not proved exactly yet"
+
+LONG = 10_000
+"""Bits from which whole numbers are written in hexadecimal, which Python reads and writes at any length."""
 
 
 def statement(assembly: Assembly, numbers: Numbers = "binary", *, gaps: bool = False) -> dict[str, Any]:
@@ -154,6 +158,13 @@ def held_points(assembly: Assembly) -> list[JointPoint]:
                 for axis in axes
             ]
     return found
+
+
+def fraction_text(value: Fraction) -> str:
+    """Return a fraction as a certificate has it: "3/4", or "0x3/0x4" where it is long."""
+    if max(value.numerator.bit_length(), value.denominator.bit_length()) < LONG:
+        return str(value)
+    return f"{value.numerator:#x}/{value.denominator:#x}"
 
 
 def text_of(value: float, numbers: Numbers) -> str:

@@ -33,8 +33,18 @@ Data = dict[str, Any]
 
 @cache
 def exact(text: str) -> Fraction:
-    """Return the fraction that a text says: binary "0x1.8p-1", decimal "0.75" or "3/4"."""
-    return Fraction(float.fromhex(text)) if "0x" in text else Fraction(text)
+    """Return the fraction that a text says: binary "0x1.8p-1", decimal "0.75", "3/4" or, of long numbers, "0x3/0x4"."""
+    if "p" in text:
+        return Fraction(float.fromhex(text))
+    if "0x" in text:
+        top, _, under = text.partition("/")
+        return Fraction(int(top, 16), int(under or "1", 16))
+    return Fraction(text)
+
+
+def said(text: str) -> str:
+    """Return a bound in words: its fraction, unless that is long, and its value."""
+    return f"{text if len(text) <= 200 else f'a fraction of {len(text)} characters'} = {float(exact(text)):.12g}"
 
 
 def vector(texts: Texts) -> Vector:
@@ -197,13 +207,13 @@ def check(data: Data) -> str:
     if "forces" in data:
         lower = exact(data["lower"])
         check_forces(data, data["forces"], {**constant, **{g: lower * x for g, x in growing.items()}})
-        found.append(f"{data['lower']} = {float(lower):.12g} is balanced")
+        found.append(f"{said(data['lower'])} is balanced")
     if "motion" in data:
         upper = exact(data["upper"])
         rate = work(data, data["motion"], growing)
         if not rate > 0 or work(data, data["motion"], constant) + upper * rate < taken(data, data["motion"]):
             raise ValueError("the loads need not do more work on the motion above the upper bound than joints take")
-        found.append(f"nothing above {data['upper']} = {float(upper):.12g} is")
+        found.append(f"nothing above {said(data['upper'])} is")
     if not found:
         raise ValueError("neither forces nor a motion are given")
     return f"{acting}, {points}: {'; '.join(found)}: proved exactly"

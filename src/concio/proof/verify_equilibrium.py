@@ -36,8 +36,13 @@ Condition = tuple[str, Row, Fraction]
 
 @cache
 def exact(text: str) -> Fraction:
-    """Return the fraction that a text says: binary "0x1.8p-1", decimal "0.75" or "3/4"."""
-    return Fraction(float.fromhex(text)) if "0x" in text else Fraction(text)
+    """Return the fraction that a text says: "0x1.8p-1", "0.75", "3/4", or "0x3/0x4" of long numbers."""
+    if "p" in text:
+        return Fraction(float.fromhex(text))
+    if "0x" in text:
+        top, _, under = text.partition("/")
+        return Fraction(int(top, 16), int(under or "1", 16))
+    return Fraction(text)
 
 
 def weight(body: Data) -> list[Fraction]:

@@ -23,7 +23,7 @@ import numpy as np
 import scipy.linalg as sl
 import scipy.sparse as sp
 
-from concio.proof.exact_pivots import pivoted, square, transposed
+from concio.proof.exact_pivots import Need, Pair, pivoted, square, transposed
 from concio.proof.exact_solve import Row, solve_exactly
 from concio.proof.joint_rays import Ray, Side, Vector, joint_rays
 from concio.proof.verify import cross, vector
@@ -180,13 +180,18 @@ def witness(
     """
     made = programme(data, constant, multiplied, side, directions, wider)
     columns, right, first, origin = made.columns()
-    found = _at_basis(columns, right)
+    plane = len(origin[0]) == 2
+    found = _at_basis(columns, right, "both" if plane else "shares" if side == "inside" else "dual")
     if found is None:
         return None
     value, dual = found
     last = len(columns) - 1
-    whole = all(v >= 0 for c, v in value.items() if c != last)
-    return Witness(value[last], made.forces(value) if whole else None, _motion(data, first, origin, dual))
+    whole = value is not None and all(v >= 0 for c, v in value.items() if c != last)
+    motion = None if dual is None else _motion(data, first, origin, dual)
+    if value is not None:
+        return Witness(value[last], made.forces(value) if whole else None, motion)
+    bound = sum((y * right[row] for row, y in (dual or {}).items()), Fraction(0))
+    return Witness(bound, None, motion)
 
 
 def forces_below(
@@ -210,8 +215,8 @@ def forces_below(
         for row, value in column.items():
             even[row] = even.get(row, Fraction(0)) + value
     columns.append({row: value for row, value in even.items() if value})
-    found = _at_basis(columns, right)
-    if found is None:
+    found = _at_basis(columns, right, "shares")
+    if found is None or found[0] is None:
         return None
     least = found[0][len(columns) - 1]
     shares = {k: least + found[0].get(k, Fraction(0)) for k in range(len(made.rays))}
@@ -220,24 +225,30 @@ def forces_below(
     return Witness(multiplier, made.forces(shares), None)
 
 
-def _at_basis(
-    columns: Sequence[Row], right: Sequence[Fraction]
-) -> tuple[dict[int, Fraction], dict[int, Fraction]] | None:
-    """Return the exact values of the basic columns and the exact dual of the rows; None without the last column."""
+def _at_basis(columns: Sequence[Row], right: Sequence[Fraction], need: Need) -> Pair | None:
+    """Return the exact values of the basic columns and the exact dual of the rows; None without the last column.
+
+    What is not needed is left out where it takes a system of its own.
+    """
     basis = _basis(columns, right)
     last = len(columns) - 1
     if basis is None or last not in basis[0]:
         return None
     used, rows = basis
     everywhere, every = _completed(columns, used, rows, len(right))
-    optimal = pivoted(columns, right, everywhere) if len(every) == len(right) else None
+    optimal = pivoted(columns, right, everywhere, need) if len(every) == len(right) else None
     if optimal is not None:
         return optimal
-    primal = solve_exactly(square(columns, everywhere, every), [right[row] for row in every])
-    dual = solve_exactly(transposed(square(columns, used, rows)), [Fraction(int(column == last)) for column in used])
-    if primal is None or dual is None:
+    shares, motion = None, None
+    if need != "dual":
+        primal = solve_exactly(square(columns, everywhere, every), [right[row] for row in every])
+        shares = None if primal is None else dict(zip(everywhere, primal, strict=True))
+    if need != "shares":
+        dual = solve_exactly(transposed(square(columns, used, rows)), [Fraction(int(j == last)) for j in used])
+        motion = None if dual is None else {row: dual[i] for i, row in enumerate(rows)}
+    if need == "both" and (shares is None or motion is None):
         return None
-    return dict(zip(everywhere, primal, strict=True)), {row: dual[i] for i, row in enumerate(rows)}
+    return shares, motion
 
 
 def _completed(columns: Sequence[Row], used: list[int], rows: list[int], m: int) -> tuple[list[int], list[int]]:

@@ -18,9 +18,10 @@ import concio
 from commands import run
 from concio import Body, JointLaw, JointRule, Load, Model, Polyhedron, Rigid, Support, Tie
 from concio.errors import InputError, SolverError
-from concio.proof import verify
+from concio.proof import verify, verify_equilibrium
 from concio.proof.certificate import prove_balance, prove_collapse, prove_limit, sealed
 from concio.proof.exact_solve import solve_exactly
+from concio.proof.statement import fraction_text
 from pillars import ARCH, THIN, pillar, sideways, slot
 from samples import sample
 
@@ -278,3 +279,50 @@ def test_strength_in_space_is_bounded_from_both_sides() -> None:
 def test_what_is_not_proved_exactly_is_refused_by_name(model: Model, words: str) -> None:
     with pytest.raises(InputError, match=words):
         prove_collapse(concio.assemble(model))
+
+
+@pytest.mark.long  # 12 blocks in space: 72 equations in fractions
+def test_a_corner_in_space_is_bounded_by_long_fractions_that_the_program_reads(tmp_path: Path) -> None:
+    """Fractions of more than 4,300 decimal digits were refused by Python itself, after minutes of pivots."""
+    model = concio.walls(
+        lines=[((0, 0), (0, 1.6)), ((0, 0), (1.2, 0))], height=0.9, block_size=(0.8, 0.3, 0.3), block="rigid",
+        unit_weight=18.0, friction=0.6, horizontal=1.0,
+    )  # fmt: skip
+    assert len(model.free_bodies) >= 12
+    found = concio.limit(model, path=False, steps=False, search=False)
+    made = found.proof()
+    low, high = (verify.exact(made[key]) for key in ("lower", "upper"))
+    assert float(low) == pytest.approx(found.associated.multiplier, rel=1e-8)
+    assert 0 <= float(high - low) <= 2e-5 * float(high)  # a motion that no joint of friction wider by 1e-5 resists
+    assert verify.check(made)
+    for key, change in (("lower", Fraction(1, 10**12)), ("upper", Fraction(-1, 10**3))):
+        worse = verify.exact(made[key]) + change
+        with pytest.raises(ValueError, match=r"not in balance|more work"):
+            verify.check(sealed({**made, key: str(worse)}))
+
+
+def test_whole_numbers_of_any_length_are_written_and_read() -> None:
+    long = Fraction(3**20_000, 2 * 5**9_000)
+    text = fraction_text(long)
+    assert text.startswith("0x")
+    assert verify.exact(text) == verify_equilibrium.exact(text) == long
+    assert verify.exact(fraction_text(-long)) == -long
+    assert [fraction_text(x) for x in (Fraction(-3, 4), Fraction(7))] == ["-3/4", "7"]
+    with pytest.raises(ZeroDivisionError):
+        verify.exact("0x1/0x0")
+
+
+def test_without_a_claim_what_becomes_of_the_loads_is_proved(tmp_path: Path) -> None:
+    """A file without a group 'live' was refused; it has an equilibrium or a collapse to prove."""
+    stands, falls = tmp_path / "stands.toml", tmp_path / "falls.toml"
+    stands.write_text(pillar(""))
+    falls.write_text(pillar(sideways(1.0)).replace('"live"', '"wind"'))
+    told = json.loads(run("prove", stands, "--json")[1])
+    assert (told["claim"], told["verdict"]["outcome"]) == ("equilibrium", "holds")
+    told = json.loads(run("prove", falls, "--json")[1])
+    assert told["claim"] == "collapse"
+    assert "no forces" in told["sentence"]
+    told = json.loads(run("prove", falls, "--json", "--force", "--factor", "wind=0.2")[1])
+    assert told["claim"] == "equilibrium"
+    told = json.loads(run("prove", falls, "--json", "--force", "--group", "wind", "--numbers", "decimal")[1])
+    assert (told["claim"], told["lower"], told["upper"]) == ("limit", "1/4", "1/4")
