@@ -83,6 +83,7 @@ newest:
 
 docs: $(VENV)/.installed-docs
 	$(BIN)/sphinx-build -E -W --keep-going -b html docs docs/_build/html
+	$(BIN)/python docs/check_links.py docs/_build/html
 
 # Runs every validation case and every gallery example again and rewrites their pages in docs/.
 .PHONY: book

@@ -96,8 +96,27 @@ def skip_notes_in_search(app: Any) -> None:
     app.builder.index_page = index
 
 
+BACK = re.compile(r'<a class="viewcode-back" href="([^"#]*)#([^"]+)">\[docs\]</a>')
+
+
+def back_to_the_description(app: Any, pagename: str, template: str, context: dict[str, Any], doctree: Any) -> None:
+    """Lead from the source of an object to its description, whether it is described by its short or its full name."""
+    if not pagename.startswith("_modules/") or "body" not in context:
+        return
+    known = app.env.get_domain("py").objects
+    module = pagename.removeprefix("_modules/").replace("/", ".")
+
+    def link(match: re.Match[str]) -> str:
+        full = module + match[2].removeprefix("concio")
+        name = next((n for n in (match[2], full) if n in known), None)
+        return "" if name is None else f'<a class="viewcode-back" href="{match[1]}#{name}">[docs]</a>'
+
+    context["body"] = BACK.sub(link, context["body"])
+
+
 def setup(app: Any) -> None:
     """Connect the docstring filter, the formulas and the search."""
+    app.connect("html-page-context", back_to_the_description)
     app.connect("builder-inited", skip_notes_in_search)
     app.add_html_math_renderer("mathml", (visit_math, None), (visit_math_block, None))
     app.connect("autodoc-process-docstring", protect_bars)

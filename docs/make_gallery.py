@@ -82,12 +82,24 @@ def page(path: Path) -> str:
     )
 
 
+def anchor(title: str) -> str:
+    """Return the address of a heading in its page, as the documentation makes it."""
+    return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
+
+
+def thumbnails(parts: list[str]) -> str:
+    """Return a small picture of every section, each of which leads to it."""
+    found = [re.search(r"## (.+)\n[\s\S]*?!\[[^\]]*\]\((\S+)\)", part) for part in parts]
+    lines = "```{{image}} {1}\n:alt: \"{0}\"\n:target: \"#{2}\"\n:class: thumbnail\n```\n"
+    return "".join(lines.format(m[1], m[2], anchor(m[1])) for m in found if m)
+
+
 def main() -> None:
     """Write the gallery."""
     (HERE / "gallery").mkdir(exist_ok=True)
     plt.rcParams["savefig.dpi"] = 80
     parts = [page(path) for path in sorted(EXAMPLES.glob("[0-9]*.py"))]
-    (HERE / "gallery.md").write_text(HEAD + "\n".join(parts), encoding="utf-8")
+    (HERE / "gallery.md").write_text(HEAD + thumbnails(parts) + "\n" + "\n".join(parts), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ import matplotlib as mpl
 mpl.use("Agg")
 
 import concio
+from concio.report.page import report_html
 
 HERE = Path(__file__).resolve().parent
 PICTURES = HERE / "_static"
@@ -35,14 +36,25 @@ def page(name: str) -> list[str]:
 
 
 def facade() -> list[str]:
-    """Draw the facade of the examples: its forces under its own weight and the floors, and how it would fall."""
+    """Draw the facade of the examples: as it was read, its forces under weight and floors, and how it would fall."""
     model = concio.load(HERE.parent / "examples" / "facade.toml")
     result = concio.solve(model, factors={"live": 0.0})
+    result.plot.model().figure.savefig(PICTURES / "facade_model.png", dpi=DOTS)
     result.plot.forces().figure.savefig(PICTURES / "facade.png", dpi=DOTS)
-    return ["facade.png"]
+    limit = concio.limit(model, path=False, steps=False, search=False)
+    limit.plot.mechanism().figure.savefig(PICTURES / "facade_limit.png", dpi=DOTS)
+    return ["facade_model.png", "facade.png", "facade_limit.png"]
+
+
+def report() -> list[str]:
+    """Write the report of the front page: that of a cross vault on four piers, to be turned in the page."""
+    vault = concio.cross_vault(span=5.0, ring=0.3, courses=8, block_length=0.7, block="rigid", friction=0.6)
+    html = report_html(concio.solve(vault), figures=False)
+    (PICTURES / "report.html").write_text(html, encoding="utf-8")
+    return ["report.html"]
 
 
 if __name__ == "__main__":
     for name in PAGES:
         print(*page(name))
-    print(*facade())
+    print(*facade(), *report())

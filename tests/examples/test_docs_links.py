@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import runpy
 from pathlib import Path
 
 import pytest
@@ -41,3 +42,14 @@ def test_every_page_is_in_a_table_of_contents() -> None:
 @pytest.mark.parametrize("page", sorted((DOCS / "decisions").glob("*.md")), ids=lambda p: p.stem[:4])
 def test_every_decision_has_a_status(page: Path) -> None:
     assert re.search(r"^Status: \w+", page.read_text(encoding="utf-8"), re.MULTILINE)
+
+
+def test_links_of_the_built_site_are_checked(tmp_path: Path) -> None:
+    check = runpy.run_path(str(DOCS / "check_links.py"))["broken"]
+    (tmp_path / "deep").mkdir()
+    (tmp_path / "index.html").write_text('<h1 id="top"></h1><a href="deep/a.html#here"></a><img src="x.png">')
+    text = '<p id="here"></p><a href="../index.html#gone"></a><a href="https://x.y"></a>'
+    (tmp_path / "deep" / "a.html").write_text(text)
+    assert check(tmp_path) == [
+        "deep/a.html: ../index.html#gone: there is no such heading", "index.html: x.png: there is no such file"
+    ]  # fmt: skip
