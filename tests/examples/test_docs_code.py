@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
+import shutil
 from pathlib import Path
 
 import matplotlib as mpl
@@ -16,6 +17,9 @@ DOCS = Path(__file__).resolve().parents[2] / "docs"
 SKIPPED = {"decisions", "research", "validation", "_build"}
 """Records and generated pages, which hold no code of their own."""
 
+DOWNLOAD = re.compile(r"\{download\}`[^`<]*<([^>]+)>`")
+"""A file that a page offers, which lies in the directory of the reader then."""
+
 FENCE = re.compile(r"^```(python|console)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
@@ -26,7 +30,7 @@ def pages() -> list[Path]:
 
 LONG = {
     "start.md", "methods.md", "howto/space.md", "howto/assessment.md", "howto/cells.md", "howto/studies.md",
-    "howto/no_equilibrium.md",
+    "howto/no_equilibrium.md", "howto/facade_tutorial.md",
 }  # fmt: skip
 """Pages of more than a second, whose commands and functions have quick tests of their own."""
 
@@ -42,6 +46,8 @@ def test_page(page, tmp_path, monkeypatch):
     mpl.use("Agg")
     monkeypatch.chdir(tmp_path)
     text = page.read_text(encoding="utf-8")
+    for offered in DOWNLOAD.findall(text):
+        shutil.copy(page.parent / offered, tmp_path)
     names: dict[str, object] = {"__name__": "docs"}
     for match in FENCE.finditer(text):
         kind, code = match.groups()
