@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from concio.analysis.seismic.layout import openings_of
 from concio.contact.applied import applied_forces
 from concio.display import number
 from concio.plot import style
@@ -67,8 +68,26 @@ def model_figure(found: Assessment, ax: Axes | None = None) -> Axes:
     if len(model.free_bodies) <= 60:
         for block in model.free_bodies:
             ax.annotate(block.name, _xy(block.centroid), ha="center", va="center", fontsize=6.5, color="#555555")
+    _dimensions(ax, model, low, high)
     style.dress(ax, box, "")
     return ax
+
+
+def _dimensions(ax: Axes, model: Any, low: Array, high: Array) -> None:
+    """Draw the overall width and height of what is free, and those of the openings [m]."""
+    gap = 0.05 * float((high - low).max())
+    look = {"arrowstyle": "<->", "color": style.INK, "lw": 0.7, "shrinkA": 0, "shrinkB": 0}
+    ends = (((low[0], low[1] - gap), (high[0], low[1] - gap)), ((high[0] + gap, low[1]), (high[0] + gap, high[1])))
+    for k, (start, end) in enumerate(ends):
+        ax.annotate("", end, start, arrowprops=look)
+        at = (np.array(start) + np.array(end)) / 2
+        ax.annotate(f"{number(float((high - low)[k]), 4)} m", _xy(at), ha="center", va="center", fontsize=7.5,
+                    rotation=90 * k, bbox={"fc": "white", "ec": "none", "pad": 0.8})  # fmt: skip
+    free = [b for b, body in enumerate(model.bodies) if body.kind != "fixed"]
+    for hole in openings_of(model, free, np.array([1.0, 0.0])):
+        width, height = hole.sides[1] - hole.sides[0], hole.heights[1] - hole.heights[0]
+        ax.annotate(f"{number(width, 3)} x {number(height, 3)} m", (sum(hole.sides) / 2, sum(hole.heights) / 2),
+                    ha="center", va="center", fontsize=7)  # fmt: skip
 
 
 def mechanism_figure(mechanism: LocalMechanism, ax: Axes | None = None) -> Axes:

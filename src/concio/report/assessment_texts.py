@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from concio.analysis.seismic.searching import ALL_FREE, EVERY
 from concio.display import number
+from concio.plot.figure_language import in_language
 from concio.report.html_parts import figure_html
 from concio.report.language import words_of
 from concio.verdict.assessment_verdict import check_words, ratio_words
@@ -90,7 +91,8 @@ class Texts:
     def figure(self, axes: Axes, caption: str, kind: str = "") -> str:
         """Return a figure with its caption under it."""
         self.figures += 1
-        drawn = figure_html(axes, f"assessment-{self.figures}", self.words[caption], dots=self.pictures == "png")
+        made, name = in_language(axes, self.language), f"assessment-{self.figures}"
+        drawn = figure_html(made, name, self.words[caption], dots=self.pictures == "png")
         text = f"<figcaption>{self.say(caption)}</figcaption></figure>"
         return drawn.replace("<figure ", f'<figure class="{kind}" ', 1).replace("</figure>", text)
 

@@ -14,6 +14,8 @@ import concio
 from concio.analysis.seismic.asked import Head, read_asked
 from concio.analysis.seismic.hazard_grid import hazard_at
 from concio.errors import InputError
+from concio.plot.assessment_figures import curve_figure, model_figure
+from concio.plot.figure_language import in_language
 from concio.report.assessment_page import AssessmentReport
 from samples import sample
 from seismic_walls import bending, overturning, site
@@ -174,3 +176,27 @@ def test_without_the_library_docx_is_refused_in_a_sentence(tmp_path: Path, monke
     found = concio.assess(overturning(2), site=site(), direction="left", levels=["SLD"])
     with pytest.raises(InputError, match="python-docx"):
         found.report(tmp_path / "r.docx")
+
+
+@pytest.mark.parametrize(("language", "mark"), [("en", "."), ("it", ",")])
+def test_figures_speak_the_language_of_the_report(language: str, mark: str) -> None:
+    found = concio.assess(overturning(2), site=site(), direction="left")
+    worst = found.worst
+    assert worst is not None
+    words = AssessmentReport(found, language=language).words
+    ax = in_language(curve_figure(worst, words), language)
+    figure = ax.get_figure(root=True)
+    assert figure is not None
+    figure.canvas.draw()
+    labels = [t.get_text() for t in ax.get_xticklabels()]
+    assert any(mark in text for text in labels)
+    assert not any({"en": ",", "it": "."}[language] in text for text in labels)
+    assert "$d_{\\mathrm{C}}$" in ax.get_xlabel()
+
+
+def test_the_picture_of_the_model_has_its_dimensions() -> None:
+    found = concio.assess(overturning(2), site=site(), direction="left", levels=["SLD"])
+    texts = [t.get_text() for t in model_figure(found).texts]
+    assert "0.6 m" in texts
+    assert "6 m" in texts
+    assert "c1" in texts
