@@ -12,6 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from concio import Body, Polyhedron
 from concio.contact.convex_bodies import ConvexBodies, pairs_of
+from concio.contact.edge_contacts import _middle
+from concio.contact.meeting_features import CORNER, EDGE
 from concio.contact.narrow_phase import Contacts, find_contacts
 from concio.kinematics.placement import Placement
 from samples import sample
@@ -103,6 +105,35 @@ def test_the_least_gap_is_the_distance_and_the_largest_depth_the_penetration(see
     if distance > 1e-6:
         none = contacts([body("p", p), body("q", q)], 0.999 * distance)
         assert not len(none)
+
+
+@pytest.mark.parametrize("facing", [0.0, 0.01])
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_features_named_hold_the_points_of_their_patch(seed: int, facing: float) -> None:
+    """A point lies on the edge, in the plane of the face or at the corner by which its patch is known."""
+    p, q = random_pair(seed, 3)
+    pieces = ConvexBodies.of([body("p", p), body("q", q)])
+    found = find_contacts(pieces, pairs_of(pieces, 10.0, np.zeros(2, dtype=bool)), 10.0, facing=facing)
+    for k in range(len(found)):
+        for side, place in enumerate((found.on_a, found.on_b)):
+            points, number = place[found.first[k] : found.first[k + 1]], found.feature[k, side]
+            if found.dims[k, side] == CORNER:
+                off = np.linalg.norm(points - pieces.points[number], axis=1)
+            elif found.dims[k, side] == EDGE:
+                start, end = pieces.points[pieces.edges[number]]
+                share = np.clip((points - start) @ (end - start) / ((end - start) @ (end - start)), 0.0, 1.0)
+                off = np.linalg.norm(points - start - share[:, None] * (end - start), axis=1)
+            else:
+                corner = pieces.points[pieces.loops.values[pieces.loops.first[number]]]
+                off = np.abs((points - corner) @ pieces.normals[number])
+            assert off.max() < 1e-6
+
+
+def test_directions_that_come_twice_count_once_in_the_middle_of_all() -> None:
+    """Corners that touch at right angles part along the diagonal, by however many edges each way is found."""
+    way = np.array([[(1.0, 0.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)]])
+    middle = _middle(way, np.array([[0.0, 0.0, 0.0, -1.0]]), np.array([1e-9]))
+    assert middle == pytest.approx(np.full((1, 2), np.sqrt(0.5)))
 
 
 def described(found: Contacts, back: Array | None = None, shift: Array | float = 0.0, scale: float = 1.0) -> Array:

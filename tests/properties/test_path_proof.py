@@ -10,8 +10,9 @@ import pytest
 from concio.analysis import path as paths
 from concio.analysis.path import Stage, run_path
 from concio.contact.assembly import PRESTRESS
+from concio.model.generate.columns import column
 from concio.model.generate.walls import wall
-from concio.model.materials import Rigid
+from concio.model.materials import JointLaw, Rigid
 from concio.model.model import Support, Tie
 from concio.problem.certificate import certify
 from samples import sample
@@ -54,6 +55,22 @@ def test_every_state_obeys_the_original_equations(seed):
         problem = found.assembly.problem(step.factors)
         own = certify(problem, step.state.displacement, step.state.normal_force, step.state.friction_force)
         assert max(own.equilibrium, own.cone, own.penetration) <= 1e-9
+
+
+@pytest.mark.parametrize("dilatancy", [0.0, 0.2])
+def test_a_block_that_slides_against_a_tie_rises_by_its_dilatancy(dilatancy):
+    """Of 0.7 weights 0.5 are friction: the tie takes the rest, and each state is proved from the swelling before it."""
+    weight, stiffness = 0.5 * 0.2 * 20.0, 100.0
+    model = column(width=0.5, height=0.2, blocks=1, block=Rigid(20.0), horizontal=0.7,
+                   friction=JointLaw(0.5, dilatancy=dilatancy))  # fmt: skip
+    far = Tie("rod", "b01", (-0.25, 0.0), "", (-100.25, 0.0), stiffness)
+    found = run_path(replace(model, ties=(far,)), [Stage("weight", {"dead": 1.0}), Stage("live", {"live": 1.0})])
+    assert found.certified
+    slip = 0.2 * weight / stiffness
+    body = [b.name for b in found.assembly.model.bodies].index("b01")
+    first = found.assembly.disc.offsets[body]  # two translations of the centroid, then its rotation
+    moved = found.steps[-1].state.displacement[first : first + 2]
+    assert moved == pytest.approx([slip, dilatancy * slip], rel=1e-3, abs=1e-8)
 
 
 MUTANTS = {

@@ -19,6 +19,7 @@ from concio.fem.polygon_mesh import mesh_polygon
 from concio.fem.tetrahedra import tetrahedra
 from concio.model.model import Model
 from concio.model.polyhedron import Polyhedron
+from concio.model.surfaces import merged_faces
 from samples import sample
 from solids import l_block
 
@@ -200,3 +201,13 @@ def test_a_solid_has_the_same_mesh_at_any_size(scale: float) -> None:
     other, same = tetrahedra(Polyhedron("l", scale * block.vertices, block.faces), scale * 0.3)
     assert np.array_equal(cells, same)
     assert other / scale == pytest.approx(points, abs=1e-9)
+
+
+@pytest.mark.parametrize("scale", SCALES)
+def test_triangles_of_one_plane_are_put_together_at_any_size(scale: float) -> None:
+    """And those of planes that differ are not: a pyramid as flat as a hundredth keeps its four slopes."""
+    corners = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 0.5, 0.01)])
+    faces = [(0, 2, 1), (0, 3, 2), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
+    points, merged, _ = merged_faces(scale * corners, faces)
+    assert sorted(len(face) for face in merged) == [3, 3, 3, 3, 4]
+    assert len(points) == 5

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +13,7 @@ import pytest
 import concio
 from commands import run
 from concio.analysis.bridges.mexe import mexe
+from concio.analysis.bridges.service import service_state
 from concio.analysis.bridges.sweep import Sweep, search
 from concio.analysis.bridges.two_vehicles import second_vehicle, worst_apart
 from concio.analysis.bridges.variants import parts
@@ -139,9 +141,22 @@ def test_more_than_the_bound_fails_and_no_coulomb_states_leave_it_open() -> None
 def test_sensitivities_go_the_right_way(assessed: concio.BridgeResult) -> None:
     found = {c.name: c for c in assessed.changes}
     assert found["ring"].at_low < assessed.worst.multiplier < found["ring"].at_high
+    ring = found["ring"]
+    assert (ring.low, ring.high) == pytest.approx((ring.value - 0.01, ring.value + 0.01))
     assert found["cover"].at_low < found["cover"].at_high
     assert found["passive"].at_low < found["passive"].at_high
     assert found["friction 'joint'"].at_low <= found["friction 'joint'"].at_high * (1 + 1e-9)
+
+
+def test_the_deflection_is_what_the_vehicle_adds_under_it() -> None:
+    """None where nothing deforms; elsewhere the most of all that blocks go down, here at the axle above the crown."""
+    assert math.isnan(service_state(placed(small(), 1.5)).deflection)
+    model = placed(small(load=5.0, block="elastic", mesh_size=0.3), 1.5)
+    found = service_state(model)
+    crown = concio.solve(model).node_displacement("v06")[:, 1].min()
+    bare = concio.solve(model, factors={model.vehicle.group: 0.0}).node_displacement("v06")[:, 1].min()
+    assert found.deflection == pytest.approx(bare - crown, rel=0.2)
+    assert found.deflection > 0
 
 
 def test_both_languages_say_the_same_things() -> None:

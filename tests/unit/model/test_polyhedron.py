@@ -132,12 +132,13 @@ def test_what_is_no_block_is_told(points: np.ndarray, faces: list[tuple[int, ...
     assert caught.value.hint
 
 
-def test_a_surface_through_itself_is_told() -> None:
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+def test_a_surface_through_itself_is_told(scale: float) -> None:
     # an upper and a lower pyramid over the same square, the lower apex pulled up through the upper sides
     points = PIERCED.copy()
     points[5] = (1.9, 1, 0.6)
     faces = [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4), (1, 0, 5), (2, 1, 5), (3, 2, 5), (0, 3, 5)]
-    faults = polyhedron_faults(points, faces)
+    faults = polyhedron_faults(scale * points, faces)
     assert [f.kind for f in faults] == ["piercing"]
     assert "runs through itself" in faults[0].sentence
 

@@ -188,6 +188,17 @@ def test_struts_hold_what_acts_on_a_body(points: int, line: bool) -> None:
         np.testing.assert_allclose(push[first].sum(axis=0) - push[second].sum(axis=0), -force, atol=1e-6)
 
 
+@pytest.mark.parametrize("scale", [2.0**-9, 2.0**9])
+def test_struts_of_a_body_of_any_size_are_the_same(scale: float) -> None:
+    rng = np.random.default_rng(5)
+    place = np.column_stack([rng.uniform(0, 2, 12), rng.uniform(0, 1, 12)])
+    force = rng.normal(size=(12, 2))
+    one = struts([balanced(box("stone", 0, 2, 0, 1), place, force)])
+    other = struts([balanced(box("stone", 0, 2 * scale, 0, scale), scale * place, force)])
+    assert other.lines / scale == pytest.approx(one.lines, abs=1e-9)
+    assert other.force == pytest.approx(one.force, abs=1e-9)
+
+
 def test_a_load_enters_above_joints_whose_forces_meet_in_one_point() -> None:
     """Two joints push at the middle of the foot: there is no chord between them."""
     foot, up = np.array([[1.0, 0.0], [1.0, 0.0]]), np.array([[0.3, 2.0], [-0.3, 3.0]])

@@ -249,7 +249,7 @@ def _load_on_extrados(where: str, pieces: list[Piece], s: float, share: float, f
     x = s * (share - 0.5)
     best: tuple[float, str] | None = None
     for piece in pieces:
-        p, q = piece.outline, np.roll(piece.outline, -1, axis=0)
+        p, q = piece.outline, np.roll(piece.outline, 1, axis=0)
         low, high = np.minimum(p[:, 0], q[:, 0]), np.maximum(p[:, 0], q[:, 0])
         for e in np.flatnonzero((low <= x) & (x <= high) & (high > low)):
             y = float(p[e, 1] + (q[e, 1] - p[e, 1]) * (x - p[e, 0]) / (q[e, 0] - p[e, 0]))
