@@ -16,8 +16,9 @@ from concio.contact.factors import load_factor
 from concio.contact.points import NOWHERE, MaterialPoints
 from concio.contact.supports import points_held
 from concio.fem.discretisation import FIXED
-from concio.kinematics.frames import dot, frames, norm, turned_left
+from concio.kinematics.frames import dot, frames, norm
 from concio.kinematics.placement import Placement
+from concio.kinematics.rigid import motions
 from concio.kinematics.turns import Turns
 
 if TYPE_CHECKING:
@@ -33,19 +34,19 @@ class Held:
     Parameters
     ----------
     points : MaterialPoints
-        k of them.
-    start : (k, 2) array
+        k of them; a point that is held along two of three axes is there twice.
+    start : (k, d) array
         Where they were described [m].
-    motion : (k, 2) array
+    motion : (k, d) array
         Displacement imposed by a load factor of one [m].
     support : (k,) integer array
         Number in the model.
     group : tuple of str
         Load group of each point.
-    normal : (k, 2) array
-        Direction held: x, or y where only that is held.
-    both : (k,) boolean array
-        Whether y is held beside x.
+    normal : (k, d) array
+        Direction held: an axis.
+    pinned : (k,) boolean array
+        Whether all directions are held.
     """
 
     points: MaterialPoints
@@ -54,7 +55,7 @@ class Held:
     support: Array
     group: tuple[str, ...]
     normal: Array
-    both: Array
+    pinned: Array
 
     def __len__(self) -> int:
         return len(self.start)
@@ -64,38 +65,40 @@ class Held:
         """Return the points that the supports of a model hold."""
         disc, model = reference.disc, reference.model
         number = {b.name: i for i, b in enumerate(model.bodies)}
-        bodies, places, motions, supports, groups, axes = [], [], [], [], [], []
+        d = disc.dim
+        bodies, places, moves, supports, groups, axes, pinned = [], [], [], [], [], [], []
         for i, support in enumerate(model.supports):
             b = number[support.body]
             if disc.shape_of[b] == FIXED:
                 continue
             _, at, motion, held = points_held(disc, b, i)
-            bodies += [b] * len(at)
-            places.append(at)
-            motions.append(motion)
-            supports += [i] * len(at)
-            groups += [support.group] * len(at)
-            axes += [held] * len(at)
-        place = np.concatenate([*places, np.zeros((0, 2))])
+            for axis in held[:1] if len(held) == d else held:
+                bodies += [b] * len(at)
+                places.append(at)
+                moves.append(motion)
+                supports += [i] * len(at)
+                groups += [support.group] * len(at)
+                axes += [axis] * len(at)
+                pinned += [len(held) == d] * len(at)
+        place = np.concatenate([*places, np.zeros((0, d))])
         points = MaterialPoints.of(reference, bodies, place)
         return cls(
-            points, place, np.concatenate([*motions, np.zeros((0, 2))]), np.array(supports, dtype=int), tuple(groups),
-            np.eye(2)[[0 if 0 in a else 1 for a in axes]].reshape(-1, 2),
-            np.array([len(a) == 2 for a in axes], dtype=bool),
+            points, place, np.concatenate([*moves, np.zeros((0, d))]), np.array(supports, dtype=int), tuple(groups),
+            np.eye(d)[axes].reshape(-1, d), np.array(pinned, dtype=bool),
         )  # fmt: skip
 
     def target(self, factors: Mapping[str, float]) -> Array:
-        """Return where the points are wanted under load factors (k, 2) [m]."""
+        """Return where the points are wanted under load factors (k, d) [m]."""
         factor = np.array([load_factor(factors, g) for g in self.group])
         return np.asarray(self.start + factor[:, None] * self.motion)
 
     @property
-    def ways(self) -> tuple[Array, Array]:
-        """Directions (k, 2): the one held, and the one turned left, held where both are."""
-        return self.normal, turned_left(self.normal)
+    def ways(self) -> tuple[Array, ...]:
+        """Directions, d of (k, d): the one held, and its tangents, held where a point is pinned."""
+        return tuple(np.moveaxis(frames(self.normal), 1, 0))
 
     def values(self, turn: Turns) -> Array:
-        """Return the rows (k, 2, w) along the directions held."""
+        """Return the rows (k, d, w) along the directions held."""
         return np.stack([self.points.rows(way, turn) for way in self.ways], axis=1)
 
 
@@ -170,7 +173,7 @@ class Ties:
         return np.stack([row, *(nothing for _ in across)], axis=1), np.stack([*across, nothing], axis=1), gap, length
 
     def turning(self, placement: Placement, strain: Array, tension: Array) -> tuple[Array, Array]:
-        """Return unknowns (2k,) and stiffness (2k,) with which tight ties resist that rigid bodies turn [kN/m].
+        """Return unknowns (c,) and stiffness (c,) with which tight ties resist that rigid bodies turn [kN/m].
 
         Tension T at an arm r from the centroid has the moment r x T, which grows by r . T as the body turns away.
         """
@@ -179,6 +182,9 @@ class Ties:
         columns, stiffness = [], []
         for end, pull in ((self.a, force), (self.b, -force)):
             arm = placement.turns[np.maximum(end.body, 0)].apply(end.arm)
-            columns.append(end.columns[:, 2])
-            stiffness.append(np.maximum(dot(arm, pull), 0.0) / np.where(end.reach > 0, end.reach, 1.0) ** 2)
+            own = np.maximum(dot(arm, pull), 0.0) / np.where(end.reach > 0, end.reach, 1.0) ** 2
+            d = span.shape[1]
+            for k in range(d, motions(d)):
+                columns.append(end.columns[:, k])
+                stiffness.append(own)
         return np.concatenate(columns), np.concatenate(stiffness)

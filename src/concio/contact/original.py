@@ -223,9 +223,10 @@ class OriginalContacts:
         slave = np.where(on_a, self._of_point(slots.body_b, n), self._of_point(slots.body_a, n))
         extra = _turning(point, normal, np.where(on_a, 1.0, -1.0), master, slave, centre, velocity, spin)
         along = np.where(slots.face >= 0, length[slots.face], 1.0) if len(length) else np.ones(len(slots))
+        frame = np.stack([direction, turned_left(direction)], axis=1)
         return slots, Rows(
             n.columns, values, distance + strained, imposed, (1 - s) * extra[low] + s * extra[high],
-            valid[low] & valid[high], slots.share * along * slots.thickness, place, direction,
+            valid[low] & valid[high], slots.share * along * slots.thickness, place, frame,
         )  # fmt: skip
 
     def _of_point(self, of_slot: Array, n: _Named) -> Array:

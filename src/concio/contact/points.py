@@ -14,6 +14,7 @@ from concio.fem.discretisation import RIGID
 from concio.kinematics.frames import dot, norm
 from concio.kinematics.placement import Placement
 from concio.kinematics.rigid import motions, rigid_row, swept
+from concio.kinematics.spins import SpinAxes
 from concio.kinematics.turns import Turns
 from concio.model.stages import ControlPoint
 
@@ -43,6 +44,8 @@ class MaterialPoints:
         Unknowns: rigid motion, then nodes; one past the last where there is none.
     reach : (k,) array
         [m].
+    axes : SpinAxes
+        Along which rotations of bodies are unknowns.
     """
 
     body: Array
@@ -51,6 +54,7 @@ class MaterialPoints:
     weight: Array
     columns: Array
     reach: Array
+    axes: SpinAxes
 
     @classmethod
     def of(cls, reference: Reference, bodies: Sequence[int], points: Array) -> MaterialPoints:
@@ -82,7 +86,7 @@ class MaterialPoints:
         columns = np.concatenate([rigid, node_column[node].reshape(k, d * wide)], axis=1)
         centroid = np.where((body >= 0)[:, None], disc.centroids[at_body], 0.0)
         arm = np.asarray(points, dtype=float).reshape(k, d) - centroid
-        return cls(body, arm, node, weight, columns, disc.reach[at_body])
+        return cls(body, arm, node, weight, columns, disc.reach[at_body], reference.spin_axes)
 
     def __len__(self) -> int:
         return len(self.body)
@@ -104,8 +108,11 @@ class MaterialPoints:
 
     def rows(self, direction: Array, turn: Turns) -> Array:
         """Return the displacements (k, 3 + 2 w) along unit directions (k, d), from the unknowns ``columns``."""
-        own = turn[np.maximum(self.body, 0)]
+        body, d = np.maximum(self.body, 0), direction.shape[1]
+        own = turn[body]
         rigid = rigid_row(direction, own.apply(self.arm), self.reach)
+        if d == 3:
+            rigid[:, d:] = self.axes.own(rigid[:, d:], body, turn)
         local = self.weight[:, :, None] * own.undo(direction)[:, None]
         return np.concatenate([rigid, local.reshape(len(rigid), -1)], axis=1)
 

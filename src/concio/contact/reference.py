@@ -20,11 +20,13 @@ from concio.contact.geometry import GEOMETRIES
 from concio.contact.laws import LawTable, RuleBook
 from concio.contact.matrices import BodyMatrices
 from concio.contact.moving_loads import MovingLoads
+from concio.contact.moving_solids import MovingSolids
 from concio.contact.periodic import held_at_a_point
 from concio.contact.supports import apply_supports
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID, Discretisation, discretise
 from concio.kinematics.placement import Placement
+from concio.kinematics.spins import SpinAxes, rotation_vector
 from concio.model.interfaces.detect import Detection, detect_interfaces
 from concio.model.model import Body, Model, require_model
 from concio.units import GRAVITY
@@ -69,9 +71,7 @@ class Reference:
         if not model.free_bodies:
             msg = "every body is fixed: there is nothing that could move"
             raise InputError(msg, hint="make the blocks elastic or rigid")
-        if model.dim != 2:
-            msg = "the model is in space; motion is computed in the plane"
-            raise InputError(msg, hint="take a plane section of the structure")
+        refuse_in_space(model)
         if model.periods is not None:
             msg = "a periodic cell has no place of its own: it cannot move"
             raise InputError(msg, hint="take a wall of several blocks")
@@ -147,13 +147,26 @@ class Reference:
             density = model.materials[body.material].unit_weight / self.gravity
             own = slice(*disc.offsets[b : b + 2])
             if disc.shape_of[b] == RIGID:
-                mass[own] = density * body.area * body.thickness
+                mass[own] = density * body.volume
+                if disc.dim == 3:  # in the plane the moment of inertia over the square of the reach is the mass
+                    mass[own][disc.dim :] = density * self._principal(b) / disc.reach[b] ** 2
                 continue
             nodal = disc.shapes[disc.shape_of[b]].volume_weights
             if nodal.min() <= 0:  # corners of eight-node elements: share the volume equally
                 nodal = np.full(nodal.size, nodal.sum() / nodal.size)
-            mass[own] = density * np.repeat(nodal, 2)
+            mass[own] = density * np.repeat(nodal, disc.dim)
         return mass
+
+    def _principal(self, b: int) -> Array:
+        """Return the principal moments of inertia (3,) of a body in space of density one [m5]."""
+        assert self.spin_axes.axes is not None, "bodies in space"
+        axes = self.spin_axes.axes[b]
+        return np.asarray(np.diagonal(axes.T @ self.model.bodies[b].moments.inertia @ axes))
+
+    @cached_property
+    def spin_axes(self) -> SpinAxes:
+        """Axes along which the rotations of rigid bodies are unknowns."""
+        return SpinAxes.of([body.moments.inertia for body in self.model.bodies])
 
     @cached_property
     def body_mass(self) -> Array:
@@ -161,7 +174,7 @@ class Reference:
         mass = np.zeros(len(self.model.bodies))
         for b in self.free.tolist():
             own = self.mass[slice(*self.disc.offsets[b : b + 2])]
-            mass[b] = own[0] if self.disc.shape_of[b] == RIGID else own[::2].sum()
+            mass[b] = own[0] if self.disc.shape_of[b] == RIGID else own[:: self.disc.dim].sum()
         return mass
 
     @cached_property
@@ -180,7 +193,7 @@ class Reference:
         for b in self.free.tolist():
             own = slice(*self.disc.offsets[b : b + 2])
             if not self.body_mass[b] > 0:
-                nodes = 1 if self.disc.shape_of[b] == RIGID else (own.stop - own.start) // 2
+                nodes = 1 if self.disc.shape_of[b] == RIGID else (own.stop - own.start) // self.disc.dim
                 mass[own] = (self.typical_mass or 1.0) / nodes
         return BodyMatrices.of(self.disc, mass, np.zeros(self.disc.unknowns, dtype=bool))
 
@@ -195,6 +208,24 @@ class Reference:
         return MovingEdges.of(self.model.outlines)
 
     @cached_property
+    def solids(self) -> MovingSolids:
+        """The surfaces of polyhedra."""
+        return MovingSolids.of(self.model.polyhedra)
+
+    @property
+    def surface(self) -> MovingEdges | MovingSolids:
+        """Outlines or surfaces that move with their bodies."""
+        return self.edges if self.disc.dim == 2 else self.solids
+
+    @cached_property
+    def joint_numbers(self) -> Mapping[tuple[int, int], int]:
+        """Number of the first joint as described between two bodies, the lower number first."""
+        found: dict[tuple[int, int], int] = {}
+        for k, face in enumerate(self.detection.interfaces):
+            found.setdefault((min(face.a, face.b), max(face.a, face.b)), k)
+        return found
+
+    @cached_property
     def laws(self) -> LawTable:
         """The joint laws."""
         return LawTable.of(self.model)
@@ -207,7 +238,7 @@ class Reference:
     @cached_property
     def loads(self) -> MovingLoads:
         """The loads."""
-        return MovingLoads(self.disc)
+        return MovingLoads(self.disc, self.spin_axes)
 
     @cached_property
     def described_loads(self) -> dict[str, Array]:
@@ -234,6 +265,22 @@ class Reference:
     def at_rest(self) -> Configuration:
         """Return the configuration in which the model was described."""
         return Configuration(self, Placement.at_rest(self.disc.centroids), np.zeros_like(self.node_arm))
+
+
+def refuse_in_space(model: Model) -> None:
+    """Refuse what motion in space does not compute yet: rigid blocks on hard joints without strength move."""
+    if model.dim == 2:
+        return
+    for body in model.bodies:
+        if body.kind == "elastic":
+            msg = f"block '{body.name}' is elastic; in space only rigid blocks move"
+            raise InputError(msg, hint='give it kind = "rigid"')
+    for name, law in model.laws.items():
+        soft = law.normal_stiffness is not None or law.tangential_stiffness is not None
+        bonded = law.cohesion or law.tensile_strength
+        if soft or bonded or law.dilatancy or law.compressive_strength is not None:
+            msg = f"joint '{name}' has more than friction; in space joints of blocks that move have friction alone"
+            raise InputError(msg, hint="leave out stiffness, cohesion, strengths and dilatancy, or take a plane section")
 
 
 @dataclass(frozen=True, eq=False)
@@ -304,7 +351,8 @@ class Configuration:
         for b in reference.free.tolist():
             own = slice(*disc.offsets[b : b + 2])
             if disc.shape_of[b] == RIGID:
-                u[own] = [*moved[b], self.placement.rotation[b] * disc.reach[b]]
+                turn = self.placement.rotation[b]
+                u[own] = [*moved[b], *np.atleast_1d(turn if disc.dim == 2 else rotation_vector(turn)) * disc.reach[b]]
             else:
                 u[own] = (self.nodes(b) - disc.nodes(b)).ravel()
         return u

@@ -17,6 +17,7 @@ from concio.fem.discretisation import RIGID, Discretisation
 from concio.kinematics.frames import components, dot, frames, norm
 from concio.kinematics.placement import Placement
 from concio.kinematics.rigid import motions, write_rigid_rows
+from concio.kinematics.spins import SpinAxes
 from concio.kinematics.turns import Turns
 
 Array = np.ndarray
@@ -41,7 +42,10 @@ class Rows:
         Pairs whose two sides stand over each other.
     area : (m,) array
         Tributary area [m2].
-    point, normal : (m, d) arrays
+    point : (m, d) array
+        [m].
+    frame : (m, d, d) array
+        Normal and tangents, as rows.
     """
 
     columns: Array
@@ -52,7 +56,12 @@ class Rows:
     valid: Array
     area: Array
     point: Array
-    normal: Array
+    frame: Array
+
+    @property
+    def normal(self) -> Array:
+        """Unit normals from side a to side b (m, d)."""
+        return np.asarray(self.frame[:, 0])
 
 
 class RowMaker:
@@ -63,12 +72,16 @@ class RowMaker:
     disc : Discretisation
     slots : Slots
     toucher : Toucher
-    node_column : (nodes + 1, 2) integer array
+    node_column : (nodes + 1, d) integer array
         Unknowns of the nodes of all meshed bodies.
+    axes : SpinAxes
+        Along which rotations of rigid bodies are unknowns.
     """
 
-    def __init__(self, disc: Discretisation, slots: Slots, toucher: Toucher, node_column: Array) -> None:
-        self.slots, self.toucher = slots, toucher
+    def __init__(
+        self, disc: Discretisation, slots: Slots, toucher: Toucher, node_column: Array, axes: SpinAxes
+    ) -> None:
+        self.slots, self.toucher, self.axes = slots, toucher, axes
         n = disc.unknowns
         rigid = disc.shape_of == RIGID
         first = np.where(rigid, disc.offsets[:-1], n)
@@ -121,10 +134,14 @@ class RowMaker:
             valid = touch.valid[low] & touch.valid[high]
         a, b = slots.body_a, slots.body_b
         (m, w), d, k = self.columns.shape, self.dim, self.rigid_motions
-        frame = frames(normal)
+        frame = frames(normal) if touch.frame is None else touch.frame[self.end]
         values = np.zeros((m, d, w))
         write_rigid_rows(values[:, :, :k], -frame, point - placement.centre[a], self.reach_a)
         write_rigid_rows(values[:, :, k : 2 * k], frame, point - placement.centre[b], self.reach_b)
+        if d == 3:
+            for at, body in ((0, a), (k, b)):
+                turns = values[:, :, at + d : at + k]
+                turns[:] = turns @ self.axes.placed(body, placement.turns)
         imposed = np.zeros((m, d))
         if velocity[self.moved].any():
             for body, sign in ((a, -1.0), (b, 1.0)):  # fixed bodies never turn
@@ -147,7 +164,7 @@ class RowMaker:
                 extra = self._between(components(added, frames(touch.normal)))
         length = np.where(slots.face >= 0, touch.length[slots.face], 1.0) if len(touch.length) else 1.0
         area = slots.share * length * slots.thickness
-        return Rows(self.columns, values, gap, imposed, extra, valid, area, point, normal)
+        return Rows(self.columns, values, gap, imposed, extra, valid, area, point, frame)
 
     def _between(self, ends: Array) -> Array:
         """Return what slots (m, ...) have of vectors at the contact points, linear between two of them."""

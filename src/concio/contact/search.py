@@ -83,7 +83,8 @@ class ContactSearch:
         toucher = Toucher.of(self.edges, found, SLIVER_SHARE, self.slack)
         touch = toucher.touch(placed)
         slots = self.maker.make(found, toucher, touch, placed)
-        maker = RowMaker(self.reference.disc, slots, toucher, self.reference.node_column)
+        reference = self.reference
+        maker = RowMaker(reference.disc, slots, toucher, reference.node_column, reference.spin_axes)
         self.layout = Layout(slots, toucher, maker, placed.start, touch.length)
         return True
 

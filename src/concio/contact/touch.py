@@ -47,6 +47,8 @@ class Touch:
         Common length of the edges that face each other; not positive where there is none [m].
     valid : (2 f + q,) boolean array
         Whether the corner stands over the edge.
+    frame : (2 f + q, d, d) array or None
+        Normal and tangents, where tangents follow a body: in space.
     """
 
     point: Array
@@ -55,6 +57,7 @@ class Touch:
     on_a: Array
     length: Array
     valid: Array
+    frame: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,35 +8,41 @@ from typing import Any
 import numpy as np
 
 from concio.errors import InputError
+from concio.model.model import Model
 
 Array = np.ndarray
 
 SHAPES: dict[str, dict[str, str]] = {
     "MotionState": {
-        "centre": "f B 2", "rotation": "f B", "velocity": "f B 2", "spin": "f B", "strain": "f nodes 2",
-        "nodal": "f nodes 2",
+        "centre": "f B d", "rotation": "f B turn", "velocity": "f B d", "spin": "f B spin", "strain": "f nodes d",
+        "nodal": "f nodes d",
     },
     "Memory": {
-        "key": "i m", "contact": "i m", "slip": "i m", "force": "f m 2", "stretch": "f m", "crushing": "f m",
-        "raised": "f m", "broken": "b m", "slid": "f m", "area": "f m", "sunk": "f m", "stored": "f m",
+        "key": "i m", "contact": "i m", "slip": "f m t", "force": "f m d", "stretch": "f m t", "crushing": "f m",
+        "raised": "f m", "broken": "b m", "slid": "f m t", "area": "f m", "sunk": "f m", "stored": "f m",
     },
     "TieMemory": {"sunk": "f ties", "plastic": "f ties", "broken": "b ties"},
     "Shots": {
-        "time": "f shots", "centre": "f shots B 2", "rotation": "f shots B", "strain": "f shots nodes 2",
+        "time": "f shots", "centre": "f shots B d", "rotation": "f shots B turn", "strain": "f shots nodes d",
         "opening": "f shots joints", "slip": "f shots joints",
     },
     "Steps": {
         "time": "f steps", "residual": "f steps", "how": "i steps", "factorisations": "i steps", "depth": "f steps",
-        "point": "f steps points 2", "reaction": "f steps reactions 2",
+        "point": "f steps points d", "reaction": "f steps reactions d",
     },
-    "DynamicsResult": {"ground_time": "f steps", "ground": "f steps 2"},
+    "DynamicsResult": {"ground_time": "f steps", "ground": "f steps d"},
     "PushResult": {
-        "displacement": "f curve", "multiplier": "f curve", "residual": "f curve", "centre": "f curve B 2",
-        "rotation": "f curve B", "strain": "f curve nodes 2", "reaction": "f curve reactions 2", "direction": "f 2",
-        "force": "f 2",
+        "displacement": "f curve", "multiplier": "f curve", "residual": "f curve", "centre": "f curve B d",
+        "rotation": "f curve B turn", "strain": "f curve nodes d", "reaction": "f curve reactions d",
+        "direction": "f d", "force": "f d",
     },
 }  # fmt: skip
-"""Kind (float, integer, boolean) and shape of every array; the same word is the same length throughout a file."""
+"""Kind (float, integer, boolean) and shape of every array; the same word is the same length throughout a file.
+
+d and t are the dimension and the number of tangents, turn and spin the axes of rotations: see :func:`sizes_of`."""
+
+AXES = {("turn", 2): (), ("spin", 2): (), ("turn", 3): ("3", "3"), ("spin", 3): ("3",)}
+"""Axes of the rotation of a body and of its spin, by dimension."""
 
 KINDS = {"f": ("f", "numbers"), "i": ("iu", "integers"), "b": ("b", "yes or no")}
 
@@ -44,6 +50,11 @@ MAY_BE_INFINITE = ("residual",)
 
 LARGEST = 1e100
 """Beyond any length, velocity, force or energy."""
+
+
+def sizes_of(model: Model) -> dict[str, int]:
+    """Return the lengths that a model says: bodies, dimension, tangents."""
+    return {"B": len(model.bodies), "d": model.dim, "t": model.dim - 1}
 
 
 def check_arrays(thing: Any, sizes: dict[str, int], where: str, place: str = "") -> None:
@@ -79,6 +90,8 @@ def check_array(array: object, wanted: list[str], sizes: dict[str, int], where: 
     if not isinstance(array, np.ndarray) or array.dtype.kind not in kinds:
         msg = f"damaged: '{place}' does not hold {words}"
         raise InputError(msg, where=where, hint="write the file again")
+    d = sizes["d"]
+    wanted = [axis for word in wanted for axis in AXES.get((word, d), (word,))]
     shape = tuple(int(w) if w.isdigit() else sizes.get(w, -1) for w in wanted[1:])
     fits = array.ndim == len(shape) and all(n in (-1, k) for n, k in zip(shape, array.shape, strict=True))
     if not fits:

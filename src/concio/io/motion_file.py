@@ -26,13 +26,13 @@ from concio.analysis.motion.state import Memory, MotionState, TieMemory
 from concio.arguments import strict
 from concio.errors import InputError
 from concio.files import whole_file
-from concio.io.motion_check import check_array, check_arrays
+from concio.io.motion_check import check_array, check_arrays, sizes_of
 from concio.io.owned_dir import settle
 from concio.model.file.reading import loads
 from concio.model.file.writing import dumps
 from concio.model.stages import ControlPoint
 
-FORMAT, VERSION = "concio motion", 2
+FORMAT, VERSION = "concio motion", 3
 
 MOST_BYTES = 8_000_000_000
 """What a file may unpack to."""
@@ -215,7 +215,7 @@ def _check(made: PushResult | DynamicsResult, where: str) -> None:
     if not (parts and isinstance(end.time, float) and np.isfinite(end.time)):
         msg = "damaged: the final state is incomplete"
         raise InputError(msg, where=where, hint="write the file again")
-    sizes = {"B": len(made.model.bodies), "reactions": len(made.reactions_of)}
+    sizes = sizes_of(made.model) | {"reactions": len(made.reactions_of)}
     if isinstance(made, DynamicsResult):
         sizes |= {"points": len(made.points), "joints": len(made.joints)}
         steps = made.steps

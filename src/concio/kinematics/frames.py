@@ -37,13 +37,20 @@ def turned(v: Array, angle: Array | float) -> Array:
 
 
 def dot(p: Array, q: Array) -> Array:
-    """Return the scalar product (...) of vectors (..., d), component by component: faster than a sum along an axis."""
+    """Return the scalar product (...) of vectors (..., d), component by component: faster than a sum along an axis.
+
+    Vectors along the tangents of the plane have one component.
+    """
+    if p.shape[-1] == 1:
+        return np.asarray(p[..., 0] * q[..., 0])
     found = p[..., 0] * q[..., 0] + p[..., 1] * q[..., 1]
     return np.asarray(found + p[..., 2] * q[..., 2] if p.shape[-1] == 3 else found)
 
 
 def norm(v: Array) -> Array:
     """Return the lengths (...) of vectors (..., d)."""
+    if v.shape[-1] == 1:
+        return np.asarray(np.abs(v[..., 0]))
     if v.shape[-1] == 2:
         return np.asarray(np.hypot(v[..., 0], v[..., 1]))
     return np.asarray(np.sqrt(dot(v, v)))

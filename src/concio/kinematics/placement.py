@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from concio.kinematics.rigid import plane_rotation, rotation_matrix, swept
+from concio.kinematics.spins import orthonormal
 from concio.kinematics.turns import Turns
 
 Array = np.ndarray
@@ -39,6 +40,11 @@ class Placement:
         """Space dimension, 2 or 3."""
         return int(self.centre.shape[1])
 
+    @property
+    def no_spin(self) -> Array:
+        """Spins of bodies that do not turn: (B,) in the plane, (B, 3) in space."""
+        return np.zeros(len(self.centre) if self.dim == 2 else self.centre.shape)
+
     @cached_property
     def matrix(self) -> Array:
         """Rotation matrices (B, d, d)."""
@@ -63,7 +69,7 @@ class Placement:
         """
         if self.dim == 2:
             return Placement(self.centre + translation, self.rotation + turn)
-        return Placement(self.centre + translation, rotation_matrix(turn) @ self.rotation)
+        return Placement(self.centre + translation, orthonormal(rotation_matrix(turn) @ self.rotation))
 
     def screwed(self, shift: Array, turn: Array) -> Placement:
         """Return the placement after motions of constant velocity that turns with the body: exact about fixed axes.

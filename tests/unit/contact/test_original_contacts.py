@@ -13,7 +13,8 @@ from concio.analysis.motion.pairs import PairMaker
 from concio.analysis.motion.push_result import PushEnding
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.statics import Statics
-from concio.analysis.motion.stepper import Stepper, at_rest
+from concio.analysis.motion.state import MotionState
+from concio.analysis.motion.stepper import Stepper
 from concio.contact import search as search_module
 from concio.contact.attachments import Held, Ties
 from concio.contact.laws import LawTable
@@ -53,7 +54,7 @@ def test_pairs_written_twice_are_the_same(kind, law, seed):
     """Rows, gaps, areas and what turning adds, of bodies that have moved at random; laws and openings too."""
     rng = np.random.default_rng(seed)
     reference = Reference.of(wall(kind, LAWS[law]))
-    maker, state = PairMaker(reference, Scheme()), at_rest(reference)
+    maker, state = PairMaker(reference, Scheme()), MotionState.at_rest(reference)
     count = len(state.rotation)
     free = (np.arange(count) > 0)[:, None]
     centre = state.centre + 1e-3 * free * rng.normal(size=(count, 2))
@@ -115,7 +116,7 @@ def pushed_once(model):
     push = concio.Load("point", (1.0, 0.0), bodies=("block",), at=(-0.2, 1.2), group="live")
     model = replace(model, loads=(*model.loads, push))
     statics = Statics(Reference.of(model, G), Scheme(), {}, ("live",))
-    start = statics.balance(at_rest(statics.reference), 0.0)
+    start = statics.balance(MotionState.at_rest(statics.reference), 0.0)
     found = statics.balance(start.state, 0.4, target=0.01)
     look = statics.look(found.state, start.state.memory, np.zeros(0), found.multiplier)
     return found, statics.problem(look, found.multiplier, None)
@@ -141,7 +142,7 @@ def test_the_certificate_of_a_motion_refuses_faults_in_the_rows_of_the_solve(mon
 
     def last(steps=30):
         stepper = Stepper(Reference.of(standing(tilt=0.1, friction=0.05, kind=kind), G), Scheme())
-        state = stepper.located(at_rest(stepper.reference))
+        state = stepper.located(MotionState.at_rest(stepper.reference))
         drive, worst, own = Drive(np.array([1.0, 0.0]), np.zeros(2), {}), 0.0, 0.0
         inner = stepper.solver.solve
 
@@ -233,9 +234,9 @@ def test_a_sign_in_the_rows_of_supports_is_refused(monkeypatch):
     def worst():
         stepper = Stepper(Reference.of(model, G), Scheme())
         assert len(stepper.maker.held)
-        state = stepper.located(at_rest(stepper.reference))
+        state = stepper.located(MotionState.at_rest(stepper.reference))
         moved = stepper.step(state, 2e-3, Drive(np.zeros(2), np.zeros(2), {}))[1].solution.residual
-        rests = Statics(Reference.of(model, G), Scheme(), {}).balance(at_rest(stepper.reference), 0.0)
+        rests = Statics(Reference.of(model, G), Scheme(), {}).balance(MotionState.at_rest(stepper.reference), 0.0)
         return moved, rests.residual
 
     assert max(worst()) <= CERTIFIED
@@ -253,7 +254,7 @@ def test_the_strength_of_a_joint_is_read_from_the_model_again(monkeypatch):
     table = replace(table, friction=2 * table.friction)
     reference.__dict__["laws"] = table
     statics = Statics(reference, Scheme(), {}, ("live",))
-    start = statics.balance(at_rest(reference), 0.0)
+    start = statics.balance(MotionState.at_rest(reference), 0.0)
     found = statics.balance(start.state, wanted, target=0.005)
     assert not found.found
     assert found.residual > 1e3 * CERTIFIED

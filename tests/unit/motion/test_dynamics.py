@@ -11,7 +11,7 @@ from scipy.integrate import quad
 import concio
 import concio.solvers.stepping.solver as step_solver
 from concio.analysis.motion.dynamics_result import Ending
-from concio.analysis.motion.stepper import at_rest
+from concio.analysis.motion.state import MotionState
 from concio.contact.reference import Reference
 from motion_models import G, standing
 
@@ -216,7 +216,7 @@ def test_rayleigh_damping_against_the_closed_form_of_a_damped_mode(damping):
     squares, modes = np.linalg.eigh(K / np.outer(root, root))
     w, mode = np.sqrt(squares[3]), modes[:, 3] / root
     decay = 0.5 * (damping.get("mass_damping", 0.0) + damping.get("stiffness_damping", 0.0) * w**2)
-    start, speed = at_rest(reference), 1e-4
+    start, speed = MotionState.at_rest(reference), 1e-4
     start = replace(start, nodal=speed * mode.reshape(-1, 2))
     period = 2 * np.pi / w
     found = concio.dynamics(

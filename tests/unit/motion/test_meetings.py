@@ -8,7 +8,8 @@ import pytest
 import concio
 from concio.analysis.motion.meetings import EARNED, MOST, Meetings
 from concio.analysis.motion.scheme import Drive, Scheme
-from concio.analysis.motion.stepper import Stepper, at_rest
+from concio.analysis.motion.state import MotionState
+from concio.analysis.motion.stepper import Stepper
 from concio.contact.reference import Reference
 from models import box, model_of, weight
 from motion_models import G, standing
@@ -66,7 +67,7 @@ def test_blocks_on_one_floor_are_parts_of_their_own():
     blocks.append(box("apart", far, far + 0.5, 0.0, 1.0, kind="rigid", material="stone"))
     model = model_of(box("floor", -30.0, 30.0, -1.0, 0.0, kind="fixed"), *blocks, law=0.5, loads=(weight(),))
     stepper = Stepper(Reference.of(model, G), Scheme())
-    state = stepper.located(at_rest(stepper.reference))
+    state = stepper.located(MotionState.at_rest(stepper.reference))
     _, report = stepper.step(state, 1e-3, Drive(np.zeros(2), np.zeros(2), {}))
     assert report.part[1] == report.part[2] != report.part[3]
     assert len(set(report.part.tolist())) == 3

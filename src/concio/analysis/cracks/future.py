@@ -18,8 +18,8 @@ from concio.analysis.cracks.measurement import Candidate
 from concio.analysis.cracks.moved import cause_model
 from concio.analysis.motion.moved_supports import begun
 from concio.analysis.motion.scheme import Scheme
+from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import Statics
-from concio.analysis.motion.stepper import at_rest
 from concio.contact.reference import Reference
 from concio.errors import ConcioError
 from concio.kinematics.rigid import swept
@@ -120,7 +120,7 @@ def _followed(forward: Forward, cause: Cause, candidates: Sequence[Candidate], a
     try:
         reference = Reference.of(model, GRAVITY)
         statics = Statics(reference, Scheme(brittle=True), factors)
-        found, share, _ = begun(statics, at_rest(reference))
+        found, share, _ = begun(statics, MotionState.at_rest(reference))
     except ConcioError:
         return 0.0, np.nan
     return (share if not found.found else 1.0) * asked, float(found.residual)

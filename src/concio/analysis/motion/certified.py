@@ -9,8 +9,10 @@ How far pairs have slid is compared with what their material points moved.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from concio.analysis.motion.frames import Frames
 from concio.analysis.motion.joint_step import JointStep, PairData
@@ -21,11 +23,13 @@ from concio.analysis.motion.state import Memory, MotionState
 from concio.analysis.motion.tie_bars import TieStep
 from concio.contact.laws import LawTable
 from concio.contact.original import OriginalContacts
+from concio.contact.original_solids import OriginalSolids
 from concio.contact.points import MaterialPoints
 from concio.contact.reference import Reference
 from concio.contact.rows import Rows
 from concio.contact.slots import Slots
 from concio.kinematics.frames import turned, turned_left
+from concio.kinematics.rigid import motions
 from concio.kinematics.turns import Turns
 from concio.problem.cone import Cone
 from concio.solvers.stepping.matrix import StepMatrix
@@ -85,7 +89,9 @@ class Certificate:
 
     def __init__(self, reference: Reference, scheme: Scheme, maker: PairMaker) -> None:
         self.reference, self.scheme, self.maker = reference, scheme, maker
-        self.original, self.frames = OriginalContacts(reference), Frames(reference, scheme)
+        plane = reference.disc.dim == 2
+        self.original: Any = OriginalContacts(reference) if plane else OriginalSolids(reference)
+        self.frames = Frames(reference, scheme)
         old = maker.joints
         self.joints = Joints(
             LawTable.of(reference.model), scheme, reference.disc.size, maker.width, old.reach, old.lent, old.yielding
@@ -120,7 +126,7 @@ class Certificate:
         length : float
             By which gaps and slips are measured [m].
         """
-        still, none = np.zeros_like(state.centre), np.zeros(len(state.rotation))
+        still, none = np.zeros_like(state.centre), np.zeros_like(state.spin)
         layout = self.maker.search.layout
         assert layout is not None
         slots, rows = self.original.at(layout, state.centre, state.rotation, still, none, state.strain)
@@ -144,23 +150,23 @@ class Certificate:
         if not carries.any():
             return 0.0
         disp = self._moved(slots, rows, before, state)
-        went = np.hypot(*(state.centre - before.centre).T)
+        went = np.linalg.norm(state.centre - before.centre, axis=1)
         far = np.maximum(went[slots.body_a], went[slots.body_b])
-        along = (disp * turned_left(rows.normal)).sum(axis=1)
-        turn = np.abs(state.rotation - before.rotation)
+        along = (rows.frame[:, 1:] * disp[:, None]).sum(axis=2)
+        turn = _angle(before.rotation, state.rotation)
         most = np.maximum(turn[slots.body_a], turn[slots.body_b])
-        bound = BENT * most * np.hypot(*disp.T) + PATH * far + ROUNDING * self.maker.width
+        bound = BENT * most * np.linalg.norm(disp, axis=1) + PATH * far + ROUNDING * self.maker.width
         elastic = self.reference.disc.shape_of >= 0
         bends = elastic[slots.body_a] | elastic[slots.body_b]
         bound += np.where(bends, most**2 * self.maker.width, 0.0)  # nodes follow a rotation along its tangent
-        return float(np.maximum(np.abs(slid - along) - bound, 0.0)[carries].max()) / self.maker.width
+        return float(np.maximum(np.linalg.norm(slid - along, axis=1) - bound, 0.0)[carries].max()) / self.maker.width
 
     def _moved(self, slots: Slots, rows: Rows, before: MotionState, state: MotionState) -> Array:
-        """Return the displacement (m, 2) of b over a at the points that touch, since another state [m]."""
+        """Return the displacement (m, d) of b over a at the points that touch, since another state [m]."""
         total = np.zeros_like(rows.point)
         moved = self._nodes(state) - self._nodes(before)
         for sign, body, side in ((-1.0, slots.body_a, slots.side_a), (1.0, slots.body_b, slots.side_b)):
-            arm = turned(rows.point - state.centre[body], before.rotation[body] - state.rotation[body])
+            arm = _forth(_back(rows.point - state.centre[body], state.rotation[body]), before.rotation[body])
             step = rows.point - before.centre[body] - arm
             if side is not None:
                 mean = (side.weight[:, :, None] * np.vstack([moved, np.zeros((1, 2))])[side.node]).sum(axis=1)
@@ -169,9 +175,9 @@ class Certificate:
         return total
 
     def _nodes(self, state: MotionState) -> Array:
-        """Return where the nodes of elastic bodies are (nodes, 2) [m]."""
+        """Return where the nodes of elastic bodies are (nodes, d) [m]."""
         b = self.reference.body_of_node
-        return np.asarray(state.centre[b] + turned(self.reference.node_arm + state.strain, state.rotation[b]))
+        return np.asarray(state.centre[b] + _forth(self.reference.node_arm + state.strain, state.rotation[b]))
 
     # -- steps of a motion ---------------------------------------------------------------------------------------------
 
@@ -199,16 +205,18 @@ class Certificate:
         layout, f = self.maker.search.layout, self.frames
         assert layout is not None
         velocity = np.where((self.reference.disc.shape_of == -2)[:, None], drive.velocity, state.velocity)
-        centre, rotation = state.centre + 0.5 * h * velocity, state.rotation + 0.5 * h * state.spin
+        centre, rotation = state.centre + 0.5 * h * velocity, _on(state.rotation, 0.5 * h * state.spin)
         turn = Turns.of(rotation)
         strain, rate, nodal = state.strain, np.zeros_like(state.strain), state.nodal
         if f.elastic:
             rate, _, _ = f.rate(nodal, turn[f.body].apply(f.arm + strain), turn)
             strain = strain + 0.5 * h * rate
         x0 = f.unknowns(velocity, state.spin, nodal, turn)
-        x = f.unknowns(new.velocity, new.spin, new.nodal, turn)
+        x = f.unknowns(new.velocity, new.spin, new.nodal, turn if centre.shape[1] == 2 else Turns.of(new.rotation))
         acting = f.loads(drive, turn) + f.ground(drive, turn)
         b = f.mass * x0 / h + acting
+        if centre.shape[1] == 3:
+            b = b + f.gyroscopic(self.scheme.theta * x + (1 - self.scheme.theta) * x0)
         if f.elastic:
             b = b + f.internal(state, h, rate, strain, state.spin, x0)
         force, speed = measures(self.reference, acting, x0, h)
@@ -256,12 +264,13 @@ class Certificate:
             springs, t = joint.springs, returned.force[: len(shift)]
             hard_n, hard_t = (True, True) if springs is None else (~springs.normal, ~springs.shear)
             shift[:, 0] -= np.where(hard_n, data.a_n, 0.0) * t[:, 0]
-            shift[:, 1] -= np.where(hard_t, data.a_t, 0.0) * t[:, 1]
+            shift[:, 1:] -= np.where(hard_t, data.a_t, 0.0)[:, None] * t[:, 1:]
         return replace(data, shift=shift)
 
     def _hidden(self, state: MotionState, h: float) -> bool:
         """Return whether a corner stands deep in another body; looked for when corners have moved."""
-        place = np.column_stack([state.centre, state.rotation[:, None] * self.reference.edges.width.max()])
+        size = float(self.reference.surface.width.max())
+        place = np.column_stack([state.centre, state.rotation.reshape(len(state.centre), -1) * size])
         if self._looked is not None and np.abs(place - self._looked).max() < LOOKED * self.maker.width:
             return False
         moving = 2.0 * h * float(np.abs(state.velocity).max(initial=0.0))
@@ -275,51 +284,52 @@ class Certificate:
     def supports(self, state: MotionState, factors: dict[str, float]) -> PairData:
         """Return the pairs of supports where bodies stand."""
         if not len(self.maker.held):
-            return no_pairs()
+            return no_pairs(self.reference.disc.dim)
         off = self._place(self.maker.held.points, state.centre, state.rotation, state.strain)
         return self._glued(state.rotation, off - self.maker.held.target(factors))
 
     def _held(self, state: MotionState, centre: Array, rotation: Array, h: float, drive: Drive) -> PairData:
         """Return the pairs of supports of a step, in velocities."""
         if not len(self.maker.held):
-            return no_pairs()
+            return no_pairs(self.reference.disc.dim)
         here = self._place(self.maker.held.points, state.centre, state.rotation, state.strain)
         off = here - self.maker.held.target(drive.factors) - drive.moved
         return self._glued(rotation, RETURN / h * off - drive.velocity)
 
     def _glued(self, rotation: Array, off: Array) -> PairData:
-        """Return the pairs of supports that are off by (k, 2)."""
+        """Return the pairs of supports that are off by (k, d)."""
         held, k = self.maker.held, len(self.maker.held)
-        ways = (held.normal, turned_left(held.normal))
+        ways = _axes(held.normal)
         zero, inf = np.zeros(k), np.full(k, np.inf)
         return PairData(
             held.points.columns, np.stack([_rows(held.points, way, rotation) for way in ways], axis=1),
             np.column_stack([(off * way).sum(axis=1) for way in ways]),
-            Cone(zero, np.where(held.both, np.inf, 0.0), inf, inf), zero, zero, zero, np.ones(k, dtype=bool),
+            Cone(zero, np.where(held.pinned, np.inf, 0.0), inf, inf), zero, zero, zero, np.ones(k, dtype=bool),
         )  # fmt: skip
 
     def ties(self, state: MotionState, centre: Array, rotation: Array, strain: Array) -> tuple[PairData, Array]:
         """Return the pairs of ties in displacements where bodies stand, and their gaps (k,) [m]."""
         ties, k = self.maker.ties, len(self.maker.ties)
         if not k:
-            return no_pairs(), np.zeros(0)
+            return no_pairs(self.reference.disc.dim), np.zeros(0)
         span = self._place(ties.b, centre, rotation, strain) - self._place(ties.a, centre, rotation, strain)
-        length = np.hypot(*span.T)
+        length = np.linalg.norm(span, axis=1)
         way = (ties.sign / np.where(length > 0, length, 1.0))[:, None] * span  # soil presses
         values = np.concatenate([_rows(ties.a, way, rotation), -_rows(ties.b, way, rotation)], axis=1)
         gap = ties.sign * (ties.length - length) - ties.prestress / ties.stiffness + state.ties.plastic
-        zero = np.zeros(k)
+        zero, nothing = np.zeros(k), [np.zeros_like(values)] * (span.shape[1] - 1)
         return PairData(
-            ties.columns, np.stack([values, np.zeros_like(values)], axis=1), np.column_stack([gap, zero]),
+            ties.columns, np.stack([values, *nothing], axis=1), np.column_stack([gap, *[zero] * len(nothing)]),
             Cone(zero, zero, zero, ties.most), 1.0 / ties.stiffness, zero, zero, ~state.ties.broken,
         ), gap  # fmt: skip
 
     def _place(self, points: MaterialPoints, centre: Array, rotation: Array, strain: Array) -> Array:
-        """Return where points are (k, 2) [m]."""
+        """Return where points are (k, d) [m]."""
         arm, body = points.arm, np.maximum(points.body, 0)
         if points.node.shape[1]:
-            arm = arm + (points.weight[:, :, None] * np.vstack([strain, np.zeros((1, 2))])[points.node]).sum(axis=1)
-        return np.where((points.body >= 0)[:, None], centre[body] + turned(arm, rotation[body]), arm)
+            padded = np.vstack([strain, np.zeros((1, strain.shape[1]))])
+            arm = arm + (points.weight[:, :, None] * padded[points.node]).sum(axis=1)
+        return np.where((points.body >= 0)[:, None], centre[body] + _forth(arm, rotation[body]), arm)
 
 
 def measures(reference: Reference, acting: Array, x0: Array, h: float) -> tuple[float, float]:
@@ -331,11 +341,51 @@ def measures(reference: Reference, acting: Array, x0: Array, h: float) -> tuple[
 
 
 def _rows(points: MaterialPoints, way: Array, rotation: Array) -> Array:
-    """Return the displacements (k, w) of points along directions (k, 2) from their unknowns."""
-    body = np.maximum(points.body, 0)
-    arm, local = turned(points.arm, rotation[body]), turned(way, -rotation[body])
+    """Return the displacements (k, w) of points along directions (k, d) from their unknowns."""
+    body, d = np.maximum(points.body, 0), way.shape[1]
+    arm, local = _forth(points.arm, rotation[body]), _back(way, rotation[body])
     values = np.zeros(points.columns.shape)
-    values[:, :2] = way
-    values[:, 2] = (arm[:, 0] * way[:, 1] - arm[:, 1] * way[:, 0]) / points.reach
-    values[:, 3:] = (points.weight[:, :, None] * local[:, None, :]).reshape(len(body), -1)
+    values[:, :d] = way
+    if d == 2:
+        values[:, 2] = (arm[:, 0] * way[:, 1] - arm[:, 1] * way[:, 0]) / points.reach
+    else:
+        assert points.axes.axes is not None, "bodies in space"
+        own = np.matmul(rotation[body], points.axes.axes[body])
+        values[:, 3:6] = np.einsum("kij,ki->kj", own, np.cross(arm, way)) / points.reach[:, None]
+    values[:, motions(d) :] = (points.weight[:, :, None] * local[:, None, :]).reshape(len(body), -1)
     return values
+
+
+def _forth(arm: Array, rotation: Array) -> Array:
+    """Return vectors (k, d) turned by angles (k,) or by matrices (k, 3, 3)."""
+    if rotation.ndim == 1:
+        return turned(arm, rotation)
+    return np.asarray(np.matmul(rotation, arm[:, :, None])[:, :, 0])
+
+
+def _back(arm: Array, rotation: Array) -> Array:
+    """Return vectors (k, d) turned back."""
+    return turned(arm, -rotation) if rotation.ndim == 1 else _forth(arm, np.swapaxes(rotation, 1, 2))
+
+
+def _on(rotation: Array, turn: Array) -> Array:
+    """Return rotations after further ones, angles (k,) or vectors (k, 3) [rad]."""
+    if rotation.ndim == 1:
+        return np.asarray(rotation + turn)
+    return np.asarray(np.matmul(Rotation.from_rotvec(turn).as_matrix(), rotation))
+
+
+def _angle(before: Array, after: Array) -> Array:
+    """Return the angles (k,) between two rotations [rad]."""
+    if before.ndim == 1:
+        return np.abs(after - before)
+    return np.asarray(Rotation.from_matrix(np.matmul(after, np.swapaxes(before, 1, 2))).magnitude())
+
+
+def _axes(first: Array) -> tuple[Array, ...]:
+    """Return the axis (k, d) along which a support holds and the others, right-handed."""
+    if first.shape[1] == 2:
+        return first, turned_left(first)
+    others = {0: ((0, 1, 0), (0, 0, 1)), 1: ((-1, 0, 0), (0, 0, 1)), 2: ((1, 0, 0), (0, 1, 0))}
+    pick = [others[int(axis)] for axis in np.abs(first).argmax(axis=1)]
+    return first, *np.moveaxis(np.array(pick, dtype=float).reshape(-1, 2, 3), 1, 0)

@@ -24,7 +24,6 @@ from concio.analysis.motion.pairs import PairMaker
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import Statics
-from concio.analysis.motion.stepper import at_rest
 from concio.analysis.motion.structures import Structure, near_now, structures_of, together
 from concio.arguments import strict
 from concio.contact.reference import Reference
@@ -176,7 +175,7 @@ def _begin(
 ) -> tuple[MotionState, bool, str]:
     """Return where a structure begins, whether that is the equilibrium under its loads, and if not what there is."""
     reference = structure.reference
-    state = at_rest(reference)
+    state = MotionState.at_rest(reference)
     balanced, share, last = begun(Statics(reference, scheme, factors, engine=engine, sag=SAG), state)
     if balanced.found:
         return balanced.state, True, ""
@@ -219,7 +218,7 @@ class _Run:
     def begin(self, start: str | MotionState, velocities: Mapping[str, Sequence[float]] | None) -> None:
         """Begin in equilibrium, as described or at a state, with other velocities of some bodies."""
         reference = self.reference
-        structures, state = structures_of(reference), at_rest(reference)
+        structures, state = structures_of(reference), MotionState.at_rest(reference)
         if isinstance(start, MotionState):
             if start.centre.shape != reference.disc.centroids.shape or len(start.strain) != len(reference.body_of_node):
                 msg = "the state to start from belongs to another model"

@@ -1,6 +1,7 @@
 r"""Velocities as unknowns, frames of elastic bodies, and the right-hand side of a step.
 
-Unknowns of a rigid body are (v_x, v_y, reach omega), of a meshed one the velocities of its nodes in its own frame. The
+Unknowns of a rigid body are the velocity of its centroid and reach times its spin, in space along its principal axes
+(:mod:`concio.kinematics.spins`), of a meshed one the velocities of its nodes in its own frame. The
 frame turns with the rotation that fits the nodes best in mass; in it the strain d grows by what is left of their
 velocities. An implicit stiffness acts on all of the velocity; the part of it that only turns the strained body along,
 K J d omega, is taken out with the angular velocity at the beginning. Forces K d have no moment about the strained body:
@@ -15,7 +16,8 @@ from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import MotionState
 from concio.contact.reference import Reference
 from concio.kinematics.frames import cross, dot
-from concio.kinematics.rigid import swept
+from concio.kinematics.rigid import motions, swept
+from concio.kinematics.spins import gyroscopic
 from concio.kinematics.turns import Turns
 
 Array = np.ndarray
@@ -36,9 +38,9 @@ class Frames:
         self.n, self.count = disc.unknowns, len(reference.model.bodies)
         self.rigid, self.meshed = reference.rigid, reference.meshed
         d = disc.dim
-        self.reach = disc.reach[self.rigid]
+        self.axes, self.reach = reference.spin_axes, disc.reach[self.rigid][:, None]
         self.centres = disc.offsets[self.rigid][:, None] + np.arange(d)
-        self.turn = self.centres[:, 0] + d
+        self.turns = disc.offsets[self.rigid][:, None] + np.arange(d, motions(d))
         self.nodes = reference.node_column[:-1]
         self.body, self.arm, self.mass = reference.body_of_node, reference.node_arm, reference.mass
         self.node_mass = reference.mass[self.nodes[:, 0]]
@@ -59,19 +61,30 @@ class Frames:
     # -- velocities ----------------------------------------------------------------------------------------------------
 
     def unknowns(self, velocity: Array, spin: Array, nodal: Array, turn: Turns) -> Array:
-        """Return velocities of centroids (B, d), spins (B,) and velocities of nodes (nodes, d) as unknowns (N,)."""
+        """Return velocities of centroids (B, d), spins and velocities of nodes (nodes, d) as unknowns (N,)."""
         x = np.empty(self.n)
-        x[self.centres], x[self.turn] = velocity[self.rigid], self.reach * spin[self.rigid]
+        x[self.centres] = velocity[self.rigid]
+        x[self.turns] = self.reach * self.axes.own(spin[self.rigid], self.rigid, turn)
         if self.elastic:
             x[self.nodes] = turn[self.body].undo(nodal)
         return x
 
-    def rigid_part(self, x: Array, velocity: Array, spin: Array) -> tuple[Array, Array]:
-        """Return velocities of centroids (B, d) and spins (B,) with those of rigid bodies taken from unknowns (N,)."""
+    def rigid_part(self, x: Array, velocity: Array, spin: Array, turn: Turns) -> tuple[Array, Array]:
+        """Return velocities of centroids (B, d) and spins with those of rigid bodies taken from unknowns (N,).
+
+        Spins are (B,) in the plane and (B, 3) in space, where ``turn`` says how the bodies stand.
+        """
         velocity, spin = velocity.copy(), spin.copy()
         velocity[self.rigid] = x[self.centres]
-        spin[self.rigid] = x[self.turn] / self.reach
+        spin[self.rigid] = self.axes.outward(x[self.turns] / self.reach, self.rigid, turn)
         return velocity, spin
+
+    def gyroscopic(self, x: Array) -> Array:
+        """Return the gyroscopic forces (N,) on the rotations of rigid bodies with velocities x (N,) [kN]."""
+        f = np.zeros(self.n)
+        inertia = self.mass[self.turns] * self.reach**2
+        f[self.turns] = gyroscopic(inertia, x[self.turns] / self.reach) / self.reach
+        return f
 
     def nodal(self, x: Array, turn: Turns) -> Array:
         """Return the velocities of nodes (nodes, d) from unknowns (N,)."""

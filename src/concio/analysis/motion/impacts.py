@@ -107,11 +107,11 @@ class Impact:
         before = counted = np.zeros_like(found.t)
         for _ in range(MOST_RETURNED):
             grown = np.abs(found.t - before)
-            left = max(float((lent_n * grown[:, 0]).max()), float((lent_t * grown[:, 1]).max()))
+            left = max(float((lent_n * grown[:, 0]).max()), float((lent_t * grown[:, 1:].max(axis=1)).max()))
             if left <= enough or found.residual > CERTIFIED:
                 break
             before = found.t
-            origin = problem.origin + (lent_t * before[:, 1])[:, None]
+            origin = problem.origin + lent_t[:, None] * before[:, 1:]
             p = replace(problem, gap=problem.gap - lent_n * before[:, 0], origin=origin)
             again = self.solver.solve(p, found.states, found.x, found.t)
             if again.residual > CERTIFIED:

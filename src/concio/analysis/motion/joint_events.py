@@ -52,12 +52,14 @@ def joint_events(
     carries = after.force[:, 0] > 0
     closed = (after.contact != Normal.OPEN) & rows.valid
     was = old.contact != Normal.OPEN
+    slips, slipped = after.slip.any(axis=1), old.slip.any(axis=1)
+    same = (old.slip == after.slip).all(axis=1)
     kinds = (
         ("opens", known & was & ~closed & (old.force[:, 0] > 0)),
         ("closes", known & ~was & closed & carries),
         ("touches", ~known & closed & carries & ~slots.bonded),
-        ("slips", closed & carries & (after.slip != 0) & ~(known & (old.slip == after.slip))),
-        ("sticks", closed & carries & known & (after.slip == 0) & (old.slip != 0)),
+        ("slips", closed & carries & slips & ~(known & same)),
+        ("sticks", closed & carries & known & ~slips & slipped),
         ("crushes", (after.contact == Normal.CRUSHED) & ~(known & (old.contact == Normal.CRUSHED))),
         ("recovers", known & (old.contact == Normal.CRUSHED) & (after.contact != Normal.CRUSHED)),
     )

@@ -18,6 +18,7 @@ import numpy as np
 from concio.analysis.motion.joint_step import JointAnswer, JointStep, PairData
 from concio.analysis.motion.joints import Joints
 from concio.analysis.motion.state import Memory
+from concio.kinematics.frames import dot, norm
 from concio.problem.pair_state import Normal
 
 Array = np.ndarray
@@ -41,11 +42,11 @@ def after_step(
     """
     y, t = found.motion, found.force
     contact, slip = np.where(data.active, found.contact, np.int8(Normal.OPEN)), found.slip
-    lost_n, lost_t = -h * t[:, 0] * y[:, 0], -h * t[:, 1] * y[:, 1]
-    slid, stretch, stuck = _plastic_slip(memory, step, t, contact, slip, h * y[:, 1])
+    lost_n, lost_t = -h * t[:, 0] * y[:, 0], -h * dot(t[:, 1:], y[:, 1:])
+    slid, stretch, stuck = _plastic_slip(memory, step, t, contact, slip, h * y[:, 1:])
     raised, damped = memory.raised, 0.0
     if data.dilatancy.any():
-        lifted = data.dilatancy * np.abs(slid)
+        lifted = data.dilatancy * norm(slid)
         raised, lost_n, lost_t = raised + lifted, lost_n + t[:, 0] * lifted, lost_t - t[:, 0] * lifted
     sunk = step.sunk + h * y[:, 0] - (raised - memory.raised)
     crushing, squeezed, crushed = memory.crushing, np.zeros(len(t)), 0.0
@@ -101,8 +102,8 @@ def after_equilibrium(
     y, t = found.motion, found.force
     contact, slip = np.where(data.active, found.contact, np.int8(Normal.OPEN)), found.slip
     touches = contact != Normal.OPEN
-    stretch = np.where(touches, -step.a_t * t[:, 1], 0.0)
-    slid = np.where(touches & (slip != 0), y[:, 1] - stretch, 0.0)
+    stretch = np.where(touches[:, None], -step.a_t[:, None] * t[:, 1:], 0.0)
+    slid = np.where((touches & slip.any(axis=1))[:, None], y[:, 1:] - stretch, 0.0)
     crushing = memory.crushing
     if joints.any_cap:
         depth = -(y[:, 0] + step.a_n * t[:, 0])
@@ -113,7 +114,7 @@ def after_equilibrium(
         stored = np.where(touches, step.springs.stored(sunk, stretch), 0.0)
     return replace(
         memory, contact=contact, slip=slip, force=t, stretch=stretch, crushing=crushing,
-        raised=memory.raised + data.dilatancy * np.abs(slid), broken=_broken(joints, memory, step, contact, slip),
+        raised=memory.raised + data.dilatancy * norm(slid), broken=_broken(joints, memory, step, contact, slip),
         slid=memory.slid + slid, area=step.area, sunk=sunk, stored=stored,
     )  # fmt: skip
 
@@ -121,20 +122,20 @@ def after_equilibrium(
 def _plastic_slip(
     memory: Memory, step: JointStep, t: Array, contact: Array, slip: Array, moved: Array
 ) -> tuple[Array, Array, Array]:
-    """Divide what pairs moved along their tangent (m,): plastic slip, stretch at the end [m], and which only stretch.
+    """Divide what pairs moved along their tangents (m, d-1): plastic slip, stretch at the end [m], what only stretches.
 
     A hard pair that is hit keeps no stretch: what an impact moves was never elastic.
     """
-    soft = step.a_t > 0
+    soft, slips, elastic = step.a_t > 0, slip.any(axis=1), -step.a_t[:, None] * t[:, 1:]
     hit = (contact != Normal.OPEN) & ~(memory.force[:, 0] > 0) & ~step.springy
-    stuck = soft & (slip == 0) & (contact != Normal.OPEN) & ~hit
-    stretch = np.where(stuck, memory.stretch + moved, np.where(soft & ~hit, -step.a_t * t[:, 1], 0.0))
-    slid = moved - np.where(soft, stretch - memory.stretch, 0.0)
-    return np.where((contact != Normal.OPEN) & (slip != 0), slid, 0.0), stretch, stuck
+    stuck = soft & ~slips & (contact != Normal.OPEN) & ~hit
+    stretch = np.where(stuck[:, None], memory.stretch + moved, np.where((soft & ~hit)[:, None], elastic, 0.0))
+    slid = moved - np.where(soft[:, None], stretch - memory.stretch, 0.0)
+    return np.where(((contact != Normal.OPEN) & slips)[:, None], slid, 0.0), stretch, stuck
 
 
 def _broken(joints: Joints, memory: Memory, step: JointStep, contact: Array, slip: Array) -> Array:
     """Return which joints (m,) have lost cohesion and tensile strength: brittle ones that opened or slipped."""
     if not (joints.any_bond and joints.scheme.brittle):
         return memory.broken
-    return np.asarray(memory.broken | (step.bonded & ((contact == Normal.OPEN) | (slip != 0))))
+    return np.asarray(memory.broken | (step.bonded & ((contact == Normal.OPEN) | slip.any(axis=1))))

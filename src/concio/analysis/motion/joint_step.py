@@ -88,8 +88,10 @@ class JointAnswer:
         slip on the way to it [m].
     force : (m, d) array
         [kN].
-    contact, slip : (m,) integer arrays
-        State: codes of :class:`concio.problem.pair_state.Normal`; sign of the slip.
+    contact : (m,) integer array
+        State: codes of :class:`concio.problem.pair_state.Normal`.
+    slip : (m, d-1) array
+        Unit vector along which a pair slips, zero where it does not.
     """
 
     motion: Array

@@ -168,7 +168,7 @@ class Joints:
             shift[struck, 0] += self.scheme.restitution * y0[struck, 0]
         else:
             shift[:, 0] += settle * np.clip(gap, -MOST_SAG * self.sag, self.sag)
-            shift[:, 1] += settle * memory.stretch
+            shift[:, 1:] += settle[:, None] * memory.stretch
         data = PairData(
             rows.columns, rows.values, shift, cone, settle * a_n, settle * a_t, self.laws.dilatancy[slots.law],
             rows.valid & near,
@@ -188,7 +188,7 @@ class Joints:
         slots : Slots
         memory : Memory
             Of the last equilibrium.
-        moved : (m,) array
+        moved : (m, d-1) array
             Tangential displacement since the last equilibrium [m].
         speed : float
             Distance within which pairs count as near [m].
@@ -197,11 +197,11 @@ class Joints:
         gap, area, bonded, cone = self._here(rows, slots, memory)
         a_n, a_t, springs = self.compliances(slots, area, cone.tension)
         data = PairData(
-            rows.columns, rows.values, np.stack([gap, memory.stretch + moved], axis=1), cone, a_n, a_t,
+            rows.columns, rows.values, np.column_stack([gap, memory.stretch + moved]), cone, a_n, a_t,
             self.laws.dilatancy[slots.law], rows.valid & (gap <= speed),
         )  # fmt: skip
         springy = np.zeros(len(slots), dtype=bool) if springs is None else springs.normal
-        at_rest = np.zeros((len(slots), 2))
+        at_rest = np.zeros_like(rows.imposed)
         return data, JointStep(
             springy, a_n, a_t, gap, at_rest, bonded, springs, area, zero, zero, np.zeros(len(slots), dtype=bool)
         )
@@ -240,11 +240,11 @@ class Joints:
         stored = np.where(active, springs.stored(sunk, memory.stretch), 0.0)
         implicit = h * theta**2 + beta * theta
         at_theta = (gap + (h * (theta * (1 - theta) - 0.5) + beta * (1 - theta)) * y0[:, 0]) / implicit
-        drawn = (memory.stretch + (h * theta + beta) * (1 - theta) * y0[:, 1]) / implicit
+        drawn = (memory.stretch + (h * theta + beta) * (1 - theta) * y0[:, 1:]) / implicit
         shift = np.column_stack(
             [
                 np.where(springs.normal, rows.imposed[:, 0] + at_theta, data.shift[:, 0]),
-                np.where(springs.shear, rows.imposed[:, 1] + drawn, data.shift[:, 1]),
+                np.where(springs.shear[:, None], rows.imposed[:, 1:] + drawn, data.shift[:, 1:]),
             ]
         )
         a_n = np.where(springs.normal, step.a_n / implicit, data.a_n)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -120,7 +120,7 @@ class Mover:
             reached = self.h if clipped and whole else used
             self.h = min(self.step, 2 * reached if self.calm >= 2 else reached)
         found = report.solution
-        reactions = self.observer.reactions(found.t, report.pairs, report.normal)
+        reactions = self.observer.reactions(found.t, report.pairs, report.frame)
         return Row(found.residual, found.how, found.factorisations, report.depth, report.works, reactions)
 
     def advance(self, to: float) -> Row | None:
@@ -180,7 +180,5 @@ def shifted(state: MotionState, time: float) -> MotionState:
     late = state.time - time
     if not late:
         return state
-    return MotionState(
-        time, state.centre - late * state.velocity, state.rotation - late * state.spin, state.velocity, state.spin,
-        state.strain, state.nodal, state.memory, state.ties,
-    )  # fmt: skip
+    there = state.placement.moved(-late * state.velocity, -late * state.spin)
+    return replace(state, time=time, centre=there.centre, rotation=there.rotation)

@@ -16,6 +16,7 @@ from concio.contact.rows import Rows
 from concio.contact.slots import KINDS
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED
+from concio.kinematics.frames import norm
 from concio.model.stages import ControlPoint
 
 Array = np.ndarray
@@ -54,7 +55,7 @@ class Observer:
             if point.body not in number:
                 msg = f"there is no body called '{point.body}'"
                 raise InputError(msg, where="point", hint="see the names with 'concio check'")
-        place = np.array([p.at for p in points], dtype=float).reshape(-1, 2)
+        place = np.array([p.at for p in points], dtype=float).reshape(-1, reference.disc.dim)
         bodies = [number[p.body] for p in points]
         self.points = MaterialPoints.of(reference, bodies, place)
         self.fixed = np.flatnonzero(reference.disc.shape_of == FIXED)
@@ -73,10 +74,10 @@ class Observer:
     def positions(self, state: MotionState) -> Array:
         """Return where the points are (p, d) [m]."""
         if not len(self.points):
-            return np.zeros((0, 2))
+            return np.zeros((0, self.reference.disc.dim))
         return self.points.positions(state.placement, state.strain)
 
-    def reactions(self, force: Array, pairs: int, normal: Array) -> Array:
+    def reactions(self, force: Array, pairs: int, frame: Array) -> Array:
         """Return the force of each fixed body and support on the structure (r, d) [kN].
 
         Parameters
@@ -85,15 +86,16 @@ class Observer:
             Forces of all pairs: contact, supports, ties [kN].
         pairs : int
             Number of contact pairs.
-        normal : (pairs, d) array
+        frame : (pairs, d, d) array
+            Normal and tangents of the pairs.
         """
-        count = len(self.names)
-        total = np.zeros((count, 2))
+        count, d = len(self.names), self.reference.disc.dim
+        total = np.zeros((count, d))
         if len(self.fixed) and pairs:
             near, row, sign = self._of_fixed()
-            t, n = force[near] * sign, normal[near]
-            total[:, 0] = np.bincount(row, t[:, 0] * n[:, 0] - t[:, 1] * n[:, 1], count)
-            total[:, 1] = np.bincount(row, t[:, 0] * n[:, 1] + t[:, 1] * n[:, 0], count)
+            along = np.einsum("kd,kdc->kc", force[near] * sign, frame[near])
+            for axis in range(d):
+                total[:, axis] = np.bincount(row, along[:, axis], count)
         held = self.maker.held
         for k in range(len(held)):
             total[self._held_row[int(held.support[k])]] += force[pairs + k] @ np.stack([way[k] for way in held.ways])
@@ -134,7 +136,7 @@ class Observer:
         np.maximum.at(opening, number, np.maximum(self.rows(state).gap[own], 0.0))
         memory = state.memory
         if memory.key is self.maker.slots.key:
-            slid = memory.slid[own]
+            slid = memory.slid[own, 0] if memory.slid.shape[1] == 1 else norm(memory.slid[own])
             order = np.argsort(np.abs(slid), kind="stable")
             slip[number[order]] = slid[order]
         return opening, slip
@@ -156,7 +158,7 @@ class Observer:
         here, strain = state.placement, state.strain
         x = f.unknowns(state.velocity, state.spin, state.nodal, here.turns)
         nodes = reference.node_place(here, strain) - self.node_rest if f.elastic else strain
-        potential = reference.loads.potential(self.factors, here.centre - self.rest, state.rotation, nodes)
+        potential = reference.loads.potential(self.factors, here.centre - self.rest, here.turns, nodes)
         stored = f.strain_energy(strain) + self._springs(state)
         return {"kinetic": f.kinetic_energy(x), "strain": stored, "potential": potential, **sums}
 

@@ -15,8 +15,10 @@ from concio.contact.reference import Reference
 from concio.contact.rows import Rows
 from concio.contact.search import ContactSearch
 from concio.contact.slots import Slots
+from concio.contact.solid_search import SolidSearch
 from concio.kinematics.frames import dot
 from concio.kinematics.placement import Placement
+from concio.kinematics.rigid import motions
 from concio.kinematics.turns import Turns
 from concio.problem.cone import Cone
 from concio.solvers.stepping.matrix import StepMatrix
@@ -29,6 +31,15 @@ YIELDING = 1e-3
 
 Where blocks meet at corners their contacts hold each other several times over. In small displacements that does no
 harm; where they have moved, the gaps agree to second order only, and what is left would become self-stress."""
+
+
+LINE = {2: 1.0, 3: 2.0}
+"""Compliance added to a hard pair by dimension: what is one corner in the plane are two ends of a line in space."""
+
+
+def search_of(reference: Reference) -> ContactSearch | SolidSearch:
+    """Return what looks for the contacts of bodies that move."""
+    return ContactSearch(reference) if reference.disc.dim == 2 else SolidSearch(reference)
 
 
 class PairMaker:
@@ -44,15 +55,16 @@ class PairMaker:
 
     def __init__(self, reference: Reference, scheme: Scheme, sag: float = SAG) -> None:
         self.reference, self.scheme, self.n = reference, scheme, reference.disc.unknowns
-        self.search = ContactSearch(reference)
-        self.width = float(np.median(reference.edges.width[reference.free]))
+        self.search = search_of(reference)
+        self.width = float(np.median(reference.surface.width[reference.free]))
         weight = reference.typical_mass * reference.gravity
         lent = sag * self.width / weight if weight > 0 else 0.0
+        lent *= LINE[reference.disc.dim]
         self.joints = Joints(
             reference.laws, scheme, reference.disc.size, self.width, self.search.skin, lent, yielding(reference)
         )  # fmt: skip
         self.held, self.ties = Held.of(reference), Ties.of(reference)
-        self.nothing = no_pairs()
+        self.nothing = no_pairs(reference.disc.dim)
 
     @property
     def slots(self) -> Slots:
@@ -65,26 +77,26 @@ class PairMaker:
     ) -> tuple[Memory, Rows, bool]:
         """Return what pairs remember, their rows, and whether their layout is new, where bodies stand and move so."""
         search = self.search
-        new = search.update(search.edges.placed(placement))
+        new = search.update(search.edges.placed(placement))  # type: ignore[arg-type]  # each search its own surfaces
         key = self.slots.key
         if memory.key is not key:
             memory = memory.carried_to(key)
         return memory, search.rows(placement, velocity, spin, strain), new
 
     def supports(self, turn: Turns, shift: Array) -> PairData:
-        """Return the pairs of supports; ``shift`` (k, 2): how far or fast they are from their places."""
+        """Return the pairs of supports; ``shift`` (k, d): how far or fast they are from their places."""
         held, k = self.held, len(self.held)
         if not k:
             return self.nothing
         zero, inf = np.zeros(k), np.full(k, np.inf)
         off = np.stack([dot(shift, way) for way in held.ways], axis=1)
         return PairData(
-            held.points.columns, held.values(turn), off, Cone(zero, np.where(held.both, np.inf, 0.0), inf, inf), zero,
+            held.points.columns, held.values(turn), off, Cone(zero, np.where(held.pinned, np.inf, 0.0), inf, inf), zero,
             zero, zero, np.ones(k, dtype=bool),
         )  # fmt: skip
 
     def off_support(self, placement: Placement, strain: Array, factors: Mapping[str, float]) -> Array:
-        """Return how far held points are from where supports want them (k, 2) [m]."""
+        """Return how far held points are from where supports want them (k, d) [m]."""
         return np.asarray(self.held.points.positions(placement, strain) - self.held.target(factors))
 
     def tie_pairs(self, placement: Placement, strain: Array, tied: TieMemory) -> tuple[PairData, Array, PairData]:
@@ -100,13 +112,13 @@ class PairMaker:
         gap = gap + tied.plastic
         zero, every, inf = np.zeros(k), np.ones(k, dtype=bool), np.full(k, np.inf)
         data = PairData(
-            ties.columns, values, np.stack([gap, zero], axis=1), Cone(zero, zero, zero, ties.most),
+            ties.columns, values, along_normal(gap, values.shape[1]), Cone(zero, zero, zero, ties.most),
             1.0 / ties.stiffness, zero, zero, ~tied.broken,
         )  # fmt: skip
         tension = self._tension(gap, tied)
         swings = (tension > 0) & (length > 0)
         swing = PairData(
-            ties.columns, across * swings[:, None, None], np.zeros((k, 2)), Cone(zero, zero, inf, inf),
+            ties.columns, across * swings[:, None, None], np.zeros(across.shape[:2]), Cone(zero, zero, inf, inf),
             np.where(swings, length / np.where(swings, tension, 1.0), 1.0), zero, zero, every,
         )  # fmt: skip
         return data, gap, swing
@@ -142,12 +154,19 @@ def relative(columns: Array, values: Array, x: Array) -> Array:
     return np.asarray(np.einsum("mdw,mw->md", values, padded[columns]))
 
 
-def no_pairs() -> PairData:
+def along_normal(first: Array, dim: int) -> Array:
+    """Return vectors (k, d) with a component (k,) along the normal only."""
+    found = np.zeros((len(first), dim))
+    found[:, 0] = first
+    return found
+
+
+def no_pairs(dim: int = 2) -> PairData:
     """Return no pairs."""
-    none = np.zeros(0)
+    none, wide = np.zeros(0), motions(dim)
     return PairData(
-        np.zeros((0, 3), dtype=int), np.zeros((0, 2, 3)), np.zeros((0, 2)), Cone(none, none, none, none), none, none,
-        none, np.zeros(0, dtype=bool),
+        np.zeros((0, wide), dtype=int), np.zeros((0, dim, wide)), np.zeros((0, dim)), Cone(none, none, none, none),
+        none, none, none, np.zeros(0, dtype=bool),
     )  # fmt: skip
 
 
@@ -163,7 +182,7 @@ def assembled(
             force, length,
         )  # fmt: skip
     w, m, n = max(p.columns.shape[1] for p in parts), sum(len(p.columns) for p in parts), len(b)
-    columns, values, at = np.full((m, w), n), np.zeros((m, 2, w)), 0
+    columns, values, at = np.full((m, w), n), np.zeros((m, parts[0].values.shape[1], w)), 0
     for part in parts:
         k, own = part.columns.shape
         columns[at : at + k, :own], values[at : at + k, :, :own] = part.columns, part.values

@@ -22,7 +22,6 @@ from concio.analysis.motion.push_result import PushEnding
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import FAR, Balanced, Statics
-from concio.analysis.motion.stepper import at_rest
 from concio.analysis.motion.structures import Structure, near_now, structures_of, together
 from concio.contact.reference import Reference
 from concio.model.stages import ControlPoint
@@ -243,7 +242,7 @@ def _begun(asked: PushAsked, structure: Structure) -> _One:
     """Return a structure in equilibrium before it is pushed."""
     reference = structure.reference
     statics = asked.statics(reference)
-    start, share, _ = begun(statics, at_rest(reference))
+    start, share, _ = begun(statics, MotionState.at_rest(reference))
     if not start.found:
         words, moving = what_moves(reference, start)
         msg = f"the structure does not stand before it is pushed{words}"
@@ -307,7 +306,7 @@ def _merged(
     whole = asked.statics(reference)
     observer = Observer(reference, whole.maker, whole.frames, asked.factors)
     rows = [observer.rows_of(run.observer, one) for run, one in zip(runs, structures, strict=True)]
-    rest, states, reactions = at_rest(reference), [], []
+    rest, states, reactions = MotionState.at_rest(reference), [], []
     for k in range(count):
         states.append(together(structures, [run.states[k] for run in runs], rest))
         total = np.zeros((len(observer.names), reference.model.dim))

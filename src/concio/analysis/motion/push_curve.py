@@ -108,7 +108,7 @@ class PushCurve:
         self.multiplier.append(found.multiplier)
         self.residual.append(found.residual)
         self.states.append(found.state)
-        self.reactions.append(self.observer.reactions(found.force, found.pairs, rows.normal))
+        self.reactions.append(self.observer.reactions(found.force, found.pairs, rows.frame))
 
     def told(self, share: float) -> bool:
         """Tell how far it is; return whether to stop."""
@@ -199,7 +199,7 @@ class PushCurve:
     def _insert(self, found: Balanced, displacement: float, at: int) -> None:
         """Put a point between others."""
         rows = self.observer.rows(found.state)
-        reaction = self.observer.reactions(found.force, found.pairs, rows.normal)
+        reaction = self.observer.reactions(found.force, found.pairs, rows.frame)
         kept: tuple[tuple[list[Any], Any], ...] = (
             (self.displacement, displacement), (self.multiplier, found.multiplier), (self.residual, found.residual),
             (self.states, found.state), (self.reactions, reaction),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -70,4 +70,4 @@ class Drive:
     ground: Array
     velocity: Array
     factors: Mapping[str, float]
-    moved: Array = field(default_factory=lambda: np.zeros(2))
+    moved: Array | float = 0.0

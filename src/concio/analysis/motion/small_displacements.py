@@ -25,8 +25,10 @@ from concio.analysis.motion.state import Memory, MotionState
 from concio.contact.factors import load_factor
 from concio.contact.points import Followed
 from concio.contact.reference import Reference
-from concio.kinematics.frames import dot, norm, turned_left
+from concio.kinematics.frames import components, norm
+from concio.kinematics.placement import Placement
 from concio.kinematics.rigid import swept
+from concio.kinematics.spins import turned_from
 from concio.kinematics.turns import Turns
 from concio.model.stages import ControlPoint
 from concio.solvers.stepping.matrix import StepMatrix
@@ -43,7 +45,7 @@ class Look:
     ----------
     turn : Turns
         Rotations of the bodies.
-    strain : (nodes, 2) array
+    strain : (nodes, d) array
         Displacements of nodes in the frames of their bodies [m].
     memory : Memory
         With the keys of the pairs found.
@@ -61,8 +63,10 @@ class Look:
         Contact, supports, ties, swinging of ties.
     turning : (N,) array
         Stiffness with which ties resist that bodies turn [kN/m]; empty without ties.
-    point, normal : (m, 2) arrays
+    point : (m, d) array
         Of the contact pairs.
+    frame : (m, d, d) array
+        Normal and tangents of the contact pairs.
     """
 
     turn: Turns
@@ -78,7 +82,7 @@ class Look:
     parts: tuple[PairData, PairData, PairData, PairData]
     turning: Array
     point: Array
-    normal: Array
+    frame: Array
 
 
 class SmallDisplacements:
@@ -110,8 +114,9 @@ class SmallDisplacements:
         self.maker = PairMaker(reference, scheme, sag)
         self.control = None if control is None else Followed.of(reference, control)
         self.width, self.gravity = self.maker.width, reference.gravity
-        self.no_spin = np.zeros(len(reference.model.bodies))
-        self.no_velocity = np.zeros((len(self.no_spin), reference.disc.dim))
+        at_rest = reference.at_rest().placement
+        self.no_spin, self.no_velocity = at_rest.no_spin, np.zeros_like(at_rest.centre)
+        self.nowhere = np.zeros(reference.disc.dim)
         self._matrices = [self._stiffness(share * self.gravity / self.width) for share in RESISTANCE]
         self._bare = self._stiffness(0.0)
 
@@ -128,11 +133,11 @@ class SmallDisplacements:
         here, strain = state.placement, state.strain
         turn = here.turns
         memory, rows, new = maker.contacts(memory, here, self.no_velocity, self.no_spin, strain)
-        slid = moved if len(moved) == len(memory.key) else np.zeros(len(memory.key))
+        slid = moved if len(moved) == len(memory.key) else np.zeros((len(memory.key), self.nowhere.size - 1))
         data, joint = maker.joints.resting(rows, maker.slots, memory, slid, maker.search.skin)
         factors = self.factors_at(multiplier)
-        off = maker.off_support(here, strain, factors) if len(maker.held) else np.zeros((0, 2))
-        dead = f.loads(Drive(np.zeros(2), np.zeros(2), {**self.factors, **dict.fromkeys(self.live, 0.0)}), turn)
+        off = maker.off_support(here, strain, factors) if len(maker.held) else np.zeros((0, f.reference.disc.dim))
+        dead = f.loads(self._drive({**self.factors, **dict.fromkeys(self.live, 0.0)}), turn)
         unit = self.unit(turn)
         internal = -f.stiffness(strain) - f.turned(f.stiffness(strain), strain) if f.elastic else np.zeros(f.n)
         supports = maker.supports(turn, off)
@@ -141,7 +146,7 @@ class SmallDisplacements:
         measure = self.mean(unit) if self.control is None else self.control.rate(f.n, turn)
         return Look(
             turn, strain, memory, new, data, joint, dead, unit, measure, internal, (data, supports, ties, swings),
-            turning, rows.point, rows.normal,
+            turning, rows.point, rows.frame,
         )  # fmt: skip
 
     def problem(self, look: Look, multiplier: float, level: int | None) -> StepProblem:
@@ -159,7 +164,7 @@ class SmallDisplacements:
     def moved(self, state: MotionState, x: Array, look: Look) -> MotionState:
         """Return the state after a displacement x (N,) of the unknowns."""
         f = self.frames
-        u, w = f.rigid_part(x, self.no_velocity, self.no_spin)
+        u, w = f.rigid_part(x, self.no_velocity, self.no_spin, look.turn)
         strain = look.strain
         if f.elastic:
             place = look.turn[f.body].apply(f.arm + strain)
@@ -170,16 +175,16 @@ class SmallDisplacements:
         return replace(state, centre=there.centre, rotation=there.rotation, strain=strain)
 
     def swung(self, look: Look, before: MotionState, after: MotionState) -> Array:
-        """Return what finite rotations add to the slips of an iteration, known to first order by the rows (m,)."""
-        w = after.rotation - before.rotation
+        """Return what finite rotations add to the slips of an iteration, known to first order by the rows (m, d-1)."""
+        w = turned_from(before.rotation, after.rotation)
         if not w.any():
-            return np.zeros(len(look.memory.key))
-        slots, turn = self.maker.slots, Turns.of(w)
+            return np.zeros((len(look.memory.key), look.frame.shape[2] - 1))
+        slots, turn = self.maker.slots, Placement.at_rest(before.centre).moved(self.no_velocity, w).turns
         moved = np.zeros_like(look.point)
         for body, sign in ((slots.body_b, 1.0), (slots.body_a, -1.0)):
             arm = look.point - before.centre[body]
             moved += sign * (turn[body].apply(arm) - arm - swept(w[body], arm))
-        return dot(turned_left(look.normal), moved)
+        return components(moved, look.frame)[:, 1:]
 
     def controlled_at(self, state: MotionState) -> float:
         """Return the displacement of the point that controls the load [m]."""
@@ -192,6 +197,9 @@ class SmallDisplacements:
         f = self.frames
         size = float(norm(unit[f.places]).sum())
         return unit / size if size > 0 else unit
+
+    def _drive(self, factors: Mapping[str, float]) -> Drive:
+        return Drive(self.nowhere, self.nowhere, factors, self.nowhere)
 
     def factors_at(self, multiplier: float) -> dict[str, float]:
         """Return the load factors at a multiplier."""
@@ -212,4 +220,4 @@ class SmallDisplacements:
             return np.zeros(self.frames.n)
         groups = self.reference.loads.groups
         only = {g: (self.sign * load_factor(self.factors, g) if g in self.live else 0.0) for g in groups}
-        return self.frames.loads(Drive(np.zeros(2), np.zeros(2), only), turn)
+        return self.frames.loads(self._drive(only), turn)

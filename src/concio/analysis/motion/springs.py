@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from concio.analysis.motion.state import Memory
+from concio.kinematics.frames import dot
 
 Array = np.ndarray
 
@@ -45,11 +46,11 @@ class Springs:
     longest: Array
 
     def parts(self, sunk: Array, stretch: Array) -> tuple[Array, Array]:
-        """Return the energies (m,) of springs pressed by -sunk (m,) and of springs sheared by stretch (m,) [kN m]."""
+        """Return the energies (m,) of springs pressed by -sunk (m,) and sheared by stretch (m, d-1) [kN m]."""
         held: Array = np.where(self.normal, np.minimum(sunk, self.longest), 0.0)
-        sheared: Array = np.where(self.shear, stretch, 0.0)
+        sheared: Array = np.where(self.shear[:, None], stretch, 0.0)
         soft_n, soft_t = np.where(self.normal, self.a_n, 1.0), np.where(self.shear, self.a_t, 1.0)
-        return 0.5 * held**2 / soft_n, 0.5 * sheared**2 / soft_t
+        return 0.5 * held**2 / soft_n, 0.5 * dot(sheared, sheared) / soft_t
 
     def stored(self, sunk: Array, stretch: Array) -> Array:
         """Return the energy (m,) of springs [kN m]."""

@@ -23,18 +23,20 @@ class Memory:
     ----------
     key : (m,) integer array
         Names of the pairs, growing.
-    contact, slip : (m,) integer arrays
-        State: codes of :class:`concio.problem.pair_state.Normal`; sign of the slip.
+    contact : (m,) integer array
+        State: codes of :class:`concio.problem.pair_state.Normal`.
+    slip : (m, d-1) array
+        Unit vector along which a pair slips, zero where it does not.
     force : (m, d) array
         Normal and friction forces of the last step [kN].
-    stretch : (m,) array
+    stretch : (m, d-1) array
         Elastic part of the slip of compliant joints [m].
     crushing, raised : (m,) arrays
         Plastic approach, and opening by dilatancy [m].
     broken : (m,) boolean array
         Joints that have lost cohesion and tensile strength.
-    slid : (m,) array
-        Total plastic slip so far, signed [m].
+    slid : (m, d-1) array
+        Total plastic slip so far, along the tangents [m].
     area : (m,) array
         On which the springs of compliant joints stand, zero before they were first looked at [m2].
     sunk : (m,) array
@@ -60,17 +62,18 @@ class Memory:
     def blank(cls, key: Array, dim: int = 2) -> Memory:
         """Return the memory of pairs that touch for the first time."""
         m = len(key)
-        zero = np.zeros(m)
+        zero, along = np.zeros(m), np.zeros((m, dim - 1))
         return cls(
-            key, np.full(m, int(Normal.CLOSED), dtype=np.int8), np.zeros(m, dtype=np.int8), np.zeros((m, dim)),
-            zero, zero.copy(), zero.copy(), np.zeros(m, dtype=bool), zero.copy(), zero.copy(), zero.copy(), zero.copy(),
+            key, np.full(m, int(Normal.CLOSED), dtype=np.int8), along, np.zeros((m, dim)), along.copy(), zero,
+            zero.copy(), np.zeros(m, dtype=bool), along.copy(), zero.copy(), zero.copy(), zero.copy(),
         )  # fmt: skip
 
     def states(self, count: int) -> PairStates:
         """Return the states of ``count`` pairs, those behind the m remembered closed and sticking."""
-        normal, sign = np.full(count, int(Normal.CLOSED), dtype=np.int8), np.zeros(count)
-        normal[: len(self.key)], sign[: len(self.key)] = self.contact, self.slip
-        return PairStates.plane(normal, sign)
+        normal = np.full(count, int(Normal.CLOSED), dtype=np.int8)
+        direction = np.zeros((count, self.slip.shape[1]))
+        normal[: len(self.key)], direction[: len(self.key)] = self.contact, self.slip
+        return PairStates(normal, direction)
 
     def carried_to(self, key: Array) -> Memory:
         """Return the memory of pairs with other keys, blank where a key is new."""
@@ -135,11 +138,11 @@ class MotionState:
         [s].
     centre : (B, d) array
         Centroids [m].
-    rotation : (B,) array
-        [rad]
+    rotation : (B,) array in the plane, (B, 3, 3) in space
+        [rad]; rotation matrices in space.
     velocity : (B, d) array
         Of the centroids [m/s].
-    spin : (B,) array
+    spin : (B,) array in the plane, (B, 3) in space
         [rad/s].
     strain : (nodes, d) array
         Displacements of nodes in the frames of their bodies [m].
@@ -158,6 +161,16 @@ class MotionState:
     nodal: Array
     memory: Memory
     ties: TieMemory
+
+    @classmethod
+    def at_rest(cls, reference: Reference) -> MotionState:
+        """Return the state of bodies at rest where they were described, unstrained."""
+        here, nodes = reference.at_rest().placement, np.zeros_like(reference.node_arm)
+        memory = Memory.blank(np.zeros(0, dtype=np.int64), here.dim)
+        return cls(
+            0.0, here.centre, here.rotation, np.zeros_like(here.centre), here.no_spin, nodes, nodes.copy(), memory,
+            TieMemory.described(Ties.of(reference)),
+        )  # fmt: skip
 
     @cached_property
     def placement(self) -> Placement:

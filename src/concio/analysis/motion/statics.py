@@ -23,7 +23,7 @@ from concio.analysis.motion.small_displacements import Look, SmallDisplacements
 from concio.analysis.motion.state import Memory, MotionState
 from concio.analysis.motion.tie_bars import settled_ties
 from concio.contact.reference import Reference
-from concio.kinematics.turns import Turns
+from concio.kinematics.spins import turned_from
 from concio.model.stages import ControlPoint
 from concio.problem.contact_problem import Engine
 from concio.problem.pair_state import PairStates
@@ -122,7 +122,8 @@ class Statics(SmallDisplacements):
 
     def work_displacement(self, before: MotionState, found: Balanced) -> float:
         """Return the mean displacement on which the load worked between two equilibria [m]."""
-        turn = Turns.of(0.5 * (before.rotation + found.state.rotation))
+        half = 0.5 * turned_from(before.rotation, found.state.rotation)
+        turn = before.placement.moved(np.zeros_like(before.centre), half).turns
         return float(self.mean(self.unit(turn)) @ found.moved)
 
     def balance(
@@ -141,13 +142,13 @@ class Statics(SmallDisplacements):
             Iterations at most.
         """
         here, memory, moved = state, state.memory, np.zeros(self.frames.n)
-        slid: Array = np.zeros(0)
+        slid: Array = np.zeros((0, state.centre.shape[1] - 1))
         done, first, found, iteration = 0.0, self.controlled_at(state), None, 0
         resistance, self._unsolved = Resistance(self.frames.n), 0
         for iteration in range(1, most + 1):
             look = self._looked(here, memory, slid, multiplier)
             memory = look.memory
-            slid = slid if len(slid) == len(memory.key) else np.zeros(len(memory.key))
+            slid = slid if len(slid) == len(memory.key) else np.zeros((len(memory.key), slid.shape[1]))
             p = self.problem(look, multiplier, resistance.level)
             found = self._solved(p, *_guess(p, memory, found))
             if target is not None:
@@ -155,7 +156,7 @@ class Statics(SmallDisplacements):
             x = found.x
             before, here = here, self.moved(here, x, look)
             done = done + float(look.measure @ x) if self.control is None else self.controlled_at(here) - first
-            slid = slid + relative(look.data.columns, look.data.values, x)[:, 1] + self.swung(look, before, here)
+            slid = slid + relative(look.data.columns, look.data.values, x)[:, 1:] + self.swung(look, before, here)
             moved = moved + x
             if float(np.abs(x).max(initial=0.0)) < STILL * self.width or self._unsolved > UNSOLVED:
                 break
@@ -228,7 +229,7 @@ class Statics(SmallDisplacements):
                 before, state, look.memory, slid, found.t[: k + len(self.maker.ties)],  # ties at rest do not swing
                 self.acting(look, multiplier), self.factors_at(multiplier), self._bare, 1e-3 * self.width,
             )  # fmt: skip
-            answer = JointAnswer(look.data.shift, found.t[:m], found.states.normal[:m], found.states.sign[:m])
+            answer = JointAnswer(look.data.shift, found.t[:m], found.states.normal[:m], found.states.direction[:m])
             memory = after_equilibrium(self.maker.joints, look.memory, look.joint, look.data, answer)
             own = slice(k, k + len(self.maker.ties))
             tied = settled_ties(self.maker.ties, state.ties, look.parts[2], found.t[own, 0], found.states.normal[own])
@@ -242,4 +243,4 @@ def _guess(p: StepProblem, memory: Memory, last: StepSolution | None) -> tuple[P
     """Return states and forces (pairs, d) to begin with: those of the last iteration, or the states of the memory."""
     if last is not None and len(last.t) == p.pairs:
         return last.states, last.t
-    return memory.states(p.pairs), np.zeros((p.pairs, 2))
+    return memory.states(p.pairs), np.zeros((p.pairs, p.dim))

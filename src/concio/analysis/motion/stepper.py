@@ -30,7 +30,6 @@ from concio.analysis.motion.scheme import RETURN, Drive, Scheme
 from concio.analysis.motion.state import Memory, MotionState, TieMemory
 from concio.analysis.motion.sunk import moved_apart
 from concio.analysis.motion.tie_bars import TieStep
-from concio.contact.attachments import Ties
 from concio.contact.reference import Reference
 from concio.contact.rows import Rows
 from concio.kinematics.placement import Placement
@@ -42,6 +41,12 @@ from concio.solvers.stepping.problem import StepSolution
 from concio.solvers.stepping.solver import StepSolver
 
 Array = np.ndarray
+
+SWINGS = 25
+"""Times at most that gyroscopic moments are worked out again in a step; each takes off what the body turns in it."""
+
+SWUNG = 1e-14
+"""Change of these moments over the loads that is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,8 +64,8 @@ class StepReport:
         Deepest penetration of hard pairs at its end, before they are moved apart [m].
     struck : float
         Deepest penetration at its end of what was apart at its beginning [m].
-    normal : (pairs, d) array
-        From body a to body b.
+    frame : (pairs, d, d) array
+        Normal from body a to body b, and tangents.
     meets : (P,) array
         Time from its beginning until what was apart meets, by connected part; infinite where nothing does [s].
     part : (B,) integer array
@@ -74,7 +79,7 @@ class StepReport:
     works: dict[str, float]
     depth: float
     struck: float
-    normal: Array
+    frame: Array
     meets: Array
     part: Array
     left: float
@@ -98,6 +103,7 @@ class Stepper:
         self.certificate = Certificate(reference, scheme, self.maker)
         self.solver = StepSolver(engine or reference.model.engine)
         self.fixed = np.flatnonzero(disc.shape_of == -2)
+        self.turns = disc.dim == 3
         self.parts = Parts(disc.shape_of == -2)
         self._movable = np.full(disc.unknowns, np.inf)
         for b in np.setdiff1d(reference.rigid, self.maker.held.points.body).tolist():
@@ -146,6 +152,9 @@ class Stepper:
         b = f.mass * x0 / h + loads + ground
         if f.elastic:
             b += f.internal(state, h, rate, strain, spin, x0)
+        swing = self._swing(b, x0, h) if self.turns else np.zeros(0)
+        if self.turns:
+            b += swing
         force, speed = measures(self.reference, loads + ground, x0, h)
         maker = self.maker
         memory, rows, layout_is_new = maker.contacts(state.memory, middle, velocity, spin, strain)
@@ -163,17 +172,25 @@ class Stepper:
         states = memory.states(count)
         if ties is not None:
             states.normal[k:] = ties.states()
-        t0 = np.zeros((count, 2))
+        t0 = np.zeros((count, problem.dim))
         t0[:m] = memory.force
         found = self.solver.solve(problem, states, x0, t0)
         returned = Returned()
-        if joint.impact:
-            found, returned = Impact(self.solver, problem, joint, self.scheme, x0, rows.imposed).answer(found)
+        for _ in range(SWINGS):
+            if joint.impact:
+                found, returned = Impact(self.solver, problem, joint, self.scheme, x0, rows.imposed).answer(found)
+            if not self.turns:
+                break
+            again = f.gyroscopic(self.scheme.theta * found.x + (1 - self.scheme.theta) * x0)
+            if np.abs(again - swing).max(initial=0.0) <= SWUNG * force:
+                break
+            problem, swing = replace(problem, b=problem.b + again - swing), again
+            found = self.solver.solve(problem, found.states, found.x, found.t)
         theta = self.scheme.theta
         x = theta * found.x + (1 - theta) * x0
         y = relative(rows.columns, rows.values, x) + rows.imposed
         memory_before = memory
-        answer = JointAnswer(y, found.t[:m], found.states.normal[:m], found.states.sign[:m])
+        answer = JointAnswer(y, found.t[:m], found.states.normal[:m], found.states.direction[:m])
         memory, works = after_step(maker.joints, memory, joint, data, answer, h)
         works["input"] = h * float(ground @ x) - h * float((found.t[:m] * rows.imposed).sum())
         if len(maker.held):
@@ -206,7 +223,19 @@ class Stepper:
         meets = first_meetings(joint, end, free, speed, h, part_of_pair, 1 + int(part.max(initial=-1)))
         nearing = free & ~joint.struck & (parting[:, 0] < -speed)
         left = time_until(end, parting[:, 0], nearing)
-        return new, StepReport(found, m, works, depth, struck, rows.normal, meets, part, left)
+        return new, StepReport(found, m, works, depth, struck, rows.frame, meets, part, left)
+
+    def _swing(self, b: Array, x0: Array, h: float) -> Array:
+        """Return the gyroscopic forces (N,) of bodies that nothing touches, under right-hand sides b (N,)."""
+        f, theta = self.frames, self.scheme.theta
+        x, swing = x0, f.gyroscopic(x0)
+        for _ in range(SWINGS):
+            x = h * (b + swing) / f.mass
+            again = f.gyroscopic(theta * x + (1 - theta) * x0)
+            change, swing = float(np.abs(again - swing).max(initial=0.0)), again
+            if change <= np.finfo(float).eps * float(np.abs(again).max(initial=0.0)):
+                break
+        return swing
 
     def _certified(
         self, found: StepSolution, state: MotionState, new: MotionState, memory: Memory, h: float, drive: Drive,
@@ -263,8 +292,8 @@ class Stepper:
     ) -> MotionState:  # fmt: skip
         """Return the state that velocities x in the step and x1 at its end, and displacements ``apart``, lead to."""
         f = self.frames
-        v_mean, w_mean = f.rigid_part(x + apart / h, velocity, state.spin)
-        v_end, w_end = f.rigid_part(x1, velocity, state.spin)
+        v_mean, w_mean = f.rigid_part(x + apart / h, velocity, state.spin, state.placement.turns)
+        w_mean[self.fixed] = 0.0
         new_strain, nodal = state.strain, state.nodal
         if f.elastic:
             place = turn[f.body].apply(f.arm + strain)
@@ -272,22 +301,12 @@ class Stepper:
             v_mean[f.meshed], w_mean[f.meshed] = v[f.meshed], w[f.meshed]
             new_strain = new_strain + h * rate
             nodal = f.nodal(x1, turn)
+        there = state.placement.moved(h * v_mean, h * w_mean)
+        v_end, w_end = f.rigid_part(x1, velocity, state.spin, there.turns)
+        if f.elastic:
             v, w = f.fit(nodal, place)
             v_end[f.meshed], w_end[f.meshed] = v[f.meshed], w[f.meshed]
-        w_mean[self.fixed] = 0.0
-        there = state.placement.moved(h * v_mean, h * w_mean)
         return MotionState(
             state.time + h, there.centre, there.rotation, v_end, w_end, new_strain, nodal, memory, ties
         )  # fmt: skip
 
-
-def at_rest(reference: Reference) -> MotionState:
-    """Return the state of bodies at rest where they were described, unstrained."""
-    configuration = reference.at_rest()
-    count = len(reference.model.bodies)
-    nodes = len(reference.body_of_node)
-    memory = Memory.blank(np.zeros(0, dtype=np.int64))
-    return MotionState(
-        0.0, configuration.placement.centre, configuration.placement.rotation, np.zeros((count, 2)), np.zeros(count),
-        np.zeros((nodes, 2)), np.zeros((nodes, 2)), memory, TieMemory.described(Ties.of(reference)),
-    )  # fmt: skip

@@ -65,7 +65,8 @@ class TieStep:
         begun = replace(memory, sunk=gap - half)
         implicit = h * theta**2 + beta * theta
         shift = (gap + (h * (theta * (1 - theta) - 0.5) + beta * (1 - theta)) * y0) / implicit
-        shifts = np.stack([shift, np.zeros_like(shift)], axis=1)
+        shifts = np.zeros_like(data.shift)
+        shifts[:, 0] = shift
         data = replace(data, shift=shifts, a_n=data.a_n / implicit)
         return cls(ties, begun, data, begun.stored(ties) - memory.stored(ties))
 

@@ -124,7 +124,10 @@ class StepProblem:
     def flexibility(self) -> Array:
         """Displacement of each pair under a unit force along each direction, roughly: C diag(A)^-1 C' (m, d)."""
         inverse = self.matrix.inverse_diagonal[self.columns]
-        return np.asarray(np.matmul(self.values * self.values, inverse[:, :, None])[:, :, 0])
+        found = np.asarray(np.matmul(self.values * self.values, inverse[:, :, None])[:, :, 0])
+        if self.dim == 3:  # one for all tangents: states are read in units of it, and a slip keeps its direction
+            found[:, 1:] = found[:, 1:].max(axis=1, keepdims=True)
+        return found
 
     @cached_property
     def added(self) -> tuple[Array, Array]:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from concio.kinematics.frames import dot
 from concio.problem.contact_problem import Array
 from concio.problem.limits_of_work import STEP_PAIRS, STEP_PROBLEMS
 from concio.problem.pair_state import PairStates
@@ -21,7 +22,7 @@ from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.algebra.updated_blocks import UpdatedBlocks
 from concio.solvers.stepping.problem import StepProblem
 from concio.solvers.stepping.small import solve_small
-from concio.solvers.stepping.states import Linear, read_states, solve_states
+from concio.solvers.stepping.states import Linear, across_slip, read_states, solve_states
 
 
 class PairsAsked:
@@ -68,8 +69,8 @@ class PairsAsked:
         tau = forces.ravel() * p.force
         dx = self.blocks.moved(V, tau - tau0)
         moved = p.opening(dx)
-        dt_n = -self.D[:, 0, 0] * (moved[:, 0] - linear.open_wide * moved[:, 1])
-        dt_t = np.where(linear.stick, -moved[:, 1] / linear.soft_t, linear.drag * dt_n)
+        dt_n = -self.D[:, 0, 0] * (moved[:, 0] - dot(linear.open_wide, moved[:, 1:]))
+        dt_t = linear.drag * dt_n[:, None] - linear.across(moved[:, 1:]) / linear.soft_t[:, None]
         t = t0 + np.column_stack([dt_n, dt_t])
         t[V] = tau.reshape(-1, d)
         return x0 + dx, t
@@ -92,7 +93,7 @@ def settle(
     states : PairStates
     residual : float
     """
-    x0, t0, linear = x, t, Linear.of(p, states)
+    x0, t0, linear = x, t, Linear.of(p, states, across_slip(p, x, t))
     best, laws = p.residual(x, t)
     found = (x, t, states, best)
     asked = PairsAsked(p, factor)
@@ -115,7 +116,7 @@ def settle(
         normal, direction = states.normal.copy(), states.direction.copy()
         normal[V], direction[V] = small.normal[V], small.direction[V]
         now = PairStates(normal, direction)
-        settled = Linear.of(p, now)
+        settled = Linear.of(p, now, across_slip(p, x, t))
         D_now = settled.blocks(p)
         try:
             updated = asked.updated(D_now)

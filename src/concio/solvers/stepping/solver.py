@@ -14,7 +14,7 @@ from concio.solvers.pivoting import sparse_lemke
 from concio.solvers.stepping.factor import StepFactor
 from concio.solvers.stepping.problem import StepProblem, StepSolution
 from concio.solvers.stepping.settle import settle
-from concio.solvers.stepping.states import Linear, halting, read_states, solve_states
+from concio.solvers.stepping.states import Linear, across_slip, halting, read_states, solve_states
 
 FEW = 25
 """Changed pairs up to which one small problem is cheaper than another factorisation."""
@@ -56,8 +56,9 @@ class StepSolver:
             return best
 
         seen: list[PairStates] = []
+        turn = across_slip(p, x, t)
         for round_ in range(STEP_FACTORISATIONS):
-            linear = Linear.of(p, states)
+            linear = Linear.of(p, states, turn)
             D = linear.blocks(p)
             try:
                 factor.factorise(D)
@@ -71,6 +72,9 @@ class StepSolver:
             new = halting(read_states(p, x1, t1, errors), states)
             changed = int(((laws > STEP_SETTLED) & new.differ(states)).sum())
             seen.append(states)
+            if p.dim == 3:  # slips turn: Newton's method goes on from the point, there is no small linear problem
+                x, t, turn, states = x1, t1, across_slip(p, x1, t1, errors), new
+                continue
             if changed <= FEW or round_ >= FLIPS or any(not new.differ(s).any() for s in seen):
                 x2, t2, settled, residual = settle(p, factor, states, x1, t1)
                 found = keep(x2, t2, settled, residual, "small problem")
@@ -86,7 +90,8 @@ class StepSolver:
         if self.factor is None:
             self.factor = StepFactor(p.matrix.sparse, p.columns, self.engine)
         self.factor.take(p.matrix.sparse, p.values)
-        self.factor.factorise(Linear.of(p, states).blocks(p))
+        turn = across_slip(p, np.zeros(len(f)), np.zeros((p.pairs, p.dim)))
+        self.factor.factorise(Linear.of(p, states, turn).blocks(p))
         return self.factor.solve(f)
 
     def _count(self, found: StepSolution) -> StepSolution:
@@ -101,6 +106,8 @@ class StepSolver:
         if found.residual < STEP_SETTLED:
             return found
         nearest = found if best is None or found.residual < best.residual else best
+        if p.dim == 3:
+            return found if best is None or found.residual < best.residual else best
         answer = sparse_lemke.solve(problem, start_states=nearest.states[pick], tries=0, limit=STEP_PIVOTS * len(pick))
         found = self._read(p, pick, answer.displacement, answer.normal_force, answer.friction_force, "pivoting")
         return found if found.residual < nearest.residual else nearest

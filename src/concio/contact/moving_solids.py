@@ -1,0 +1,166 @@
+"""The surfaces of all polyhedra as flat arrays that move with them: vertices, faces and edges.
+
+What is evaluated in every step of a motion is a handful of array operations, as with the edges of the plane
+(:mod:`concio.contact.edges`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from concio.kinematics.frames import cross, dot, norm, tangents
+from concio.kinematics.placement import Placement
+from concio.model.polyhedron import Polyhedron
+
+Array = np.ndarray
+
+FLAT = 1e-6
+"""Sine of the angle between two faces below which their common edge does not stand out."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedSolids:
+    """Surfaces where they are: vertices ``start`` (v, 3), normals (f, 3) and first tangents (f, 3) of faces."""
+
+    start: Array
+    normal: Array
+    tangent: Array
+
+
+@dataclass(frozen=True, eq=False)
+class MovingSolids:
+    """Surfaces of all bodies in the frames of their bodies, relative to the centroids.
+
+    Parameters
+    ----------
+    body : (v,) integer array
+        Body of each vertex.
+    start : (v, 3) array
+        Vertices [m].
+    around : (v, k) integer array
+        Vertices at the other ends of the edges of each vertex; itself where there are fewer than k.
+    face_body, face_start : (f,) integer arrays
+        Body of each face, and one of its vertices.
+    normal, tangent : (f, 3) arrays
+    sides : (f, s, 2, 2) array
+        Ends of the sides of each face, along its two tangents from ``face_start`` [m]; repeated where there are fewer.
+    edge_body : (e,) integer array
+    edge : (e, 2) integer array
+        Vertices at both ends of edges that stand out.
+    edge_faces : (e, 2) integer array
+        Faces that meet there.
+    fixed : (v,) boolean array
+        Vertices of bodies that do not move freely.
+    width : (B,) array
+        Mean width of each body, three times its volume over its surface [m].
+    """
+
+    body: Array
+    start: Array
+    around: Array
+    face_body: Array
+    face_start: Array
+    normal: Array
+    tangent: Array
+    sides: Array
+    edge_body: Array
+    edge: Array
+    edge_faces: Array
+    fixed: Array
+    width: Array
+
+    @classmethod
+    def of(cls, bodies: Sequence[Polyhedron]) -> MovingSolids:
+        """Return the surfaces of bodies."""
+        tops = [b.topology for b in bodies]
+        vertices = np.array([len(b.vertices) for b in bodies])
+        faces = np.array([len(b.faces) for b in bodies])
+        first_v, first_f = np.cumsum(vertices) - vertices, np.cumsum(faces) - faces
+        start = np.concatenate([b.vertices - b.centroid for b in bodies])
+        normal = np.concatenate([b.normals for b in bodies])
+        face_body = np.repeat(np.arange(len(bodies)), faces)
+        edge = np.concatenate([top.edges + first_v[i] for i, top in enumerate(tops)])
+        edge_faces = np.concatenate([top.edge_faces + first_f[i] for i, top in enumerate(tops)])
+        side = np.concatenate(
+            [np.column_stack([top.face + first_f[i], top.start + first_v[i], top.end + first_v[i]])
+             for i, top in enumerate(tops)]
+        )  # fmt: skip
+        side = side[np.argsort(side[:, 0], kind="stable")]
+        face_start = side[np.searchsorted(side[:, 0], np.arange(len(normal))), 1]
+        ways = tangents(normal)
+        flat = np.einsum("sekc,sdc->sekd", (start[side[:, 1:]] - start[face_start[side[:, 0]]][:, None])[:, None],
+                         ways[side[:, 0]])[:, 0]  # fmt: skip
+        out = cross(normal[edge_faces[:, 0]], normal[edge_faces[:, 1]])
+        stands = dot(out, start[edge[:, 1]] - start[edge[:, 0]]) > FLAT * norm(start[edge[:, 1]] - start[edge[:, 0]])
+        around = _padded(np.concatenate([edge[:, 0], edge[:, 1]]), np.concatenate([edge[:, 1], edge[:, 0]]), len(start))
+        body = np.repeat(np.arange(len(bodies)), vertices)
+        area = np.array([b.face_areas.sum() for b in bodies])
+        return cls(
+            body, start, around, face_body, face_start, normal, ways[:, 0], _gathered(side[:, 0], flat, len(normal)),
+            body[edge[stands, 0]], edge[stands], edge_faces[stands],
+            np.array([bodies[b].kind == "fixed" for b in body.tolist()]),
+            3.0 * np.array([b.volume for b in bodies]) / area,
+        )  # fmt: skip
+
+    def placed(self, placement: Placement) -> PlacedSolids:
+        """Return the surfaces of bodies that stand elsewhere."""
+        turn = placement.turns[self.face_body]
+        return PlacedSolids(placement.points(self.body, self.start), turn.apply(self.normal), turn.apply(self.tangent))
+
+    # -- names of pairs of features ------------------------------------------------------------------------------------
+
+    def key(self, corner: Array, face: Array, edges: Array) -> Array:
+        """Return names of corners on faces (q,), then of pairs of edges (r, 2): (q + r,) integers."""
+        on_faces = corner.astype(np.int64) * len(self.normal) + face
+        on_edges = edges[:, 0].astype(np.int64) * len(self.edge) + edges[:, 1]
+        return np.concatenate([on_faces, len(self.start) * len(self.normal) + on_edges])
+
+    def features(self, key: Array) -> tuple[Array, Array, Array]:
+        """Return which names (m,) are corners on faces, and the numbers of their two features (m,) each."""
+        most = len(self.start) * len(self.normal)
+        on_face = key < most
+        first, second = np.divmod(np.where(on_face, key, key - most), np.where(on_face, len(self.normal), len(self.edge)))
+        return on_face, first, second
+
+    def numbers(self, bodies: Array) -> tuple[Array, Array, Array]:
+        """Return the numbers of the vertices, faces and edges of some bodies, in order."""
+        vertex, face, edge = (np.flatnonzero(np.isin(of, bodies)) for of in (self.body, self.face_body, self.edge_body))
+        return vertex, face, edge
+
+
+def renamed(key: Array, old: MovingSolids, new: MovingSolids, numbers: Sequence[Array]) -> tuple[Array, Array]:
+    """Return names (k,) of those features that have other ``numbers``, and which names (m,) these are.
+
+    ``numbers`` are those of vertices, faces and edges, negative where a feature is missing.
+    """
+    on_face, first, second = old.features(key)
+    vertex, face, edge = numbers
+    most_v, most_e = len(vertex) - 1, len(edge) - 1
+    first = np.where(on_face, vertex[np.minimum(first, most_v)], edge[np.minimum(first, most_e)])
+    second = np.where(on_face, face[np.minimum(second, len(face) - 1)], edge[np.minimum(second, most_e)])
+    kept = (first >= 0) & (second >= 0)
+    on_face, first, second = on_face[kept], first[kept].astype(np.int64), second[kept]
+    most = len(new.start) * len(new.normal)
+    return np.where(on_face, first * len(new.normal) + second, most + first * len(new.edge) + second), kept
+
+
+def _padded(of: Array, value: Array, count: int) -> Array:
+    """Return the values of each of ``count`` owners side by side (count, k), its own number where there are fewer."""
+    order = np.argsort(of, kind="stable")
+    of, value = of[order], value[order]
+    place = np.arange(len(of)) - np.searchsorted(of, of)
+    found = np.tile(np.arange(count)[:, None], (1, int(place.max(initial=0)) + 1))
+    found[of, place] = value
+    return found
+
+
+def _gathered(of: Array, value: Array, count: int) -> Array:
+    """Return the sides (n, 2, 2) of each of ``count`` owners, sorted by them, beside each other, then its first corner."""
+    first = np.searchsorted(of, np.arange(count))
+    place = np.arange(len(of)) - first[of]
+    found = np.repeat(np.repeat(value[first][:, None, :1], 2, axis=2), int(place.max()) + 1, axis=1)
+    found[of, place] = value
+    return found

@@ -1,0 +1,231 @@
+"""The contact search of polyhedra that move: candidates within a skin, looked for again when a corner has moved by half.
+
+Bodies are near where their boxes, grown by the skin, meet. Of two bodies that are near, corners are candidates for
+faces that they may come to stand on, and edges for edges that they may come to cross: those whose surroundings turn
+away from each other along the normal.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from concio.contact.candidates import THROUGH
+from concio.contact.moving_solids import MovingSolids, PlacedSolids
+from concio.contact.rows import RowMaker, Rows
+from concio.contact.slots import Slots
+from concio.contact.solid_touch import SAME, Crossing, SolidTouch, SolidToucher, outside
+from concio.kinematics.frames import cross, dot, norm
+from concio.kinematics.placement import Placement
+
+if TYPE_CHECKING:
+    from concio.contact.reference import Reference
+
+Array = np.ndarray
+
+SKIN = 0.1
+"""Skin over the median width of the bodies."""
+
+AWAY = 0.1
+"""Sine of the angle by which what surrounds a corner or an edge may turn towards the other body."""
+
+ALIKE = 0.9
+"""Cosine of the angle between the normals of two points that may stand for each other."""
+
+
+@dataclass(frozen=True, eq=False)
+class SolidLayout:
+    """Slots with what they were made from.
+
+    Parameters
+    ----------
+    slots : Slots
+    toucher : SolidToucher
+    maker : RowMaker
+    start : (v, 3) array
+        Where the vertices were when the layout was made.
+    joint : (m,) integer array
+        Number of the joint as described that a slot belongs to; -1 where there was none.
+    """
+
+    slots: Slots
+    toucher: SolidToucher
+    maker: RowMaker
+    start: Array
+    joint: Array
+
+
+class SolidSearch:
+    """Finds the contact pairs of polyhedra that move.
+
+    Parameters
+    ----------
+    reference : Reference
+    """
+
+    def __init__(self, reference: Reference) -> None:
+        self.reference, self.edges = reference, reference.solids
+        size = reference.disc.size
+        self.skin = SKIN * float(np.median(self.edges.width[reference.free]))
+        self.slack, self.same = 1e-9 * size, SAME * size
+        self.fixed = np.array([b.kind == "fixed" for b in reference.model.bodies])
+        self.layout: SolidLayout | None = None
+
+    def update(self, placed: PlacedSolids) -> bool:
+        """Look for candidates again where that is due; return whether the layout has changed."""
+        old = self.layout
+        if old is not None and norm(placed.start - old.start).max(initial=0.0) <= 0.5 * self.skin:
+            return False
+        toucher = find_solid_candidates(self.edges, placed, self.fixed, self.skin, self.slack, self.same)
+        slots = self._slots(toucher)
+        if old is not None:  # what stood for others goes on doing so
+            toucher.chosen[:] = np.isin(slots.key, old.slots.key[old.toucher.chosen])
+        joints = self.reference.joint_numbers
+        pairs = zip(slots.body_a.tolist(), slots.body_b.tolist(), strict=True)
+        joint = np.array([joints.get((min(p), max(p)), -1) for p in pairs], dtype=int)
+        maker = RowMaker(
+            self.reference.disc, slots, toucher, self.reference.node_column, self.reference.spin_axes
+        )
+        self.layout = SolidLayout(slots, toucher, maker, placed.start, joint)
+        return True
+
+    def _slots(self, toucher: SolidToucher) -> Slots:
+        """Return the slots of contact points: one each."""
+        a, b = toucher.body_a, toucher.body_b
+        law, opening = self.reference.rules.find(a, b)
+        m = len(a)
+        number, one = np.arange(m), np.ones(m)
+        return Slots(
+            number, number, np.zeros(m), one, np.full(m, -1), self.edges.key(toucher.corner, toucher.face, toucher.edges),
+            a, b, law, opening, one.copy(), np.zeros(m, dtype=bool), None, None,
+        )  # fmt: skip
+
+    def touch(self, placed: PlacedSolids) -> SolidTouch:
+        """Return the contact points of the present layout."""
+        assert self.layout is not None
+        return self.layout.toucher.touch(placed)
+
+    def rows(
+        self, placement: Placement, velocity: Array, spin: Array, strain: Array, *, turning: bool = True
+    ) -> Rows:
+        """Return the rows of bodies placed so, after :meth:`update`; see :meth:`concio.contact.rows.RowMaker.rows`."""
+        assert self.layout is not None
+        touch = self.layout.toucher.touch(self.edges.placed(placement))
+        return self.layout.maker.rows(touch, placement, velocity, spin, strain, turning=turning)
+
+
+def find_solid_candidates(
+    solids: MovingSolids, placed: PlacedSolids, fixed: Array, skin: float, slack: float, same: float
+) -> SolidToucher:
+    """Return the candidates of placed surfaces.
+
+    Parameters
+    ----------
+    solids : MovingSolids
+    placed : PlacedSolids
+    fixed : (B,) boolean array
+        Bodies that do not move freely: two of them are no candidates.
+    skin : float
+        Distance within which features are candidates [m].
+    slack, same : float
+        See :class:`concio.contact.solid_touch.SolidToucher` [m].
+    """
+    a, b = near_bodies(solids, placed, fixed, skin)
+    one, other = np.concatenate([a, b]), np.concatenate([b, a])
+    corner, face = _products(solids.body, other, solids.face_body, one)
+    corner, face = _on_faces(solids, placed, corner, face, skin)
+    first, second = _products(solids.edge_body, a, solids.edge_body, b)
+    edges, sign = _across(solids, placed, np.column_stack([first, second]), skin)
+    body_a = np.concatenate([solids.face_body[face], solids.edge_body[edges[:, 0]]])
+    body_b = np.concatenate([solids.body[corner], solids.edge_body[edges[:, 1]]])
+    toucher = SolidToucher(
+        solids, corner, face, edges, sign, body_a, body_b, slack, same, np.zeros((0, 2), dtype=int),
+        np.zeros(len(body_a), dtype=bool),
+    )  # fmt: skip
+    found = toucher.touch(placed)
+    near = cKDTree(found.point).query_pairs(2.0 * skin, output_type="ndarray") if len(found.point) else toucher.near
+    i, j = near.T
+    pair = np.sort(np.column_stack([body_a, body_b]), axis=1)
+    turn = np.where(body_a < body_b, 1.0, -1.0)
+    alike = dot(found.normal[i], found.normal[j]) * turn[i] * turn[j] > ALIKE
+    near = near[(pair[i] == pair[j]).all(axis=1) & alike]
+    toucher.chosen[:] = False
+    return SolidToucher(
+        solids, corner, face, edges, sign, body_a, body_b, slack, same, near, toucher.chosen,
+    )  # fmt: skip
+
+
+def near_bodies(solids: MovingSolids, placed: PlacedSolids, fixed: Array, skin: float) -> tuple[Array, Array]:
+    """Return pairs of bodies (n,), the first number lower, whose boxes grown by a skin meet."""
+    count = len(solids.width)
+    low, high = np.full((2, count, 3), np.inf) * [[[1.0]], [[-1.0]]]
+    np.minimum.at(low, solids.body, placed.start)
+    np.maximum.at(high, solids.body, placed.start)
+    order = np.argsort(low[:, 0], kind="stable")
+    last = np.searchsorted(low[order, 0], high[order, 0] + 2 * skin, side="right")
+    size = np.maximum(last - np.arange(count) - 1, 0)
+    first = np.repeat(np.arange(count), size)
+    second = first + 1 + np.arange(len(first)) - np.repeat(np.cumsum(size) - size, size)
+    i, j = order[first], order[second]
+    meet = ((low[i] - 2 * skin <= high[j]) & (low[j] - 2 * skin <= high[i])).all(axis=1) & ~(fixed[i] & fixed[j])
+    return np.minimum(i, j)[meet], np.maximum(i, j)[meet]
+
+
+def _products(of: Array, body: Array, of_other: Array, other: Array) -> tuple[Array, Array]:
+    """Return all pairs of features, those of the bodies ``body`` (n,) with those of ``other`` (n,)."""
+    start, end = np.searchsorted(of, body), np.searchsorted(of, body, side="right")
+    begin, stop = np.searchsorted(of_other, other), np.searchsorted(of_other, other, side="right")
+    size, wide = (end - start) * (stop - begin), stop - begin
+    pair = np.repeat(np.arange(len(body)), size)
+    place = np.arange(len(pair)) - np.repeat(np.cumsum(size) - size, size)
+    return start[pair] + place // wide[pair], begin[pair] + place % wide[pair]
+
+
+def _on_faces(
+    solids: MovingSolids, placed: PlacedSolids, corner: Array, face: Array, skin: float
+) -> tuple[Array, Array]:
+    """Return corners that may come to stand on faces, of all pairs (n,)."""
+    normal, start = placed.normal[face], placed.start[corner]
+    away = start - placed.start[solids.face_start[face]]
+    gap = dot(normal, away)
+    deep = THROUGH * np.minimum(solids.width[solids.body[corner]], solids.width[solids.face_body[face]])
+    keep = (gap <= 2 * skin) & (gap >= -deep)
+    corner, face, normal, away, start = corner[keep], face[keep], normal[keep], away[keep], start[keep]
+    around = placed.start[solids.around[corner]] - start[:, None]
+    length = np.linalg.norm(around, axis=2)
+    lifts = np.einsum("nkc,nc->nk", around, normal) >= -AWAY * length
+    tangent = placed.tangent[face]
+    x, y = dot(away, tangent), dot(away, cross(normal, tangent))
+    keep = lifts.all(axis=1)
+    keep[keep] = outside(solids.sides[face[keep]], x[keep], y[keep]) <= 2 * skin
+    return corner[keep], face[keep]
+
+
+def _across(solids: MovingSolids, placed: PlacedSolids, edges: Array, skin: float) -> tuple[Array, Array]:
+    """Return edges that may come to cross, of all pairs (n, 2), and the signs of their normals (k,)."""
+    ends = placed.start[solids.edge]
+    low, high = ends.min(axis=1), ends.max(axis=1)
+    i, j = edges.T
+    edges = edges[((low[i] - 2 * skin <= high[j]) & (low[j] - 2 * skin <= high[i])).all(axis=1)]
+    d = ends[:, 1] - ends[:, 0]
+    d = d / norm(d)[:, None]
+    into = np.stack([cross(placed.normal[solids.edge_faces[:, 0]], d), cross(d, placed.normal[solids.edge_faces[:, 1]])],
+                    axis=1)  # fmt: skip
+    normal = cross(d[edges[:, 0]], d[edges[:, 1]])
+    size = norm(normal)
+    normal = normal / np.where(size > 0, size, 1.0)[:, None]
+    a, b = (np.einsum("nkc,nc->nk", into[edges[:, k]], normal) for k in (0, 1))
+    found, signs = [], []
+    for sign in (1.0, -1.0):
+        keep = (sign * a <= AWAY).all(axis=1) & (sign * b >= -AWAY).all(axis=1)
+        kept = edges[keep]
+        way = np.full(len(kept), sign)
+        crossing = Crossing.of(ends[kept], way)
+        narrow = solids.width[solids.edge_body[kept]].min(axis=1)
+        close = (crossing.beyond <= 2 * skin) & (crossing.gap <= 2 * skin) & (crossing.gap >= -THROUGH * narrow)
+        found.append(kept[close])
+        signs.append(way[close])
+    return np.concatenate(found), np.concatenate(signs)
