@@ -108,7 +108,7 @@ def write_motion(result: PushResult | DynamicsResult, place: Path, films: tuple[
             **{
                 f"reaction {axis} of {name} [kN]": steps.reaction[:, r, k]
                 for r, name in enumerate(result.reactions_of)
-                for k, axis in enumerate("xy")
+                for k, axis in enumerate("xyz"[: result.model.dim])
             },
             "residual [-]": steps.residual,
         }

@@ -78,6 +78,15 @@ class MovingEdges:
             edges.fixed, width,
         )  # fmt: skip
 
+    @property
+    def counts(self) -> tuple[int]:
+        """Number of edges."""
+        return (len(self.body),)
+
+    def numbers(self, bodies: Array) -> tuple[Array]:
+        """Return the numbers of the edges of some bodies."""
+        return (np.flatnonzero(np.isin(self.body, bodies)),)
+
     def placed(self, placement: Placement) -> PlacedEdges:
         """Return the edges of bodies that stand elsewhere."""
         c, turn = placement.centre[self.body], placement.turns[self.body]

@@ -83,7 +83,8 @@ class MovingLoads:
 
     def _arms(self, disc: Discretisation) -> dict[str, Array]:
         """Return S of the dead loads of each group that has any away from centroids."""
-        model, found = disc.model, {}
+        model = disc.model
+        found: dict[str, Array] = {}
         number = np.full(len(model.bodies), -1)
         number[self.rigid] = np.arange(len(self.rigid))
         dead = [k for k, load in enumerate(model.loads) if load.kind not in ("pressure", "weight", "body")]

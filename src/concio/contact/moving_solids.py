@@ -122,8 +122,14 @@ class MovingSolids:
         """Return which names (m,) are corners on faces, and the numbers of their two features (m,) each."""
         most = len(self.start) * len(self.normal)
         on_face = key < most
-        first, second = np.divmod(np.where(on_face, key, key - most), np.where(on_face, len(self.normal), len(self.edge)))
+        count = np.where(on_face, len(self.normal), len(self.edge))
+        first, second = np.divmod(np.where(on_face, key, key - most), count)
         return on_face, first, second
+
+    @property
+    def counts(self) -> tuple[int, int, int]:
+        """Numbers of vertices, faces and edges."""
+        return len(self.start), len(self.normal), len(self.edge)
 
     def numbers(self, bodies: Array) -> tuple[Array, Array, Array]:
         """Return the numbers of the vertices, faces and edges of some bodies, in order."""
@@ -132,7 +138,7 @@ class MovingSolids:
 
 
 def renamed(key: Array, old: MovingSolids, new: MovingSolids, numbers: Sequence[Array]) -> tuple[Array, Array]:
-    """Return names (k,) of those features that have other ``numbers``, and which names (m,) these are.
+    """Return names (m,) of pairs whose features have other ``numbers``, and which of them (m,) have both.
 
     ``numbers`` are those of vertices, faces and edges, negative where a feature is missing.
     """
@@ -141,8 +147,7 @@ def renamed(key: Array, old: MovingSolids, new: MovingSolids, numbers: Sequence[
     most_v, most_e = len(vertex) - 1, len(edge) - 1
     first = np.where(on_face, vertex[np.minimum(first, most_v)], edge[np.minimum(first, most_e)])
     second = np.where(on_face, face[np.minimum(second, len(face) - 1)], edge[np.minimum(second, most_e)])
-    kept = (first >= 0) & (second >= 0)
-    on_face, first, second = on_face[kept], first[kept].astype(np.int64), second[kept]
+    kept, first = (first >= 0) & (second >= 0), first.astype(np.int64)
     most = len(new.start) * len(new.normal)
     return np.where(on_face, first * len(new.normal) + second, most + first * len(new.edge) + second), kept
 
@@ -158,7 +163,7 @@ def _padded(of: Array, value: Array, count: int) -> Array:
 
 
 def _gathered(of: Array, value: Array, count: int) -> Array:
-    """Return the sides (n, 2, 2) of each of ``count`` owners, sorted by them, beside each other, then its first corner."""
+    """Return the sides (n, 2, 2) of ``count`` owners, sorted by them, beside each other, filled up with a corner."""
     first = np.searchsorted(of, np.arange(count))
     place = np.arange(len(of)) - first[of]
     found = np.repeat(np.repeat(value[first][:, None, :1], 2, axis=2), int(place.max()) + 1, axis=1)

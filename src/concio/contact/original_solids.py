@@ -25,7 +25,7 @@ SLACK = 2e-9
 """How far beyond a face or an edge a pair may touch, over the size of the model."""
 
 SAME = 2e-7
-"""Distance over the size of the model below which a point stands for another."""
+"""Distance along the joint over the size of the model below which a point stands for another."""
 
 SKEW = 2e-3
 """Sine of the angle between edges that cross."""
@@ -33,12 +33,32 @@ SKEW = 2e-3
 
 @dataclass(frozen=True, eq=False)
 class _Named:
-    """The pairs of a layout by their names: their two bodies, corners and faces or edges, in numbers of these bodies."""
+    """The pairs of a layout by their names.
+
+    Parameters
+    ----------
+    slots : Slots
+        With laws and openings as the model has them.
+    faces : int
+        How many of the pairs, the first ones, are corners on faces.
+    body : (m, 2) integer array
+    rings : (faces, s, 2) integer array
+        Vertices at both ends of the sides of each face; a side that begins where it ends fills up.
+    level : (faces, 3) array
+        First tangent of each face as described.
+    corner : (faces,) integer array
+    edges : (m - faces, 2, 2) integer array
+        Vertices at both ends of the edges of either body.
+    columns : (m, 12) integer array
+    """
 
     slots: Slots
-    on_face: Array
+    faces: int
     body: Array
-    local: Array
+    rings: Array
+    level: Array
+    corner: Array
+    edges: Array
     columns: Array
     sound: bool = True
 
@@ -55,10 +75,10 @@ class OriginalSolids:
         self.reference = reference
         disc, bodies = reference.disc, reference.model.polyhedra
         self.bodies = bodies
-        self.arms = [b.vertices - disc.centroids[i] for i, b in enumerate(bodies)]
-        solids = reference.solids
-        self._first_vertex = np.searchsorted(solids.body, np.arange(len(bodies)))
-        self._first_face = np.searchsorted(solids.face_body, np.arange(len(bodies)))
+        self.arms = np.concatenate([b.vertices - disc.centroids[i] for i, b in enumerate(bodies)])
+        count = [len(b.vertices) for b in bodies]
+        self.owner = np.repeat(np.arange(len(bodies)), count)
+        self.first = np.cumsum(count, dtype=np.intp) - count
         self._named: tuple[SolidLayout, _Named] | None = None
         self._rule: dict[tuple[int, int], tuple[int, float]] = {}
         self._pieces: dict[int, list[tuple[Array, Array, Array]]] = {}
@@ -81,25 +101,28 @@ class OriginalSolids:
         """Read the names of the pairs of a layout."""
         solids, disc = self.reference.solids, self.reference.disc
         on_face, first, second = solids.features(layout.slots.key)
-        m = len(on_face)
-        body, local = np.empty((m, 2), dtype=int), np.empty((m, 2, 2), dtype=int)
-        f, v = second[on_face], first[on_face]
-        body[on_face] = np.column_stack([solids.face_body[f], solids.body[v]])
-        local[on_face, 0] = (f - self._first_face[solids.face_body[f]])[:, None]
-        local[on_face, 1] = (v - self._first_vertex[solids.body[v]])[:, None]
-        for k, edge in enumerate((first[~on_face], second[~on_face])):
-            owner = solids.edge_body[edge]
-            body[~on_face, k] = owner
-            local[~on_face, k] = solids.edge[edge] - self._first_vertex[owner][:, None]
+        faces = int(on_face.sum())
+        corner, face, edges = first[:faces], second[:faces], np.column_stack([first, second])[faces:]
+        of_face = solids.face_body[face]
+        body = np.concatenate([np.column_stack([of_face, self.owner[corner]]), solids.edge_body[edges]])
+        begin = np.searchsorted(solids.face_body, np.arange(len(self.bodies)))
+        numbers = (face - begin[of_face]).tolist()
+        rings, level = [], np.zeros((faces, 3))
+        for i, (b, f) in enumerate(zip(of_face.tolist(), numbers, strict=True)):
+            loops = [self.first[b] + np.array(loop) for loop in self.bodies[b].loops_of(f)]
+            rings.append(np.concatenate([np.column_stack([loop, np.roll(loop, -1)]) for loop in loops]))
+            level[i] = _level(self.bodies[b].normals[f])
+        wide = max((len(ring) for ring in rings), default=1)
+        filled = [np.concatenate([r, np.full((wide - len(r), 2), r[0, 0])]) for r in rings]
         laws = [self.law(min(a, b), max(a, b)) for a, b in body.tolist()]
         law, opening = np.array([v[0] for v in laws], dtype=int), np.array([v[1] for v in laws], dtype=float)
-        n = disc.unknowns
-        parts = []
-        for k in (0, 1):
-            free = disc.shape_of[body[:, k]] == RIGID
-            parts.append(np.where(free[:, None], disc.offsets[body[:, k]][:, None] + np.arange(6), n))
+        free = disc.shape_of[body] == RIGID
+        columns = np.where(free[..., None], disc.offsets[body][..., None] + np.arange(6), disc.unknowns)
         slots = replace(layout.slots, body_a=body[:, 0], body_b=body[:, 1], law=law, opening=opening)
-        return _Named(slots, on_face, body, local, np.concatenate(parts, axis=1))
+        return _Named(
+            slots, faces, body, np.array(filled, dtype=int).reshape(faces, wide, 2), level, corner, solids.edge[edges],
+            columns.reshape(len(body), 12),
+        )  # fmt: skip
 
     def at(
         self, layout: SolidLayout, centre: Array, rotation: Array, velocity: Array, spin: Array, strain: Array
@@ -120,44 +143,40 @@ class OriginalSolids:
         strain : (0, 3) array
             There are no elastic bodies.
         """
-        n = self.named(layout)
-        place = [c + arm @ R.T for c, R, arm in zip(centre, rotation, self.arms, strict=True)]
-        m = len(n.on_face)
-        point, frame, gap, beyond = np.zeros((m, 3)), np.zeros((m, 3, 3)), np.zeros(m), np.zeros(m)
-        for i in range(m):
-            (a, b), (p, q) = n.body[i], n.local[i]
-            if n.on_face[i]:
-                one = self._corner(place[a], place[b], rotation[a], int(a), int(p[0]), int(q[0]))
-            else:
-                one = _crossing(place[a][p], place[b][q], layout.toucher.sign[i - int(n.on_face.sum())])
-            point[i], frame[i], gap[i], beyond[i] = one
-        valid = self._standing(layout, point, beyond)
+        n, sign = self.named(layout), layout.toucher.sign
+        place = self._placed(centre, rotation)
+        corners = self._corners(n, place, rotation)
+        crossings = _crossings(place[n.edges], sign)
+        point, frame, gap, beyond = (np.concatenate(both) for both in zip(corners, crossings, strict=True))
+        valid = self._standing(layout, point, frame[:, 0], beyond)
         values, imposed = self._rows(n, point, frame, centre, rotation, velocity)
-        turning = self._turning(n, place, point, frame, centre, velocity, spin, layout.toucher.sign)
+        turning = self._turning(n, place, point, frame, centre, velocity, spin, sign)
         return n.slots, Rows(
-            n.columns, values, gap + n.slots.opening, imposed, turning, valid, np.ones(m), point, frame
+            n.columns, values, gap + n.slots.opening, imposed, turning, valid, np.ones(len(gap)), point, frame
         )
 
-    def _corner(
-        self, of_a: Array, of_b: Array, turn: Array, a: int, face: int, corner: int
-    ) -> tuple[Array, Array, float, float]:
-        """Return point, frame, gap of a corner over a face, and how far it lies beyond the face."""
-        body = self.bodies[a]
-        loops = [of_a[list(loop)] for loop in body.loops_of(face)]
-        area = sum(np.cross(ring - loops[0][0], np.roll(ring, -1, axis=0) - loops[0][0]).sum(0) for ring in loops)
-        normal = area / np.linalg.norm(area)
-        along = turn @ _level(body.normals[face])
-        frame = np.array([normal, along, np.cross(normal, along)])
-        away = of_b[corner] - loops[0][0]
-        flat = np.concatenate([_sides((ring - loops[0][0]) @ frame[1:].T) for ring in loops])
-        return of_b[corner], frame, float(away @ normal), _beyond(flat, frame[1:] @ away)
+    def _placed(self, centre: Array, rotation: Array) -> Array:
+        """Return where the vertices of all bodies are (v, 3) [m]."""
+        return np.asarray(centre[self.owner] + np.matmul(rotation[self.owner], self.arms[:, :, None])[:, :, 0])
 
-    def _standing(self, layout: SolidLayout, point: Array, beyond: Array) -> Array:
-        """Return the pairs that touch: those the search chose, if they stand over each other and for all that coincide."""
+    def _corners(self, n: _Named, place: Array, rotation: Array) -> tuple[Array, Array, Array, Array]:
+        """Return points, frames and gaps of corners over faces, and how far they lie beyond these."""
+        sides, at = place[n.rings], place[n.corner]
+        from_first = sides - sides[:, :1, :1]
+        area = np.cross(from_first[:, :, 0], from_first[:, :, 1]).sum(axis=1)
+        normal = area / np.linalg.norm(area, axis=1)[:, None]
+        along = np.matmul(rotation[n.body[: n.faces, 0]], n.level[:, :, None])[:, :, 0]
+        frame = np.stack([normal, along, np.cross(normal, along)], axis=1)
+        gap = ((at - sides[:, 0, 0]) * normal).sum(axis=1)
+        flat = np.einsum("fsec,fdc->fsed", sides - at[:, None, None], frame[:, 1:])
+        return at, frame, gap, _beyond(flat)
+
+    def _standing(self, layout: SolidLayout, point: Array, normal: Array, beyond: Array) -> Array:
+        """Return the pairs that touch: those chosen that stand over each other, and those that no other stands for."""
         size = self.reference.disc.size
         chosen = layout.toucher.chosen & (beyond <= SLACK * size)
         i, j = layout.toucher.near.T
-        same = np.linalg.norm(point[i] - point[j], axis=1) <= SAME * size
+        same = np.linalg.norm(np.cross(point[i] - point[j], normal[i]), axis=1) <= SAME * size
         stood_for = np.zeros(len(point), dtype=bool)
         for one, other in ((i, j), (j, i)):
             stood_for[other[same & chosen[one]]] = True
@@ -184,28 +203,24 @@ class OriginalSolids:
         return values, imposed
 
     def _turning(
-        self, n: _Named, place: list[Array], point: Array, frame: Array, centre: Array, velocity: Array, spin: Array,
+        self, n: _Named, place: Array, point: Array, frame: Array, centre: Array, velocity: Array, spin: Array,
         sign: Array,
     ) -> Array:  # fmt: skip
         """Return what turning adds to the relative velocities of pairs (m, 3), per time [m/s2]."""
-        found = np.zeros((len(point), 3))
         if not spin.any():
-            return found
-        first = int(n.on_face.sum())
-        for i, (a, b) in enumerate(n.body.tolist()):
-            swung = [np.cross(spin[c], point[i] - centre[c]) for c in (a, b)]
-            slip = velocity[b] + swung[1] - velocity[a] - swung[0]
-            seen = np.cross(spin[b], swung[1]) - np.cross(spin[a], swung[0])
-            if n.on_face[i]:
-                seen = seen - 2.0 * np.cross(spin[a], slip)
-            else:
-                d_a, d_b = (place[c][v[1]] - place[c][v[0]] for c, v in zip((a, b), n.local[i], strict=True))
-                rate = np.cross(np.cross(spin[a], d_a), d_b) + np.cross(d_a, np.cross(spin[b], d_b))
-                rate = sign[i - first] * rate / np.linalg.norm(np.cross(d_a, d_b))
-                normal = frame[i, 0]
-                seen = seen + 2.0 * float((rate - (rate @ normal) * normal) @ slip) * normal
-            found[i] = frame[i] @ seen
-        return found
+            return np.zeros((len(point), 3))
+        a, b, f = n.body[:, 0], n.body[:, 1], n.faces
+        swung = [np.cross(spin[c], point - centre[c]) for c in (a, b)]
+        slip = velocity[b] + swung[1] - velocity[a] - swung[0]
+        seen = np.cross(spin[b], swung[1]) - np.cross(spin[a], swung[0])
+        seen[:f] -= 2.0 * np.cross(spin[a[:f]], slip[:f])
+        ends = place[n.edges]
+        d_a, d_b = (ends[:, k, 1] - ends[:, k, 0] for k in (0, 1))
+        grown = np.cross(np.cross(spin[a[f:]], d_a), d_b) + np.cross(d_a, np.cross(spin[b[f:]], d_b))
+        rate, normal = (sign / np.linalg.norm(np.cross(d_a, d_b), axis=1))[:, None] * grown, frame[f:, 0]
+        rate = rate - (rate * normal).sum(axis=1, keepdims=True) * normal
+        seen[f:] += 2.0 * (rate * slip[f:]).sum(axis=1, keepdims=True) * normal
+        return np.asarray(np.matmul(frame, seen[:, :, None])[:, :, 0])
 
     # -- what nobody found ---------------------------------------------------------------------------------------------
 
@@ -221,11 +236,11 @@ class OriginalSolids:
             What it may beside [m].
         """
         reference = self.reference
-        place = [c + arm @ R.T for c, R, arm in zip(centre, rotation, self.arms, strict=True)]
-        low, high = np.array([p.min(axis=0) for p in place]), np.array([p.max(axis=0) for p in place])
+        place = self._placed(centre, rotation)
+        low, high = np.minimum.reduceat(place, self.first), np.maximum.reduceat(place, self.first)
         fixed = reference.disc.shape_of == FIXED
         worst = 0.0
-        for a in range(len(place)):
+        for a in range(len(low)):
             near = (low[a + 1 :] < high[a]).all(axis=1) & (high[a + 1 :] > low[a]).all(axis=1)
             near &= ~(fixed[a] & fixed[a + 1 :])
             for b in (a + 1 + np.flatnonzero(near)).tolist():
@@ -255,41 +270,46 @@ def _level(normal: Array) -> Array:
     """Return the first tangent of a face as described: horizontal, of a horizontal face along x."""
     level = np.hypot(normal[0], normal[1])
     if level > 1e-6:
-        return np.array([-normal[1], normal[0], 0.0]) / level
+        return np.asarray(np.array([-normal[1], normal[0], 0.0]) / level)
     along = np.array([1.0, 0.0, 0.0]) - normal[0] * normal
     return np.asarray(along / np.linalg.norm(along))
 
 
-def _sides(ring: Array) -> Array:
-    """Return the sides (s, 2, 2) of a polygon (s, 2)."""
-    return np.stack([ring, np.roll(ring, -1, axis=0)], axis=1)
-
-
-def _beyond(sides: Array, at: Array) -> float:
-    """Return how far a point (2,) lies outside a polygon with sides (s, 2, 2), negative inside [m]."""
-    p, q = sides[:, 0] - at, sides[:, 1] - at
+def _beyond(sides: Array) -> Array:
+    """Return how far the origin lies outside polygons with sides (k, s, 2, 2), negative inside [m]."""
+    p, q = sides[:, :, 0], sides[:, :, 1]
     along = q - p
-    share = np.clip(-(p * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
-    distance = float(np.linalg.norm(p + share[:, None] * along, axis=1).min())
-    around = np.arctan2(p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0], (p * q).sum(axis=1)).sum()
-    return -distance if abs(around) > np.pi else distance
+    size = (along**2).sum(axis=2)
+    share = np.clip(-(p * along).sum(axis=2) / np.where(size > 0, size, 1.0), 0.0, 1.0)
+    distance = np.linalg.norm(p + share[:, :, None] * along, axis=2)
+    distance = np.where(size > 0, distance, np.inf).min(axis=1, initial=np.inf)
+    turn = np.arctan2(p[..., 0] * q[..., 1] - p[..., 1] * q[..., 0], (p * q).sum(axis=2))
+    inside = np.abs(turn.sum(axis=1)) > np.pi
+    return np.asarray(np.where(inside, -distance, distance))
 
 
-def _crossing(one: Array, other: Array, sign: float) -> tuple[Array, Array, float, float]:
-    """Return point, frame, gap of two edges (2, 3) where they come nearest, and how far beyond their ends that is."""
-    d_a, d_b = one[1] - one[0], other[1] - other[0]
+def _crossings(ends: Array, sign: Array) -> tuple[Array, Array, Array, Array]:
+    """Return points, frames, gaps of pairs of edges (k, 2, 2, 3), and how far beyond their ends they are nearest.
+
+    The way from a point of the first edge to one of the second is along both and along the normal.
+    """
+    start, d = ends[:, :, 0], ends[:, :, 1] - ends[:, :, 0]
+    d_a, d_b = d[:, 0], d[:, 1]
     both = np.cross(d_a, d_b)
-    size, longs = float(np.linalg.norm(both)), (float(np.linalg.norm(d_a)), float(np.linalg.norm(d_b)))
-    if size <= SKEW * longs[0] * longs[1]:
-        return one[0], np.eye(3), 0.0, np.inf
-    normal = sign * both / size
-    (s, u, gap), along = np.linalg.solve(np.column_stack([d_a, -d_b, normal]), other[0] - one[0]), d_a / longs[0]
-    beyond = max(max(-s, s - 1.0) * longs[0], max(-u, u - 1.0) * longs[1])
-    return one[0] + s * d_a + 0.5 * gap * normal, np.array([normal, along, np.cross(normal, along)]), gap, beyond
+    size, longs = np.linalg.norm(both, axis=1), np.linalg.norm(d, axis=2)
+    skew = size > SKEW * longs.prod(axis=1)
+    normal = np.where(skew, sign / np.where(skew, size, 1.0), 0.0)[:, None] * both
+    way = np.where(skew[:, None, None], np.stack([d_a, -d_b, normal], axis=2), np.eye(3))
+    s, u, gap = np.linalg.solve(way, (start[:, 1] - start[:, 0])[:, :, None])[:, :, 0].T
+    beyond = np.maximum(np.maximum(-s, s - 1.0) * longs[:, 0], np.maximum(-u, u - 1.0) * longs[:, 1])
+    along = d_a / longs[:, :1]
+    frame = np.stack([normal, along, np.cross(normal, along)], axis=1)
+    point = start[:, 0] + s[:, None] * d_a + (0.5 * gap)[:, None] * normal
+    return point, frame, gap, np.where(skew, beyond, np.inf)
 
 
 def _depth(one: list[Array], other: list[Array]) -> float:
-    """Return how deep two convex pieces stand in each other: vertices, normals, directions of edges; at least zero [m]."""
+    """Return how deep two convex pieces (vertices, normals, directions of edges) stand in each other [m]."""
     crossed = np.cross(one[2][:, None], other[2][None]).reshape(-1, 3)
     size = np.linalg.norm(crossed, axis=1)
     ways = np.concatenate([one[1], other[1], crossed[size > 1e-6] / size[size > 1e-6, None]])

@@ -221,7 +221,7 @@ class Reference:
     def joint_numbers(self) -> Mapping[tuple[int, int], int]:
         """Number of the first joint as described between two bodies, the lower number first."""
         found: dict[tuple[int, int], int] = {}
-        for k, face in enumerate(self.detection.interfaces):
+        for k, face in enumerate(self.detection.faces):
             found.setdefault((min(face.a, face.b), max(face.a, face.b)), k)
         return found
 
@@ -280,7 +280,7 @@ def refuse_in_space(model: Model) -> None:
         bonded = law.cohesion or law.tensile_strength
         if soft or bonded or law.dilatancy or law.compressive_strength is not None:
             msg = f"joint '{name}' has more than friction; in space joints of blocks that move have friction alone"
-            raise InputError(msg, hint="leave out stiffness, cohesion, strengths and dilatancy, or take a plane section")
+            raise InputError(msg, hint="leave out stiffness, cohesion, strength and dilatancy")
 
 
 @dataclass(frozen=True, eq=False)
@@ -299,6 +299,10 @@ class Configuration:
     reference: Reference
     placement: Placement
     strain: Array
+
+    def vertices(self, b: int) -> Array:
+        """Return the vertices (n, d) of a body as described, moved with it [m]."""
+        return self._placed(b, self.reference.model.bodies[b].vertices)
 
     def outline(self, b: int) -> Array:
         """Return the outline (n, 2) of a body, without its strains [m]."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.contact.slots import MeshedSide, Slots
+from concio.contact.solid_touch import SolidTouch, SolidToucher
 from concio.contact.touch import Touch, Toucher
 from concio.fem.discretisation import RIGID, Discretisation
 from concio.kinematics.frames import components, dot, frames, norm
@@ -71,7 +72,7 @@ class RowMaker:
     ----------
     disc : Discretisation
     slots : Slots
-    toucher : Toucher
+    toucher : Toucher or SolidToucher
     node_column : (nodes + 1, d) integer array
         Unknowns of the nodes of all meshed bodies.
     axes : SpinAxes
@@ -79,7 +80,7 @@ class RowMaker:
     """
 
     def __init__(
-        self, disc: Discretisation, slots: Slots, toucher: Toucher, node_column: Array, axes: SpinAxes
+        self, disc: Discretisation, slots: Slots, toucher: Toucher | SolidToucher, node_column: Array, axes: SpinAxes
     ) -> None:
         self.slots, self.toucher, self.axes = slots, toucher, axes
         n = disc.unknowns
@@ -104,8 +105,9 @@ class RowMaker:
             self.columns[slots.side_b.meshed, k : 2 * k] = n
 
     def rows(
-        self, touch: Touch, placement: Placement, velocity: Array, spin: Array, strain: Array, *, turning: bool = True
-    ) -> Rows:
+        self, touch: Touch | SolidTouch, placement: Placement, velocity: Array, spin: Array, strain: Array, *,
+        turning: bool = True,
+    ) -> Rows:  # fmt: skip
         """Return the rows of a placement.
 
         Parameters
@@ -157,7 +159,7 @@ class RowMaker:
             values[slots.side_b.meshed, :, k : 2 * k] = 0.0
         extra = np.zeros((m, d))
         if turning and spin.any():
-            added = self.toucher.turning(touch, placement, velocity, spin)
+            added = self.toucher.turning(touch, placement, velocity, spin)  # type: ignore[arg-type]  # made by itself
             if self.plain:
                 extra = components(added[self.end], frame)
             else:

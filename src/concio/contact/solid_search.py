@@ -1,4 +1,4 @@
-"""The contact search of polyhedra that move: candidates within a skin, looked for again when a corner has moved by half.
+"""The contact search of polyhedra that move: candidates within a skin, looked for again when it is half used up.
 
 Bodies are near where their boxes, grown by the skin, meet. Of two bodies that are near, corners are candidates for
 faces that they may come to stand on, and edges for edges that they may come to cross: those whose surroundings turn
@@ -98,9 +98,10 @@ class SolidSearch:
         law, opening = self.reference.rules.find(a, b)
         m = len(a)
         number, one = np.arange(m), np.ones(m)
+        key = self.edges.key(toucher.corner, toucher.face, toucher.edges)
         return Slots(
-            number, number, np.zeros(m), one, np.full(m, -1), self.edges.key(toucher.corner, toucher.face, toucher.edges),
-            a, b, law, opening, one.copy(), np.zeros(m, dtype=bool), None, None,
+            number, number, np.zeros(m), one, np.full(m, -1), key, a, b, law, opening, one.copy(),
+            np.zeros(m, dtype=bool), None, None,
         )  # fmt: skip
 
     def touch(self, placed: PlacedSolids) -> SolidTouch:
@@ -212,8 +213,8 @@ def _across(solids: MovingSolids, placed: PlacedSolids, edges: Array, skin: floa
     edges = edges[((low[i] - 2 * skin <= high[j]) & (low[j] - 2 * skin <= high[i])).all(axis=1)]
     d = ends[:, 1] - ends[:, 0]
     d = d / norm(d)[:, None]
-    into = np.stack([cross(placed.normal[solids.edge_faces[:, 0]], d), cross(d, placed.normal[solids.edge_faces[:, 1]])],
-                    axis=1)  # fmt: skip
+    before, behind = (placed.normal[solids.edge_faces[:, k]] for k in (0, 1))
+    into = np.stack([cross(before, d), cross(d, behind)], axis=1)
     normal = cross(d[edges[:, 0]], d[edges[:, 1]])
     size = norm(normal)
     normal = normal / np.where(size > 0, size, 1.0)[:, None]

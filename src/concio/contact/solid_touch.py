@@ -25,7 +25,7 @@ PARALLEL = 2e-3
 """Sine of the angle between two edges below which they do not cross."""
 
 SAME = 1e-7
-"""Distance over the size of the model below which two points of one pair of bodies are one."""
+"""Distance along the joint over the size of the model below which two points of one pair of bodies are one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +74,7 @@ class SolidToucher:
     slack : float
         How far beyond the boundary of a face, or the end of an edge, a point still stands over it [m].
     same : float
-        Distance below which points are one [m].
+        Distance along the joint below which points are one [m].
     near : (n, 2) integer array
         Points of one pair of bodies that may coincide.
     chosen : (q + r,) boolean array
@@ -117,7 +117,8 @@ class SolidToucher:
             i, j = self.near.T
             both = valid[i] & valid[j]
             i, j = i[both], j[both]
-            close = norm(touch.point[i] - touch.point[j]) <= self.same
+            apart, normal = touch.point[i] - touch.point[j], touch.normal[i]
+            close = norm(apart - dot(apart, normal)[:, None] * normal) <= self.same
             i, j = i[close], j[close]
             rank = np.where(self.chosen, 0, len(valid)) + np.arange(len(valid))
             valid[np.where(rank[i] > rank[j], i, j)] = False
@@ -152,7 +153,7 @@ class SolidToucher:
             rate = self.sign[:, None] * grown / norm(both)[:, None]
             rate -= dot(rate, n)[:, None] * n
             found[q:] += 2.0 * dot(rate, slip[q:])[:, None] * n
-        return found
+        return np.asarray(found)
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,8 +204,8 @@ def outside(sides: Array, x: Array, y: Array) -> Array:
     share = np.clip((from_x * d[..., 0] + from_y * d[..., 1]) / np.where(size > 0, size, 1.0), 0.0, 1.0)
     distance = np.hypot(from_x - share * d[..., 0], from_y - share * d[..., 1])
     distance = np.where(size > 0, distance, np.inf).min(axis=1)
-    below, above = from_y < 0, from_y < d[..., 1]
+    below, above = from_y < 0, y[:, None] - sides[:, :, 1, 1] < 0  # the same of the end that two sides share
     upward = np.where(d[..., 1] != 0, d[..., 1], 1.0)
     left = from_x < d[..., 0] * from_y / upward
     inside = ((below != above) & left).sum(axis=1) % 2 == 1
-    return np.where(inside, -distance, distance)
+    return np.asarray(np.where(inside, -distance, distance))

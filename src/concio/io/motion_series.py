@@ -44,7 +44,7 @@ def write_motion_series(result: PushResult | DynamicsResult, directory: Path | s
 
 
 def moved_grid(result: PushResult | DynamicsResult, number: int) -> Grid:
-    """Return all bodies where they stand in a frame: elements of elastic ones, polygons of the others.
+    """Return all bodies where they stand in a frame: elements of elastic ones, polygons or triangles of the others.
 
     Point data: ``displacement`` [m]. Cell data: ``body`` (number), ``kind`` (0 elastic, 1 rigid, 2 fixed).
     """
@@ -57,6 +57,9 @@ def moved_grid(result: PushResult | DynamicsResult, number: int) -> Grid:
             here, rest = standing.nodes(b), disc.nodes(b)
             own = disc.shapes[s].elements.cells
             kind = QUAD if own.shape[1] == 4 else TRIANGLE
+        elif model.dim == 3:
+            here, rest, own = standing.vertices(b), model.polyhedra[b].vertices, model.polyhedra[b].triangles[0]
+            kind = TRIANGLE
         else:
             here, rest = np.concatenate(standing.rings(b)), np.concatenate(model.outlines[b].rings)
             own = outline_cells(model.outlines[b].rings)

@@ -127,5 +127,5 @@ def turned_from(before: Array, after: Array) -> Array:
 def turned_by(rotation: Array) -> Array:
     """Return by how much bodies have turned (k,), from angles (k,) in the plane or matrices (k, 3, 3) [rad]."""
     if rotation.ndim == 1:
-        return np.abs(rotation)
+        return np.asarray(np.abs(rotation))
     return np.asarray(np.linalg.norm(rotation_vector(rotation), axis=-1))

@@ -72,14 +72,15 @@ def plot_history(result: DynamicsResult, ax: Axes | None = None, *, title: str =
     title : str
     """
     ax = diagram_axes(ax, WIDE)
-    turned = np.rad2deg(result.shots.rotation - result.shots.rotation[0])
+    plane = result.model.dim == 2
+    turned = np.rad2deg(result.shots.rotation - result.shots.rotation[0] if plane else result.turned)
     most = np.argsort(-np.abs(turned).max(axis=0), kind="stable")[:BLOCKS]
     for b in most.tolist():
         if np.abs(turned[:, b]).max() > 0:
             ax.plot(result.shots.time, turned[:, b], lw=1.2, label=result.model.bodies[b].name)
     if ax.lines:
         ax.legend(frameon=False, fontsize=8.5)
-    return dress_diagram(ax, title, "time [s]", "rotation, anticlockwise [degrees]")
+    return dress_diagram(ax, title, "time [s]", f"rotation{', anticlockwise' if plane else ''} [degrees]")
 
 
 @strict
@@ -94,7 +95,8 @@ def plot_ground(result: DynamicsResult, ax: Axes | None = None, *, title: str = 
     title : str
     """
     ax = diagram_axes(ax, (7.6, 2.6))
-    for k, word in enumerate(("horizontal", "vertical")):
+    words = ("horizontal", "vertical") if result.model.dim == 2 else ("along x", "along y", "vertical")
+    for k, word in enumerate(words):
         if result.ground[:, k].any():
             ax.plot(result.ground_time, result.ground[:, k] / result.gravity, lw=0.9, label=word)
     if ax.lines:
@@ -136,6 +138,7 @@ def plot_frame(result: PushResult | DynamicsResult, number: int = -1, ax: Axes |
     ax : Axes, optional
         Where to draw; default a new figure.
     """
+    _require_plane(result, "figure")
     ax = diagram_axes(ax, (6.4, 5.2))
     at, words = positions(result)
     k = range(len(at))[number]
@@ -144,6 +147,13 @@ def plot_frame(result: PushResult | DynamicsResult, number: int = -1, ax: Axes |
     picture = Frame(k, float(at[k]), words[k], rings)
     _draw(ax, result, picture, box_of([picture], result.model))
     return ax
+
+
+def _require_plane(result: PushResult | DynamicsResult, what: str) -> None:
+    """Refuse to draw a motion in space."""
+    if result.model.dim != 2:
+        msg = f"there is no {what} of a motion in space"
+        raise InputError(msg, hint="write_motion_series writes it for ParaView, 'concio shake' with --series")
 
 
 def _draw(ax: Axes, result: PushResult | DynamicsResult, picture: Frame, box: Array) -> None:
@@ -183,6 +193,7 @@ def write_film(result: PushResult | DynamicsResult, path: Path | str, *, fps: in
     if path.suffix.lower() not in FILMS:
         msg = f"a film ends in .gif or .mp4, not in '{path.suffix}'"
         raise InputError(msg, where=str(path), hint="for example rocking.gif")
+    _require_plane(result, "film")
     from matplotlib.animation import FuncAnimation, writers
 
     name = "pillow" if path.suffix.lower() == ".gif" else "ffmpeg"

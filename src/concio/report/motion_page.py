@@ -74,17 +74,18 @@ def motion_html(result: PushResult | DynamicsResult) -> str:
         '<input id="frame" type="range" min="0" value="0" style="width:60%;vertical-align:middle" '
         'aria-label="frame"> <span id="word"></span></p>'
     )
-    data = json.dumps(_film(result), separators=(",", ":")).replace("<", "\\u003c")
+    plane = result.model.dim == 2
+    moves = f"<section class=moves><h2>The structure as it moves, true to scale</h2>{film}</section>" if plane else ""
+    data = json.dumps(_film(result) if plane else None, separators=(",", ":")).replace("<", "\\u003c")
     body = (
         f'<header><p class="brand">concio</p><h1>{escape(title)}</h1></header>'
         f"<section id=verdict>{_verdict(result)}</section>"
-        f"<section class=moves><h2>The structure as it moves, true to scale</h2>{film}</section>"
-        f"<section id=figures><h2>Figures</h2>{figures}</section>"
+        f"{moves}<section id=figures><h2>Figures</h2>{figures}</section>"
         f"<section id=tables>{tables}</section>"
         f"<footer>Written by concio {escape(concio.__version__)}. Forces in kN, lengths in m, time in s.</footer>"
         f'<script type="application/json" id="data">{data}</script>'
     )
-    return page_html(title, body, script=resource("motion.js"))
+    return page_html(title, body, script=resource("motion.js") if plane else "")
 
 
 def _film(result: PushResult | DynamicsResult) -> dict[str, Any]:

@@ -12,8 +12,8 @@ from concio.analysis.motion.dynamics_result import Ending
 from concio.analysis.motion.pairs import PairMaker
 from concio.analysis.motion.push_result import PushEnding
 from concio.analysis.motion.scheme import Drive, Scheme
-from concio.analysis.motion.statics import Statics
 from concio.analysis.motion.state import MotionState
+from concio.analysis.motion.statics import Statics
 from concio.analysis.motion.stepper import Stepper
 from concio.contact import search as search_module
 from concio.contact.attachments import Held, Ties

@@ -378,7 +378,7 @@ def _on(rotation: Array, turn: Array) -> Array:
 def _angle(before: Array, after: Array) -> Array:
     """Return the angles (k,) between two rotations [rad]."""
     if before.ndim == 1:
-        return np.abs(after - before)
+        return np.asarray(np.abs(after - before))
     return np.asarray(Rotation.from_matrix(np.matmul(after, np.swapaxes(before, 1, 2))).magnitude())
 
 

@@ -80,9 +80,10 @@ def dynamics(
     Parameters
     ----------
     model : Model
-        Plane; elastic, rigid and fixed bodies.
+        In the plane elastic, rigid and fixed bodies; in space rigid and fixed ones on joints that have friction alone.
     motion : Signal, path, mapping, optional
-        Motion of the ground along x (a record, a pulse, the name of a file), or by component: ``{"x": ..., "y": ...}``.
+        Motion of the ground along x (a record, a pulse, the name of a file), or by component: ``{"x": ..., "y": ...}``,
+        in space also "z", which is vertical there.
     duration : float, optional
         Time to compute [s]; by default until everything rests after the ground motion, or a block has fallen, at most
         20 s after it.
@@ -100,7 +101,7 @@ def dynamics(
     start : {"equilibrium", "as described"} or MotionState
         Equilibrium under the loads if there is one, the bodies as described, or a state of an earlier motion.
     velocities : mapping of body to (v_x, v_y, spin), optional
-        Initial velocities [m/s, m/s, rad/s].
+        Initial velocities [m/s, m/s, rad/s]; in space (v_x, v_y, v_z) or with (w_x, w_y, w_z) behind.
     restitution : float
         Coefficient of restitution of impacts of hard joints, 0 to 1.
     theta : float
@@ -146,7 +147,7 @@ def dynamics(
     """
     reference = Reference.of(model, gravity)
     check_masses(reference)
-    ground = Ground.of(motion, scale)
+    ground = Ground.of(motion, scale, model.dim)
     stated = None if duration is None else positive(duration, "duration")
     shown = stated or positive(ground.duration, "duration")
     step = step_asked(step, ground, shown)
@@ -281,8 +282,10 @@ class _Run:
         """Return what is imposed in a step."""
         if self.base == "moving":
             moved = np.asarray(self.ground.displacement(np.array(time)), dtype=float).reshape(-1)
-            return Drive(np.zeros(2), self.ground.mean_velocity(time, time + h), self.factors, moved)
-        return Drive(self.ground.mean_acceleration(time, time + h), np.zeros(2), self.factors)
+            velocity = self.ground.mean_velocity(time, time + h)
+            return Drive(np.zeros_like(velocity), velocity, self.factors, moved)
+        acceleration = self.ground.mean_acceleration(time, time + h)
+        return Drive(acceleration, np.zeros_like(acceleration), self.factors)
 
     def follow(self, every: float, stop_overturned: bool, stop_at_rest: bool) -> Ending:
         """Compute the motion and record it; return how it ended."""
@@ -350,7 +353,7 @@ class _Run:
         for name in self.sums:
             self.sums[name] += sum(row.works[name] for row in rows)
         worst = max(rows, key=lambda row: row.residual)
-        reactions = np.zeros((len(self.observer.names), 2))
+        reactions = np.zeros((len(self.observer.names), self.reference.disc.dim))
         for mover, row in zip(self.movers, rows, strict=True):
             np.add.at(reactions, self.observer.rows_of(mover.observer, mover.structure), row.reactions)
         self.recorder.step(
@@ -379,7 +382,7 @@ class _Run:
         if self.recorder.shots[-1][0] is not self.state:
             self._shoot()
         self.seconds = clock.perf_counter() - self.begun
-        shots, steps, energy = self.recorder.done(len(self.points), len(self.observer.names))
+        shots, steps, energy = self.recorder.done(len(self.points), len(self.observer.names), self.reference.disc.dim)
         return DynamicsResult(
             model=self.reference.model, gravity=self.reference.gravity, scheme=self.scheme, factors=self.factors,
             ending=ending, shots=shots, steps=steps, energy=energy, points=self.points,

@@ -11,7 +11,7 @@ from concio.analysis.motion.ground import Ground
 from concio.analysis.motion.state import MotionState
 from concio.contact.reference import Reference
 from concio.errors import InputError
-from concio.kinematics.rigid import swept
+from concio.kinematics.rigid import motions, swept
 
 STEP = 2e-3
 """Step where none is given and no record is finer [s]."""
@@ -53,12 +53,14 @@ def thrown(reference: Reference, state: MotionState, velocities: Mapping[str, Se
         if name not in number or reference.model.bodies[number[name]].kind == "fixed":
             msg = f"there is no body called '{name}' that can move"
             raise InputError(msg, where="velocities", hint="see the names with 'concio check'")
-        values = [float(v) for v in given]
-        if len(values) not in (2, 3) or not np.isfinite(values).all():
-            msg = f"the velocity of '{name}' is (v_x, v_y) or (v_x, v_y, spin), all finite"
+        values, d = [float(v) for v in given], reference.disc.dim
+        if len(values) not in (d, motions(d)) or not np.isfinite(values).all():
+            words = "(v_x, v_y) or (v_x, v_y, spin)" if d == 2 else "(v_x, v_y, v_z) or (v_x, v_y, v_z, w_x, w_y, w_z)"
+            msg = f"the velocity of '{name}' is {words}, all finite"
             raise InputError(msg, where="velocities")
         b = number[name]
-        velocity[b], spin[b] = values[:2], values[2] if len(values) == 3 else 0.0
+        turn = values[d:] or [0.0] * (motions(d) - d)
+        velocity[b], spin[b] = values[:d], turn[0] if d == 2 else turn
         if reference.disc.shape_of[b] >= 0:
             own = np.flatnonzero(reference.body_of_node == b)
             placed = state.configuration(reference).nodes(b) - state.centre[b]

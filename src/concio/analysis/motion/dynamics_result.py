@@ -17,6 +17,7 @@ from concio.analysis.motion.state import Memory, MotionState
 from concio.contact.reference import Configuration, Reference
 from concio.errors import InputError
 from concio.kinematics.placement import Placement
+from concio.kinematics.spins import rotation_vector, turned_by
 from concio.model.model import Model
 from concio.model.stages import ControlPoint
 from concio.problem.tolerances import CERTIFIED
@@ -64,7 +65,7 @@ class DynamicsResult(Shown):
         Bodies of the joints whose motions ``shots`` holds.
     end : MotionState
         State at the end, from which another motion can start.
-    ground_time, ground : (k,), (k, 2) arrays
+    ground_time, ground : (k,), (k, d) arrays
         Acceleration of the ground [m/s2].
     notes : tuple of str
     seconds : float
@@ -144,24 +145,33 @@ class DynamicsResult(Shown):
             msg = f"there is no point number {k}"
             raise InputError(msg, hint="ask for points when the motion is computed: points=(ControlPoint(...),)")
         wanted = self.points[k]
-        direction = np.array(wanted.direction, dtype=float)
+        direction = np.zeros(self.model.dim)
+        direction[: len(wanted.direction)] = wanted.direction  # along x where none was given, in space too
         along = direction / np.linalg.norm(direction)
         moved: Array = (self.steps.point[:, k] - np.array(wanted.at)) @ along
         return moved
 
     def rotation(self, body: str) -> Array:
-        """Return the rotation of a body at the times of the shots, anticlockwise [rad]."""
+        """Return the rotation of a body at the times of the shots [rad].
+
+        Anticlockwise in the plane (n,); in space rotation vectors (n, 3), of a length up to pi.
+        """
         names = [b.name for b in self.model.bodies]
         if body not in names:
             msg = f"there is no body called '{body}'"
             raise InputError(msg, hint="see the names with 'concio check'")
         turned: Array = self.shots.rotation[:, names.index(body)]
-        return turned
+        return turned if self.model.dim == 2 else rotation_vector(turned)
+
+    @property
+    def turned(self) -> Array:
+        """By how much bodies have turned from where they were described, at the times of the shots (n, B) [rad]."""
+        return np.stack([turned_by(rotation) for rotation in self.shots.rotation])
 
     @property
     def largest_rotation(self) -> tuple[str, float]:
         """The body that turned most from where it was described, and by how much [rad]."""
-        turned = np.abs(self.shots.rotation).max(0)
+        turned = self.turned.max(axis=0)
         turned[[body.kind == "fixed" for body in self.model.bodies]] = -1.0
         b = int(np.argmax(turned))
         return self.model.bodies[b].name, float(turned[b])

@@ -43,6 +43,13 @@ NEAR = 1e-3
 """Distance of that equilibrium over the width of the bodies."""
 
 
+def tilted(rotation: Array) -> Array:
+    """Return the angles (B,) by which bodies have turned over, in space those of what was upright in them [rad]."""
+    if rotation.ndim == 1:
+        return np.asarray(np.abs(rotation))
+    return np.asarray(np.arccos(np.clip(rotation[:, 2, 2], -1.0, 1.0)))
+
+
 class Watch:
     """Looks at what happens to blocks.
 
@@ -51,7 +58,7 @@ class Watch:
     observer : Observer
     factors : mapping of str to float
     scheme : Scheme
-    origin : (B, 2) array
+    origin : (B, d) array
         Where the centroids stood [m].
     engine : {"superlu", "pardiso"}, optional
     """
@@ -69,21 +76,24 @@ class Watch:
     def overturned(self, state: MotionState) -> list[str]:
         """Return the blocks that have turned over, a phrase each."""
         free = self.reference.free
-        turned = np.abs(state.rotation)
+        turned = tilted(state.rotation)
         return [f"'{self._name(b)}' has turned by {np.rad2deg(turned[b]):.3g} degrees"
                 for b in free[turned[free] > OVERTURNED].tolist()]  # fmt: skip
 
     def sunk(self, state: MotionState) -> list[str]:
         """Return the blocks that have lost their support, a phrase each."""
         free = self.reference.free
-        depth = self.origin[:, 1] - state.centre[:, 1]
-        lost = free[depth[free] > SUNK * self.reference.edges.width[free]]
+        depth = self.origin[:, -1] - state.centre[:, -1]
+        lost = free[depth[free] > SUNK * self.reference.surface.width[free]]
         return [f"'{self._name(b)}' has sunk by {depth[b]:.3g} m below where it stood" for b in lost.tolist()]
 
     def passed(self, state: MotionState) -> list[str]:
-        """Return the blocks that have passed their own equilibrium, a phrase each, in the layout of the last step."""
+        """Return the blocks that have passed their own equilibrium, a phrase each, in the layout of the last step.
+
+        In space none are named: a block that leans may roll on over its next corner and come to rest.
+        """
         slots, force = self.observer.maker.slots, state.memory.force
-        if state.memory.key is not slots.key:
+        if state.memory.key is not slots.key or self.reference.disc.dim == 3:
             return []
         rows = self.observer.rows(state)
         found = []

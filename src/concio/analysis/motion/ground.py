@@ -15,7 +15,13 @@ from concio.model.motion.signals import Pulse, Record, Signal
 
 Array = np.ndarray
 Motion: TypeAlias = "Signal | Path | str | Mapping[str, Signal | Path | str] | None"
-"""A signal or the name of a record along x, or signals by component "x", "y"."""
+"""A signal or the name of a record along x, or signals by component "x", "y", in space also "z"."""
+
+
+AXES = {2: "xy", 3: "xyz"}
+"""Components by dimension; the last one is vertical."""
+
+WHICH = {2: "x is horizontal, y vertical", 3: "x and y are horizontal, z vertical"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +31,7 @@ class Ground:
     Parameters
     ----------
     components : tuple of Signal or None
-        Along x and y.
+        Along x and y, in space also z.
     scale : float
         Factor of all of them.
     """
@@ -34,7 +40,7 @@ class Ground:
     scale: float = 1.0
 
     @classmethod
-    def of(cls, motion: Motion, scale: float = 1.0) -> Ground:
+    def of(cls, motion: Motion, scale: float = 1.0, dim: int = 2) -> Ground:
         """Return the motion that a user asked for.
 
         Raises
@@ -47,10 +53,11 @@ class Ground:
             raise InputError(msg, hint="1 takes the record as it is")
         given = dict(motion) if isinstance(motion, Mapping) else {} if motion is None else {"x": motion}
         for name in given:
-            if name not in ("x", "y"):
-                msg = f"there is no component '{name}' of a ground motion in the plane"
-                raise InputError(msg, hint="x is horizontal, y vertical")
-        return cls(tuple(_signal(given.get(name)) for name in ("x", "y")), float(scale))
+            if name not in AXES[dim]:
+                where = "the plane" if dim == 2 else "space"
+                msg = f"there is no component '{name}' of a ground motion in {where}"
+                raise InputError(msg, hint=WHICH[dim])
+        return cls(tuple(_signal(given.get(name)) for name in AXES[dim]), float(scale))
 
     @property
     def duration(self) -> float:
@@ -71,29 +78,31 @@ class Ground:
     @property
     def words(self) -> str:
         """What moves the ground, such as "sine pulse of 0.4 g over 0.5 s along x, times 0.1"; empty for nothing."""
-        told = [f"{_words(s)} along {axis}" for s, axis in zip(self.components, "xy", strict=True) if s is not None]
+        axes = AXES[len(self.components)]
+        told = [f"{_words(s)} along {axis}" for s, axis in zip(self.components, axes, strict=True) if s is not None]
+        told = [", ".join(told[:-1]), told[-1]] if len(told) > 2 else told
         return " and ".join(told) + (f", times {self.scale:g}" if told and self.scale != 1.0 else "")
 
     def mean_acceleration(self, start: float, end: float) -> Array:
-        """Return the mean acceleration between two times (2,) [m/s2]."""
+        """Return the mean acceleration between two times (d,) [m/s2]."""
         return self._difference("velocity", start, end)
 
     def mean_velocity(self, start: float, end: float) -> Array:
-        """Return the mean velocity between two times (2,) [m/s]."""
+        """Return the mean velocity between two times (d,) [m/s]."""
         return self._difference("displacement", start, end)
 
     def acceleration(self, time: Array) -> Array:
-        """Return the acceleration at times (n,), shape (n, 2) [m/s2]."""
+        """Return the acceleration at times (n,), shape (n, d) [m/s2]."""
         zero = np.zeros(np.shape(time))
         return np.stack([zero if s is None else self.scale * s.acceleration(time) for s in self.components], axis=-1)
 
     def displacement(self, time: Array) -> Array:
-        """Return the displacement at times (n,), shape (n, 2) [m]."""
+        """Return the displacement at times (n,), shape (n, d) [m]."""
         zero = np.zeros(np.shape(time))
         return np.stack([zero if s is None else self.scale * s.displacement(time) for s in self.components], axis=-1)
 
     def _difference(self, quantity: str, start: float, end: float) -> Array:
-        mean = np.zeros(2)
+        mean = np.zeros(len(self.components))
         for k, signal in enumerate(self.components):
             if signal is not None:
                 first, last = getattr(signal, quantity)(np.array([start, end]))

@@ -22,8 +22,8 @@ class Shots:
         [s].
     centre : (n, B, d) array
         Centroids [m].
-    rotation : (n, B) array
-        [rad].
+    rotation : (n, B) array in the plane, (n, B, 3, 3) in space
+        [rad]; rotation matrices in space.
     strain : (n, nodes, d) array
         Displacements of nodes in the frames of their bodies [m].
     opening, slip : (n, f) arrays
@@ -106,7 +106,7 @@ class Recorder:
         self.points.append(point)
         self.reactions.append(reaction)
 
-    def done(self, points: int, reactions: int) -> tuple[Shots, Steps, EnergyBalance]:
+    def done(self, points: int, reactions: int, dim: int) -> tuple[Shots, Steps, EnergyBalance]:
         """Return everything as arrays."""
         states = [s[0] for s in self.shots]
         shots = Shots(
@@ -117,7 +117,7 @@ class Recorder:
         table = np.array(self.rows, dtype=float).reshape(-1, 5)
         steps = Steps(
             table[:, 0], table[:, 1], table[:, 2].astype(np.int64), tuple(self.methods), table[:, 3].astype(np.int64),
-            table[:, 4], np.array(self.points).reshape(len(table), points, 2),
-            np.array(self.reactions).reshape(len(table), reactions, 2),
+            table[:, 4], np.array(self.points).reshape(len(table), points, dim),
+            np.array(self.reactions).reshape(len(table), reactions, dim),
         )  # fmt: skip
         return shots, steps, EnergyBalance({name: np.array([e[name] for e in self.energies]) for name in NAMES})

@@ -34,10 +34,10 @@ class MovedSupports:
 
     Parameters
     ----------
-    shift : (B, 2) array
+    shift : (B, d) array
         Of their centroids [m].
-    turn : (B,) array
-        Anticlockwise [rad].
+    turn : (B,) array in the plane, (B, 3) in space
+        [rad].
     """
 
     shift: Array
@@ -54,7 +54,7 @@ class MovedSupports:
         """
         reference = statics.reference
         model, number = reference.model, {b.name: i for i, b in enumerate(reference.model.bodies)}
-        shift, turn = np.zeros((len(number), 2)), np.zeros(len(number))
+        shift, turn = np.zeros_like(reference.disc.centroids), reference.at_rest().placement.no_spin
         for support in model.supports:
             b = number[support.body]
             if reference.disc.shape_of[b] != FIXED or not support.moves:
@@ -64,7 +64,7 @@ class MovedSupports:
                 raise InputError(msg, hint="give the support a group of its own, which then acts as it is")
             factor = load_factor(statics.factors, support.group)
             shift[b] += factor * np.asarray(support.displacement, dtype=float)
-            turn[b] += factor * float(np.asarray(support.rotation))
+            turn[b] += factor * np.asarray(support.rotation, dtype=float)
         return cls(shift, turn)
 
     @property
@@ -74,7 +74,8 @@ class MovedSupports:
 
     def applied(self, state: MotionState, share: float) -> MotionState:
         """Return a state with fixed bodies moved on by a share."""
-        return replace(state, centre=state.centre + share * self.shift, rotation=state.rotation + share * self.turn)
+        there = state.placement.moved(share * self.shift, share * self.turn)
+        return replace(state, centre=there.centre, rotation=there.rotation)
 
     def largest(self, statics: Statics) -> float:
         """Return how far anything on the moved bodies is moved at most, roughly [m]."""
@@ -82,7 +83,8 @@ class MovedSupports:
         corners = np.concatenate([b.vertices for i, b in enumerate(statics.reference.model.bodies)
                                   if i in set(statics.reference.free.tolist())])  # fmt: skip
         arm = np.linalg.norm(corners[None] - centre[:, None], axis=2).max(axis=1)
-        return float((np.linalg.norm(self.shift, axis=1) + np.abs(self.turn) * arm).max())
+        turn = np.linalg.norm(self.turn.reshape(len(arm), -1), axis=1)
+        return float((np.linalg.norm(self.shift, axis=1) + turn * arm).max())
 
 
 def begun(statics: Statics, state: MotionState) -> tuple[Balanced, float, MotionState]:

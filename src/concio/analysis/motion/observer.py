@@ -14,6 +14,7 @@ from concio.contact.points import MaterialPoints
 from concio.contact.reference import Reference
 from concio.contact.rows import Rows
 from concio.contact.slots import KINDS
+from concio.contact.solid_search import SolidLayout
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED
 from concio.kinematics.frames import norm
@@ -64,8 +65,9 @@ class Observer:
         self._row = np.full(len(model.bodies) + 1, -1)
         self._row[self.fixed] = np.arange(len(self.fixed))
         self._held_row = {i: len(self.fixed) + k for k, i in enumerate(held)}
-        self.joints = tuple((model.bodies[f.a].name, model.bodies[f.b].name) for f in reference.detection.segments)
-        self._joint = {key: k for k, key in enumerate(reference.drawn)}
+        self.joints = tuple((model.bodies[f.a].name, model.bodies[f.b].name) for f in reference.detection.faces)
+        plane = reference.disc.dim == 2
+        self._joint = {key: k for k, key in enumerate(reference.drawn)} if plane else dict(reference.joint_numbers)
         self._reacting: tuple[Array, Array, Array, Array] | None = None
         self._known: tuple[Array, Array, Array] | None = None
         self.rest = reference.disc.centroids
@@ -119,8 +121,11 @@ class Observer:
 
     def joints_of(self, part: Observer, structure: Structure) -> Array:
         """Return the numbers (f,) of the joints of a structure, which a part of these observes, among all."""
-        edges = structure.edges
-        return np.array([self._joint[int(edges[a]), int(edges[b])] for a, b in part._joint], dtype=int)
+        number = np.full(len(part.joints), -1)
+        sides = structure.features[0] if self.reference.disc.dim == 2 else structure.bodies
+        for (a, b), k in part._joint.items():
+            number[k] = self._joint[int(sides[a]), int(sides[b])]
+        return number
 
     def rows(self, state: MotionState) -> Rows:
         """Return the contact rows where the bodies stand, in the present layout."""
@@ -133,7 +138,9 @@ class Observer:
         if not len(self.joints) or self.maker.search.layout is None:
             return opening, slip
         own, number = self._joints_of_slots()
-        np.maximum.at(opening, number, np.maximum(self.rows(state).gap[own], 0.0))
+        rows = self.rows(state)
+        gap = rows.gap if self.reference.disc.dim == 2 else np.where(rows.valid, rows.gap, 0.0)
+        np.maximum.at(opening, number, np.maximum(gap[own], 0.0))
         memory = state.memory
         if memory.key is self.maker.slots.key:
             slid = memory.slid[own, 0] if memory.slid.shape[1] == 1 else norm(memory.slid[own])
@@ -143,7 +150,10 @@ class Observer:
 
     def _joints_of_slots(self) -> tuple[Array, Array]:
         """Return the slots of joints that were there in the beginning, and the numbers of these joints."""
-        slots = self.maker.slots
+        slots, layout = self.maker.slots, self.maker.search.layout
+        if isinstance(layout, SolidLayout):
+            own = np.flatnonzero(layout.joint >= 0)
+            return own, layout.joint[own]
         if self._known is None or self._known[0] is not slots.key:
             count = len(self.reference.edges.body)
             own = np.flatnonzero(slots.bonded)

@@ -15,6 +15,7 @@ from concio.analysis.motion.push_asked import (
     control_asked,
     direction_asked,
     factors_asked,
+    in_the_plane,
     live_asked,
     side_asked,
 )
@@ -118,7 +119,7 @@ def push(
     >>> round(float(pushed.peak), 4), round(float(pushed.capacity), 4)
     (0.25, 0.25)
     """
-    reference = Reference.of(model, gravity)
+    reference = in_the_plane(Reference.of(model, gravity))
     chosen = factors_asked(reference, factors)
     groups = stated = live_asked(reference, live)
     along = direction_asked(1.0 if direction is None else direction)

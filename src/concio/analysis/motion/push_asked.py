@@ -24,6 +24,14 @@ ASIDE = 1e-6
 """Share of a resultant along a direction below which it points aside."""
 
 
+def in_the_plane(reference: Reference) -> Reference:
+    """Return a reference in the plane; refuse one in space."""
+    if reference.disc.dim != 2:
+        msg = "the model is in space; a push at large displacements is computed in the plane"
+        raise InputError(msg, hint="take a plane section of the structure")
+    return reference
+
+
 def what_moves(reference: Reference, found: Balanced) -> tuple[str, tuple[str, ...]]:
     """Return words on the block that moves away most and how many others go with it, and the names of them all."""
     size = np.abs(found.moved)

@@ -15,6 +15,8 @@ import numpy as np
 
 from concio.analysis.motion.state import Memory, MotionState, TieMemory
 from concio.contact.applied import applied_forces
+from concio.contact.edges import MovingEdges
+from concio.contact.moving_solids import MovingSolids, renamed
 from concio.contact.reference import Reference
 from concio.contact.separate import free_of, grouped
 from concio.contact.slots import KINDS
@@ -34,17 +36,19 @@ class Structure:
     reference : Reference
         Of the structure alone.
     whole : Reference
-    bodies, nodes, edges, ties, supports : integer arrays
+    bodies, nodes, ties, supports : integer arrays
         Numbers in the whole.
+    features : tuple of integer arrays
+        The same of what names of pairs are made of: edges; in space vertices, faces and edges.
     """
 
     reference: Reference
     whole: Reference
     bodies: Array
     nodes: Array
-    edges: Array
     ties: Array
     supports: Array
+    features: tuple[Array, ...]
 
     @classmethod
     def of(cls, whole: Reference, bodies: Array) -> Structure:
@@ -52,8 +56,8 @@ class Structure:
         model = whole.model
         ties, supports = np.arange(len(model.ties)), np.arange(len(model.supports))
         if len(bodies) == len(model.bodies):
-            nodes, edges = np.arange(len(whole.body_of_node)), np.arange(len(whole.edges.body))
-            return cls(whole, whole, bodies, nodes, edges, ties, supports)
+            nodes = np.arange(len(whole.body_of_node))
+            return cls(whole, whole, bodies, nodes, ties, supports, whole.surface.numbers(bodies))
         names = {model.bodies[b].name for b in bodies.tolist()}
         ties = np.flatnonzero([tie.body_a in names or tie.body_b in names for tie in model.ties])
         supports = np.flatnonzero([support.body in names for support in model.supports])
@@ -65,7 +69,7 @@ class Structure:
         )  # fmt: skip
         return cls(
             Reference.of(part, whole.gravity), whole, bodies, np.flatnonzero(np.isin(whole.body_of_node, bodies)),
-            np.flatnonzero(np.isin(whole.edges.body, bodies)), ties, supports,
+            ties, supports, whole.surface.numbers(bodies),
         )  # fmt: skip
 
     @property
@@ -91,15 +95,17 @@ class Structure:
 
     def _own(self, memory: Memory) -> Memory:
         """Return what its own pairs remember, of a memory of the whole."""
-        number = np.full(len(self.whole.edges.body), -1)
-        number[self.edges] = np.arange(len(self.edges))
-        key, kept = _renamed(memory.key, number, len(self.whole.edges.body), len(self.edges))
+        old, new = self.whole.surface, self.reference.surface
+        numbers = [np.full(count, -1) for count in old.counts]
+        for number, own in zip(numbers, self.features, strict=True):
+            number[own] = np.arange(len(own))
+        key, kept = _renamed(memory.key, old, new, numbers)
         found = {f.name: getattr(memory, f.name)[kept] for f in fields(memory) if f.name != "key"}
         return Memory(key=key[kept], **found)
 
     def remembered(self, memory: Memory) -> Memory:
         """Return what its pairs remember under the names that they have in the whole."""
-        key, _ = _renamed(memory.key, self.edges, len(self.edges), len(self.whole.edges.body))
+        key, _ = _renamed(memory.key, self.reference.surface, self.whole.surface, self.features)
         return replace(memory, key=key)
 
 
@@ -153,11 +159,11 @@ def together(structures: Sequence[Structure], states: Sequence[MotionState], sta
 
 def _groups(whole: Reference, placement: Placement, known: Sequence[Array] = ()) -> list[Array]:
     """Return the numbers of the bodies of each structure, where they stand; ``known`` ones stay what they are."""
-    model, edges = whole.model, whole.edges
-    corners = edges.placed(placement).start
-    low, high = np.full((2, len(model.bodies), 2), np.inf) * [[[1.0]], [[-1.0]]]
-    np.minimum.at(low, edges.body, corners)
-    np.maximum.at(high, edges.body, corners)
+    model, surface = whole.model, whole.surface
+    corners = surface.placed(placement).start
+    low, high = np.full((2, len(model.bodies), model.dim), np.inf) * [[[1.0]], [[-1.0]]]
+    np.minimum.at(low, surface.body, corners)
+    np.maximum.at(high, surface.body, corners)
     return grouped(low, high, free_of(model), model.gap_reach or 0.0, _tied(model), known)
 
 
@@ -180,8 +186,12 @@ def _loads(model: Model, bodies: Array) -> tuple[Load, ...]:
     return tuple(found)
 
 
-def _renamed(key: Array, number: Array, old: int, new: int) -> tuple[Array, Array]:
-    """Return keys of pairs whose edges have other numbers, and which of them (m,) have both; of ``old`` and ``new``."""
+def _renamed(
+    key: Array, old: MovingEdges | MovingSolids, new: MovingEdges | MovingSolids, numbers: Sequence[Array]
+) -> tuple[Array, Array]:
+    """Return keys (m,) of pairs whose features have other ``numbers``, and which of them (m,) have both."""
+    if isinstance(old, MovingSolids) and isinstance(new, MovingSolids):
+        return renamed(key, old, new, numbers)
     edges, kind = np.divmod(key, KINDS)
-    a, b = (number[v] for v in np.divmod(edges, old))
-    return (a.astype(np.int64) * new + b) * KINDS + kind, (a >= 0) & (b >= 0)
+    a, b = (numbers[0][v] for v in np.divmod(edges, len(old.body)))
+    return (a.astype(np.int64) * len(new.body) + b) * KINDS + kind, (a >= 0) & (b >= 0)

@@ -10,6 +10,7 @@ from concio.problem.pair_state import PairStates
 from concio.problem.tolerances import STEP_GOOD, STEP_SETTLED
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.interior import engine as interior
+from concio.solvers.interior import space as interior_in_space
 from concio.solvers.pivoting import sparse_lemke
 from concio.solvers.stepping.factor import StepFactor
 from concio.solvers.stepping.problem import StepProblem, StepSolution
@@ -40,8 +41,11 @@ class StepSolver:
         """Forget the pattern: the rows meet other unknowns from now on."""
         self.factor = None
 
-    def solve(self, p: StepProblem, states: PairStates, x: Array, t: Array) -> StepSolution:
-        """Solve a step from the states of the one before and a point near the answer."""
+    def solve(self, p: StepProblem, states: PairStates, x: Array, t: Array, *, polish: bool = True) -> StepSolution:
+        """Solve a step from the states of the one before and a point near the answer.
+
+        In space the interior point ends where Newton's method in the states it found does the rest (``polish``).
+        """
         if self.factor is None:
             self.factor = StepFactor(p.matrix.sparse, p.columns, self.engine)
         self.factor.take(p.matrix.sparse, p.values)
@@ -83,7 +87,10 @@ class StepSolver:
                 if any(not new.differ(s).any() for s in seen):
                     break
             states = new
-        return self._count(self._fallback(p, best))
+        found = self._fallback(p, best)
+        if p.dim == 3 and found.how == "interior point" and found.residual >= STEP_SETTLED and polish:
+            found = self.solve(p, found.states, found.x, found.t, polish=False)
+        return self._count(found)
 
     def response(self, p: StepProblem, states: PairStates, f: Array) -> Array:
         """Return the change of x (N,) under a change f (N,) of the right-hand side, in given states."""
@@ -101,7 +108,7 @@ class StepSolver:
     def _fallback(self, p: StepProblem, best: StepSolution | None) -> StepSolution:
         problem = p.contact_problem().by(self.engine)
         pick = np.flatnonzero(p.active)
-        answer = interior.solve(problem)
+        answer = interior.solve(problem) if p.dim == 2 else interior_in_space.solve(problem)
         found = self._read(p, pick, answer.displacement, answer.normal_force, answer.friction_force, "interior point")
         if found.residual < STEP_SETTLED:
             return found

@@ -106,17 +106,17 @@ class Linear:
 
     def across(self, v: Array) -> Array:
         """Return the part (m, d-1) of tangential vectors that springs resist: all that sticks, across what slips."""
-        found = np.where(self.stick[:, None], v, 0.0)
+        found: Array = np.where(self.stick[:, None], v, 0.0)
         if self.slips is not None:
             e = self.direction
             found = np.where(self.slips[:, None], v - dot(e, v)[:, None] * e, found)
-        return found
+        return np.asarray(found)
 
     def yielded(self, t_t: Array) -> Array:
         """Return the slip (m, d-1) across which friction has turned, for friction t_t (m, d-1)."""
         if self.slips is None:
             return np.zeros_like(t_t)
-        return np.where(self.slips[:, None], self.turn[:, None], 0.0) * t_t
+        return np.asarray(np.where(self.slips[:, None], self.turn[:, None], 0.0) * t_t)
 
     def blocks(self, p: StepProblem) -> Array:
         """Return D (m, d, d)."""

@@ -1,0 +1,270 @@
+"""Rigid blocks that move in space: free flight, contacts of corners, faces and edges, the plane extruded and turned."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import concio
+from concio.analysis.motion.scheme import Drive, Scheme
+from concio.analysis.motion.state import MotionState
+from concio.analysis.motion.stepper import Stepper
+from concio.contact.reference import Reference
+from motion_models import G, standing
+
+STILL = Drive(np.zeros(3), np.zeros(3), {})
+
+
+def blocks(*boxes, friction=0.6, floor=((-5.0, -5.0, -0.5), (5.0, 5.0, 0.0)), turn=None):
+    """Rigid boxes over a floor under their weight, all of it turned by a rotation matrix."""
+    turn = np.eye(3) if turn is None else turn
+    bodies = [concio.Polyhedron.box("floor", *floor, kind="fixed")]
+    bodies += [concio.Polyhedron.box(f"b{i}", *box, kind="rigid") for i, box in enumerate(boxes)]
+    return concio.Model(
+        tuple(replace(b, vertices=b.vertices @ turn.T) for b in bodies), {"block": concio.Rigid(unit_weight=20.0)},
+        {"joint": concio.JointLaw(friction)}, loads=(concio.Load("weight", tuple(turn @ np.array([0.0, 0.0, -1.0]))),),
+    )  # fmt: skip
+
+
+def extruded(model, depth, turn):
+    """A plane model as a solid of some depth, x and y becoming x and z, then turned."""
+    bodies = []
+    for body in model.bodies:
+        ring, far = body.outline, 0.5 * (depth if body.kind != "fixed" else 8.0)
+        n = len(ring)
+        sides = [np.column_stack([ring[:, 0], np.full(n, y), ring[:, 1]]) for y in (-far, far)]
+        round_ = [(i + n, (i + 1) % n + n, (i + 1) % n, i) for i in range(n)]
+        faces = (tuple(range(n)), tuple(range(2 * n - 1, n - 1, -1)), *round_)
+        vertices = np.concatenate(sides) @ turn.T
+        bodies.append(concio.Polyhedron(body.name, vertices, faces, kind=body.kind, material=body.material))
+    down = tuple(turn @ np.array([0.0, 0.0, -1.0]))
+    return concio.Model(tuple(bodies), dict(model.materials), dict(model.laws), loads=(concio.Load("weight", down),))
+
+
+def stepper_of(model, sag=1.0, scheme=None):
+    """A stepper and its first state, joints sinking in by a share of what they do otherwise."""
+    stepper = Stepper(Reference.of(model, G), scheme or Scheme())
+    for joints in (stepper.maker.joints, stepper.certificate.joints):
+        joints.lent, joints.sag = sag * joints.lent, sag * joints.sag
+    return stepper, stepper.located(MotionState.at_rest(stepper.reference))
+
+
+BRICK = ((-0.05, -0.1, -0.2), (0.05, 0.1, 0.2))
+INERTIA = 16.0 / 12.0 * np.array([0.2**2 + 0.4**2, 0.1**2 + 0.4**2, 0.1**2 + 0.2**2])
+PERIOD, FIRST_ZERO = 6.9980616997, 1.5664225246
+"""Of the rates of the brick with rates (0.05, 5, 0.1) rad/s [s]: Euler's equations by elliptic functions."""
+
+
+def flight(steps, h, turn=None):
+    """Rates of the brick along its own axes over steps without any load."""
+    turn = np.eye(3) if turn is None else turn
+    model = replace(blocks(BRICK, floor=((-1.0, -1.0, -9.0), (1.0, 1.0, -8.0)), turn=turn), loads=())
+    model = replace(model, materials={"block": concio.Rigid(unit_weight=2.0 * G)})
+    stepper, state = stepper_of(model)
+    spin = state.spin.copy()
+    spin[1] = turn @ np.array([0.05, 5.0, 0.1])
+    state, rates, momentum = replace(state, spin=spin), [], []
+    for _ in range(steps):
+        state, report = stepper.step(state, h, STILL)
+        assert report.solution.residual < 1e-12
+        now = state.rotation[1] @ turn
+        rates.append(now.T @ state.spin[1])
+        momentum.append(now @ (INERTIA * rates[-1]))
+    return np.array(rates), np.array(momentum)
+
+
+def zeros(h, values):
+    """Times at which values at steps of h cross zero."""
+    k = np.flatnonzero(values[:-1] * values[1:] < 0)
+    return h * (k + 1 + values[k] / (values[k] - values[k + 1]))
+
+
+def test_a_brick_in_flight_keeps_energy_and_momentum_and_turns_over():
+    h = 4e-2
+    rates, momentum = flight(42, h)
+    energy, size = (INERTIA * rates**2).sum(axis=1), np.linalg.norm(momentum, axis=1)
+    assert np.ptp(energy) < 1e-13 * energy[0]
+    assert np.ptp(size) < 1e-13 * size[0]
+    assert zeros(h, rates[:, 1])[0] == pytest.approx(FIRST_ZERO, abs=5 * h**2)
+
+
+def test_the_flight_of_a_turned_brick_is_turned():
+    turn = Rotation.from_rotvec([0.4, -1.1, 0.7]).as_matrix()
+    plain, turned = flight(15, 2e-2), flight(15, 2e-2, turn)
+    assert np.abs(turned[0] - plain[0]).max() < 1e-12
+    assert np.abs(turned[1] - plain[1] @ turn.T).max() < 1e-12 * np.abs(plain[1]).max()
+
+
+@pytest.mark.long
+def test_the_flight_of_a_brick_converges_to_its_period_and_flips_as_often():
+    """The second order: a fourth of the error for half the step; flips every half period."""
+    errors = []
+    for h in (4e-2, 2e-2):
+        times = zeros(h, flight(round(9.0 / h), h)[0][:, 1])
+        errors.append(times[2] - times[0] - PERIOD)
+    assert abs(errors[1]) < 2e-3
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
+    flips = 1 + int((30.0 - FIRST_ZERO) / (0.5 * PERIOD))
+    assert len(zeros(4e-2, flight(750, 4e-2)[0][:, 1])) == flips
+
+
+def test_a_rocking_block_extruded_and_turned_is_that_of_the_plane():
+    """Joints sink in by 1e-9 of their width: what they are lent differs in plane and space by lengths of joints."""
+    width, height = 0.4, 1.2
+    plane = standing(width=width, height=height, tilt=0.16)
+    depth = 2.0 * width * height / (width + height)  # of the same mean width
+    plane = replace(plane, bodies=tuple(replace(b, thickness=depth) for b in plane.bodies))
+    turn = Rotation.from_rotvec([0.3, 0.5, -0.8]).as_matrix()
+    flat, state = stepper_of(plane, 1e-4)
+    solid, placed = stepper_of(extruded(plane, depth, turn), 1e-4)
+    assert solid.maker.width == pytest.approx(flat.maker.width, rel=1e-12)
+    nothing = Drive(np.zeros(2), np.zeros(2), {})
+    for _ in range(80):
+        state, one = flat.step(state, 1e-3, nothing)
+        placed, other = solid.step(placed, 1e-3, STILL)
+        assert max(one.solution.residual, other.solution.residual) < 1e-11
+    assert abs(state.rotation[1]) > 5e-3
+    own = turn.T @ placed.centre[1]
+    assert own[[0, 2]] == pytest.approx(state.centre[1], abs=1e-12)
+    assert own[1] == pytest.approx(0.0, abs=1e-12)
+    vector = turn.T @ Rotation.from_matrix(placed.rotation[1]).as_rotvec()
+    assert vector == pytest.approx([0.0, -state.rotation[1], 0.0], abs=1e-12)
+    assert turn.T @ placed.spin[1] == pytest.approx([0.0, -state.spin[1], 0.0], abs=1e-11)
+
+
+@pytest.mark.long
+def test_an_impact_of_a_rocking_block_is_housners():
+    """With e = 0 the ratio of the spins is 1 - 1.5 sin^2 alpha, and the plane's to what joints sink in."""
+    width, height, tilt = 0.4, 1.2, 0.16
+    turn = Rotation.from_rotvec([0.0, 0.0, 0.6]).as_matrix()
+    solid, state = stepper_of(extruded(standing(width=width, height=height, tilt=tilt), 0.6, turn))
+    spins = []
+    for _ in range(480):
+        state, report = solid.step(state, 1e-3, STILL)
+        assert report.solution.residual < 1e-9
+        spins.append(np.linalg.norm(state.spin[1]))
+    hit = int(np.argmax(spins))
+    after = 2.5 * spins[hit + 2] - 1.5 * spins[hit + 3]  # what it was at the impact: its weight slows it down
+    assert after / spins[hit] == pytest.approx(1.0 - 1.5 * np.sin(np.arctan(width / height)) ** 2, abs=2e-3)
+
+
+def test_a_block_slides_as_far_as_its_energy_in_any_direction():
+    """v^2 / (2 mu g), to the second order in the step; it does not turn, and ends the way it began."""
+    way = np.array([0.6, 0.8, 0.0])
+    point = concio.ControlPoint("b0", (0.0, 0.0, 0.15), tuple(way))
+    found = concio.dynamics(
+        blocks(((-0.5, -0.5, 0.0), (0.5, 0.5, 0.3)), friction=0.5), velocities={"b0": 0.5 * way}, duration=0.15,
+        points=(point,), gravity=G,
+    )  # fmt: skip
+    assert found.certified
+    assert found.energy.error < 1e-12
+    assert found.point()[-1] == pytest.approx(0.25 / (2 * 0.5 * G), rel=1e-3)
+    assert np.abs(found.shots.centre[-1, 1] @ np.array([-0.8, 0.6, 0.0])) < 1e-9
+
+
+def test_a_stack_at_rest_does_not_move_by_a_bit():
+    model = blocks(*(((-0.3, -0.2, 0.2 * k), (0.3, 0.2, 0.2 * k + 0.2)) for k in range(3)))
+    found = concio.dynamics(model, duration=0.12)
+    assert found.stands
+    assert found.verdict.holds
+    assert np.array_equal(found.shots.centre[0], found.shots.centre[-1])
+    assert np.array_equal(found.shots.rotation[0], found.shots.rotation[-1])
+
+
+def test_a_block_dropped_flat_rebounds_with_its_energy():
+    found = concio.dynamics(
+        blocks(((-0.2, -0.2, 0.05), (0.2, 0.2, 0.25))), duration=0.2, restitution=1.0, start="as described", gravity=G,
+        step=2e-3,
+    )  # fmt: skip
+    assert found.certified
+    assert found.energy.error < 1e-12
+    assert found.shots.centre[-1, 1, 2] == pytest.approx(0.15, abs=1e-4)  # 2 sqrt(2 h / g) = 0.2019 s later
+
+
+@pytest.mark.long
+def test_a_cube_dropped_on_a_corner_comes_to_rest_on_a_face():
+    """Corner, edge and face touch in turn; every step is certified and the energy closes."""
+    model = blocks(((-0.2, -0.2, 0.5), (0.2, 0.2, 0.9)))
+    turn = Rotation.from_rotvec([0.6, 0.5, 0.2]).as_matrix()
+    cube = model.bodies[1]
+    placed = (cube.vertices - cube.centroid) @ turn.T + np.array([0.0, 0.0, 0.6])
+    found = concio.dynamics(
+        replace(model, bodies=(model.bodies[0], replace(cube, vertices=placed))), duration=1.5, start="as described"
+    )
+    assert found.certified
+    assert found.verdict.holds
+    assert found.energy.error < 1e-10
+    upright = np.abs(found.end.rotation[1] @ turn).max(axis=0)
+    assert upright.max() == pytest.approx(1.0, abs=1e-3)
+    assert found.end.centre[1, 2] == pytest.approx(0.2, abs=1e-4)
+
+
+def test_bricks_that_cross_rest_on_crossings_of_their_edges():
+    """No corner of either stands over the other: four crossings of edges carry the weight, a quarter each."""
+    model = blocks(((-0.5, -0.1, 0.0), (0.5, 0.1, 0.2)), ((-0.1, -0.5, 0.2), (0.1, 0.5, 0.4)))
+    stepper, state = stepper_of(model)
+    for _ in range(20):
+        state, report = stepper.step(state, 2e-3, STILL)
+    slots, t = stepper.maker.slots, report.solution.t
+    between = (slots.body_a == 1) & (slots.body_b == 2) & (t[:, 0] > 0)
+    assert between.sum() == 4
+    assert t[between, 0] == pytest.approx(np.full(4, 0.25 * 20.0 * 0.04), rel=1e-3)
+    assert report.solution.residual < 1e-10
+
+
+def test_the_certificate_of_a_step_in_space_sees_what_is_wrong():
+    model = blocks(((-0.2, -0.2, 0.0), (0.2, 0.2, 0.4)))
+    stepper, state = stepper_of(model)
+    new, report = stepper.step(state, 2e-3, STILL)
+    t = report.solution.t
+    from concio.analysis.motion.certified import Returned
+
+    def judged(new, t):
+        return stepper.certificate.step(state, new, state.memory, t, 2e-3, STILL, Returned(), stepper.matrix(2e-3))
+
+    assert judged(new, t) < 1e-10
+    assert judged(new, 1.01 * t) > 1e-4
+    aside = t.copy()
+    aside[np.argmax(t[:, 0]), 1] += 0.7 * t[:, 0].max()
+    assert judged(new, aside) > 1e-3
+    spin = new.spin.copy()
+    spin[1, 0] += 1e-3
+    assert judged(replace(new, spin=spin), t) > 1e-4
+    deep = new.centre.copy()
+    deep[1, 2] -= 0.1
+    assert stepper.certificate.original.deepest(deep, new.rotation, new.strain, 0.1) > 1.0
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"laws": {"joint": concio.JointLaw(0.5, cohesion=10.0, tensile_strength=1.0)}}, "friction alone"),
+        ({"laws": {"joint": concio.JointLaw(0.5, normal_stiffness=1e6)}}, "friction alone"),
+        ({"kind": "elastic"}, "only rigid blocks move"),
+    ],
+)
+def test_what_does_not_move_in_space_yet_is_refused_in_a_sentence(change, words):
+    model = blocks(((-0.2, -0.2, 0.0), (0.2, 0.2, 0.4)))
+    if "kind" in change:
+        model = replace(
+            model, bodies=(model.bodies[0], replace(model.bodies[1], kind="elastic")),
+            materials={"block": concio.Elastic(E=1e6, nu=0.2, unit_weight=20.0)},
+        )  # fmt: skip
+    else:
+        model = replace(model, **change)
+    with pytest.raises(concio.InputError, match=words):
+        concio.dynamics(model, duration=0.1)
+
+
+def test_bad_input_of_a_motion_in_space_is_told_in_words():
+    model = blocks(((-0.2, -0.2, 0.0), (0.2, 0.2, 0.4)))
+    pulse = concio.Pulse("sine", 1.0, 0.1)
+    with pytest.raises(concio.InputError, match="no component 'w' of a ground motion in space"):
+        concio.dynamics(model, {"w": pulse})
+    with pytest.raises(concio.InputError, match=r"\(v_x, v_y, v_z\) or \(v_x, v_y, v_z, w_x, w_y, w_z\)"):
+        concio.dynamics(model, duration=0.1, velocities={"b0": (1.0, 0.0)})
+    with pytest.raises(concio.InputError, match="a push at large displacements is computed in the plane"):
+        concio.push(model)
