@@ -22,6 +22,9 @@ def shake(
     motion: Annotated[
         Path | None, typer.Option("--motion", help="Record: AT2, VT2, DT2, or a text of one or two columns.")
     ] = None,
+    transverse: Annotated[
+        Path | None, typer.Option("--transverse", help="Record of the motion along y, of a model in space.")
+    ] = None,
     vertical: Annotated[Path | None, typer.Option("--vertical", help="Record of the vertical motion.")] = None,
     pulse: Annotated[
         str | None,
@@ -36,7 +39,8 @@ def shake(
         float | None, typer.Option("--restitution", help="Coefficient of restitution of impacts, from 0 to 1.")
     ] = None,
     point: Annotated[
-        list[str] | None, typer.Option("--point", "-p", help="Point to follow along x: BODY,X,Y (repeatable).")
+        list[str] | None,
+        typer.Option("--point", "-p", help="Point to follow along x: BODY,X,Y, in space BODY,X,Y,Z (repeatable)."),
     ] = None,
     start: Annotated[Path | None, typer.Option("--from", help="Continue from the end of a motion.npz.")] = None,
     factor: Factors = None,
@@ -63,7 +67,7 @@ def shake(
     from concio.cli.motion_lines import shake_lines, write_motion
     from concio.errors import InputError
     from concio.io.motion_file import load_motion
-    from concio.model.file.motion_table import motion_table
+    from concio.model.file.motion_table import motion_table, records_by_axis
     from concio.model.file.reading import read_tables
     from concio.model.motion.records import read_record
 
@@ -72,14 +76,14 @@ def shake(
     table = motion_table(read_tables(file), str(file))
     options: dict[str, Any] = table.arguments()
     if motion is None and pulse is None:
-        ground = table.ground(file.parent)
+        ground = table.ground(file.parent, model.dim)
     else:
         if motion is not None and pulse is not None:
             msg = "there is a record and a pulse along x"
             raise InputError(msg, where="--motion, --pulse", hint="keep one of them")
         ground = {}
     apart = None if record_step is None else _time(record_step, "--record-step")
-    for axis, record in (("x", motion), ("y", vertical)):
+    for axis, record in records_by_axis(motion, transverse, vertical, model.dim, "--transverse"):
         if record is not None:
             ground[axis] = read_record(record, unit=record_unit, step=apart)
     if pulse is not None:
@@ -90,14 +94,14 @@ def shake(
     if restitution is not None:
         options["restitution"] = restitution
     if point:
-        options["points"] = tuple(control_of(text, "x") for text in point)
+        options["points"] = tuple(control_of(text, "x", model.dim) for text in point)
     if start is not None:
         earlier = load_motion(start)
         if not isinstance(earlier, DynamicsResult):
             msg = "this is a push, no motion in time"
             raise InputError(msg, where=str(start), hint="give the motion.npz that shake wrote")
         options["start"] = earlier.end
-    own = motion is not None or pulse is not None or vertical is not None
+    own = any(option is not None for option in (motion, pulse, transverse, vertical))
     factor_of_motion = (1.0 if own else table.scale) if scale is None else scale
     with progress_bar(shown=not json) as progress:
         found = concio.dynamics(

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BeforeValidator, Field, StrictBool, StrictStr, ValidationError, WithJsonSchema
 
@@ -78,14 +78,14 @@ class MotionPoint(Table):
     body :
         Name of the block.
     at :
-        The point, where it is at the start.
+        The point, where it is at the start: x, y, in space also z.
     direction :
-        Direction in which the displacement is positive.
+        Direction in which the displacement is positive; without it along x.
     """
 
     body: Name
-    at: tuple[float, float]
-    direction: tuple[float, float] = (1.0, 0.0)
+    at: tuple[float, float] | tuple[float, float, float]
+    direction: tuple[float, float] | tuple[float, float, float] = (1.0, 0.0)
 
 
 class MotionTable(Table):
@@ -95,8 +95,10 @@ class MotionTable(Table):
     ----
     record :
         File of accelerations along x, beside the model file.
+    transverse :
+        The same along y, in space.
     vertical :
-        The same along y.
+        The same along y in the plane, along z in space.
     unit :
         Unit of the accelerations, where the file does not say it.
     record_step :
@@ -106,6 +108,7 @@ class MotionTable(Table):
     """
 
     record: StrictStr | None = None
+    transverse: StrictStr | None = None
     vertical: StrictStr | None = None
     unit: StrictStr | None = None
     record_step: Time | None = None
@@ -124,19 +127,19 @@ class MotionTable(Table):
     velocities: dict[str, list[float]] = Field(default_factory=dict)
     points: list[MotionPoint] = Field(default_factory=list)
 
-    def ground(self, folder: Path) -> dict[str, Signal]:
-        """Return the ground motion by component.
+    def ground(self, folder: Path, dim: int) -> dict[str, Signal]:
+        """Return the ground motion by component, of a model in the plane or in space.
 
         Raises
         ------
         InputError
-            A record cannot be read, or there is a record and a pulse.
+            A record cannot be read, or there is a record and a pulse, or a transverse one in the plane.
         """
         if self.record is not None and self.pulse is not None:
             msg = "there is a record and a pulse along x"
             raise InputError(msg, where="[motion]", hint="keep one of them")
         found: dict[str, Signal] = {}
-        for axis, name in (("x", self.record), ("y", self.vertical)):
+        for axis, name in records_by_axis(self.record, self.transverse, self.vertical, dim, "[motion]"):
             if name is not None:
                 found[axis] = read_record(folder / name, unit=self.unit, step=self.record_step)
         if self.pulse is not None:
@@ -156,6 +159,25 @@ class MotionTable(Table):
         if self.points:
             found["points"] = tuple(ControlPoint(p.body, p.at, p.direction) for p in self.points)
         return found
+
+
+T = TypeVar("T")
+
+
+def records_by_axis(
+    along: T | None, transverse: T | None, vertical: T | None, dim: int, where: str
+) -> tuple[tuple[str, T | None], ...]:
+    """Return records with the axes along which they move a model of that dimension.
+
+    Raises
+    ------
+    InputError
+        There is a transverse record and the model is in the plane.
+    """
+    if dim == 2 and transverse is not None:
+        msg = "there is a transverse record, and the model is in the plane"
+        raise InputError(msg, where=where, hint="along the plane is x; leave it out")
+    return (("x", along), ("y", vertical)) if dim == 2 else (("x", along), ("y", transverse), ("z", vertical))
 
 
 Motion = Annotated[MotionTable | None, Field(description="ground motion and time stepping; see concio shake")]
