@@ -10,7 +10,6 @@ from concio.problem.pair_state import PairStates
 from concio.problem.tolerances import STEP_GOOD, STEP_SETTLED
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.interior import engine as interior
-from concio.solvers.interior import space as interior_in_space
 from concio.solvers.pivoting import sparse_lemke
 from concio.solvers.stepping.factor import StepFactor
 from concio.solvers.stepping.problem import StepProblem, StepSolution
@@ -108,7 +107,7 @@ class StepSolver:
     def _fallback(self, p: StepProblem, best: StepSolution | None) -> StepSolution:
         problem = p.contact_problem().by(self.engine)
         pick = np.flatnonzero(p.active)
-        answer = interior.solve(problem) if p.dim == 2 else interior_in_space.solve(problem)
+        answer = interior.solve(problem)
         found = self._read(p, pick, answer.displacement, answer.normal_force, answer.friction_force, "interior point")
         if found.residual < STEP_SETTLED:
             return found
