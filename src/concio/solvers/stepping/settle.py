@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from concio.kinematics.frames import dot
 from concio.problem.contact_problem import Array
 from concio.problem.limits_of_work import STEP_PAIRS, STEP_PROBLEMS
 from concio.problem.pair_state import PairStates
@@ -22,7 +21,7 @@ from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.algebra.updated_blocks import UpdatedBlocks
 from concio.solvers.stepping.problem import StepProblem
 from concio.solvers.stepping.small import solve_small
-from concio.solvers.stepping.states import Linear, across_slip, read_states, solve_states
+from concio.solvers.stepping.states import Linear, across_slip, dot, read_states, solve_states
 
 
 class PairsAsked:

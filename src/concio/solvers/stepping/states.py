@@ -16,7 +16,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from concio.kinematics.frames import dot, norm
 from concio.problem import natural_map
 from concio.problem.contact_problem import Array
 from concio.problem.pair_state import PairStates
@@ -152,8 +151,8 @@ def across_slip(p: StepProblem, x: Array, t: Array, errors: Errors | None = None
     trial = t[:, 0] - y_n / np.where(p.flexibility[:, 0] > 0, p.flexibility[:, 0], 1.0)
     with np.errstate(invalid="ignore"):
         strength = p.cone.strength(np.clip(trial, -p.cone.tension, p.cone.cap))
-    beyond = norm(t[:, 1:] - y_t / unit[:, None]) - strength
-    beyond = np.where(beyond > 0, beyond, norm(y_t) / unit)
+    beyond = _size(t[:, 1:] - y_t / unit[:, None]) - strength
+    beyond = np.where(beyond > 0, beyond, _size(y_t) / unit)
     usable = (strength > 0) & np.isfinite(strength)
     return np.where(usable, unit * beyond / np.where(usable, strength, 1.0), np.inf)
 
@@ -195,6 +194,17 @@ def solve_states(
         x, t = x + dx, t + _side_by_side(dt_n, dt_t)
     assert best is not None
     return best
+
+
+def dot(p: Array, q: Array) -> Array:
+    """Return the scalar products (m,) of tangential vectors (m, d-1)."""
+    first = p[:, 0] * q[:, 0]
+    return np.asarray(first if p.shape[1] == 1 else first + p[:, 1] * q[:, 1])
+
+
+def _size(v: Array) -> Array:
+    """Return the lengths (m,) of tangential vectors (m, d-1)."""
+    return np.asarray(np.sqrt(dot(v, v)))
 
 
 def _side_by_side(first: Array, others: Array) -> Array:
