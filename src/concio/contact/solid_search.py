@@ -109,6 +109,31 @@ class SolidSearch:
         assert self.layout is not None
         return self.layout.toucher.touch(placed)
 
+    def handed_on(self, rows: Rows, carried: Array) -> tuple[Array, Array, Array]:
+        """Return which pairs stop to stand for a point, which ones go on in their place, and whether sides are swapped.
+
+        Parameters
+        ----------
+        rows : Rows
+            Where the bodies stand now.
+        carried : (m,) boolean array
+            Pairs that carried force before.
+        """
+        assert self.layout is not None
+        slots, near = self.layout.slots, self.layout.toucher.near
+        source, target = np.concatenate([near, near[:, ::-1]]).T
+        pick = (carried & ~rows.valid)[source] & (rows.valid & ~carried)[target]
+        source, target = source[pick], target[pick]
+        away = norm(rows.point[source] - rows.point[target])
+        order = np.argsort(away, kind="stable")
+        order = order[away[order] <= 0.5 * self.skin]
+        source, target = source[order], target[order]
+        _, first = np.unique(source, return_index=True)
+        source, target = source[np.sort(first)], target[np.sort(first)]
+        _, first = np.unique(target, return_index=True)
+        source, target = source[first], target[first]
+        return source, target, slots.body_a[source] != slots.body_a[target]
+
     def rows(
         self, placement: Placement, velocity: Array, spin: Array, strain: Array, *, turning: bool = True
     ) -> Rows:

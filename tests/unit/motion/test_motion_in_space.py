@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import concio
+from commands import run
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.stepper import Stepper
@@ -238,6 +240,31 @@ def test_the_certificate_of_a_step_in_space_sees_what_is_wrong():
     assert stepper.certificate.original.deepest(deep, new.rotation, new.strain, 0.1) > 1.0
 
 
+def test_what_slides_over_an_edge_hands_on_its_force():
+    """A block slides until its corners stand beside the lower one: crossings of edges go on where corners were."""
+    model = blocks(
+        ((-0.3, -0.3, 0.0), (0.3, 0.3, 0.2)), ((-0.3, -0.3, 0.2), (0.3, 0.3, 0.4)), friction=0.3,
+        floor=((-1.0, -1.0, -0.5), (1.0, 1.0, 0.0)),
+    )  # fmt: skip
+    stepper, state = stepper_of(model)
+    impacts, named = 0.0, set()
+    for k in range(25):
+        if k == 3:
+            velocity = state.velocity.copy()
+            velocity[2] = 0.3, 0.2, 0.0
+            state = replace(state, velocity=velocity)
+        state, report = stepper.step(state, 2e-3, STILL)
+        assert report.solution.residual < 1e-9
+        impacts += abs(report.works["impact"])
+        slots, t = stepper.maker.slots, report.solution.t[:, 0]
+        loaded = (slots.body_a != 0) & (slots.body_b != 0) & (t > 0)
+        assert t[loaded].sum() == pytest.approx(20.0 * 0.072, rel=1e-2)
+        assert loaded.sum() == 4
+        named.add(tuple(slots.key[loaded].tolist()))
+    assert len(named) == 2  # corners at rest, other features beside
+    assert impacts == 0.0  # none of which is hit
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -257,6 +284,86 @@ def test_what_does_not_move_in_space_yet_is_refused_in_a_sentence(change, words)
         model = replace(model, **change)
     with pytest.raises(concio.InputError, match=words):
         concio.dynamics(model, duration=0.1)
+
+
+def test_a_motion_in_space_is_saved_and_goes_on(tmp_path):
+    model = blocks(((-0.2, -0.2, 0.0), (0.2, 0.2, 0.4)))
+    first = concio.dynamics(model, duration=0.02, velocities={"b0": (0.5, 0.2, 0.0, 0.0, 0.0, 0.5)})
+    read = concio.load_motion(concio.save_motion(first, tmp_path / "motion.npz"))
+    assert np.array_equal(read.end.rotation, first.end.rotation)
+    assert read.rotation("b0") == pytest.approx(first.rotation("b0"))
+    on = concio.dynamics(model, duration=0.02, start=read.end)
+    whole = concio.dynamics(model, duration=0.04, velocities={"b0": (0.5, 0.2, 0.0, 0.0, 0.0, 0.5)})
+    assert on.end.centre == pytest.approx(whole.end.centre, abs=1e-9)
+    assert on.end.rotation == pytest.approx(whole.end.rotation, abs=1e-9)
+
+
+SHAKEN = """
+[drums]
+diameter = 1.0
+height = 1.0
+drums = 1
+sides = 4
+block = "rigid"
+unit_weight = "20 kN/m3"
+friction = 0.6
+
+[motion]
+duration = "0.02 s"
+pulse = {shape = "sine", amplitude = "0.1 g", length = "0.02 s"}
+"""
+
+
+@pytest.mark.long
+def test_shake_takes_three_components_in_space(tmp_path):
+    file, record = tmp_path / "drum.toml", tmp_path / "north.txt"
+    file.write_text(SHAKEN, encoding="utf-8")
+    record.write_text("".join(f"{0.002 * k:.3f} {0.01 * k:.3f}\n" for k in range(11)), encoding="utf-8")
+    options = ["--transverse", record, "--vertical", record, "--record-unit", "g", "--json", "--out", tmp_path / "out"]
+    code, out, err = run("shake", file, "--pulse", "sine,0.1 g,0.02 s", *options)
+    assert code == 4, err  # it still moves
+    told = json.loads(out)
+    assert told["certificate"]["worst"] < 1e-9
+    assert "along x, record 'north.txt'" in told["verdict"]["question"]["asked"] or "along z" in str(told["verdict"])
+    assert {"history.csv", "report.html", "motion.npz"} <= {p.name for p in (tmp_path / "out").iterdir()}
+    head = (tmp_path / "out" / "history.csv").read_text(encoding="utf-8").splitlines()[0]
+    assert "reaction z" in head
+
+
+def test_a_transverse_record_of_a_plane_model_is_refused(tmp_path):
+    file, record = tmp_path / "plane.toml", tmp_path / "north.txt"
+    file.write_text('[column]\nwidth = 1.0\nheight = 1.0\nblocks = 1\nblock = "rigid"\n', encoding="utf-8")
+    record.write_text("".join(f"{0.002 * k:.3f} {0.01 * k:.3f}\n" for k in range(11)), encoding="utf-8")
+    code, _, err = run("shake", file, "--transverse", record, "--record-unit", "g")
+    assert code == 2
+    assert "transverse record" in err
+
+
+def test_loads_of_turned_blocks_have_the_moments_of_their_points():
+    """A dead force keeps its direction at an arm that turns, pressure turns with its face; a potential is its work."""
+    model = blocks(((-0.2, -0.3, 0.0), (0.2, 0.3, 0.5)))
+    at, force = np.array([0.2, 0.1, 0.4]), np.array([1.0, -2.0, 0.5])
+    on_face = tuple((0.2, y, z) for y, z in ((-0.1, 0.1), (0.3, 0.1), (0.3, 0.5), (-0.1, 0.5)))
+    model = replace(model, loads=(
+        *model.loads, concio.Load("point", tuple(force), bodies=("b0",), at=tuple(at)),
+        concio.Load("pressure", (3.0,), polygon=on_face, group="wind"),
+    ))  # fmt: skip
+    reference = Reference.of(model, G)
+    here = reference.at_rest().placement
+    turn = Rotation.from_rotvec([0.5, -0.7, 1.9]).as_matrix()
+    placed = replace(here, rotation=np.stack([np.eye(3), turn]))
+    found = reference.loads.forces({}, placed.turns)
+    arm, push = at - here.centre[1], 3.0 * 0.4 * 0.4 * np.array([-1.0, 0.0, 0.0])
+    wind = np.cross(np.array([0.2, 0.1, 0.3]) - here.centre[1], push)
+    own = reference.spin_axes.outward(found[3:6][None] * reference.disc.reach[1], np.array([1]), placed.turns)[0]
+    assert own == pytest.approx(np.cross(turn @ arm, force) + turn @ wind, abs=1e-12)
+    weight = np.array([0.0, 0.0, -20.0 * 0.12])
+    assert found[:3] == pytest.approx(weight + force + turn @ push, abs=1e-12)
+    moved = np.zeros((2, 3))
+    moved[1] = 0.1, 0.2, -0.3
+    work = (weight + force) @ moved[1] + force @ (turn @ arm - arm)
+    none = np.zeros((0, 3))
+    assert reference.loads.potential({}, moved, placed.turns, none) == pytest.approx(-work, abs=1e-12)
 
 
 def test_bad_input_of_a_motion_in_space_is_told_in_words():

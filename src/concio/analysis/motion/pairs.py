@@ -81,7 +81,12 @@ class PairMaker:
         key = self.slots.key
         if memory.key is not key:
             memory = memory.carried_to(key)
-        return memory, search.rows(placement, velocity, spin, strain), new
+        rows = search.rows(placement, velocity, spin, strain)
+        if isinstance(search, SolidSearch):
+            source, target, swapped = search.handed_on(rows, memory.force[:, 0] > 0)
+            if len(source):
+                memory = memory.handed(source, target, rows.frame, swapped)
+        return memory, rows, new
 
     def supports(self, turn: Turns, shift: Array) -> PairData:
         """Return the pairs of supports; ``shift`` (k, d): how far or fast they are from their places."""

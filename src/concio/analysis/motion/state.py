@@ -75,6 +75,32 @@ class Memory:
         normal[: len(self.key)], direction[: len(self.key)] = self.contact, self.slip
         return PairStates(normal, direction)
 
+    def handed(self, source: Array, target: Array, frame: Array, swapped: Array) -> Memory:
+        """Return the memory in which pairs hand on what they remember to others that now stand for them.
+
+        Parameters
+        ----------
+        source, target : (k,) integer arrays
+        frame : (m, d, d) array
+            Normal and tangents of all pairs.
+        swapped : (k,) boolean array
+            Whether side a of one is side b of the other.
+        """
+        blank, values = Memory.blank(self.key, self.force.shape[1]), {}
+        turn = np.einsum("kij,klj->kil", frame[target], frame[source])
+        turn = np.where(swapped, -1.0, 1.0)[:, None, None] * turn
+        for f in fields(self):
+            if f.name == "key":
+                continue
+            value, own = getattr(self, f.name).copy(), getattr(self, f.name)[source]
+            if f.name == "force":
+                own = np.einsum("kij,kj->ki", turn, own)
+            elif value.ndim == 2:
+                own = np.einsum("kij,kj->ki", turn[:, 1:, 1:], own)
+            value[target], value[source] = own, getattr(blank, f.name)[source]
+            values[f.name] = value
+        return replace(self, **values)
+
     def carried_to(self, key: Array) -> Memory:
         """Return the memory of pairs with other keys, blank where a key is new."""
         fresh = Memory.blank(key, self.force.shape[1])
