@@ -45,11 +45,18 @@ def ask(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     summary: dict[str, Any] = {}
     with suppress(OSError, ValueError):
         summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
-    message = said.getvalue().replace(request["file"], request["name"]).strip()
+    message = _message(said.getvalue()).replace(request["file"], request["name"])
     return {
         "code": code, "lines": lines, "message": message, "verdict": summary.get("verdict"),
         "seconds": time.monotonic() - begun,
     }  # fmt: skip
+
+
+def _message(text: str) -> str:
+    """Return what a command wrote to standard error for a person: notes and its error, nothing of libraries."""
+    notes, sign, error = text.partition("Error: ")
+    told = [line for line in notes.splitlines() if line.startswith("Note: ")]
+    return "\n".join([*told, *([sign + error.strip()] if sign else [])])
 
 
 def warm(_: Mapping[str, Any], __: Tell) -> bool:

@@ -64,7 +64,7 @@ def limit(
     from concio.analysis.limit import limit_stages
     from concio.analysis.margins import friction_by_solving, load_margin
     from concio.cli.limit_files import write_limit
-    from concio.verdict.limit_words import limit_lines, solving_line
+    from concio.verdict.limit_words import limit_lines, solving_line, stage_lines
 
     groups = list(group or ["live"])
     if out is not None:
@@ -85,9 +85,11 @@ def limit(
             stages = limit_stages(
                 assembly, groups, path=path, steps=steps, search=search, friction=wanted, progress=progress
             )
-            for _, known in stages:
+            on_the_way: list[str] = []
+            for name, known in stages:
                 found = known
-                found_so_far(lambda: limit_lines(known))  # noqa: B023 - called at once
+                on_the_way += stage_lines(name, known)
+                found_so_far(on_the_way)
     except KeyboardInterrupt:
         if found is not None:
             tell(limit_lines(found))

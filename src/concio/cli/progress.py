@@ -66,11 +66,11 @@ def progress_bar(*, shown: bool) -> Iterator[ProgressCallback | None]:
         yield move
 
 
-def found_so_far(lines: Callable[[], list[str]]) -> None:
+def found_so_far(lines: list[str]) -> None:
     """Send lines that are known already to the listener, where there is one."""
     listener = LISTENER.get()
     if listener is not None:
-        listener("found", lines())
+        listener("found", lines)
 
 
 class Share:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import glob
+import re
 import secrets
 import shutil
 import tempfile
@@ -22,6 +24,8 @@ from concio.window.questions import QUESTIONS, arguments, command_text, python_t
 from concio.window.results import Results, key_of, named_files
 
 Answer = dict[str, Any]
+COPY = re.compile(r"\.[0-9a-f]{12}\.toml")
+"""How the name of a copy of the text ends."""
 
 
 class Asked:
@@ -95,6 +99,14 @@ class Asked:
                 return
             self._job = self._sent(doc, name, words, results.place(key))
             threading.Thread(target=self._wait, args=(self._job, now, results), daemon=True).start()
+
+    def tidy(self, doc: Document) -> None:
+        """Remove copies of the text that a killed program has left beside the file."""
+        if not doc.read_only:
+            for left in doc.file.parent.glob(f".{glob.escape(doc.file.stem[:60])}.*.toml"):
+                if COPY.fullmatch(left.name[-18:]):
+                    with suppress(OSError):
+                        left.unlink()
 
     def _sent(self, doc: Document, name: str, words: list[str], out: Path) -> Job:
         """Send a question with a copy of the text beside the file: what it names is relative to that."""

@@ -64,6 +64,7 @@ class Session:
         }  # fmt: skip
         if file is not None:
             self.document = Document(file)
+            self.asked.tidy(self.document)
 
     def close(self) -> None:
         """End the processes and give the file back."""
@@ -199,6 +200,7 @@ class Session:
                 return
             opened = Document(path)
             self.asked.forget()
+            self.asked.tidy(opened)
             if self.document is not None:
                 self.document.close()
             self.document, self._picture, self._shown = opened, None, None

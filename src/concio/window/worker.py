@@ -9,11 +9,15 @@ import json
 import math
 import os
 import sys
+import threading
+import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from concio.errors import ConcioError
 
+OFTEN = 1.0
+"""Time between two looks whether the window lives [s]."""
 Tell = Callable[[str, Any], None]
 Handler = Callable[[Mapping[str, Any], Tell], Any]
 """Answers a request; ``tell("progress", ...)`` sends what is known on the way."""
@@ -28,6 +32,7 @@ def work(handlers: Mapping[str, Handler]) -> None:
         A request is ``{"id": 1, "kind": "picture"}``; the answers are ``{"id": 1, "progress": ...}`` and at the end
         ``{"id": 1, "done": ...}`` or ``{"id": 1, "error": {"what", "where", "hint"}}``.
     """
+    threading.Thread(target=_end_with_parent, args=(os.getppid(),), daemon=True).start()
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8", newline="\n")
     os.dup2(2, 1)
     sys.stdout = sys.stderr
@@ -49,6 +54,13 @@ def work(handlers: Mapping[str, Handler]) -> None:
         except Exception as error:
             what = f"this is a bug in concio: {type(error).__name__}: {error}"
             tell("error", {"what": what, "where": "", "hint": "send the model file with a report of the bug"})
+
+
+def _end_with_parent(parent: int) -> None:
+    """End the process when the window that started it has died: nobody waits for the answer."""
+    while os.getppid() == parent:
+        time.sleep(OFTEN)
+    os._exit(1)
 
 
 def error_of(error: ConcioError) -> dict[str, Any]:

@@ -329,6 +329,16 @@ def test_a_killed_server_loses_nothing(file: Path) -> None:
     shutil.rmtree(doc.folder)
 
 
+def test_copies_that_a_killed_program_left_are_removed_and_nothing_else(file: Path) -> None:
+    left = file.parent / ".pillar.0123456789ab.toml"
+    others = [file.parent / name for name in (".pillar.mine.toml", ".pillar.toml", ".wall.0123456789ab.toml")]
+    for path in (left, *others):
+        path.write_text("x = 1\n", encoding="utf-8")
+    with window(file.parent, file):
+        assert not left.exists()
+        assert all(path.exists() for path in others)
+
+
 def test_the_command_refuses_what_it_cannot_open(tmp_path: Path) -> None:
     (tmp_path / "a.exe").write_text("x", encoding="utf-8")
     for arguments_ in (["missing.toml"], ["--folder", "missing"], ["a.exe"]):

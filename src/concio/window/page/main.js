@@ -30,6 +30,7 @@ function banner(id, text = "", buttons = []) {
 
 /* --- the state --- */
 function take(found) {
+  if (doc && found.document && found.document.name === doc.name && found.document.version < doc.version) return true; /* overtaken */
   state = { ...state, ...found };
   const before = doc;
   doc = found.document ? { ...(before && before.name === found.document.name ? before : {}), ...found.document } : null;
@@ -100,9 +101,10 @@ function attention() {
 }
 
 /* --- commands --- */
-async function send(commands) {
-  if (!doc) return null;
-  return tried(async () => take(await call("do", { commands, ...seen() })));
+let queue = Promise.resolve();
+function send(commands) { /* one after the other, each on the text that the one before has left */
+  queue = queue.then(() => (doc ? tried(async () => take(await call("do", { commands, hash: doc.hash, ...seen() }))) : null));
+  return queue;
 }
 const undo = () => tried(async () => take(await call("undo", seen())));
 const redo = () => tried(async () => take(await call("redo", seen())));
