@@ -15,7 +15,7 @@ from concio.solvers.algebra.second_order_cone import product, reach, times
 from concio.solvers.statics.cone_interior import ConeAnswer, maximise
 from concio.solvers.statics.cone_programme import ConeProgramme, Pairs, Point
 from concio.solvers.statics.cone_statics import ConeStatics, _motions_of_bodies, _room
-from concio.solvers.statics.cone_step import Step
+from concio.solvers.statics.cone_step import Pivoted, Step
 from concio.solvers.statics.existence import statically_admissible
 from concio.solvers.statics.friction import smallest_friction
 from concio.solvers.statics.limit import associated_limit
@@ -411,3 +411,14 @@ def test_the_way_to_the_edge_of_a_cone_keeps_its_digits_next_to_it(sense: float)
     assert reach(x, dx) == pytest.approx(2.0**-39, rel=1e-9)
     assert reach(x, -dx + np.array([[-1.0, 0.0]])) == pytest.approx(2.0**-40 / 0.5, rel=1e-9)
     assert reach(x, np.array([[0.5, sense * 0.25]])) == np.inf
+
+
+def test_factors_with_pivoting_solve_what_no_order_was_given_for() -> None:
+    """Also where the diagonal is zero and the pivots stand in other rows."""
+    rng = np.random.default_rng(3)
+    block = sp.random_array((30, 12), density=0.2, rng=rng) + sp.eye_array(30, 12)
+    inner = sp.block_array([[1e-9 * sp.eye_array(30), block], [block.T, None]])
+    border = sp.csc_array(rng.standard_normal((42, 1)))
+    matrix = sp.csc_array(sp.block_array([[inner, border], [border.T, None]]))
+    right = rng.standard_normal(43)
+    assert matrix @ Pivoted(matrix).solve(right) == pytest.approx(right, abs=1e-5 * np.abs(right).max())
