@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from scipy.optimize import brentq
 
 import concio
 from concio import JointLaw, Load, Model, Rigid
+from concio.analysis.seismic.checks import limit_of
 from concio.analysis.seismic.code import find_code
 from concio.analysis.seismic.free_standing import FreeStanding
 from concio.errors import InputError
@@ -153,3 +155,14 @@ def test_a_code_laid_over_another_changes_single_numbers(tmp_path: Any) -> None:
         with pytest.raises(InputError, match=said):
             find_code(str(own))
     assert np.isfinite(rules.gravity)
+
+
+@pytest.mark.parametrize("stiffness", [0.1, 1e6])
+def test_a_wall_is_nowhere_stiffer_than_its_elastic_branch(stiffness: float) -> None:
+    """The acceleration at the limit is the lesser of curve and branch, and the period follows from it."""
+    curve = SimpleNamespace(end=1.0, at=lambda _: 0.1)
+    rule = {"share": 0.5, "period": 2.0, "damping": 0.05}
+    found = limit_of("LSLS", rule, curve, 0.8, 10.0, branch=SimpleNamespace(stiffness=stiffness))
+    assert (found.control, found.d) == pytest.approx((0.5, 0.4))
+    assert found.a == pytest.approx(min(1.0, stiffness * 0.4))
+    assert pytest.approx(2.0 * np.pi * np.sqrt(found.d / found.a)) == found.T

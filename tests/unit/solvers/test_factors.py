@@ -11,6 +11,7 @@ from concio.solvers.algebra.block_factor import BlockFactor
 from concio.solvers.algebra.scaled import LOOSE, scale
 from concio.solvers.algebra.sparse_factor import OrderedFactor, Pattern, SingularMatrixError
 from concio.solvers.methods import find
+from concio.solvers.stepping.factor import StepFactor
 
 FACTORS = ("band", "superlu", "pardiso")
 
@@ -149,3 +150,26 @@ def test_a_problem_whose_matrices_are_changed_is_solved_as_it_is_now() -> None:
     after = find("interior-point")(problem)
     assert (before.solved, after.solved) == (True, True)
     np.testing.assert_allclose(2.0 * after.displacement, before.displacement, rtol=1e-9, atol=1e-15)
+
+
+@pytest.mark.parametrize("n", [12, 60])
+def test_a_step_factor_adds_pairs_and_springs_where_they_belong(n: int) -> None:
+    """Small systems are inverted, larger ones factored; every third pair has a column less."""
+    rng = np.random.default_rng(n)
+    m, w = 2 * n, 4
+    A = sp.diags_array([np.full(n - 1, -1.0), np.full(n, 5.0), np.full(n - 1, -1.0)], offsets=[-1, 0, 1]).tocsr()
+    columns = np.array([rng.choice(n, w, replace=False) for _ in range(m)])
+    columns[::3, -1] = n
+    values, D = rng.normal(size=(m, 2, w)), rng.normal(size=(m, 2, 2)) + 3.0 * np.eye(2)
+    values[::3, :, -1] = 0.0
+    springs = rng.uniform(1.0, 2.0, n)
+    dense = A.toarray() + np.diag(springs)
+    for k in range(m):
+        rows = np.zeros((2, n + 1))
+        rows[:, columns[k]] = values[k]
+        dense += rows[:, :n].T @ D[k] @ rows[:, :n]
+    factor = StepFactor(A, columns)
+    factor.take(A, values)
+    factor.factorise(D, springs)
+    b = rng.normal(size=n)
+    assert factor.solve(b) == pytest.approx(np.linalg.solve(dense, b), rel=1e-8)
