@@ -36,8 +36,8 @@ LEAST = 1e-9
 MOST = {2: 120, 3: 80}
 """Largest number of steps tried, by dimension."""
 
-FAILURES = {2: 30, 3: 12}
-"""Largest number of steps that may fail, by dimension."""
+FAILURES = {2: 45, 3: 12}
+"""Largest number of steps that may fail, by dimension: panels with wide friction come to rest after some thirty."""
 
 CHANGES = 0.1
 """Largest relative change of the motion from one step to the next at which it is asked whether it ends."""
