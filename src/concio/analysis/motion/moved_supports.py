@@ -103,17 +103,23 @@ def begun(statics: Statics, state: MotionState) -> tuple[Balanced, float, Motion
     if not moved.any or not found.found:
         return found, 0.0 if moved.any else 1.0, state
     part = first = min(1.0, PART * statics.width / moved.largest(statics))
-    done = 0.0
+    done, lost = 0.0, found
     while done < 1.0:
         part = min(part, 1.0 - done)
         trial = statics.balance(moved.applied(found.state, part), 0.0)
         if not trial.found:
+            lost = max(lost, trial, key=_reach) if not lost.found else trial
             part *= 0.5
             if part < SMALLEST * first:
-                return trial, done, found.state
+                return lost, done, found.state
             continue
-        found, done = trial, done + part
+        found, lost, done = trial, trial, done + part
         if 1.0 - done < 1e-12:
             done = 1.0
         part = min(GROWTH * part, first)
     return found, 1.0, found.state
+
+
+def _reach(found: Balanced) -> float:
+    """Return how far an attempt went: the smallest steps of supports end before anything has moved far."""
+    return float(np.abs(found.moved).max(initial=0.0))
