@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
-from scipy.optimize import nnls
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
@@ -43,19 +42,27 @@ def contacts(bodies: list, reach: float, **options) -> Contacts:
 def signed_distance(p: Array, q: Array) -> float:
     """Distance of two convex hulls, minus the depth where they overlap: from the hull of the differences of corners.
 
-    Outside of it the distance of the origin is a problem of least distance, solved by non-negative least squares
-    (Lawson and Hanson 1974, chapter 23); inside, the origin's depth below the nearest face.
+    Outside of it the origin is as far as from the nearest of its faces, edges and corners; inside, as deep as below the
+    nearest face.
     """
     apart = (q[:, None] - p[None]).reshape(-1, p.shape[1])
     hull = ConvexHull(apart)
     height = hull.equations[:, -1].max()
     if height <= 0:
         return float(height)
-    system = np.vstack([apart.T, np.ones(len(apart))])
-    aim = np.append(np.zeros(p.shape[1]), 1.0)
-    weights, _ = nnls(system, aim, maxiter=10000)
-    rest = system @ weights - aim
-    return float(np.abs(rest[-1]) / np.linalg.norm(rest[:-1]))
+    return min(_to_simplex(apart[corners]) for corners in hull.simplices)
+
+
+def _to_simplex(corners: Array) -> float:
+    """Distance of the origin from a segment or a triangle: from the nearest of its parts whose foot lies inside it."""
+    found = []
+    for count in range(1, len(corners) + 1):
+        for some in combinations(range(len(corners)), count):
+            base, sides = corners[some[0]], corners[list(some[1:])] - corners[some[0]]
+            share = np.linalg.lstsq(sides.T, -base, rcond=None)[0] if count > 1 else np.zeros(0)
+            if share.sum() <= 1.0 and (share >= 0.0).all():
+                found.append(float(np.linalg.norm(base + share @ sides)))
+    return min(found)
 
 
 def random_pair(seed: int, dim: int) -> tuple[Array, Array]:
