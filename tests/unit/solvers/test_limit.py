@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import concio
 from concio.problem.solution import Mechanism
 from concio.solvers.statics import collapse_state
 from concio.solvers.statics import friction as least_friction
@@ -220,3 +221,12 @@ def test_collapse_state_with_a_cap(monkeypatch, large, mu, cap, cohesion, wanted
     assert found.certified
     assert found.multiplier == pytest.approx(wanted, rel=1e-9)
     assert found.velocity == pytest.approx(motion, abs=1e-9)
+
+
+def test_a_load_that_presses_the_joints_is_unbounded_and_no_state_of_its_reverse_is_told() -> None:
+    """Strengths that grow with the load led the search to programmes of 1e16 times the load: an error."""
+    wall = concio.wall(length=2.0, height=1.5, block_size=(0.5, 0.25), block="rigid", unit_weight=20, friction=0.6)
+    found = concio.limit(replace(wall, loads=(*wall.loads, concio.Load("weight", (0.0, -1.0), group="live"))))
+    assert found.verdict.outcome.name == "HOLDS"
+    assert "without bound" in found.verdict.answer
+    assert found.collapse_state is None or found.collapse_state.multiplier >= 0.0

@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from concio.errors import SolverError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.limits_of_work import COLLAPSE_WORK
 from concio.problem.parts import Part, parts_of
@@ -229,8 +230,11 @@ class _Search:
             if self.progress is not None and self.progress(note):
                 return False
             laws = replace(problem.laws, friction=zero, dilatancy=zero, cohesion=strength)
-            found = associated_limit(replace(problem, laws=laws), self.live)
             self.programmes += 1
+            try:
+                found = associated_limit(replace(problem, laws=laws), self.live)
+            except SolverError:  # a load that presses on joints raises their strength, and that the load, past 1e16
+                break
             if not np.isfinite(found.multiplier) or found.mechanism is None:
                 break
             change = abs(found.multiplier - last) / max(1.0, abs(last))
@@ -255,7 +259,7 @@ class _Search:
         self.asked.add(motion.key)
         self.programmes += 1
         state = certify_collapse(self.problem, self.live, velocity, self.programmes)
-        if state is not None:
+        if state is not None and state.multiplier >= 0.0:  # the other way round is another load
             self.states.append(state)
 
 
