@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 import concio
+from concio.errors import SolverError
 from concio.problem.solution import Mechanism
-from concio.solvers.statics import collapse_state
+from concio.solvers.statics import collapse_search, collapse_state
 from concio.solvers.statics import friction as least_friction
 from concio.solvers.statics import programme as statics
 from concio.solvers.statics.collapse_search import find_collapse_state
@@ -221,6 +222,24 @@ def test_collapse_state_with_a_cap(monkeypatch, large, mu, cap, cohesion, wanted
     assert found.certified
     assert found.multiplier == pytest.approx(wanted, rel=1e-9)
     assert found.velocity == pytest.approx(motion, abs=1e-9)
+
+
+def test_a_programme_that_stops_ends_one_start_of_the_search_and_not_the_analysis(monkeypatch) -> None:
+    """Strengths that grow with the load led to programmes of 1e16 times the load, and an error for an answer."""
+    made = []
+
+    def stops(problem, live):
+        made.append(1)
+        if len(made) > 2:
+            msg = "the linear programme stopped"
+            raise SolverError(msg)
+        return associated_limit(problem, live)
+
+    monkeypatch.setattr(collapse_search, "associated_limit", stops)
+    a = wall(FERRIS_TIN_LOI["wall 1"])
+    found = find_collapse_state(a.problem(MU, a.load(0, -1)), a.load(1, 0), starts=3)
+    assert len(made) > 3, "the other starts are made"
+    assert found.state is None or found.state.certified
 
 
 def test_a_load_that_presses_the_joints_is_unbounded_and_no_state_of_its_reverse_is_told() -> None:
