@@ -27,17 +27,22 @@ from concio.proof.programs import recompute
 COURSES = {"half ends": [0.5, 1, 1, 1, 1, 0.5], "full": [1.0] * 5, "doors": [1, -1, 1, -1, 1], "low": [1.0] * 4,
            "doors shifted": [0.5, 0.5, -1, 0.5, 0.5, -1, 0.5, 0.5], "low shifted": [0.5, 1, 1, 1, 0.5],
            "door": [0.5, 1, -1, 1, 0.5], "door shifted": [1, 0.5, -1, 0.5, 1], "narrow": [0.5, 1, 1, 0.5],
-           "narrow shifted": [1.0] * 3, "window": [1, -1, 1], "window shifted": [0.5, 0.5, -1, 0.5, 0.5]}  # fmt: skip
+           "narrow shifted": [1.0] * 3, "window": [1, -1, 1], "window shifted": [0.5, 0.5, -1, 0.5, 0.5],
+           "wide ends": [0.5, 1, 1, 1, 1, 1, 1, 0.5], "wide": [1.0] * 7, "pair": [0.5, 1, -1, 1, 1, -1, 1, 0.5],
+           "pair shifted": [1, 0.5, -1, 0.5, 1, 0.5, -1, 0.5, 1]}  # fmt: skip
 STOREY, OPENING = ["narrow", "narrow shifted", "narrow"], ["window", "window shifted"] * 2 + ["window"]
 DOORS = ["doors", "doors shifted"] * 2 + ["doors"]
+PAIRS = ["pair", "pair shifted"] * 2 + ["pair"]
 WALLS = {
     "1": ["half ends", "full"] * 3,
     "2": ["half ends", "full"] * 5,
     "3": ["low", "low shifted", "low", *["door", "door shifted"] * 2, "door", "low", "low shifted", "low"],
     "4": ["half ends", "full", "half ends", *DOORS, "half ends", "full", "half ends"],
     "5": [*STOREY, *OPENING, *STOREY, *OPENING, *STOREY],
+    "6": [*["wide ends", "wide"] * 2, *PAIRS, "wide", "wide ends", "wide", *PAIRS, *["wide", "wide ends"] * 2],
 }
-"""Courses of walls 1 to 5 of Ferris and Tin-Loi, Int. J. Mech. Sci. 43 (2001), from below."""
+"""Courses of walls 1 to 6 of Ferris and Tin-Loi, Int. J. Mech. Sci. 43 (2001), from below; those of wall 6 are from an
+open example of HybriDFEM."""
 
 
 def drawn_wall(rng: np.random.Generator, **more: Any) -> concio.Model:

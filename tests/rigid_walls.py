@@ -26,6 +26,9 @@ NARROW, NARROW_SHIFTED = [0.5, 1, 1, 0.5], [1.0] * 3
 WINDOW, WINDOW_SHIFTED = [1, -1, 1], [0.5, 0.5, -1, 0.5, 0.5]
 STOREY = [NARROW, NARROW_SHIFTED, NARROW]
 OPENING = [WINDOW, WINDOW_SHIFTED, WINDOW, WINDOW_SHIFTED, WINDOW]
+WIDE_ENDS, WIDE = [0.5, 1, 1, 1, 1, 1, 1, 0.5], [1.0] * 7
+PAIR, PAIR_SHIFTED = [0.5, 1, -1, 1, 1, -1, 1, 0.5], [1, 0.5, -1, 0.5, 1, 0.5, -1, 0.5, 1]
+WINDOWS = [PAIR, PAIR_SHIFTED, PAIR, PAIR_SHIFTED, PAIR]
 
 FERRIS_TIN_LOI: dict[str, Courses] = {
     "wall 1": [HALF_ENDS, FULL] * 3,
@@ -41,8 +44,12 @@ TALLER: dict[str, Courses] = {
         HALF_ENDS, FULL, HALF_ENDS, DOORS, DOORS_SHIFTED, DOORS, DOORS_SHIFTED, DOORS, HALF_ENDS, FULL, HALF_ENDS,
     ],
     "wall 5": [*STOREY, *OPENING, *STOREY, *OPENING, *STOREY],
+    "wall 6": [
+        *[WIDE_ENDS, WIDE] * 2, *WINDOWS, WIDE, WIDE_ENDS, WIDE, *WINDOWS, WIDE, WIDE_ENDS, WIDE, WIDE_ENDS,
+    ],
 }  # fmt: skip
-"""Their walls 4 and 5, with two openings side by side and one above the other."""
+"""Their walls 4 to 6: two openings side by side, one above the other, and both. The courses of wall 6 are those of an
+open example of HybriDFEM, not read from the paper."""
 
 BLOCK, MU = (0.4, 0.175), 0.65
 

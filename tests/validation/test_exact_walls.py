@@ -39,6 +39,19 @@ def test_walls_with_two_openings_are_fractions(name: str, published: float) -> N
     assert float(Fraction(made["lower"])) == pytest.approx(published, abs=5e-6)
 
 
+def test_wall_six_is_a_fraction_of_two_hundred_digits() -> None:
+    """146 blocks with four openings; the linear programme in floating point is the only other number we have."""
+    wall = concio.wall_of_courses(
+        TALLER["wall 6"], block_size=BLOCK, friction=MU, block=concio.Rigid(unit_weight=1.0), horizontal=1.0
+    )
+    assert len(wall.free_bodies) == 146
+    found = concio.limit(wall, path=False, steps=False, search=False)
+    made = found.proof(numbers="decimal")
+    assert made["lower"] == made["upper"]
+    assert float(Fraction(made["lower"])) == pytest.approx(found.associated.multiplier, rel=1e-10)
+    assert "proved exactly" in verify.check(made)
+
+
 @pytest.mark.parametrize("voussoirs", [9, 27])
 def test_arches_are_fractions(voussoirs: int) -> None:
     """An arch is symmetric to rounding: its last corner has several bases, and a few pivots in fractions decide."""
