@@ -25,11 +25,13 @@ def test_springs_store_the_work_that_deforms_them():
     force_n = np.where(springs.normal, deformed / np.where(springs.normal, springs.a_n, 1.0), 0.0)
     force_t = np.where(springs.shear, sheared / np.where(springs.shear, springs.a_t, 1.0), 0.0)
     along_n, along_t = np.trapezoid(force_n, deformed, axis=0), np.trapezoid(force_t, sheared, axis=0)
-    found = springs.parts(sunk, stretch)
+    found = springs.parts(sunk, stretch[:, None])
     assert found[0] == pytest.approx(along_n, rel=1e-9, abs=1e-15)
     assert found[1] == pytest.approx(along_t, rel=1e-9, abs=1e-15)
-    assert springs.stored(sunk, stretch) == pytest.approx(along_n + along_t, rel=1e-9)
+    assert springs.stored(sunk, stretch[:, None]) == pytest.approx(along_n + along_t, rel=1e-9)
     assert found[0] == pytest.approx([4e-3, 0.0, 0.0, 2e-3], rel=1e-9, abs=1e-15)
+    in_space = np.column_stack([0.6 * stretch, -0.8 * stretch])
+    assert springs.stored(sunk, in_space) == pytest.approx(springs.stored(sunk, stretch[:, None]), rel=1e-12)
     assert springs.loaded(sunk).tolist() == [True, False, False, False]
     assert springs.broken(np.array([True, False, False, True])).longest.tolist() == [0.0, 0.0, 0.0, 0.0]
 

@@ -128,11 +128,11 @@ def test_a_block_that_nothing_squeezes_has_no_certificate_of_equilibrium(stiffne
 
 
 def test_collapse_for_want_of_a_joint_that_was_almost_made_has_no_certificate() -> None:
-    """A beam on a bearing and a knife edge stands; the edge is a corner, and no joint is made there."""
+    """A beam on a bearing and a knife edge stands; an edge has no area for a strength, and no joint is made there."""
     ground = Body("g", [(-0.5, 0), (0.2, 0), (0.2, 1), (-0.5, 1)], kind="fixed")
     knife = Body("k", [(3.8, 0.5), (4.2, 0.5), (4, 1)], kind="fixed")
     beam = Body("beam", [(0, 1), (4.5, 1), (4.5, 1.3), (0, 1.3)], kind="rigid")
-    law = {"joint": JointLaw(0.6)}
+    law = {"joint": JointLaw(0.6, compressive_strength=1e4)}
     model = Model((ground, knife, beam), {"block": Rigid(20.0)}, law, loads=(Load("weight", (0, -1)),))
     result = concio.solve(model, on_failure="return")
     with pytest.raises(InputError, match="almost made"):

@@ -149,7 +149,7 @@ def test_a_certificate_keeps_the_list(tmp_path: Path) -> None:
 
 
 def test_what_prove_does_not_take_is_refused(tmp_path: Path) -> None:
-    for options in (("--factor", "dead=2"), ("--claim", "collapse", "--group", "live")):
+    for options in (("--claim", "limit", "--factor", "dead=2"), ("--claim", "collapse", "--group", "live")):
         code, found = asked("prove", ODD, options, tmp_path)
         assert code == 2
         assert "does not go with" in found["what"]
