@@ -46,7 +46,11 @@ def test_every_example_is_decided_and_told_in_plain_json(name: str) -> None:
         return
     assert result.status is Status.SOLVED
     assert result.certificate.worst <= LARGEST.get(name, 1e-10)
-    balance = np.sum([*result.reactions.values(), result.total_load], axis=0)
+    pulls = {told["name"]: told["tension"] for told in result.ties.as_list()}
+    anchored = [t for t in result.model.ties if not t.body_b]  # their far ends hold as supports do
+    ways = [np.subtract(t.at_b, t.at_a) / np.linalg.norm(np.subtract(t.at_b, t.at_a)) for t in anchored]
+    pulled = [pulls[t.name] * way for t, way in zip(anchored, ways, strict=True)]
+    balance = np.sum([*result.reactions.values(), result.total_load, *pulled], axis=0)
     size = np.abs([*result.reactions.values(), result.total_load]).max()
     assert np.abs(balance).max() <= 1e-8 * size
     assert result.assembly.detection.report() == ()
