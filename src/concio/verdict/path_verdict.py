@@ -163,6 +163,8 @@ def _ending(found: PathResult, outcome: Outcome) -> str:
     stage, most = found.stages[len(found.outcomes) - 1].name, _most(found)
     if outcome is Outcome.FAILS:
         light = ", without self-weight" if len(found.outcomes) - 1 in found.weightless_stages else ""
+        if _loads_reached(found):
+            return f"Collapses in stage '{stage}' at {most} asked for{light}, short of the displacement asked for."
         return f"Collapses in stage '{stage}': it carries no more than {most}{light}."
     if found.outcomes[-1] is Ended.LOST:
         return f"Lost in stage '{stage}': at least {most} is carried, and what follows is not known."
@@ -197,6 +199,12 @@ def _most(found: PathResult) -> str:
         reached = loads[0].most if loads[0].most != loads[0].begin else loads[0].end
         told = f"{name} = {number(reached, 6, size=abs(loads[0].asked))} of {number(loads[0].asked, 6)}"
     return told
+
+
+def _loads_reached(found: PathResult) -> bool:
+    """Return whether the loads of the last stage reached what was asked for: its displacement alone is missing."""
+    loads = found.group_loads()
+    return bool(loads) and all(abs(v.most - v.begin) >= abs(v.asked - v.begin) > 0 for v in loads)
 
 
 def _idle(found: PathResult) -> tuple[str, ...]:
