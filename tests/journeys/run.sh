@@ -9,8 +9,8 @@ found() { [ -n "${CHROMIUM:-}" ] || command -v chromium chromium-browser google-
 if ! found && command -v apt-get >/dev/null; then
     as_root=(); [ "$(id -u)" = 0 ] || as_root=(sudo -n)
     echo "journeys: Chromium is missing: installing Debian's package"
-    { "${as_root[@]}" apt-get update -q && DEBIAN_FRONTEND=noninteractive \
-        "${as_root[@]}" apt-get install -q -y --no-install-recommends chromium; } >journeys-apt.log 2>&1 || tail -n 5 journeys-apt.log
+    { timeout 120 "${as_root[@]}" apt-get update -q && DEBIAN_FRONTEND=noninteractive \
+        timeout 300 "${as_root[@]}" apt-get install -q -y --no-install-recommends chromium; } >journeys-apt.log 2>&1 || tail -n 5 journeys-apt.log
     rm -f journeys-apt.log
 fi
 if ! found; then
