@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from collections import defaultdict
 from pathlib import Path
 
@@ -13,6 +15,7 @@ from typer.testing import CliRunner
 
 from commands import run
 from concio.cli.main import EXIT_CODES, app
+from pillars import pillar, sideways
 
 COMMANDS = typer.main.get_command(app).commands
 WALL = """
@@ -119,3 +122,15 @@ def test_an_error_keeps_to_the_schema_too(wall: Path) -> None:
     for name in ("what", "kind", "exit_code"):
         with pytest.raises(jsonschema.ValidationError):
             jsonschema.validate({k: v for k, v in told.items() if k != name}, schema)
+
+
+@pytest.mark.parametrize("asked", [("prove", "--force"), ("run", "--method", "exhaustive"), ("limit",)])
+def test_a_process_that_prints_json_prints_nothing_else(asked: tuple[str, ...], tmp_path: Path) -> None:
+    """A linear programming code of its own printed its name first, which a runner inside Python does not see."""
+    file = tmp_path / "pillar.toml"
+    file.write_text(pillar(sideways(0.1)))
+    command = [sys.executable, "-m", "concio", asked[0], str(file), "--json", *asked[1:]]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["verdict"]["outcome"] == "holds"
+    assert not done.stderr
