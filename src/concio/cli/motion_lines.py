@@ -73,8 +73,8 @@ def shake_lines(result: DynamicsResult) -> list[str]:
         f"  joints       open by {units.text('motion', told['largest_opening'])} at most, "
         f"slip by {units.text('motion', told['largest_slip'])}",
         f"  certificate  {result.certificate:.1e} (worst of all steps)",
-        f"  energy       balance closes to {result.energy.error:.1e} of {number(result.energy.turned_over, 4)} kN m "
-        "exchanged",
+        f"  energy       balance closes to {result.energy.error:.1e} of {number(result.energy.scale, 4)} kN m "
+        + ("(less was exchanged)" if result.energy.still else "exchanged"),
         f"  steps        {shares} of steps; {float(result.steps.factorisations.mean()):.2f} factorisations per step",
     ]
 

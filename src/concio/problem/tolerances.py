@@ -45,6 +45,10 @@ STEP_SETTLED = 1e-10
 STEP_GOOD = 1e-11
 """Residual below which a step of a motion is taken without looking further; relative like :data:`STEP_SETTLED`."""
 
+ENERGY_ROUNDING = 1e-9
+"""Share of the size of a model by which all weights are lifted with an energy that counts as none in a motion: places
+are known to rounding of this size, and a step is certified to the same share of the loads."""
+
 RELAXED = 1e-10
 """Natural-map residual up to which a step of viscous relaxation is solved."""
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.display import number
-from concio.problem.tolerances import CERTIFIED
+from concio.problem.tolerances import CERTIFIED, ENERGY_ROUNDING
 from concio.units import GRAVITY
 from concio.verdict.attention import attention_of, joints_not_made
 from concio.verdict.push_verdict import Described
@@ -146,8 +146,17 @@ def _proof(found: DynamicsResult) -> str:
     return (
         f"Certified in each of {len(found.steps):,} steps: momentum of every body, contact, cone and slip, to "
         f"{found.certificate:.1e} (relative; {CERTIFIED:.0e} is allowed). The total energy, from positions "
-        f"and velocities, is constant to {found.energy.error:.1e} of the energy exchanged."
+        f"and velocities, is constant to {_of_what(found)}."
     )
+
+
+def _of_what(found: DynamicsResult) -> str:
+    """Return the error of the energy balance, with what it is a share of."""
+    energy = found.energy
+    if not energy.still:
+        return f"{energy.error:.1e} of the energy exchanged"
+    least = f"{number(energy.rounding, 2)} kN m, which lifts it by {ENERGY_ROUNDING:.0e} of its size"
+    return f"{energy.error:.1e} of {least}: less was exchanged"
 
 
 def _unchecked(found: DynamicsResult, outcome: Outcome) -> tuple[str, ...]:
@@ -162,6 +171,5 @@ def _unchecked(found: DynamicsResult, outcome: Outcome) -> tuple[str, ...]:
 
 def _noticed(found: DynamicsResult) -> tuple[str, ...]:
     """Return what asks for attention in the motion itself."""
-    error = found.energy.error
-    odd = (f"the energy balance is off by {error:.1e} of the energy exchanged: take a smaller step",)
-    return (*found.notes, *(odd if error > CLOSES else ()))
+    odd = (f"the energy balance is off by {_of_what(found)}: take a smaller step",)
+    return (*found.notes, *(odd if found.energy.error > CLOSES else ()))

@@ -228,3 +228,36 @@ def test_a_push_that_does_not_begin_says_what_shows_it(tmp_path, monkeypatch):
         concio.push(standing())
     assert lost.value.verdict.outcome is Outcome.UNDECIDED
     assert lost.value.verdict.exit_code == 4
+
+
+def on_knife_edges(dim, law=None):
+    """A beam across two knife edges, in the plane and in space."""
+    joints = {"joint": law or concio.JointLaw(0.6)}
+    rigid = {"block": concio.Rigid(unit_weight=20.0)}
+    if dim == 2:
+        place = (("g", 0), ("k", 4))
+        ends = [concio.Body(n, [(x - 0.2, 0.5), (x + 0.2, 0.5), (x, 1.0)], kind="fixed") for n, x in place]
+        beam = concio.Body("beam", [(-0.5, 1), (4.5, 1), (4.5, 1.3), (-0.5, 1.3)], kind="rigid")
+        return concio.Model((*ends, beam), rigid, joints, loads=(concio.Load("weight", (0, -1)),))
+    faces = [(0, 1, 2), (3, 5, 4), (0, 3, 4, 1), (1, 4, 5, 2), (2, 5, 3, 0)]
+    ends = [
+        concio.Polyhedron(n, [(x + dx, y, z) for y in (-1, 2) for dx, z in ((-0.2, 0.5), (0.2, 0.5), (0, 1))], faces,
+                          kind="fixed") for n, x in (("g", 0), ("k", 4))
+    ]  # fmt: skip
+    beam = concio.Polyhedron.box("beam", (-0.5, 0, 1), (4.5, 1, 1.3), kind="rigid")
+    return concio.Model((*ends, beam), rigid, joints, loads=(concio.Load("weight", (0, 0, -1)),))
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_beam_at_rest_has_no_energy_balance_to_be_off_and_a_wrong_balance_is_told(dim, tmp_path):
+    found = concio.dynamics(on_knife_edges(dim), duration=0.1)
+    assert found.energy.still
+    assert not any("energy balance" in told for told in found.verdict.attention), "rounding was told as an error"
+    again = concio.load_motion(concio.save_motion(found, tmp_path / "motion.npz"))
+    assert again.energy.error == found.energy.error, "a file keeps what exchanges are measured by"
+    moved = concio.dynamics(on_knife_edges(dim), duration=0.05, velocities={"beam": (0.1, 0.0, 0.0)})
+    assert not moved.energy.still
+    assert not any("energy balance" in told for told in moved.verdict.attention)
+    friction = moved.energy["friction"] * 1.01
+    wrong = replace(moved, energy=replace(moved.energy, values={**moved.energy.values, "friction": friction}))
+    assert any("energy balance" in told for told in wrong.verdict.attention)

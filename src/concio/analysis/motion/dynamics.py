@@ -382,7 +382,7 @@ class _Run:
         if self.recorder.shots[-1][0] is not self.state:
             self._shoot()
         self.seconds = clock.perf_counter() - self.begun
-        shots, steps, energy = self.recorder.done(len(self.points), len(self.observer.names), self.reference.disc.dim)
+        shots, steps, energy = self.recorder.done(self.reference, len(self.points), len(self.observer.names))
         return DynamicsResult(
             model=self.reference.model, gravity=self.reference.gravity, scheme=self.scheme, factors=self.factors,
             ending=ending, shots=shots, steps=steps, energy=energy, points=self.points,

@@ -23,9 +23,13 @@ class EnergyBalance:
     Parameters
     ----------
     values : mapping of str to (n,) array
+    rounding : float
+        Energy below which exchanges are rounding: what lifts all weights by a share
+        :data:`concio.problem.tolerances.ENERGY_ROUNDING` of the size of the model [kN m].
     """
 
     values: dict[str, Array]
+    rounding: float = 0.0
 
     def __getitem__(self, name: str) -> Array:
         return self.values[name]
@@ -41,13 +45,23 @@ class EnergyBalance:
 
     @property
     def turned_over(self) -> float:
-        """Energy by which the error of the balance is measured: the largest range or the largest motion [kN m]."""
+        """Energy that was exchanged: the largest range of any energy, or the largest kinetic energy [kN m]."""
         moving = float(self.values["kinetic"].max(initial=0.0))  # an elastic impact in free flight turns nothing over
         return max(moving, *(float(np.ptp(v)) if len(v) else 0.0 for v in self.values.values()))
 
     @property
     def error(self) -> float:
-        """Largest deviation of the balance from its beginning over :attr:`turned_over`."""
+        """Largest deviation of the balance from its beginning over :attr:`scale`."""
         total = self.total
         worst = float(np.abs(total - total[0]).max()) if len(total) else 0.0
-        return worst / self.turned_over if self.turned_over > 0 else 0.0
+        return worst / self.scale if self.scale > 0 else 0.0
+
+    @property
+    def still(self) -> bool:
+        """Whether no more energy was exchanged than rounding of places explains."""
+        return self.turned_over <= self.rounding
+
+    @property
+    def scale(self) -> float:
+        """The larger of :attr:`turned_over` and :attr:`rounding` [kN m]."""
+        return max(self.turned_over, self.rounding)

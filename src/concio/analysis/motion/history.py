@@ -8,6 +8,8 @@ import numpy as np
 
 from concio.analysis.motion.energy import NAMES, EnergyBalance
 from concio.analysis.motion.state import MotionState
+from concio.contact.reference import Reference
+from concio.problem.tolerances import ENERGY_ROUNDING
 
 Array = np.ndarray
 
@@ -106,8 +108,9 @@ class Recorder:
         self.points.append(point)
         self.reactions.append(reaction)
 
-    def done(self, points: int, reactions: int, dim: int) -> tuple[Shots, Steps, EnergyBalance]:
+    def done(self, reference: Reference, points: int, reactions: int) -> tuple[Shots, Steps, EnergyBalance]:
         """Return everything as arrays."""
+        dim = reference.disc.dim
         states = [s[0] for s in self.shots]
         shots = Shots(
             np.array([s.time for s in states]), np.array([s.centre for s in states]),
@@ -120,4 +123,6 @@ class Recorder:
             table[:, 4], np.array(self.points).reshape(len(table), points, dim),
             np.array(self.reactions).reshape(len(table), reactions, dim),
         )  # fmt: skip
-        return shots, steps, EnergyBalance({name: np.array([e[name] for e in self.energies]) for name in NAMES})
+        values = {name: np.array([e[name] for e in self.energies]) for name in NAMES}
+        weight = float(reference.body_mass.sum()) * reference.gravity
+        return shots, steps, EnergyBalance(values, ENERGY_ROUNDING * weight * reference.disc.size)
