@@ -1,6 +1,7 @@
 """Fixed bodies that supports move: the equilibrium that follows them from where they were described.
 
-Gaps and slips of a moved floor are those of the floor where it then stands: a pillar on a floor that has turned leans.
+Gaps are those of the floor where it then stands, and what it moved along a joint has slipped unless friction takes the
+blocks along: a pillar on a floor that has turned leans, and goes with a floor that is moved aside.
 The motion is applied in parts, each followed to equilibrium, at factor times displacement and rotation of each support.
 """
 
@@ -106,7 +107,7 @@ def begun(statics: Statics, state: MotionState) -> tuple[Balanced, float, Motion
     done, lost = 0.0, found
     while done < 1.0:
         part = min(part, 1.0 - done)
-        trial = statics.balance(moved.applied(found.state, part), 0.0)
+        trial = statics.balance(moved.applied(found.state, part), 0.0, since=found.state)
         if not trial.found:
             lost = max(lost, trial, key=_reach) if not lost.found else trial
             part *= 0.5

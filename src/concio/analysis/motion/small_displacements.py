@@ -186,6 +186,15 @@ class SmallDisplacements:
             moved += sign * (turn[body].apply(arm) - arm - swept(w[body], arm))
         return components(moved, look.frame)[:, 1:]
 
+    def slipped(self, look: Look, before: MotionState, after: MotionState) -> Array:
+        """Return what bodies that were moved from one state to another have slipped along their joints (m, d-1) [m]."""
+        slots, back = self.maker.slots, Turns.of(before.rotation)
+        shift = np.zeros_like(look.point)
+        for body, sign in ((slots.body_b, 1.0), (slots.body_a, -1.0)):
+            arm = back[body].apply(look.turn[body].undo(look.point - after.centre[body]))
+            shift += sign * (look.point - before.centre[body] - arm)
+        return components(shift, look.frame)[:, 1:]
+
     def controlled_at(self, state: MotionState) -> float:
         """Return the displacement of the point that controls the load [m]."""
         if self.control is None:

@@ -127,8 +127,9 @@ class Statics(SmallDisplacements):
         return float(self.mean(self.unit(turn)) @ found.moved)
 
     def balance(
-        self, state: MotionState, multiplier: float, *, target: float | None = None, most: int = MOST
-    ) -> Balanced:
+        self, state: MotionState, multiplier: float, *, target: float | None = None, most: int = MOST,
+        since: MotionState | None = None,
+    ) -> Balanced:  # fmt: skip
         """Return the equilibrium reached from a state.
 
         Parameters
@@ -140,6 +141,9 @@ class Statics(SmallDisplacements):
             By how much the controlled displacement is to grow [m]; without it, the multiplier is given.
         most : int
             Iterations at most.
+        since : MotionState, optional
+            The last equilibrium, where fixed bodies were moved after it: what they moved along joints has slipped,
+            unless friction takes bodies along.
         """
         here, memory, moved = state, state.memory, np.zeros(self.frames.n)
         slid: Array = np.zeros((0, state.centre.shape[1] - 1))
@@ -148,6 +152,9 @@ class Statics(SmallDisplacements):
         for iteration in range(1, most + 1):
             look = self._looked(here, memory, slid, multiplier)
             memory = look.memory
+            if since is not None and iteration == 1:
+                slid = self.slipped(look, since, state)
+                look = self._looked(here, memory, slid, multiplier)
             slid = slid if len(slid) == len(memory.key) else np.zeros((len(memory.key), slid.shape[1]))
             p = self.problem(look, multiplier, resistance.level)
             found = self._solved(p, *_guess(p, memory, found))
@@ -164,7 +171,7 @@ class Statics(SmallDisplacements):
             if float(np.abs(moved).max()) > FAR * self.width + abs(target or 0.0):
                 break
         assert found is not None
-        answer = self._judged(state, here, memory, slid, multiplier, found, moved, iteration)
+        answer = self._judged(since or state, here, memory, slid, multiplier, found, moved, iteration)
         if target is not None and abs(target - done) > REACHED * (abs(target) + STILL * self.width):
             return replace(answer, found=False)  # an equilibrium, but at another displacement
         return answer
