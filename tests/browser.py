@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
-LATE = 240.0
+LATE = float(os.environ.get("LATE", 240.0))
 """What is not there after so long is missing [s]: a machine may be busy."""
 KEYS = {"Enter": ("\r", 13), "Tab": ("\t", 9), "Escape": ("", 27), "ArrowRight": ("", 39), "ArrowLeft": ("", 37),
         "ArrowUp": ("", 38), "ArrowDown": ("", 40), " ": (" ", 32)}  # fmt: skip

@@ -322,19 +322,56 @@ def test_it_is_read_in_both_languages_in_light_and_dark(page: Browser, client: C
     page.send("Emulation.setEmulatedMedia", features=[])
 
 
-def test_a_model_in_space_is_opened_looked_at_and_asked(page: Browser, tmp_path: Path) -> None:
+def on_face(page: Browser, x: float, y: float, z: float) -> tuple[float, float]:
+    """Return the place on the page [px] of a point of a model in space."""
+    code = f"""import('./space.js').then((s) => {{ const r = document.getElementById('picture').getBoundingClientRect();
+        const p = s.project([{x}, {y}, {z}]); return [r.x + p[0], r.y + p[1]]; }})"""
+    at = page.js(code)
+    return at[0], at[1]
+
+
+def test_a_model_in_space_is_loaded_and_held_on_faces_and_asked(page: Browser, tmp_path: Path) -> None:
     with window(tmp_path) as client:
         client.call("new", kind="blocks_in_space")
+        client.call("bye")
         page.go(client.server.address)
         page.until(f"{DRAWN} && window.concio.view.shown.dim === 3")
-        assert page.js("document.querySelector('#picture image').getAttribute('href').length") > 1000
-        page.js("document.querySelector('#run').click()")
+        seen = """import('./space.js').then((s) => { const c = document.getElementById('space'), p = new Uint8Array(4);
+            const [x, y] = s.project([0.2, 0, 0.6]), g = c.getContext('webgl');
+            g.readPixels(Math.round(x), Math.round(c.height - y), 1, 1, g.RGBA, g.UNSIGNED_BYTE, p); return p[3]; })"""
+        assert page.js(seen) == 255, "the pier is drawn where it is said to be"
+        page.click("[data-tool=load]")
+        page.js("(() => { const k = document.querySelector('#pane-build [name=kind]'); k.value = 'pressure'; "
+                "k.dispatchEvent(new Event('change')); })()")  # fmt: skip
+        page.click_at(*on_face(page, 0.1, 0.0, 0.5))
+        assert page.js("document.querySelector('#pane-build [name=body]').value") == "left pier"
+        value(page, "#pane-build [name=group]", "side")
+        page.click("#pane-build button.main")
+        page.until(f"{SETTLED} && window.concio.view.shown.loads.length === 4")
+        page.click("[data-tool=support]")
+        page.press("p")
+        page.js("import('./picture.js').then((p) => p.select('bodies', [2]))")  # the right pier
+        page.js("document.getElementById('picture').focus()")
+        page.press("f")
+        page.press("Enter")
+        assert page.js("document.querySelector('#pane-build [name=body]').value") == "right pier"
+        assert page.js("document.querySelector('#pane-build [name=edge]').value").count("1.2") == 4, "its upper face"
+        page.click("#tab-tables")
+        value(page, "#group-3", "wind")
+        page.until(f"{SETTLED} && window.concio.view.shown.loads[3].group === 'wind'")
+        model = concio.loads(text_of(client))
+        face = {tuple(p) for p in model.loads[3].polygon or ()}
+        assert face == {(0.0, 0.0, 0.0), (0.4, 0.0, 0.0), (0.4, 0.0, 1.2), (0.0, 0.0, 1.2)}
+        page.press("ArrowRight", shift=True)
+        page.click("[data-look=plan]")
+        page.click("#tab-ask")
+        page.click("#run")
         page.until(ANSWERED)
         page.click("#tab-report")
         page.until("document.querySelector('#pane-report iframe')")
-        model = concio.loads(text_of(client))
         said = page.js("document.querySelector('#verdict-text .sentence').textContent")
         assert said == concio.solve(model).verdict.sentence
+        assert page.js(AUDIT) == []
 
 
 def test_a_question_is_cancelled_and_the_newest_wins(page: Browser, client: Client) -> None:

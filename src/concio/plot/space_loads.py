@@ -45,7 +45,7 @@ def draw_loads(ax: Axes, model: Model, axes: Array) -> None:
         outline = np.array([*place, place[0]], dtype=float) @ flat.T
         ax.plot(*outline.T, color=style.LOAD.colour, lw=style.LOAD.width, zorder=5)
         tip = outline[:-1].mean(0)
-        arrow = LENGTH * model.size * (flat @ _direction(load, model))
+        arrow = LENGTH * model.size * (flat @ load_direction(load, model))
         kind = "force" if load.kind == "point" else "stress"
         word = model.report.text(kind, size) if few and load.edge is None else ""
         if np.linalg.norm(arrow) < END_ON * LENGTH * model.size:
@@ -62,7 +62,7 @@ def draw_loads(ax: Axes, model: Model, axes: Array) -> None:
         )  # fmt: skip
 
 
-def _direction(load: Load, model: Model) -> Array:
+def load_direction(load: Load, model: Model) -> Array:
     """Return the unit direction (3,) of a load; a pressure acts against the face on which its polygon lies."""
     value = np.array(load.value, dtype=float)
     if load.kind != "pressure":

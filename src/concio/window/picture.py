@@ -19,9 +19,12 @@ from concio.errors import ConcioError
 from concio.model.body import Body
 from concio.model.described import law_words, material_words, tie_words
 from concio.model.interfaces.detect import Detection, Interface
+from concio.model.interfaces.patch import Patch
 from concio.model.interfaces.point_contact import PointContact
-from concio.model.model import Model
+from concio.model.model import Load, Model
+from concio.model.polyhedron import Polyhedron
 from concio.plot.model_figure import load_arrows
+from concio.plot.space_loads import load_direction
 from concio.verdict.attention import attention_of
 from concio.verdict.question import acting_groups, thickness_words
 from concio.window.reading import own_loads, read
@@ -58,8 +61,6 @@ def picture(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     shown["notes"] = [str(s) for key in ("faults", "left_out") for s in _noted(model, key)]
     shown["acting"], shown["fault"] = _acting(model)
     shown["assumed"] = list(thickness_words(model))
-    if model.dim == 3:
-        shown["figure"] = _figure(model)
     return shown
 
 
@@ -73,11 +74,22 @@ def _bodies(model: Model) -> list[dict[str, Any]]:
         {
             "name": b.name, "kind": b.kind, "role": b.role, "layer": b.layer, "material": b.material,
             "thickness": getattr(b, "thickness", None), "size": b.volume,
-            "rings": [np.round(r, DIGITS).tolist() for r in b.rings] if isinstance(b, Body) else [],
             "centre": np.round(b.centroid, DIGITS).tolist(),
+            **_shape(b),
         }
         for b in model.bodies
     ]  # fmt: skip
+
+
+def _shape(body: Body | Polyhedron) -> dict[str, Any]:
+    """Return the outlines of a body; in space vertices, faces, edges, and triangles with the face each belongs to."""
+    if isinstance(body, Body):
+        return {"rings": [np.round(r, DIGITS).tolist() for r in body.rings]}
+    triangles, face = body.triangles
+    return {
+        "rings": [], "vertices": np.round(body.vertices, DIGITS).tolist(), "faces": [list(f) for f in body.faces],
+        "edges": body.topology.edges.tolist(), "triangles": np.column_stack([triangles, face]).tolist(),
+    }  # fmt: skip
 
 
 def _joints(model: Model, detection: Detection) -> list[dict[str, Any]]:
@@ -89,6 +101,8 @@ def _joints(model: Model, detection: Detection) -> list[dict[str, Any]]:
             ends = np.round([joint.start, joint.end], DIGITS).tolist()
         elif isinstance(joint, PointContact) and model.dim == 2:
             ends = np.round(joint.points[[0, -1]], DIGITS).tolist()
+        else:
+            ends = np.round(joint.polygon if isinstance(joint, Patch) else joint.points, DIGITS).tolist()
         try:
             law = model.rule_between(a, b).law
         except ConcioError:
@@ -106,14 +120,28 @@ def _loads(model: Model, data: Mapping[str, Any]) -> list[dict[str, Any]]:
     for k, load in enumerate(model.loads):
         if load.group in road and load.kind == "point":
             continue
-        arrows = load_arrows(load, model.report) if model.dim == 2 else None
         entry = {"table": numbers.get(k), "kind": load.kind, "group": load.group, "value": list(load.value),
-                 "bodies": list(load.bodies), "at": load.at, "edge": load.edge}  # fmt: skip
-        if arrows is not None:
-            tips, ways, words = arrows
-            entry |= {"tips": tips.tolist(), "ways": ways.tolist(), "words": words}
-        found.append(entry)
+                 "bodies": list(load.bodies), "at": load.at, "edge": load.edge, "polygon": load.polygon}  # fmt: skip
+        found.append(entry | _arrows(load, model))
     return found
+
+
+def _arrows(load: Load, model: Model) -> dict[str, Any]:
+    """Return where the arrows of a load end, their directions and its size in words; nothing of a self-weight."""
+    if model.dim == 2:
+        arrows = load_arrows(load, model.report)
+        return {} if arrows is None else dict(zip(("tips", "ways", "words"), map(_listed, arrows), strict=True))
+    place = load.polygon or load.edge or (() if load.at is None else (load.at,))
+    size = float(np.linalg.norm(load.value))
+    if not place or not size > 0:
+        return {}
+    words = model.report.text("force" if load.kind == "point" else "stress", size)
+    tip = np.asarray(place, dtype=float).mean(axis=0)
+    return {"tips": [tip.tolist()], "ways": [load_direction(load, model).tolist()], "words": words}
+
+
+def _listed(value: Any) -> Any:
+    return value.tolist() if isinstance(value, np.ndarray) else value
 
 
 def _supports(model: Model, data: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -121,7 +149,7 @@ def _supports(model: Model, data: Mapping[str, Any]) -> list[dict[str, Any]]:
     return [
         {"table": names.index(s.name) if s.name in names else None, "name": s.name, "body": s.body, "edge": s.edge,
          "directions": s.directions, "displacement": list(s.displacement), "group": s.group,
-         "at": np.round(model.body(s.body).centroid, DIGITS).tolist()}
+         "polygon": s.polygon, "at": np.round(model.body(s.body).centroid, DIGITS).tolist()}
         for s in model.supports
     ]  # fmt: skip
 
@@ -148,18 +176,3 @@ def _acting(model: Model) -> tuple[list[dict[str, Any]], dict[str, str] | None]:
         for g in groups
     ]  # fmt: skip
     return found, None
-
-
-def _figure(model: Model) -> str:
-    """Return the figure of a model in space as SVG."""
-    import io
-
-    from matplotlib.figure import Figure
-
-    from concio.plot.space_figures import plot_space_model
-
-    figure = plot_space_model(model).figure
-    assert isinstance(figure, Figure)
-    into = io.StringIO()
-    figure.savefig(into, format="svg")
-    return into.getvalue()

@@ -1,7 +1,7 @@
 /* Forms that add loads, supports and ties; the picture fills them in. */
 import { t, el, field, say } from "./words.js";
 import { numbers } from "./geometry.js";
-import { view, mark } from "./picture.js";
+import { inSpace, mark, view } from "./picture.js";
 
 let doc, send, form = {};
 
@@ -19,12 +19,10 @@ export function setBuild(document_, sender) { doc = document_; send = sender; }
 
 export function build(pane) {
   form = {};
-  const plane = !view.shown || view.shown.dim === 2;
   const parts = { load: loadForm, support: supportForm, tie: tieForm }[view.tool];
   pane.replaceChildren();
-  if (!plane) pane.append(el("p", {}, t("space_note")));
-  else if (parts) pane.append(parts(), bodyNames("body-names"));
-  else pane.append(el("p", {}, t("drag_help")), selection());
+  if (parts) pane.append(parts(), bodyNames("body-names"), el("datalist", { id: "group-names" }, ...(view.shown ? view.shown.groups : []).map((value) => el("option", { value }))));
+  else pane.append(el("p", {}, t(inSpace() ? "space_help" : "drag_help")), selection());
 }
 
 function finish(heading, rows, make) {
@@ -48,43 +46,59 @@ function needed(name, count, word) {
   return found;
 }
 
+const dim = () => (inSpace() ? 3 : 2);
+const pairs = (v) => Array.from({ length: v.length / dim() }, (_, k) => v.slice(dim() * k, dim() * k + dim()));
+const DOWN = { 2: "0, -1", 3: "0, 0, -1" }, SHARES = { 2: "0.1, 0", 3: "0.1, 0, 0" };
+
+/* the part of a block's surface that a form names: an edge in the plane, a polygon in space; empty where nothing is written */
+function surface() {
+  const text = form.edge.value.trim();
+  if (!text) return {};
+  const found = numbers(text, inSpace() ? text.split(/[\s,;]+/).filter(Boolean).length : 4);
+  if (!found || found.length % dim() || found.length < 2 * dim()) throw new Error(t(inSpace() ? "polygon" : "edge"));
+  return { [inSpace() && found.length > 6 ? "polygon" : "edge"]: pairs(found) };
+}
+const surfaceField = () => field(t(inSpace() ? "polygon" : "edge"), input("edge"));
+const pointField = (plane, space, name) => field(inSpace() ? space : plane, input(name));
+
 function loadForm() {
-  const kinds = [["point", t("point_load")], ["pressure", t("pressure")], ["traction", t("traction")], ["weight", t("share")]];
+  const kinds = [["point", t("point_load")], ["pressure", t(inSpace() ? "pressure_face" : "pressure")], ["traction", t(inSpace() ? "traction_face" : "traction")], ["weight", t("share")]];
   const made = finish(t("load"), [
-    el("p", { class: "quiet" }, t("click_block")),
+    el("p", { class: "quiet" }, t(inSpace() ? "click_face" : "click_block")),
     field(t("kind"), choice("kind", kinds)),
-    field(t("value"), input("value", "0, -1"), t("value_help")),
+    field(t("value"), input("value", DOWN[dim()]), t(inSpace() ? "value_help_space" : "value_help")),
     field(t("body"), input("body", "", { list: "body-names" })),
-    field(t("at_point"), input("at")),
-    field(t("edge"), input("edge")),
-    field(t("group"), input("group", "live")),
+    pointField(t("at_point"), t("at_point_space"), "at"),
+    surfaceField(),
+    field(t("group"), input("group", "live", { list: "group-names" })),
   ], () => {
     const kind = form.kind.value, table = { kind, group: form.group.value.trim() || "live", bodies: form.body.value.trim() ? [form.body.value.trim()] : undefined };
-    table.value = kind === "pressure" ? needed("value", 1, t("value"))[0] : needed("value", 2, t("value"));
-    if (kind === "point") table.at = needed("at", 2, t("at_point"));
-    else if (kind !== "weight") table.edge = pairs(needed("edge", 4, t("edge")));
+    table.value = kind === "pressure" ? needed("value", 1, t("value"))[0] : needed("value", dim(), t("value"));
+    if (kind === "point") table.at = needed("at", dim(), t("at_point"));
+    else if (kind !== "weight") {
+      Object.assign(table, surface());
+      if (!table.edge && !table.polygon) throw new Error(t(inSpace() ? "polygon" : "edge"));
+    }
     return { to: "loads", table };
   });
   form.kind.addEventListener("change", () => {
-    form.value.value = { pressure: "10", weight: "0.1, 0" }[form.kind.value] || "0, -1";
+    form.value.value = { pressure: "10", weight: SHARES[dim()] }[form.kind.value] || DOWN[dim()];
   });
   return made;
 }
 
-const pairs = ([a, b, c, d]) => [[a, b], [c, d]];
-
 function supportForm() {
+  const ways = inSpace() ? ["all", "x", "y", "z", "xy", "xz", "yz"] : ["all", "x", "y"];
   return finish(t("support"), [
-    el("p", { class: "quiet" }, t("click_edge")),
+    el("p", { class: "quiet" }, t(inSpace() ? "click_face" : "click_edge")),
     field(t("name"), input("name", free("supports", "support"))),
     field(t("body"), input("body", "", { list: "body-names" })),
-    field(t("edge"), input("edge")),
-    field(t("directions"), choice("directions", [["all", "x, y"], ["x", "x"], ["y", "y"]])),
-    field(t("displacement"), input("displacement", "", { placeholder: "0.001, 0" })),
+    surfaceField(),
+    field(t("directions"), choice("directions", ways.map((w) => [w, w === "all" ? [..."xyz"].slice(0, dim()).join(", ") : [...w].join(", ")]))),
+    field(t("displacement"), input("displacement", "", { placeholder: inSpace() ? "0, 0, -0.001" : "0.001, 0" })),
   ], () => {
-    const table = { name: form.name.value.trim(), body: form.body.value.trim(), directions: form.directions.value };
-    if (form.edge.value.trim()) table.edge = pairs(needed("edge", 4, t("edge")));
-    if (form.displacement.value.trim()) table.displacement = needed("displacement", 2, t("displacement"));
+    const table = { name: form.name.value.trim(), body: form.body.value.trim(), directions: form.directions.value, ...surface() };
+    if (form.displacement.value.trim()) table.displacement = needed("displacement", dim(), t("displacement"));
     return { to: "supports", table };
   });
 }
@@ -93,14 +107,14 @@ function tieForm() {
   return finish(t("tie"), [
     el("p", { class: "quiet" }, t("click_two")),
     field(t("name"), input("name", free("ties", "tie"))),
-    field(t("from_body"), input("body_a", "", { list: "body-names" })), field(t("at_a"), input("at_a")),
-    field(t("to_body"), input("body_b", "", { list: "body-names" })), field(t("at_b"), input("at_b")),
+    field(t("from_body"), input("body_a", "", { list: "body-names" })), pointField(t("at_a"), t("at_a_space"), "at_a"),
+    field(t("to_body"), input("body_b", "", { list: "body-names" })), pointField(t("at_b"), t("at_b_space"), "at_b"),
     field(t("stiffness"), input("stiffness", "13 MN/m")),
     field(t("prestress"), input("prestress", "0")), field(t("yield_force"), input("yield_force")),
   ], () => {
-    const table = { name: form.name.value.trim(), body_a: form.body_a.value.trim(), at_a: needed("at_a", 2, t("at_a")) };
+    const table = { name: form.name.value.trim(), body_a: form.body_a.value.trim(), at_a: needed("at_a", dim(), t("at_a")) };
     if (form.body_b.value.trim()) table.body_b = form.body_b.value.trim();
-    table.at_b = needed("at_b", 2, t("at_b"));
+    table.at_b = needed("at_b", dim(), t("at_b"));
     table.stiffness = form.stiffness.value.trim();
     if (Number(form.prestress.value)) table.prestress = Number(form.prestress.value);
     if (form.yield_force.value.trim()) table.yield_force = Number(form.yield_force.value);
@@ -116,7 +130,7 @@ function free(list, word) {
 /* what was clicked in the picture */
 export function placed(found) {
   const put = (name, text) => { if (form[name]) form[name].value = text; };
-  const edge = found.edge ? found.edge.flat().map((v) => Number(v.toPrecision(9))).join(", ") : "";
+  const edge = (found.edge || found.polygon || []).map((p) => p.map((v) => Number(v.toPrecision(9))).join(", ")).join(inSpace() ? "; " : ", ");
   if (view.tool === "tie") {
     const first = !form.at_a.value || form.at_b.value;
     put(first ? "body_a" : "body_b", found.body); put(first ? "at_a" : "at_b", found.at.join(", "));

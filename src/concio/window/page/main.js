@@ -1,7 +1,8 @@
 /* The page: what is open, what is shown, what each key does. All that counts is on the other side; this can be reloaded. */
 import { call, drop, goodbye, Refused } from "./net.js";
 import { t, el, label, language, say, setLanguage, setWords } from "./words.js";
-import { view, show, clear, draw, fit, zoom, listen, mark } from "./picture.js";
+import { view, show, clear, draw, fit, zoom, mark, onSelected } from "./picture.js";
+import { listen } from "./hands.js";
 import { build, placed, setBuild } from "./build.js";
 import { data, setTables, showChosen, tables } from "./tables.js";
 import { answer, follow, programs, questionPane, reportPane, run, setAsk } from "./ask.js";
@@ -221,8 +222,8 @@ function showBound(lines, old) {
   $("bound").className = old ? "old" : "";
   $("bound").replaceChildren(el("p", { class: "quiet" }, t(old ? "drag_old" : "drag_bound")), ...lines.map((line) => el("p", { lang: "en" }, line)));
 }
+onSelected(() => { if (tab === "tables") showChosen(panes.tables); if (tab === "build") build(panes.build); });
 listen({
-  selected: () => { if (tab === "tables") showChosen(panes.tables); if (tab === "build") build(panes.build); },
   placed,
   dragged: (load, to) => { if (!state.mine || doc.read_only) return; dragging = { load, to }; $("bound").classList.add("old"); if (!$("bound").hidden) $("bound").firstChild.textContent = t("drag_old"); bound(); },
   released: async (load, to) => {

@@ -18,16 +18,25 @@ function table(caption, heads, rows) {
 
 function row(kind, id, cells, path = undefined) {
   const chosen = kind === "bodies" || kind === "joints" ? view.selected[kind].has(id) : view.selected.things.has(id);
-  const pick = (event) => { if (!event.target.closest("button")) select(kind, [id], event.shiftKey || event.ctrlKey); };
+  const pick = (event) => { if (!event.target.closest("button, input")) select(kind, [id], event.shiftKey || event.ctrlKey); };
   const made = el("tr", {
     tabindex: 0, "aria-selected": String(chosen), "data-row": `${kind} ${id}`, onclick: pick,
     onkeydown: (event) => {
+      if (event.target.closest("button, input")) return;
       if (event.key === "Enter" || event.key === " ") { event.preventDefault(); pick(event); }
       const next = { ArrowDown: made.nextElementSibling, ArrowUp: made.previousElementSibling }[event.key];
       if (next) { event.preventDefault(); next.focus(); }
     },
   }, ...cells.map((c) => el("td", { class: "n" }, c instanceof Node ? c : String(c ?? ""))));
   if (path !== undefined) made.append(el("td", {}, path ? el("button", { onclick: () => send([{ do: "remove", path }]) }, t("remove")) : ""));
+  return made;
+}
+
+/* the group of a load of the file, to be written over */
+function groupOf(load, k) {
+  if (load.table === null) return load.group;
+  const made = el("input", { value: load.group, size: 8, id: `group-${k}`, list: "known-groups", "aria-label": `${t("group")}: ${t("load")} ${k + 1}` });
+  made.addEventListener("change", () => { if (made.value.trim() && made.value.trim() !== load.group) send([{ do: "set", path: ["loads", load.table, "group"], value: made.value.trim() }]); });
   return made;
 }
 
@@ -40,7 +49,8 @@ export function tables(pane) {
   const name = (k) => shown.bodies[k]?.name ?? "";
   const own = (one, list) => (one.table === null ? null : [list, one.table]);
   pane.append(
-    table(t("loads"), [t("kind"), t("group"), t("value"), t("body"), t("where"), ""], shown.loads.map((l, k) => row("things", `load ${k}`, [l.kind, l.group, l.words || spot(l.value), l.bodies.join(", "), spot(l.at) || (l.edge ? l.edge.map(spot).join(" – ") : "")], own(l, "loads")))),
+    el("datalist", { id: "known-groups" }, ...shown.groups.map((value) => el("option", { value }))),
+    table(t("loads"), [t("kind"), t("group"), t("value"), t("body"), t("where"), ""], shown.loads.map((l, k) => row("things", `load ${k}`, [l.kind, groupOf(l, k), l.words || spot(l.value), l.bodies.join(", "), spot(l.at) || (l.edge || l.polygon || []).map(spot).join(" – ")], own(l, "loads")))),
     table(t("supports"), [t("name"), t("body"), t("directions"), t("displacement"), ""], shown.supports.map((s, k) => row("things", `support ${k}`, [s.name, s.body, s.directions, spot(s.displacement)], own(s, "supports")))),
     table(t("ties"), [t("name"), t("between"), t("value"), ""], shown.ties.map((s, k) => row("things", `tie ${k}`, [s.name, `${s.body_a} – ${s.body_b || spot(s.at_b)}`, s.words], own(s, "ties")))),
     table(t("materials"), [t("name"), t("value")], Object.entries(shown.materials).map(([n, words]) => el("tr", {}, el("td", {}, n), el("td", {}, words)))),

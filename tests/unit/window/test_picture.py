@@ -1,0 +1,57 @@
+"""What the page draws of a model, beside the model itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import concio
+from concio.window.picture import picture
+
+TEMPLATES = Path(concio.__file__).parent / "model" / "templates"
+
+
+def drawn(text: str, folder: Path) -> dict[str, Any]:
+    request = {"text": text, "base": str(folder), "folder": str(folder), "name": "model.toml"}
+    return picture(request, lambda *_: None)
+
+
+@pytest.fixture(scope="module")
+def in_space() -> tuple[dict[str, Any], concio.Model]:
+    file = TEMPLATES / "blocks_in_space.toml"
+    return drawn(file.read_text(encoding="utf-8"), file.parent), concio.load(file)
+
+
+def test_triangles_of_a_body_in_space_enclose_its_volume_and_lie_on_their_faces(
+    in_space: tuple[dict[str, Any], concio.Model],
+) -> None:
+    shown, model = in_space
+    for one, body in zip(shown["bodies"], model.bodies, strict=True):
+        points = np.array(one["vertices"])
+        volume = sum(np.linalg.det(points[triangle[:3]]) for triangle in one["triangles"]) / 6.0
+        assert volume == pytest.approx(body.volume)
+        for *corners, face in one["triangles"]:
+            assert set(corners) <= set(one["faces"][face])
+        assert len(points) - len(one["edges"]) + len(one["faces"]) == 2, "Euler"
+
+
+def test_loads_in_space_have_an_arrow_where_and_as_they_act(in_space: tuple[dict[str, Any], concio.Model]) -> None:
+    loads = {load["group"]: load for load in in_space[0]["loads"]}
+    assert "tips" not in loads["dead"]
+    assert loads["wind"]["tips"] == [pytest.approx([1.0, 0.0, 1.35])]
+    assert loads["wind"]["ways"] == [pytest.approx([0.0, 1.0, 0.0])]
+    assert loads["live"]["tips"] == [[1.0, 0.2, 1.7]]
+    assert loads["live"]["ways"] == [[0.0, 0.0, -1.0]]
+    assert [load["table"] for load in in_space[0]["loads"]] == [0, 1, 2]
+
+
+def test_joints_in_space_are_the_faces_that_touch(in_space: tuple[dict[str, Any], concio.Model]) -> None:
+    shown = in_space[0]
+    names = [b["name"] for b in shown["bodies"]]
+    found = {(names[j["a"]], names[j["b"]]): np.array(j["ends"]) for j in shown["joints"]}
+    lower = found["left pier", "lintel"]
+    assert np.ptp(lower, axis=0) == pytest.approx([0.4, 0.4, 0.0])
+    assert set(lower[:, 2]) == {1.2}
