@@ -10,6 +10,7 @@ from concio.display import number
 from concio.problem.tolerances import CERTIFIED, ENERGY_ROUNDING
 from concio.units import GRAVITY
 from concio.verdict.attention import attention_of, joints_not_made
+from concio.verdict.capped_corners import capped_corners, without_capped
 from concio.verdict.push_verdict import Described
 from concio.verdict.question import question_of
 from concio.verdict.unseen import unseen
@@ -31,10 +32,12 @@ HEADLINES = {
     Outcome.UNDECIDED: "The motion could not be continued to its end.",
     Outcome.INCOMPLETE: "The motion was not followed to its end.",
 }
+CAPPED = "Whether contacts at corners and edges crush was not checked."
 SHORT = "no equilibrium was found from where its supports have moved"
 """Begins the note of a motion whose supports did not get to where they were asked to be."""
-SENSITIVE = "rocking is sensitive to details: near the limit another step, restitution or record may give another "
-"outcome"
+SENSITIVE = (
+    "rocking is sensitive to details: near the limit another step, restitution or record may give another outcome"
+)
 
 
 def dynamics_verdict(found: DynamicsResult) -> Verdict:
@@ -44,25 +47,29 @@ def dynamics_verdict(found: DynamicsResult) -> Verdict:
     ----------
     found : DynamicsResult
     """
-    outcome = _outcome(found)
+    outcome = shown = _outcome(found)
     reference = found.reference
+    seen = without_capped(found.model, reference.detection)
     small = unseen(Described(reference), found.factors, groups=found.structures)
+    capped = capped_corners(found.model, reference.detection)
+    if capped and outcome in (Outcome.HOLDS, Outcome.FAILS):
+        outcome = Outcome.INCOMPLETE
     if small and not found.fallen and outcome in (Outcome.HOLDS, Outcome.FAILS):
         outcome = Outcome.INCOMPLETE  # neither that it rests nor that it does not stand is shown of such bodies
     return Verdict(
         outcome=outcome,
         status=_status(found, outcome),
         question=question_of(_asked(found), Described(reference), found.factors),
-        headline=_headline(found, outcome),
+        headline=CAPPED if capped and outcome is not shown else _headline(found, outcome),
         answer=_answer(found, outcome),
         proof=_proof(found),
         meaning=(
             "Every step satisfies the equations of motion with contact and friction. A slightly different earthquake "
             "may give another outcome."
         ),
-        limits=(*joints_not_made(reference.detection), SENSITIVE),
-        unchecked=(*_unchecked(found, outcome), *small),
-        attention=(*attention_of(found.model, reference.detection), *_noticed(found)),
+        limits=(*joints_not_made(seen), SENSITIVE),
+        unchecked=(*_unchecked(found, shown), *capped, *small),
+        attention=(*attention_of(found.model, seen), *_noticed(found)),
         next_steps=("Repeat it with half the step, and with the record scaled by 0.9 and 1.1.",),
     )
 

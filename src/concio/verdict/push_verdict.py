@@ -16,6 +16,7 @@ from concio.model.interfaces.detect import Detection
 from concio.model.model import Model
 from concio.problem.tolerances import CERTIFIED
 from concio.verdict.attention import attention_of, joints_not_made
+from concio.verdict.capped_corners import capped_corners, without_capped
 from concio.verdict.question import Acting, Question, question_of
 from concio.verdict.unseen import unseen
 from concio.verdict.verdict import Outcome, Verdict
@@ -44,7 +45,8 @@ def push_verdict(found: PushResult) -> Verdict:
     """
     outcome = _outcome(found)
     reference = found.reference
-    open_ = (*_unchecked(found), *_unseen(found))
+    seen = without_capped(found.model, reference.detection)
+    open_ = (*_unchecked(found), *capped_corners(found.model, reference.detection), *_unseen(found))
     if outcome is Outcome.HOLDS and open_:
         outcome = Outcome.INCOMPLETE
     return Verdict(
@@ -56,13 +58,13 @@ def push_verdict(found: PushResult) -> Verdict:
         proof=_proof(found),
         meaning=_meaning(found),
         limits=(
-            *joints_not_made(reference.detection),
+            *joints_not_made(seen),
             *((LENT,) if found.lent_compliance else ()),
             SEVERAL,
             *found.notes,
         ),
         unchecked=open_,
-        attention=attention_of(found.model, reference.detection),
+        attention=attention_of(found.model, seen),
         next_steps=(
             "Look at the events: where joints open, slip or close, and where ties yield or break.",
             "'concio shake' tells what a motion of the ground does; a push is not a motion in time.",

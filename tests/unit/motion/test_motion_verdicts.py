@@ -261,3 +261,24 @@ def test_a_beam_at_rest_has_no_energy_balance_to_be_off_and_a_wrong_balance_is_t
     friction = moved.energy["friction"] * 1.01
     wrong = replace(moved, energy=replace(moved.energy, values={**moved.energy.values, "friction": friction}))
     assert any("energy balance" in told for told in wrong.verdict.attention)
+
+
+def test_a_corner_with_a_compressive_strength_holds_in_no_command(tmp_path):
+    crushes = concio.JointLaw(0.6, compressive_strength=5000.0)
+    model = on_knife_edges(2, crushes)
+    with pytest.raises(concio.ConcioError, match="compressive strength"):
+        concio.solve(model)
+    pulse = concio.Pulse("sine", 0.1, 0.1)
+    found = concio.dynamics(model, pulse, duration=0.2)
+    assert found.rests
+    assert (found.verdict.outcome, found.verdict.exit_code) == (Outcome.INCOMPLETE, 4), "it was said to come to rest"
+    (told,) = found.verdict.unchecked
+    assert "'joint' at 2 contacts" in told
+    assert not any("almost made" in line for line in (*found.verdict.limits, *found.verdict.attention))
+    pushed = concio.push(model, until=1e-5)
+    assert (pushed.ending.name, pushed.verdict.outcome) == ("REACHED", Outcome.INCOMPLETE)
+    assert any("'joint' at 2 contacts" in told for told in pushed.verdict.unchecked)
+    without = concio.dynamics(on_knife_edges(2), pulse, duration=0.2)
+    assert without.verdict.outcome is Outcome.HOLDS
+    on_a_face = concio.dynamics(standing(friction=crushes), duration=0.2, gravity=G)
+    assert on_a_face.verdict.outcome is Outcome.HOLDS, "a joint with a length has its strength"
