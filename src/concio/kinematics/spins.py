@@ -111,7 +111,8 @@ def rotation_vector(matrix: Array) -> Array:
         even = 0.5 * (matrix + np.swapaxes(matrix, -1, -2)) - cosine[..., None, None] * np.eye(3)
         column = np.argmax(np.einsum("...ii->...i", even), axis=-1)
         axis = np.take_along_axis(even, column[..., None, None], axis=-1)[..., 0]
-        axis = axis / np.linalg.norm(axis, axis=-1)[..., None]
+        size = np.linalg.norm(axis, axis=-1)[..., None]
+        axis = axis / np.where(size > 0, size, 1.0)
         sign = np.where((axis * axial).sum(-1) < 0, -1.0, 1.0)
         found = np.where(far[..., None], (sign * angle)[..., None] * axis, found)
     return np.asarray(found)

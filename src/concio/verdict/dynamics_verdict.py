@@ -25,6 +25,7 @@ MOST_FALLEN = 3
 CLOSES = 1e-3
 """Error of the energy balance, over what was turned over, beyond which it is pointed out."""
 
+OUTRAN = "too fast for the shortest step"
 HEADLINES = {
     Outcome.HOLDS: "The structure withstands the motion and comes to rest.",
     Outcome.FAILS: "The structure falls.",
@@ -120,6 +121,11 @@ def supports_short(share: float) -> str:
     return f"{SHORT} by {share:.3g} of what was asked: the motion begins there"
 
 
+def outran(name: str, moves: str, least: float) -> str:
+    """Return the note of a motion that ends where a body is too fast for its shortest steps [s]."""
+    return f"'{name}' {moves}, {OUTRAN} of {number(least, 2)} s: ask for a smaller step"
+
+
 def _answer(found: DynamicsResult, outcome: Outcome) -> str:
     """Return what became of the structure, in sentences with numbers."""
     time = f"{number(float(found.end.time), 5)} s"
@@ -132,7 +138,8 @@ def _answer(found: DynamicsResult, outcome: Outcome) -> str:
         if found.ending.name == "UNSOLVED":
             told.append("It was not followed further: after that no step, however small, satisfies its equations.")
     elif outcome is Outcome.UNDECIDED:
-        told.append(f"After {time} no step, however small, satisfies its equations.")
+        fast = next((note for note in found.notes if OUTRAN in note), None)
+        told.append(f"After {time} {fast or 'no step, however small, satisfies its equations'}.")
     elif found.ending.name == "STOPPED":
         told.append(f"It was stopped on request at {time}.")
     elif found.stands is False and any(note.startswith(SHORT) for note in found.notes):

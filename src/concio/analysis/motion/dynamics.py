@@ -20,6 +20,7 @@ from concio.analysis.motion.joints import SAG
 from concio.analysis.motion.moved_supports import begun
 from concio.analysis.motion.mover import Mover, Row, shifted
 from concio.analysis.motion.observer import Observer
+from concio.analysis.motion.pace import Pace
 from concio.analysis.motion.pairs import PairMaker
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import MotionState
@@ -211,6 +212,7 @@ class _Run:
     def __post_init__(self) -> None:
         frames, maker = Frames(self.reference, self.scheme), PairMaker(self.reference, self.scheme)
         self.observer = Observer(self.reference, maker, frames, self.factors, self.points)
+        self.pace = Pace(self.reference, maker.search.skin)
         self.recorder = Recorder()
         self.sums = dict.fromkeys(("friction", "impact", "damping", "crushing", "input", "overlap", "drift"), 0.0)
         self.seconds = 0.0
@@ -322,6 +324,7 @@ class _Run:
             rows = [self.movers[0].once(to)]
             to = self.movers[0].state.time
         else:
+            to = min(to, self.state.time + self.pace.longest(self.state, self.step))
             rows = [mover.advance(to) for mover in self.movers]
         found = [row for row in rows if row is not None]
         if len(found) < len(rows):
@@ -374,8 +377,8 @@ class _Run:
     def _told(self, start: float) -> Progress:
         done = (self.state.time - start) / self.duration
         left = (clock.perf_counter() - self.begun) * (1 - done) / max(done, 1e-9)
-        at = f"{self.state.time:.3f} s, {_time_left(left)} left"
-        return Progress("dynamics", len(self.recorder.rows), 1.0 - done, at)
+        more = f"{left:.0f} s" if left < 100 else f"{left / 60:.0f} min"
+        return Progress("dynamics", len(self.recorder.rows), 1.0 - done, f"{self.state.time:.3f} s, {more} left")
 
     def result(self, ending: Ending) -> DynamicsResult:
         """Return what was computed."""
@@ -386,15 +389,11 @@ class _Run:
         return DynamicsResult(
             model=self.reference.model, gravity=self.reference.gravity, scheme=self.scheme, factors=self.factors,
             ending=ending, shots=shots, steps=steps, energy=energy, points=self.points,
-            reactions_of=self.observer.names,
-            joints=self.observer.joints, end=self.state, ground_time=steps.time,
-            ground=self.ground.acceleration(steps.time), notes=tuple(self.notes), seconds=self.seconds,
-            lent_compliance=max(mover.lent for mover in self.movers),
-            asked=self.ground.words, begun=self.started, stated=self.stated, stands=self.stands,
+            reactions_of=self.observer.names, joints=self.observer.joints, end=self.state, ground_time=steps.time,
+            ground=self.ground.acceleration(steps.time), seconds=self.seconds,
+            notes=(*self.notes, *(mover.outran for mover in self.movers if mover.outran)),
+            lent_compliance=max(mover.lent for mover in self.movers), asked=self.ground.words,
+            begun=self.started, stated=self.stated, stands=self.stands,
             fallen=tuple(self.fallen), rests=self.rests, ground_ends=self.started + self.ground.duration,
             structures=tuple(tuple(mover.structure.bodies.tolist()) for mover in self.movers),
         )  # fmt: skip
-
-
-def _time_left(seconds: float) -> str:
-    return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"

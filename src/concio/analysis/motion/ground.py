@@ -24,6 +24,10 @@ AXES = {2: "xy", 3: "xyz"}
 WHICH = {2: "x is horizontal, y vertical", 3: "x and y are horizontal, z vertical"}
 
 
+APART = 0.01
+"""Share by which durations of records that belong together may differ."""
+
+
 @dataclass(frozen=True, eq=False)
 class Ground:
     """Motion of the ground.
@@ -73,7 +77,23 @@ class Ground:
     def attention(self) -> tuple[str, ...]:
         """What is strange about records and pulses."""
         found = [attention(s.scaled(self.scale)) for s in self.components if isinstance(s, Record | Pulse)]
-        return tuple(text for text in found if text is not None)
+        return (*(text for text in found if text is not None), *self._unequal())
+
+    def _unequal(self) -> list[str]:
+        """Return what is strange about records beside each other: samples, ends, a vertical one that is the largest."""
+        axes = AXES[len(self.components)]
+        records = [(a, s) for a, s in zip(axes, self.components, strict=True) if isinstance(s, Record)]
+        told = []
+        if len({f"{s.step:.6g}" for _, s in records}) > 1:
+            steps = ", ".join(f"{s.step:.4g} s along {axis}" for axis, s in records)
+            told.append(f"the records have different sampling intervals ({steps}): each is integrated with its own")
+        if records and max(s.duration for _, s in records) > (1 + APART) * min(s.duration for _, s in records):
+            ends = ", ".join(f"{s.duration:.4g} s along {axis}" for axis, s in records)
+            told.append(f"the records end at different times ({ends}): have they one origin of time?")
+        peaks = {axis: float(np.abs(s.values).max()) for axis, s in records if s.quantity == "acceleration"}
+        if len(peaks) > 1 and peaks.get(axes[-1], 0.0) > max(peaks[axis] for axis in peaks if axis != axes[-1]):
+            told.append(f"the vertical record (along {axes[-1]}) has the largest peak of all: are components swapped?")
+        return told
 
     @property
     def words(self) -> str:

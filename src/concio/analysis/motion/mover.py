@@ -11,6 +11,7 @@ from concio.analysis.motion.fate import Watch
 from concio.analysis.motion.located import ties_give_way
 from concio.analysis.motion.meetings import Meetings
 from concio.analysis.motion.observer import Observer
+from concio.analysis.motion.pace import Pace
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.stepper import Stepper, StepReport
@@ -93,6 +94,7 @@ class Mover:
         self.stepper = Stepper(reference, scheme, engine)
         self.observer = Observer(reference, self.stepper.maker, self.stepper.frames, factors)
         self.meetings = Meetings.of(len(reference.model.bodies), step / 2**HALVINGS)
+        self.pace, self.outran = Pace(reference, self.stepper.maker.search.skin), ""
         self.h, self.calm = step, 0
 
     @property
@@ -155,6 +157,9 @@ class Mover:
         least = self.step / 2**HALVINGS
         meetings = self.meetings
         asked, h = h, meetings.length(state.time, h)
+        h = self._paced(state, h, least)
+        if self.outran:
+            return None
         planned = h != asked
         while True:
             new, report = self.stepper.step(state, h, self.drive(state.time, h))
@@ -173,6 +178,14 @@ class Mover:
             if not solved and (h <= least * 1.01 or not self.adaptive):
                 return None
             h *= 0.5
+
+    def _paced(self, state: MotionState, h: float, least: float) -> float:
+        """Return the length of a step up to h, but not below the least, in which no body passes another one unseen."""
+        longest = self.pace.longest(state, h)
+        self.outran = self.pace.outrun(state, h, least) if longest < h else ""
+        while h > longest and h > least * 1.01:
+            h *= 0.5
+        return h
 
 
 def shifted(state: MotionState, time: float) -> MotionState:
