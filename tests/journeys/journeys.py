@@ -374,6 +374,39 @@ def test_a_model_in_space_is_loaded_and_held_on_faces_and_asked(page: Browser, t
         assert page.js(AUDIT) == []
 
 
+def test_two_answers_stand_beside_each_other_and_a_mechanism_moves(page: Browser, client: Client) -> None:
+    client.answer("run")
+    limit = client.answer("limit", groups=["live"])
+    client.call("bye")
+    opened(page, client)
+    page.click("#tab-look")
+    page.until("document.querySelector('#play')")
+    page.js("(() => { const s = document.querySelectorAll('#pane-look select')[1]; s.value = s.options[2].value; "
+            "s.dispatchEvent(new Event('change')); })()")  # fmt: skip
+    page.until("document.querySelectorAll('.small-picture svg').length === 2")
+    sentences = page.js("[...document.querySelectorAll('#pane-look .sentence')].map((e) => e.textContent)")
+    assert sentences[0] == limit["verdict"]["sentence"]
+    assert "In equilibrium" in sentences[1]
+    head = "document.querySelector('#picture .film').lastElementChild.getAttribute('d')"
+    page.click("#play")
+    before = page.js(head)
+    page.until(f"{head} !== {json.dumps(before)}", "the mechanism moves in the main picture")
+    page.click("#play")
+    page.js("[...document.querySelectorAll('#pane-look input[type=checkbox]')][0].click()")
+    assert page.js("document.querySelectorAll('#picture .ghosted .body').length") == 5
+    page.click("#film-off")
+    assert page.js("document.querySelector('#picture .film')") is None
+    page.click("#tab-ask")
+    page.click("#run")
+    page.until(ANSWERED)
+    page.click("#tab-tables")
+    page.until("[...document.querySelectorAll('#pane-tables th')].some((e) => e.textContent === 'N [kN]')")
+    joint = page.js("document.querySelector(\"[data-row='joints 0']\").textContent")
+    result = concio.solve(concio.loads(text_of(client)))
+    assert f"{result.joints.N[0]:.5g}"[:5] in joint
+    assert page.js(AUDIT) == []
+
+
 def test_a_question_is_cancelled_and_the_newest_wins(page: Browser, client: Client) -> None:
     opened(page, client)
     wall = (TEMPLATES / "wall.toml").read_text(encoding="utf-8").replace("[0.50, 0.25]", "[0.25, 0.125]")

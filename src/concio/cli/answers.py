@@ -13,6 +13,8 @@ from typing import Any
 from concio.cli.progress import LISTENER
 from concio.window.worker import Tell, work
 
+MOST_NUMBERS = 60
+
 
 def ask(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     """Run a command; return exit code, the lines it printed, its message, and its verdict.
@@ -48,8 +50,19 @@ def ask(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     message = _message(said.getvalue()).replace(request["file"], request["name"])
     return {
         "code": code, "lines": lines, "message": message, "verdict": summary.get("verdict"),
-        "seconds": time.monotonic() - begun,
+        "seconds": time.monotonic() - begun, "numbers": numbers(summary),
     }  # fmt: skip
+
+
+def numbers(summary: Mapping[str, Any], at: str = "") -> dict[str, float]:
+    """Return the single numbers of a summary by the names of ``--json``, those of tables in it with a point."""
+    found: dict[str, float] = {}
+    for key, value in summary.items():
+        if isinstance(value, Mapping) and not at and key not in ("verdict", "seconds"):
+            found |= numbers(value, f"{key}.")
+        elif isinstance(value, int | float) and not isinstance(value, bool):
+            found[f"{at}{key}"] = float(value)
+    return dict(list(found.items())[:MOST_NUMBERS])
 
 
 def _message(text: str) -> str:

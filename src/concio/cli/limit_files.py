@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from concio.analysis.limit import LimitResult
+from concio.report.page import view_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,6 +26,11 @@ def write_limit(found: LimitResult, told: dict[str, Any], place: Path) -> list[s
         written += _save(plots.collapse_state(), place / "collapse_state")
     if found.path is not None and np.abs(found.path.direction).any():
         written += _save(plots.path_mechanism(), place / "path_mechanism")
+    motions = plots.motions()
+    if motions:
+        shown = {**view_of([result for _, result in motions], [words for words, _ in motions]), "alternatives": True}
+        (place / "motions.json").write_text(json.dumps(shown, allow_nan=False), encoding="utf-8")
+        written.append("motions.json")
     return written
 
 

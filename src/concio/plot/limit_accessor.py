@@ -63,17 +63,34 @@ class LimitPlots:
         title = f"Motion at the {end}, peak {self.found.carried:.6g} times {self._load}"
         return self._draw(ax, path.direction, title, "joints that slide stay closed")
 
+    def motions(self) -> list[tuple[str, Result]]:
+        """Return every motion that the limit load is known by, with what it is, as a result that draws it."""
+        found, bound, state, path = self.found, self.found.associated, self.found.collapse_state, self.found.path
+        known: list[tuple[str, Array]] = []
+        if state is not None:
+            known.append((f"collapse state at {state.multiplier:.6g} times {self._load}", state.velocity))
+        if path is not None and np.abs(path.direction).any():
+            known.append((f"end of the path, peak {found.carried:.6g} times {self._load}", path.direction))
+        if bound.mechanism is not None:
+            words = f"associated mechanism at {bound.multiplier:.6g} times {self._load}"
+            known.append((words, bound.mechanism.velocity))
+        return [(words, self._moving(velocity)) for words, velocity in known]
+
     @property
     def _load(self) -> str:
         return "the load of '" + "' and '".join(self.found.groups) + "'"
 
-    def _draw(self, ax: Axes | None, velocity: Array, title: str, note: str) -> Axes:
-        """Draw a motion (N,) of the free unknowns."""
+    def _moving(self, velocity: Array) -> Result:
+        """Return a result whose mechanism is a motion (N,) of the free unknowns."""
         assembly = self.found.assembly
         motion = Mechanism(velocity / float(np.abs(velocity).max()), 0.0, 0.0)
         solution = failed(assembly.problem(), Status.NO_EQUILIBRIUM, method="limit", mechanism=motion)
-        result = Result(assembly, {}, solution, {})
-        if assembly.model.dim == 3:
+        return Result(assembly, {}, solution, {})
+
+    def _draw(self, ax: Axes | None, velocity: Array, title: str, note: str) -> Axes:
+        """Draw a motion (N,) of the free unknowns."""
+        result = self._moving(velocity)
+        if result.model.dim == 3:
             from concio.plot.space_figures import plot_space
 
             return plot_space(result, ax)

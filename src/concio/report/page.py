@@ -6,7 +6,7 @@ import json
 from collections.abc import Sequence
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -96,7 +96,7 @@ def page(steps: Sequence[Result], labels: Sequence[str], *, verdict: str, figure
     """Return a report of steps that share one assembly: what was found in HTML, the view, figures, ``more``, tables."""
     last = steps[-1]
     space = last.model.dim == 3
-    shown = space_view_data(steps, labels) if space else view_data(steps, labels)
+    shown = view_of(steps, labels)
     data = json.dumps(shown, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     parts = {
         "TITLE": escape(last.model.title or "Result"),
@@ -118,6 +118,11 @@ def page(steps: Sequence[Result], labels: Sequence[str], *, verdict: str, figure
         name, rest = piece.split("}}", 1)
         head += parts[name] + rest
     return head
+
+
+def view_of(steps: Sequence[Result], labels: Sequence[str]) -> dict[str, Any]:
+    """Return what the view of steps on one assembly draws, as plain types: outlines, motions, states of joints."""
+    return (space_view_data if steps[-1].model.dim == 3 else view_data)(steps, labels)
 
 
 def _units_sentence(units: Units) -> str:

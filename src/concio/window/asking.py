@@ -24,6 +24,7 @@ from concio.window.questions import QUESTIONS, arguments, command_text, python_t
 from concio.window.results import Results, key_of, named_files
 
 Answer = dict[str, Any]
+KEY = re.compile(r"[0-9a-f]{32}")
 COPY = re.compile(r"\.[0-9a-f]{12}\.toml")
 """How the name of a copy of the text ends."""
 
@@ -168,12 +169,40 @@ class Asked:
         InputError
             There is no such answer.
         """
-        answer = self._answers.get(key)
-        if answer is None or self._results is None:
-            msg = "there is no such answer"
-            raise InputError(msg, hint="ask again")
+        answer = self._answer(key)
+        assert self._results is not None
         door = self._results.door(key)
         return {**answer, "files": [f"answer/{door}/{name}" for name in self._results.files(key)]}
+
+    def _answer(self, key: str) -> Answer:
+        found = self._answers.get(key)
+        if found is None and self._results is not None and KEY.fullmatch(key):
+            found = self._results.kept(key)
+        if found is None or self._results is None:
+            msg = "there is no such answer"
+            raise InputError(msg, hint="ask again")
+        return found
+
+    def known(self, doc: Document) -> list[Answer]:
+        """Return the answers of a document that are kept, the newest first, in a few words each."""
+        found = self._results_of(doc).known()
+        return [
+            {"key": one["key"], "command": one["command"], "hash": one["hash"], "question": one["question"],
+             "headline": (one.get("verdict") or {}).get("headline", "")}
+            for one in found if one.get("name", doc.file.name) == doc.file.name
+        ]  # fmt: skip
+
+    def film(self, key: str) -> Any:
+        """Return what the answer of a key shows in motion, or None.
+
+        Raises
+        ------
+        InputError
+            There is no such answer.
+        """
+        self._answer(key)
+        assert self._results is not None
+        return self._results.film(key)
 
     def file(self, door: str, name: str) -> Path | None:
         """Return a file of an answer by its address, or None."""

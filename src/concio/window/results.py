@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import secrets
 import shutil
 from collections.abc import Sequence
@@ -17,6 +18,9 @@ MOST = 40
 """More answers than this are not kept; the oldest goes first."""
 SHOWN = {".html": "text/html", ".svg": "image/svg+xml", ".png": "image/png"}
 """Files of an answer that the page shows."""
+
+DATA = re.compile(r'<script[^>]*\bid="?data"?[^>]*>(.*?)</script>', re.DOTALL)
+"""What a report draws from."""
 
 
 class Results:
@@ -55,6 +59,23 @@ class Results:
         except (OSError, ValueError):
             return None
         return found if isinstance(found, dict) else None
+
+    def known(self) -> list[dict[str, Any]]:
+        """Return the answers that are kept, the newest first."""
+        with suppress(OSError):
+            found = sorted((p for p in self.root.iterdir() if p.is_dir()), key=lambda p: -p.stat().st_mtime)
+            return [one for place in found if (one := self.kept(place.name)) is not None]
+        return []
+
+    def film(self, key: str) -> Any:
+        """Return what an answer shows in motion: the data of its report or its ``motions.json``, or None."""
+        place = self.root / key
+        with suppress(OSError, ValueError):
+            if (place / "motions.json").is_file():
+                return json.loads((place / "motions.json").read_text(encoding="utf-8"))
+            found = DATA.search((place / "report.html").read_text(encoding="utf-8"))
+            return json.loads(found[1]) if found else None
+        return None
 
     def files(self, key: str) -> list[str]:
         """Return the files of an answer that can be shown, the report first."""

@@ -61,6 +61,7 @@ class Session:
             "do": self.do, "undo": self.undo, "redo": self.redo, "save": self.save, "resolve": self.resolve,
             "picture": self.picture, "drag": self.drag, "ask": self.ask, "cancel": self.cancel, "result": self.result,
             "layers": self.layers, "export": self.export, "bye": self.bye, "take": self.take,
+            "answers": self.answers, "film": self.film,
         }  # fmt: skip
         if file is not None:
             self.document = Document(file)
@@ -286,6 +287,14 @@ class Session:
     def result(self, told: Mapping[str, Any]) -> Answer:
         """Return an answer with the addresses of its files."""
         return self.asked.result(str(told.get("key", "")))
+
+    def answers(self, told: Mapping[str, Any]) -> Answer:
+        """Return the answers of the document that are kept."""
+        return {"answers": self.asked.known(self._there())}
+
+    def film(self, told: Mapping[str, Any]) -> Answer:
+        """Return what an answer shows in motion, or None."""
+        return {"film": self.asked.film(str(told.get("key", "")))}
 
     def export(self, told: Mapping[str, Any]) -> Answer:
         """Write the project folder: model, the files it names, result."""

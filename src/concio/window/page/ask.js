@@ -102,7 +102,7 @@ function toneOf(found) {
   return found.code === 3 ? "bad" : "unsure";
 }
 
-function block(found, old) {
+export function answerBox(found, old) {
   const box = el("div", { class: `${toneOf(found)}${old ? " old" : ""}` });
   const v = found.verdict;
   if (old) box.append(el("p", { class: "stamp" }, t("changed_since")));
@@ -119,12 +119,12 @@ function block(found, old) {
 function verdict(after, note = "") {
   const place = document.getElementById("verdict-text"), now = doc();
   const parts = note ? [el("p", {}, note)] : [];
-  if (answer) parts.push(block(answer, now && answer.hash !== now.hash));
+  if (answer) parts.push(answerBox(answer, now && answer.hash !== now.hash));
   else if (!note) parts.push(el("p", { class: "quiet" }, t("no_verdict")));
   if (answer && t("verdict_language")) parts.push(el("p", { class: "quiet" }, t("verdict_language")));
   if (answers.length && answer) {
     const before = answers.find((a) => a.key !== answer.key);
-    if (before) parts.push(el("details", {}, el("summary", {}, `${t("earlier")}: ${before.command}`), block(before, now && before.hash !== now.hash)));
+    if (before) parts.push(el("details", {}, el("summary", {}, `${t("earlier")}: ${before.command}`), answerBox(before, now && before.hash !== now.hash)));
   }
   const text = parts.map((p) => p.textContent).join("");
   if (place.textContent !== text || place.dataset.note !== note) { place.replaceChildren(...parts); place.dataset.note = note; }

@@ -7,9 +7,10 @@ import { build, placed, setBuild } from "./build.js";
 import { data, setTables, showChosen, tables } from "./tables.js";
 import { answer, follow, programs, questionPane, reportPane, run, setAsk } from "./ask.js";
 import { layersPane, setLayers } from "./layers.js";
+import { answered, lookPane, modelChanged, setLook } from "./look.js";
 
 const $ = (id) => document.getElementById(id);
-const TABS = ["ask", "build", "tables", "data", "text", "python", "report", "layers"];
+const TABS = ["ask", "build", "tables", "look", "data", "text", "python", "report", "layers"];
 let hello = null, state = {}, doc = null, tab = "ask", pictured = "", gone = 0, shownReport = "";
 const panes = {};
 
@@ -37,9 +38,9 @@ function take(found) {
   doc = found.document ? { ...(before && before.name === found.document.name ? before : {}), ...found.document } : null;
   const changed = (before && before.hash) !== (doc && doc.hash) || (before && before.name) !== (doc && doc.name);
   header();
-  if (changed) { if (!doc || (before && before.name !== doc.name)) { clear(); pictured = ""; } refresh(["data", "text", "python"]); picture(); }
+  if (changed) { modelChanged(); if (!doc || (before && before.name !== doc.name)) { clear(); pictured = ""; } refresh(["data", "text", "python"]); picture(); }
   tabs();
-  follow(state, () => { const key = answer ? answer.key + answer.question : ""; if (key !== shownReport) { shownReport = key; refresh(["report", "python"]); } });
+  follow(state, () => { const key = answer ? answer.key + answer.question : ""; if (key !== shownReport) { shownReport = key; refresh(["report", "python", "look"]); answered(answer); } });
   if (!doc && !$("start").open) start();
   return true;
 }
@@ -143,7 +144,7 @@ function go(name, focus = false) {
 
 const fill = {
   ask: (pane) => questionPane(pane), build: (pane) => build(pane), tables: (pane) => tables(pane), data: (pane) => data(pane, doc),
-  report: (pane) => reportPane(pane), layers: (pane) => layersPane(pane), text: textPane, python: pythonPane,
+  report: (pane) => reportPane(pane), layers: (pane) => layersPane(pane), look: (pane) => lookPane(pane).catch(fail), text: textPane, python: pythonPane,
 };
 const stale = new Set(TABS);
 function refresh(names, force = false) {
@@ -237,7 +238,7 @@ listen({
 const KEYS = [
   ["Ctrl+S", "save", save], ["Ctrl+Z", "undo", undo], ["Ctrl+Y", "redo", redo], ["Ctrl+O", "open", start], ["Ctrl+Enter", "run_it", () => run()],
   ["Ctrl+.", "cancel", cancel], ["?", "keys", help], ["s", "select", () => tool("select")], ["l", "load", () => tool("load")], ["v", "support", () => tool("support")],
-  ["t", "tie", () => tool("tie")], ["p", "picture", () => $("picture").focus()], ["Alt+1..8", "tables", null],
+  ["t", "tie", () => tool("tie")], ["p", "picture", () => $("picture").focus()], ["Alt+1..9", "tables", null],
 ];
 function help() {
   $("help").replaceChildren(el("h2", { id: "help-head" }, t("keys_of")),
@@ -253,7 +254,7 @@ function tool(name) {
 }
 addEventListener("keydown", (event) => {
   const typing = event.target.closest?.("input, textarea, select"), control = event.ctrlKey || event.metaKey;
-  if (event.altKey && /^[1-8]$/.test(event.key)) { const name = tabNames()[Number(event.key) - 1]; if (name) { event.preventDefault(); go(name, true); } return; }
+  if (event.altKey && /^[1-9]$/.test(event.key)) { const name = tabNames()[Number(event.key) - 1]; if (name) { event.preventDefault(); go(name, true); } return; }
   if (document.querySelector("dialog[open]")) return;
   const name = control ? `Ctrl+${event.key === "Enter" ? "Enter" : event.key.toUpperCase()}` : event.key;
   if (typing && (!control || ["Ctrl+Z", "Ctrl+Y"].includes(name) || (name === "Ctrl+Enter" && event.target.tagName === "TEXTAREA"))) return;
@@ -269,7 +270,7 @@ async function begin() {
   setWords(hello.words);
   for (const [name, colour] of Object.entries(hello.look)) document.documentElement.style.setProperty(`--look-${name}`, colour);
   for (const name of TABS) { panes[name] = el("div", { role: "tabpanel", id: `pane-${name}`, "aria-labelledby": `tab-${name}`, tabindex: -1, hidden: name !== tab }); $("panes").append(panes[name]); }
-  setBuild(() => doc, send); setTables(send); setLayers(send); setAsk(hello.questions, ask, () => doc);
+  setBuild(() => doc, send); setTables(send); setLayers(send); setLook(() => doc, () => refresh(["tables"])); setAsk(hello.questions, ask, () => doc);
   for (const [id, act] of [["save", save], ["undo", undo], ["redo", redo], ["open", start], ["keys", help], ["cancel", cancel], ["fit", fit], ["zoom-in", () => zoom(1.4)], ["zoom-out", () => zoom(1 / 1.4)]]) $(id).addEventListener("click", act);
   $("names").addEventListener("change", () => { view.names = $("names").checked; draw(); });
   $("language").addEventListener("click", () => { setLanguage(language === "it" ? "en" : "it"); label(); header(); attention(); fault(null); tabs(); refresh(TABS, true); follow(state, () => {}); });

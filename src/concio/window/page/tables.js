@@ -2,6 +2,7 @@
 import { t, el, digits } from "./words.js";
 import { view, select } from "./picture.js";
 import { plain } from "./build.js";
+import { resultNumbers } from "./look.js";
 
 const TEXTS = ["title", "name", "body", "body_a", "body_b", "group", "material", "role", "layer", "law", "kind", "blocks_file"];
 const MOST = 400;
@@ -47,6 +48,7 @@ export function tables(pane) {
   pane.replaceChildren();
   if (!shown) return;
   const name = (k) => shown.bodies[k]?.name ?? "";
+  const { moves, forces } = answerColumns(shown);
   const own = (one, list) => (one.table === null ? null : [list, one.table]);
   pane.append(
     el("datalist", { id: "known-groups" }, ...shown.groups.map((value) => el("option", { value }))),
@@ -55,9 +57,20 @@ export function tables(pane) {
     table(t("ties"), [t("name"), t("between"), t("value"), ""], shown.ties.map((s, k) => row("things", `tie ${k}`, [s.name, `${s.body_a} – ${s.body_b || spot(s.at_b)}`, s.words], own(s, "ties")))),
     table(t("materials"), [t("name"), t("value")], Object.entries(shown.materials).map(([n, words]) => el("tr", {}, el("td", {}, n), el("td", {}, words)))),
     table(t("laws"), [t("name"), t("value")], Object.entries(shown.laws).map(([n, words]) => el("tr", {}, el("td", {}, n), el("td", {}, words)))),
-    table(t("bodies"), [t("name"), t("kind"), t("role"), t("layer"), t("material"), t("size")], shown.bodies.map((b, k) => row("bodies", k, [b.name, b.kind, b.role, b.layer, b.material, digits(b.size)]))),
-    table(t("joints"), [t("between"), t("law"), t(shown.dim === 2 ? "length" : "size"), t("gap")], shown.joints.map((j, k) => row("joints", k, [`${name(j.a)} – ${name(j.b)}`, j.law, digits(j.size), digits(j.gap)]))),
+    table(t("bodies"), [t("name"), t("kind"), t("role"), t("layer"), t("material"), t("size"), ...moves.heads], shown.bodies.map((b, k) => row("bodies", k, [b.name, b.kind, b.role, b.layer, b.material, digits(b.size), ...moves.cells(k)]))),
+    table(t("joints"), [t("between"), t("law"), t(shown.dim === 2 ? "length" : "area"), t("gap"), ...forces.heads], shown.joints.map((j, k) => row("joints", k, [`${name(j.a)} – ${name(j.b)}`, j.law, digits(j.size), digits(j.gap), ...forces.cells(k)]))),
   );
+}
+
+/* columns of the answer, where it is of this model: how far each block moves, what each joint carries */
+function answerColumns(shown) {
+  const none = { heads: [], cells: () => [] }, found = resultNumbers(), j = found?.joints;
+  const [factor, symbol] = found?.units?.motion || [1, "m"], [kilo, force] = found?.units?.force || [1, "kN"];
+  const same = j && j.a.length === shown.joints.length && shown.joints.every((one, k) => one.a === j.a[k] && one.b === j.b[k]);
+  return {
+    moves: found?.bodies?.length === shown.bodies.length ? { heads: [`${t("moved")} [${symbol}]`], cells: (k) => [digits(factor * found.bodies[k])] } : none,
+    forces: same ? { heads: [`N [${force}]`, `V [${force}]`, `${t("open_part")} [%]`], cells: (k) => [digits(kilo * j.N[k]), digits(kilo * j.V[k]), digits(100 * j.open[k])] } : none,
+  };
 }
 
 export function showChosen(pane) {
