@@ -17,6 +17,7 @@ from concio.analysis.seismic.checks import Check
 from concio.analysis.seismic.floor import Mode, Storeys
 from concio.analysis.seismic.free_standing import FreeStanding
 from concio.analysis.seismic.local_mechanism import LocalMechanism, NoMechanism
+from concio.analysis.seismic.sections import OutOfPlane
 from concio.analysis.seismic.site import Site
 from concio.analysis.seismic.variations import TieForce, tie_force, variations
 
@@ -27,6 +28,7 @@ __all__ = [
     "LocalMechanism",
     "Mode",
     "NoMechanism",
+    "OutOfPlane",
     "Site",
     "Storeys",
     "TieForce",

@@ -186,7 +186,8 @@ def _name(t: Texts, found: Assessment, row: HandRow) -> str:
     if row.kind == "sum":
         return escape(row.name)
     if row.kind == "load":
-        kind = t.words[f"load_{found.model.loads[row.load].kind}"]
+        model = found.mechanisms[0].section or found.model
+        kind = t.words[f"load_{model.loads[row.load].kind}"]
         text = t.words["a_load_on"].format(name=row.name, kind=kind, number=row.load + 1)
         return escape(text if row.own else t.words["a_taken"].format(what=text))
     key = {"weight": "a_weight_of", "tie": "a_tie_of", "joint": "a_slide_of"}[row.kind]

@@ -24,6 +24,7 @@ from concio.report.decisions_part import coverage_html, decisions_html
 from concio.report.docx_file import write_docx
 from concio.report.html_parts import page_html
 from concio.report.sensitivity_part import sensitivity_html
+from concio.report.strips_part import strips_html
 from concio.report.typeset import typeset
 from concio.verdict.assessment_verdict import assessment_verdict
 from concio.verdict.verdict import Verdict
@@ -260,8 +261,9 @@ class AssessmentReport(Texts):
             text = self.say(said, alpha=self.n(none.multiplier))
             rows.append([escape(self.name(none)), escape(self.way(none.direction)), *["&ndash;"] * 5, text])
         head = [w[k] for k in ("name", "direction", "alpha0", "e_star", "a0_star", "d0", "zeta", "outcome")]
-        text = self.say("search_text")
-        return f"<section id=search><h2>{self.say('search')}</h2><p>{text}</p>{self.table(head, rows, 2)}</section>"
+        text, strips = self.say("search_text"), strips_html(self, found)
+        table = self.table(head, rows, 2)
+        return f"<section id=search><h2>{self.say('search')}</h2><p>{text}</p>{table}{strips}</section>"
 
     # -- what if ------------------------------------------------------------------------------------------------------
 

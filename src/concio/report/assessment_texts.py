@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from concio.analysis.seismic.out_of_plane import EITHER
 from concio.analysis.seismic.searching import ALL_FREE, EVERY
 from concio.display import number
 from concio.plot.figure_language import in_language
@@ -28,6 +29,10 @@ PART = {
     "alone": r"('.*') and what it touches",
 }
 """Names of parts of a structure, as :class:`concio.analysis.seismic.parts.Part` gives them."""
+
+
+ASIDE = "out of plane: "
+"""How names of mechanisms of strips begin, as :mod:`concio.analysis.seismic.out_of_plane` gives them."""
 
 
 class Texts:
@@ -67,6 +72,10 @@ class Texts:
         known = {EVERY: "every", ALL_FREE: "all_free"}
         if name in known:
             return self.words[known[name]]
+        if name.startswith(ASIDE):
+            strip, _, part = name.removeprefix(ASIDE).partition("; ")
+            whole = self.words["aside"].format(strip=self.strip(strip))
+            return f"{whole}; {self.named(part)}" if part else whole
         for kind, pattern in PART.items():
             found = re.fullmatch(pattern, name)
             if found and kind == "alone":
@@ -75,8 +84,18 @@ class Texts:
                 return self.words[f"part_{kind}"].format(at=self.n(float(found[1])), of=found[2] or "").strip()
         return name
 
+    def strip(self, name: str) -> str:
+        """Return the name of a strip of a facade in the language."""
+        kind, _, sides = name.partition(", x = ")
+        word = self.words["strip_" + kind.replace(" ", "_")]
+        if not sides:
+            return word
+        a, b = (self.n(float(v)) for v in sides.removesuffix(" m").split(" to "))
+        return self.words["strip_sides"].format(what=word, a=a, b=b)
+
     def way(self, direction: str) -> str:
         """Return which way the earthquake pushes."""
+        direction = direction.replace(" ", "_") if direction == EITHER else direction
         return self.words[direction] if direction in self.words else self.words["towards"].format(way=direction)
 
     def table(self, headings: Iterable[str], rows: Iterable[Sequence[str]], texts: int = 1) -> str:

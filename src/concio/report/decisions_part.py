@@ -6,6 +6,8 @@ import math
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from concio.analysis.seismic.sections import OutOfPlane
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -65,6 +67,20 @@ def _decisions(t: Texts, found: Assessment) -> list[tuple[str, str, str]]:
     for name, element in (asked.get("free_standing") or {}).items():
         kind = element["kind"] if isinstance(element, dict) else element.kind
         rows.append(("free_standing", f"{t.named(name)}: {w.get('kind_' + kind, kind)}", "–"))
+    if found.strips:
+        rows.append(("out_of_plane", _held(t, asked.get("out_of_plane")), w["held_nowhere"]))
     rows += [("elsewhere", w.get(f"elsewhere_{item.replace(' ', '_')}", item), "–")
              for item in asked.get("elsewhere", ())]  # fmt: skip
     return rows
+
+
+def _held(t: Texts, given: OutOfPlane | Mapping[str, Any] | None) -> str:
+    """Return how a facade is held out of its plane, as the author decided."""
+    held = given if isinstance(given, OutOfPlane) else OutOfPlane(**(given or {}))
+    heights = "; ".join(t.n(z) for z in held.held)
+    told = [t.words["held_at"].format(heights=heights) if heights else t.words["held_nowhere"]]
+    if held.flush != "middle":
+        told.append(t.words[f"flush_{held.flush}"])
+    if held.bearing is not None:
+        told.append(t.words["held_bearing"].format(bearing=t.n(held.bearing)))
+    return "; ".join(told)

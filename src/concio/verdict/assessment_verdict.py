@@ -251,10 +251,20 @@ class _Words:
                      reason=self.reason(m.followed.reason))
             for m in found.mechanisms[:MOST_NAMES] if m.followed.ends and m.followed.reason != "falls"
         ]  # fmt: skip
+        if found.strips:
+            limits.append(self.strips())
         excused = found.arguments.get("elsewhere", ())
         if excused:
             limits.append(self.say("elsewhere", items=", ".join(excused)))
         return tuple(limits)
+
+    def strips(self) -> str:
+        """Return how a facade was searched out of its plane."""
+        heights = dict.fromkeys(s.edge[0][1] for f in self.found.strips for s in f.strip.section.supports if s.edge)
+        told = "; ".join(self.write(float(z), 4) for z in sorted(heights))
+        held = self.say("strips_held", heights=told) if told else self.say("strips_free")
+        courses = max(len(f.strip.section.free_bodies) for f in self.found.strips)
+        return self.say("strips", n=len(self.found.strips), courses=courses, held=held)
 
     def item(self, item: OpenItem) -> str:
         """Return something that was not checked."""

@@ -52,6 +52,10 @@ EN = {
     "does not grow like a_g",
     "cut": "the curve of '{name}', push {way}, is cut at {d} m of its control point: {reason}; its zeta_E ignores what "
     "lies beyond",
+    "strips": "out of its plane the facade was searched in {n} strips, cut from the drawing and free at their sides "
+    "(returns, cross walls and the bond beside them are not counted), cracking at {courses} courses at most; {held}",
+    "strips_free": "no height was given at which floors or ties hold it, so that none was counted",
+    "strips_held": "held in both senses at {heights} m, as given: that floors and ties can hold it is not checked",
     "elsewhere": "left to the author, who answers for it: {items}",
     "open_levels": "{levels}: no hazard is given (or say which limit states are asked for)",
     "open_hazard": "{numbers} of {level} were not given: the spectrum uses default values that belong to no site",
@@ -59,6 +63,8 @@ EN = {
     "open_out of plane": "the facade out of its plane: the model is wider than it is thick, and moves in its plane "
     "alone",
     "open_curve": "'{name}', push {way}, at {levels}: its curve is not conclusive ({reason})",
+    "open_strips": "{n} mechanisms of strips out of the plane, at {levels}, the first of them '{name}', push {way}, "
+    "with alpha_0 {alpha}: their curve is not conclusive ({reason})",
     "open_bound": "whether '{name}', push {way}, begins to move below {alpha}, which is an upper bound only",
     "open_hand": "'{name}', push {way}: by virtual work, computed once more from the coordinates, alpha_0 is {hand} "
     "and not {alpha}",
@@ -134,6 +140,12 @@ IT = {
     "cresce come a_g",
     "cut": "la curva di «{name}», spinta {way}, è troncata a {d} m del punto di controllo: {reason}; il suo zeta_E "
     "trascura quanto segue",
+    "strips": "fuori dal piano la facciata è stata esaminata in {n} strisce, tagliate dal disegno e libere ai lati "
+    "(ritorni, muri di spina e ammorsature non sono considerati), con fessure in corrispondenza di al più {courses} "
+    "corsi; {held}",
+    "strips_free": "non è stata indicata alcuna quota in cui solai o catene la trattengano: nessuna è considerata",
+    "strips_held": "trattenuta nei due versi alle quote {heights} m, come indicato: che solai e catene possano farlo "
+    "non è verificato",
     "elsewhere": "lasciato all'autore, che ne risponde: {items}",
     "open_levels": "{levels}: pericolosità non data (oppure indicare quali stati limite sono richiesti)",
     "open_hazard": "{numbers} dello {level} non dati: lo spettro usa valori predefiniti, non riferiti a un sito",
@@ -141,6 +153,8 @@ IT = {
     "open_out of plane": "la facciata fuori dal suo piano: il modello è più largo che spesso, e si muove solo nel "
     "piano",
     "open_curve": "«{name}», spinta {way}, allo {levels}: la curva non è conclusiva ({reason})",
+    "open_strips": "{n} meccanismi di strisce fuori dal piano, allo {levels}, il primo «{name}», spinta {way}, con "
+    "alpha_0 {alpha}: la loro curva non è conclusiva ({reason})",
     "open_bound": "se «{name}», spinta {way}, si muova sotto {alpha}, che è solo un limite superiore",
     "open_hand": "«{name}», spinta {way}: con i lavori virtuali, ricalcolati dalle coordinate, alpha_0 vale {hand} e "
     "non {alpha}",

@@ -279,7 +279,11 @@ def test_a_parapet_is_not_verified_on_the_ground() -> None:
 
 def test_a_facade_in_elevation_can_leave_its_plane() -> None:
     wide = plain(*strip(1, 1.5, 4.0))
-    assert assessed(wide, site=site(hazard=QUIET)).open[-1].kind == "out of plane"
+    found = assessed(wide, site=site(hazard=QUIET))
+    assert found.worst is not None
+    assert found.worst.multiplier == pytest.approx(1.0 / 1.5, rel=1e-9)  # thickness over height
+    pushed = replace(wide, loads=(*wide.loads, Load("weight", (1.0, 0.0), group="masses")))
+    assert assessed(pushed, site=site(hazard=QUIET), live="masses").open[-1].kind == "out of plane"
     answered = assessed(wide, site=site(hazard=QUIET), elsewhere=["out of plane"])
     assert answered.verdict.outcome is Outcome.HOLDS
 

@@ -16,8 +16,10 @@ from concio.analysis.seismic.directions import Direction, pushes
 from concio.analysis.seismic.examine import Control, Terms
 from concio.analysis.seismic.free_standing import FreeStanding, elements_of
 from concio.analysis.seismic.mechanism import chosen_bodies
-from concio.analysis.seismic.open_items import ELSEWHERE
+from concio.analysis.seismic.open_items import ELSEWHERE, in_elevation
+from concio.analysis.seismic.out_of_plane import covered_by, of_strips, strips_assessed
 from concio.analysis.seismic.searching import EVERY, Search, search_all
+from concio.analysis.seismic.sections import OutOfPlane
 from concio.analysis.seismic.site import STRONG, Site
 from concio.analysis.seismic.tie_history import with_strength
 from concio.arguments import closest, strict
@@ -49,6 +51,7 @@ def assess(
     free_standing: Mapping[str, FreeStanding | Mapping[str, Any]] | None = None,
     elsewhere: Several[str] = (),
     accept_linear: bool = False,
+    out_of_plane: OutOfPlane | Mapping[str, Any] | None = None,
     progress: ProgressCallback | None = None,
 ) -> Assessment:
     """Find the local mechanisms of a model and check them against the demand of a site.
@@ -91,6 +94,10 @@ def assess(
     accept_linear : bool
         Whether a limit state counts as met where the linear check with the behaviour factor is, as the code allows; by
         default the check in displacements decides wherever there is one.
+    out_of_plane : OutOfPlane or mapping, optional
+        How a facade drawn in elevation is held out of its plane:
+        :class:`~concio.analysis.seismic.sections.OutOfPlane` or its arguments, ``{"held": [3.2, 6.4]}``. By default
+        nothing holds it. Its strips are assessed unless ``elsewhere`` leaves them out or ``live`` pushes.
     progress : callable, optional
         Called for each mechanism that is sought and followed.
 
@@ -157,22 +164,28 @@ def assess(
     chosen = {name: chosen_bodies(model, name, words) for name, words in sought.items() if name != EVERY}
     terms = Terms(site, wanted, factor, control, limits or {}, curve, accept_linear)
     acting = acting_in(model, ways)
+    held_out = _held_out(model, out_of_plane)
     try:
         found = search_all(searches, chosen, terms, elements, progress)
     except NoEquilibriumError as error:
         side = [a.sentence() for a in acting if a.role == "constant" and np.abs(a.force[:-1]).max(initial=0.0) > 0]
         hint = f"{error.hint}; sideways act, as they are: {'; '.join(side)}" if side else error.hint
         raise NoEquilibriumError(error.what, where=error.where, hint=hint) from None
+    aside = in_elevation(model) and "out of plane" not in elsewhere and not groups
+    strips = strips_assessed(model, held_out, terms, progress) if aside else ()
+    beside, rest = of_strips(strips)
+    ranked = tuple(sorted([*found.shown, *beside], key=lambda m: (m.zeta, m.least, m.multiplier)))
     arguments = {
         "levels": levels, "mechanisms": mechanisms, "direction": direction, "live": live, "knowledge": knowledge,
         "confidence": confidence, "control": control, "limits": limits, "curve": curve,
         "free_standing": free_standing, "elsewhere": tuple(elsewhere), "accept_linear": accept_linear,
+        "out_of_plane": out_of_plane,
     }  # fmt: skip
     return Assessment(
-        model, site, wanted, found.shown, found.locked, knowledge, factor, reason, curve,
-        _notes(site, wanted, knowledge, factor, reason), arguments, others=found.others, sought=found.sought,
-        parts=found.parts, places=found.places, bounds=found.bounds, acting=acting, covered=found.covered,
-        assembly=searches[0].assembly,
+        model, site, wanted, ranked, found.locked, knowledge, factor, reason, curve,
+        _notes(site, wanted, knowledge, factor, reason), arguments, others=(*found.others, *rest), sought=found.sought,
+        parts=found.parts, places=found.places, bounds=found.bounds, acting=acting,
+        covered=(*found.covered, *covered_by(strips)), assembly=searches[0].assembly, strips=strips,
     )  # fmt: skip
 
 
@@ -189,6 +202,26 @@ def _notes(site: Site, wanted: tuple[str, ...], knowledge: str, factor: float, r
             f"the confidence factor of {factor:g} was given by the author; that of {knowledge} would be {of_level:g}"
         )
     return tuple(found)
+
+
+def _held_out(model: Model, given: OutOfPlane | Mapping[str, Any] | None) -> OutOfPlane:
+    """Return how a facade is held out of its plane.
+
+    Raises
+    ------
+    InputError
+        A key is not known, or the model is not a facade in elevation.
+    """
+    if given is None or isinstance(given, OutOfPlane):
+        made = given or OutOfPlane()
+    else:
+        for key in given:
+            _one_of("key of out_of_plane", key, tuple(OutOfPlane.__dataclass_fields__))
+        made = OutOfPlane(**given)
+    if given is not None and not in_elevation(model):
+        msg = "out_of_plane is for a facade drawn in elevation, wider than it is thick"
+        raise InputError(msg, hint="in space and in sections walls leave their plane by themselves")
+    return made
 
 
 def _one_of(what: str, word: str, known: tuple[str, ...]) -> None:

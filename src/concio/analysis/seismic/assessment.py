@@ -15,6 +15,7 @@ from concio.analysis.seismic.hand_check import HandCheck, hand_check
 from concio.analysis.seismic.hand_forces import hand_forces
 from concio.analysis.seismic.local_mechanism import LevelOutcome, LocalMechanism, NoMechanism
 from concio.analysis.seismic.open_items import OpenItem, open_items
+from concio.analysis.seismic.out_of_plane import StripFound
 from concio.analysis.seismic.site import Site
 from concio.analysis.seismic.what_if import sensitivity_of_mechanism
 from concio.analysis.sensitivity import Sensitivity
@@ -70,6 +71,9 @@ class Assessment(Shown):
         What the search covered, kind by kind: places, motions that were met, the least multiplier.
     assembly : Assembly
         One of the model, with what it was found to hold.
+    strips : tuple of StripFound
+        Of a facade drawn in elevation, its strips out of the plane, the weakest first. The worst mechanism of each
+        stands among ``mechanisms``.
     """
 
     model: Model
@@ -91,6 +95,7 @@ class Assessment(Shown):
     acting: tuple[Acting, ...]
     covered: tuple[Covered, ...]
     assembly: Assembly
+    strips: tuple[StripFound, ...] = ()
 
     @property
     def worst(self) -> LocalMechanism | None:
@@ -111,7 +116,10 @@ class Assessment(Shown):
     def hand_checks(self) -> tuple[HandCheck, ...]:
         """For each mechanism alpha_0 once more, by virtual work from the coordinates of the model."""
         forces = hand_forces(self.model)
-        return tuple(hand_check(m, self.model, self.arguments.get("live"), forces) for m in self.mechanisms)
+        return tuple(
+            hand_check(m, self.model, self.arguments.get("live"), forces) if m.section is None
+            else hand_check(m, m.section, None, hand_forces(m.section)) for m in self.mechanisms
+        )  # fmt: skip
 
     def sensitivity(self, mechanism: LocalMechanism | None = None) -> Sensitivity | None:
         """Return the derivative of alpha_0 with respect to every number of the model, by duality.
@@ -127,7 +135,7 @@ class Assessment(Shown):
             None where a joint slides in the mechanism: alpha_0 is not an optimum then, and duality says nothing.
         """
         m = self.worst if mechanism is None else mechanism
-        return None if m is None else sensitivity_of_mechanism(self.model, m, self.arguments.get("live"))
+        return None if m is None else sensitivity_of_mechanism(m.section or self.model, m, self.arguments.get("live"))
 
     @cached_property
     def open(self) -> tuple[OpenItem, ...]:
@@ -198,6 +206,11 @@ class Assessment(Shown):
             "covered": [
                 {"kind": c.kind, "there": c.there, "sought": c.sought, "searches": c.searches,
                  "least_multiplier": _number(c.multiplier), "motions": list(c.motions)} for c in self.covered
+            ],
+            "strips": [
+                {"name": s.strip.name, "kind": s.strip.kind, "sides": list(s.strip.sides), "base": s.strip.base,
+                 "least_multiplier": _number(s.multiplier), "zeta_E": _number(s.zeta), "least_zeta_E": _number(s.least),
+                 "same_numbers_as": s.like or None, "followed": s.followed} for s in self.strips
             ],
             "followed_beside": [m.summary() for m in self.others],
             "upper_bounds": {way: _number(bound.upper) for way, bound in self.bounds.items()},

@@ -12,9 +12,9 @@ from concio.analysis.seismic.macro_blocks import Mechanics
 from concio.analysis.seismic.mechanism import Found
 from concio.kinematics.frames import turned_left
 
-KINDS = ("whole", "named", "levels", "openings", "returns", "changes", "alone")
+KINDS = ("whole", "named", "levels", "openings", "returns", "changes", "alone", "strips")
 """Where mechanisms are sought: among all motions, by name, above levels, beside openings and returns, beyond changes,
-in structures that stand alone."""
+in structures that stand alone, out of the plane of a facade."""
 
 MOTIONS = ("overturning", "sliding", "bending", "wedge", "mixed")
 """How they move: one block turns about a horizontal axis across the push; all blocks slide; blocks turn against each

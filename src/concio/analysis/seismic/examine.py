@@ -14,7 +14,7 @@ from concio.analysis.seismic.checks import Check, Displacement, checks_of, limit
 from concio.analysis.seismic.curve import CapacityCurve, follow, not_followed, straight
 from concio.analysis.seismic.directions import Push
 from concio.analysis.seismic.free_standing import FreeStanding, branch_of
-from concio.analysis.seismic.linkage import Force, Linkage
+from concio.analysis.seismic.linkage import Force, Linkage, merged
 from concio.analysis.seismic.local_mechanism import LocalMechanism
 from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, carried
 from concio.analysis.seismic.macro_contacts import contacts_of
@@ -146,7 +146,7 @@ def prepared(assembly: Assembly, found: Found, push: Push, name: str, control: C
     chosen = _control_of(assembly, found, control, number, along)
     block = mechanics.of_body[number[chosen[0]]]
     at = np.array(chosen[1], dtype=float)
-    forces = tuple(f for _, f in dead), tuple(f for _, f in pushing)
+    forces = merged([f for _, f in dead]), merged([f for _, f in pushing])
     alpha, motion = found.multiplier, np.array([b.motion for b in mechanics.blocks])
     contacts = contacts_of(assembly, mechanics, found.normal_force)
     sequence = Sequence(mechanics, contacts, *forces, ties, (block, at, along), model.engine)

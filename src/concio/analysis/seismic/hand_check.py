@@ -150,6 +150,10 @@ def hand_check(
     return _Hand(m, model, (live,) if isinstance(live, str) else tuple(live or ()), every).check()
 
 
+ASIDE = {"outward": (-1, 0), "inward": (1, 0), "outward or inward": (-1, 0)}
+"""Which way a section is pushed, in its own axes."""
+
+
 class _Hand:
     """Does the sums of one mechanism."""
 
@@ -182,7 +186,7 @@ class _Hand:
     @cached_property
     def way(self) -> Array:
         """Unit vector (d,) of the push."""
-        words = {"right": (1, 0), "left": (-1, 0)} if self.dim == 2 else {
+        words = {"right": (1, 0), "left": (-1, 0), **ASIDE} if self.dim == 2 else {
             "+x": (1, 0, 0), "-x": (-1, 0, 0), "+y": (0, 1, 0), "-y": (0, -1, 0)
         }  # fmt: skip
         word = self.m.direction

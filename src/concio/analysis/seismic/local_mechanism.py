@@ -20,6 +20,7 @@ from concio.analysis.seismic.sequence import Sequence
 from concio.analysis.seismic.site import Hazard, Site
 from concio.contact.assembly import Assembly
 from concio.kinematics.rigid import motions
+from concio.model.model import Model
 from concio.verdict.assessment_verdict import none_sentence
 
 Array = np.ndarray
@@ -101,6 +102,8 @@ class LocalMechanism:
         Of an element that is free to vibrate.
     accept_linear : bool
         Whether the linear check decides a limit state where it is met at every place and gives the larger zeta_E.
+    section : Model or None
+        Of a strip out of the plane of a facade, the model of its section; None for mechanisms of the model itself.
     """
 
     name: str
@@ -124,6 +127,7 @@ class LocalMechanism:
     velocity: Array = field(repr=False)
     branch: ElasticBranch | None = None
     accept_linear: bool = False
+    section: Model | None = None
 
     @property
     def mechanics(self) -> Mechanics:

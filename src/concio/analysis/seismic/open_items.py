@@ -28,8 +28,8 @@ class OpenItem:
     Parameters
     ----------
     kind : str
-        "levels", "hazard", "height", "out of plane", "curve", "bound", "hand", "tie", "unseen" or "locked"; the
-        words are in :mod:`concio.verdict.assessment_words`.
+        "levels", "hazard", "height", "out of plane", "curve", "strips", "bound", "hand", "tie", "unseen" or "locked";
+        the words are in :mod:`concio.verdict.assessment_words`.
     values : mapping
         What the words name.
     """
@@ -59,7 +59,7 @@ def open_items(found: Assessment) -> tuple[OpenItem, ...]:
         high = [m for m in (*found.mechanisms, *found.others) if m.level > ABOVE]
         names = tuple(dict.fromkeys((m.name, m.level) for m in high))
         items += [OpenItem("height", {"names": names})] if high else []
-    if "out of plane" not in excused and in_elevation(found.model):
+    if "out of plane" not in excused and in_elevation(found.model) and not found.strips:
         items.append(OpenItem("out of plane"))
     for m in found.mechanisms:
         where = {"name": m.name, "way": m.direction}
@@ -68,6 +68,7 @@ def open_items(found: Assessment) -> tuple[OpenItem, ...]:
             items.append(OpenItem("curve", {**where, "levels": levels, "reason": m.followed.reason}))
         if m.found.flow == "associated":
             items.append(OpenItem("bound", {**where, "alpha": m.multiplier}))
+    items += _of_strips(found)
     items += [OpenItem("hand", {"name": m.name, "way": m.direction, "alpha": m.multiplier, "hand": check.alpha})
               for m, check in zip(found.mechanisms, found.hand_checks, strict=True) if not check.agrees]  # fmt: skip
     if "ties" not in excused:
@@ -76,8 +77,23 @@ def open_items(found: Assessment) -> tuple[OpenItem, ...]:
     if small := unseen_bodies(found.assembly, (None,)):
         told = {"names": listed(small), "verb": "is" if len(small) == 1 else "are", "share": f"{SEEN:.0e}"}
         items.append(OpenItem("unseen", told))
-    items += [OpenItem("locked", {"name": n.name, "way": n.direction}) for n in found.locked if n.doubtful]
+    none = (*found.locked, *(n for s in found.strips for n in s.locked))
+    items += [OpenItem("locked", {"name": n.name, "way": n.direction}) for n in none if n.doubtful]
     return tuple(items)
+
+
+def _of_strips(found: Assessment) -> list[OpenItem]:
+    """Return what the curves of strips leave open beside the worst mechanism of each, one line for each reason."""
+    own = [m for s in found.strips if not s.like for m in s.mechanisms[1:] if m.unchecked]
+    reasons = dict.fromkeys(m.followed.reason for m in own)
+    items = []
+    for reason in reasons:
+        alike = sorted((m for m in own if m.followed.reason == reason), key=lambda m: m.multiplier)
+        levels = ", ".join(dict.fromkeys(level for m in alike for level in m.unchecked))
+        first = alike[0]
+        told = {"name": first.name, "way": first.direction, "alpha": first.multiplier, "n": len(alike)}
+        items.append(OpenItem("strips", {**told, "levels": levels, "reason": reason}))
+    return items
 
 
 def in_elevation(model: Model) -> bool:

@@ -13,6 +13,7 @@ from concio.analysis.entry_point import entry_point
 from concio.analysis.seismic.assess import EVERY, assess
 from concio.analysis.seismic.assessment import Assessment
 from concio.analysis.seismic.directions import Direction
+from concio.analysis.seismic.what_if import way_of
 from concio.arguments import closest, strict
 from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
@@ -182,12 +183,17 @@ def variations(found: Assessment, progress: ProgressCallback | None = None) -> t
     asked["mechanisms"] = {k: v for k, v in (asked["mechanisms"] or {}).items() if k == worst.name}
     asked["free_standing"] = {k: v for k, v in (asked["free_standing"] or {}).items() if k in (EVERY, worst.name)}
     asked["direction"] = _way_of(found, worst.direction)
-    crush = any(law.compressive_strength is not None for law in found.model.laws.values())
+    asked["elsewhere"] = (*asked["elsewhere"], "out of plane")  # the one that is varied is of the plane, or a section
+    asked["out_of_plane"] = None
+    whole = found.model if worst.section is None else worst.section
+    if worst.section is not None:
+        asked |= {"mechanisms": None, "free_standing": None, "control": None, "direction": way_of(worst.direction)}
+    crush = any(law.compressive_strength is not None for law in whole.laws.values())
     for what, factors in SHARES.items():
         if what == "strength" and not crush:
             continue
         for factor in factors:
-            model = replace(found.model, laws=_changed(found.model, what, factor))
+            model = replace(whole, laws=_changed(whole, what, factor))
             try:
                 other = assess(model, site=found.site, progress=progress, **asked)
             except NoEquilibriumError:
@@ -204,7 +210,7 @@ def _way_of(found: Assessment, name: str) -> Direction | None:
     if len({m.direction for m in found.mechanisms} | {n.direction for n in found.locked}) == 1:
         asked: Direction | None = found.arguments["direction"]
         return asked
-    return tuple(float(v) for v in name.strip("()").split(",")) if name.startswith("(") else name
+    return way_of(name)
 
 
 def _changed(model: Model, what: str, factor: float) -> Mapping[str, Any]:

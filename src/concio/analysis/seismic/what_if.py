@@ -10,6 +10,7 @@ from concio.analysis.parameters import parameters_of
 from concio.analysis.seismic.directions import Direction, pushes
 from concio.analysis.seismic.local_mechanism import LocalMechanism
 from concio.analysis.seismic.mechanism import Mechanisms
+from concio.analysis.seismic.out_of_plane import EITHER, SENSES
 from concio.analysis.seismic.tie_history import with_strength
 from concio.analysis.sensitivity import Sensitivity, sensitivity_of
 from concio.contact.assembly import assemble
@@ -54,4 +55,6 @@ def sensitivity_of_mechanism(
 
 def way_of(name: str) -> Direction:
     """Return the direction of a push as it is asked for, from its name."""
-    return tuple(float(v) for v in name.strip("()").split(",")) if name.startswith("(") else name
+    if name.startswith("("):
+        return tuple(float(v) for v in name.strip("()").split(","))
+    return {sense: way for way, sense in (*SENSES.items(), ("left", EITHER))}.get(name, name)

@@ -167,6 +167,24 @@ class FreeStandingTable(Table):
     unit_weight: UnitWeight | None = None
 
 
+class OutOfPlaneTable(Table):
+    """How a facade drawn in elevation is held out of its plane; the arguments of ``OutOfPlane``.
+
+    Keys
+    ----
+    held :
+        Heights at which floors or ties hold the facade sideways, in both senses.
+    flush :
+        Which faces of stones of different thickness lie in one plane.
+    bearing :
+        Distance from the inner face at which loads act; by default half the thickness.
+    """
+
+    held: list[Length] = Field(default_factory=list)
+    flush: Literal["middle", "outer", "inner"] = "middle"
+    bearing: Length | None = None
+
+
 class ReportTextTable(Table):
     """What stands in the head of the report, and its language.
 
@@ -225,6 +243,9 @@ class AssessmentTable(Table):
     accept_linear: Annotated[
         bool, Field(description="whether a limit state is met where the linear check is")
     ] = False
+    out_of_plane: Annotated[
+        OutOfPlaneTable | None, Field(description="of a facade drawn in elevation: what holds it out of its plane")
+    ] = None
     reasons: Annotated[
         dict[str, StrictStr],
         Field(description="why the author decided so: of levels, direction, knowledge, accept_linear, curve, ..."),

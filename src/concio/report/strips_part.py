@@ -1,0 +1,32 @@
+"""The strips of a facade out of its plane, in the assessment report: one table, the weakest first."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from concio.analysis.seismic.assessment import Assessment
+    from concio.report.assessment_texts import Texts
+
+
+def strips_html(t: Texts, found: Assessment) -> str:
+    """Return the table of strips; empty where the model has none."""
+    if not found.strips:
+        return ""
+    rows = []
+    for s in found.strips:
+        name, m = escape(t.strip(s.strip.name)), s.worst
+        if m is None:
+            rows.append([name, "&ndash;", t.n(s.multiplier, 5), *["&ndash;"] * 3, t.say("strip_none")])
+            continue
+        motion = s.motion_of_worst
+        how = t.words[f"moves_{motion}"] if motion else "&ndash;"
+        settled = m.complete or m.least < 1
+        said = t.verdict(m.least, m.least >= 1) if settled else t.say("unchecked")
+        if s.like:
+            said = t.say("strip_like", name=t.strip(s.like))
+        rows.append([name, f"{escape(how)}, {escape(t.way(m.direction))}", t.n(m.multiplier, 5), t.n(m.level),
+                     t.n(m.d0), t.n(m.zeta), said])  # fmt: skip
+    head = [t.words[k] for k in ("strip", "strip_motion", "alpha0", "strip_level", "d0", "zeta", "outcome")]
+    return f"<h3>{t.say('strips')}</h3><p>{t.say('strips_text')}</p>{t.table(head, rows, 2)}"
