@@ -6,12 +6,12 @@ Contact is stated at the nodes j of one side, the *slave*. With dual functions :
 .. math:: \frac{1}{w_j} \int \psi_j\,(u_b - u_a)\,ds , \qquad w_j = \int N_j\, ds ,
 
 which is the difference of two nodal values where the meshes match, and for any meshes transmits a uniform pressure
-exactly because the dual functions sum to one (Wohlmuth 2000; boundary elements cut by the end of the segment are
-treated after Cichosz and Bischoff 2011). Where a cut goes through a quadratic element its two halves count as linear.
+exactly because the dual functions sum to one (Wohlmuth 2000). Where the end of the segment cuts a slave of quadratic
+elements, they count as linear between their nodes.
 
 A pair stands at :math:`\frac{1}{w_j} \int \psi_j\, s\, ds`, the node itself, and there a rigid side is read. Where the
-segment ends inside an element that point may lie beyond its end: the gap is then continued linearly, and only so do
-the two sides receive forces of the same moment.
+segment ends inside an element, the functions N are those of the nodes inside and of the ends of the segment. No pair
+stands beyond an end: a force there would have an arm that the contact does not have.
 """
 
 from __future__ import annotations
@@ -25,6 +25,9 @@ from concio.contact.joint_points import joint_rule
 from concio.fem.edge_integral import edge_weights, gauss, lagrange, pieces
 
 Array = np.ndarray
+
+MERGED = 1e-3
+"""Nodes nearer to a cut than this share of the shortest element share its point: two rows of one place are singular."""
 
 
 @dataclass(frozen=True)
@@ -135,21 +138,21 @@ def _mortar(slave: Line, master: Line | None, length: float) -> tuple[Array, Arr
     """Return positions, tributary lengths, and the entries of slave and master."""
     tolerance = 1e-9 * length
     is_cut = slave.at[0] < -tolerance or slave.at[-1] > length + tolerance
-    dual_order = 1 if is_cut else slave.order
-    k = len(slave.at)
+    points, order = (_within(slave, length), 1) if is_cut else (slave.at, slave.order)
+    k = len(points)
     weight, moment = np.zeros(k), np.zeros(k)
-    own = np.zeros((k, k))
+    own = np.zeros((k, len(slave.at)))
     other = np.zeros((k, 0 if master is None else len(master.at)))
     marks = slave.at if master is None else np.concatenate([slave.at, master.at])
-    for nodes in pieces(slave.at, dual_order):
-        left, right = max(0.0, slave.at[nodes[0]]), min(length, slave.at[nodes[-1]])
+    for nodes in pieces(points, order):
+        left, right = max(0.0, points[nodes[0]]), min(length, points[nodes[-1]])
         if right - left <= tolerance:
             continue
         inner = np.unique(
             np.concatenate([[left, right], marks[(marks > left + tolerance) & (marks < right - tolerance)]])
         )
         xs, ws = (np.concatenate(v) for v in zip(*(gauss(p, q) for p, q in pairwise(inner)), strict=True))
-        shape = lagrange(slave.at[nodes], xs)
+        shape = lagrange(points[nodes], xs)
         lumped = shape @ ws
         psi = lumped[:, None] * np.linalg.solve((shape * ws) @ shape.T, shape)
         weight[nodes] += lumped
@@ -162,6 +165,12 @@ def _mortar(slave: Line, master: Line | None, length: float) -> tuple[Array, Arr
     first = _entries(own[used] / weight[used, None], slave.nodes)
     second = None if master is None else _entries(other[used] / weight[used, None], master.nodes)
     return position, weight[used], first, second
+
+
+def _within(slave: Line, length: float) -> Array:
+    """Return the points of a slave that the segment cuts: its nodes inside, and the ends of the segment."""
+    near = MERGED * float(np.diff(slave.at).min())
+    return np.concatenate([[0.0], slave.at[(slave.at > near) & (slave.at < length - near)], [length]])
 
 
 def interpolation(line: Line, x: Array) -> Array:

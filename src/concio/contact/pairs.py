@@ -211,11 +211,17 @@ def place(
     return first, forwards, np.column_stack([shape, key])
 
 
-def line_of(disc: Discretisation, b: int, edge: int, first: float, forwards: bool) -> Line | None:
-    """Return the nodes of one side in positions along the segment; None where it is not meshed."""
+def line_of(
+    disc: Discretisation, b: int, edge: int, first: float, forwards: bool, cosine: float = 1.0
+) -> Line | None:
+    """Return the nodes of one side in positions along the segment; None where it is not meshed.
+
+    An edge that is turned against the segment is projected onto it: ``cosine`` is that of the angle between them.
+    """
     if disc.shape_of[b] < 0:
         return None
     nodes = disc.shapes[disc.shape_of[b]].edges[edge]
+    at = cosine * nodes.at
     if forwards:
-        return Line(nodes.nodes, first + nodes.at, nodes.order)
-    return Line(nodes.nodes[::-1], (first - nodes.at)[::-1], nodes.order)
+        return Line(nodes.nodes, first + at, nodes.order)
+    return Line(nodes.nodes[::-1], (first - at)[::-1], nodes.order)

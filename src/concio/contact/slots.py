@@ -190,9 +190,12 @@ class SlotMaker:
             if past:
                 length = 1e-9 * float(self.edges.length[a])
             lines = [
-                line_of(self.disc, int(own[e]), int(number[e]), float(dot(t, placed.start[e] - start)), forwards)
+                line_of(
+                    self.disc, int(own[e]), int(number[e]), float(dot(t, placed.start[e] - start)), forwards,
+                    abs(float(dot(t, placed.tangent[e]))),
+                )
                 for e, forwards in ((a, True), (b, False))
-            ]
+            ]  # fmt: skip
             if past:
                 lines = [None if line is None else _reaching(line, length) for line in lines]
             result.add(i, couple(lines[0], lines[1], length), length, self.edges.body[[a, b]], self.first_node)

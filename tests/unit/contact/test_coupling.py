@@ -35,6 +35,8 @@ def check_linear_fields_and_forces(coupling, a, b, length):
     assert coupling.length.sum() == pytest.approx(length)
     assert coupling.length @ coupling.at == pytest.approx(length**2 / 2)  # their resultant is in the middle
     assert (coupling.length > 0).all()
+    assert coupling.at.min() > -1e-12 * length, "a force beyond an end has an arm that the contact does not have"
+    assert coupling.at.max() < (1 + 1e-12) * length
 
 
 def test_matching_meshes_give_node_pairs():

@@ -259,3 +259,40 @@ def test_blocks_that_could_all_slide_part():
     curve = concio.push(concio.wall(length=0.5, height=0.25, block="rigid", friction=0.6), step=0.005, until=1e-4)
     assert curve.ending is PushEnding.REACHED
     assert curve.multiplier[1:] == pytest.approx(0.6, abs=3e-6)
+
+
+@pytest.mark.parametrize("E", [3e5, 1e7])
+@pytest.mark.parametrize("elastic", [("pier",), ("slab",), ("pier", "slab")])
+def test_an_elastic_slab_that_leans_on_a_corner_stands_and_is_pushed_as_a_rigid_one(elastic: tuple[str, ...], E: float):
+    """The corner meets the slab inside an element: no force acts where the corner is not.
+
+    By hand: the slab turns about its foot when its weight and the load have no moment about it. At rest its foot
+    neither slips nor lifts.
+    """
+    height, angle, length, thick = 1.5, 0.9, 2.3, 0.25
+    along, across = np.array([-np.cos(angle), np.sin(angle)]), np.array([np.sin(angle), np.cos(angle)])
+    foot = np.array([0.8 + height / np.tan(angle), 0.0])
+    slab = np.array([foot, foot + thick * across, foot + length * along + thick * across, foot + length * along])
+    outlines = {"pier": np.array([[0.0, 0.0], [0.8, 0.0], [0.8, height], [0.0, height]]), "slab": slab}
+
+    def made(soft: tuple[str, ...]) -> concio.Model:
+        bodies = [
+            concio.Body(name, outline, kind="elastic" if name in soft else "rigid",
+                        material="block" if name in soft else "stone", mesh_size=0.4 if name in soft else None)
+            for name, outline in outlines.items()
+        ]  # fmt: skip
+        materials = {"block": concio.Elastic(E=E, nu=0.2, unit_weight=20.0), "stone": concio.Rigid(20.0)}
+        top = tuple(slab[2].tolist())
+        live = concio.Load("point", (1.0, 0.3), bodies=("slab",), at=top, group="live")
+        floor = concio.Body("floor", np.array([[-6, -0.5], [6, -0.5], [6, 0], [-6, 0]]), kind="fixed")
+        laws = {"joint": concio.JointLaw(0.9)}
+        return concio.Model((floor, *bodies), materials, laws, loads=(concio.Load("weight", (0.0, -1.0)), live))
+
+    rigid = concio.push(made(()), until=0.002)
+    found = concio.push(made(elastic), until=0.002)
+    assert rigid.certified
+    assert found.certified
+    arm, at = slab.mean(axis=0) - foot, slab[2] - foot
+    by_hand = 20.0 * length * thick * arm[0] / (at[0] * 0.3 - at[1] * 1.0)
+    assert rigid.peak == pytest.approx(by_hand, rel=1e-3)
+    assert found.peak == pytest.approx(by_hand, rel=2e-2)

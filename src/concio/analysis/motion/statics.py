@@ -48,6 +48,9 @@ UNSOLVED = 3
 STILL = 1e-10
 """Displacement over the width of a body below which nothing moves any more."""
 
+REPEATED = 3
+"""Iterations more at most where nothing moves any more and the residual is not that of an equilibrium yet."""
+
 CONTROLLED = 1e-10
 """Relative error of the displacement that controls the load in one iteration."""
 
@@ -149,6 +152,8 @@ class Statics(SmallDisplacements):
         slid: Array = np.zeros((0, state.centre.shape[1] - 1))
         done, first, found, iteration = 0.0, self.controlled_at(state), None, 0
         resistance, self._unsolved = Resistance(self.frames.n), 0
+        answer: Balanced | None = None
+        repeated = 0
         for iteration in range(1, most + 1):
             look = self._looked(here, memory, slid, multiplier)
             memory = look.memory
@@ -166,12 +171,17 @@ class Statics(SmallDisplacements):
             slid = slid + relative(look.data.columns, look.data.values, x)[:, 1:] + self.swung(look, before, here)
             moved = moved + x
             if float(np.abs(x).max(initial=0.0)) < STILL * self.width or self._unsolved > UNSOLVED:
-                break
+                answer = self._judged(since or state, here, memory, slid, multiplier, found, moved, iteration)
+                repeated += 1
+                if answer.found or repeated > REPEATED or self._unsolved > UNSOLVED:
+                    break
+            else:
+                answer = None
             resistance.adapt(iteration, x)
             if float(np.abs(moved).max()) > FAR * self.width + abs(target or 0.0):
                 break
         assert found is not None
-        answer = self._judged(since or state, here, memory, slid, multiplier, found, moved, iteration)
+        answer = answer or self._judged(since or state, here, memory, slid, multiplier, found, moved, iteration)
         if target is not None and abs(target - done) > REACHED * (abs(target) + STILL * self.width):
             return replace(answer, found=False)  # an equilibrium, but at another displacement
         return answer
