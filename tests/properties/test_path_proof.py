@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 from concio.analysis import path as paths
+from concio.analysis.limit import limit
 from concio.analysis.path import Stage, run_path
 from concio.contact.assembly import PRESTRESS
+from concio.model.body import Body
 from concio.model.generate.columns import column
 from concio.model.generate.walls import wall
-from concio.model.materials import JointLaw, Rigid
-from concio.model.model import Support, Tie
+from concio.model.materials import Elastic, JointLaw, Rigid
+from concio.model.model import Load, Model, Support, Tie
 from concio.problem.certificate import certify
 from samples import sample
 
@@ -71,6 +73,43 @@ def test_a_block_that_slides_against_a_tie_rises_by_its_dilatancy(dilatancy):
     first = found.assembly.disc.offsets[body]  # two translations of the centroid, then its rotation
     moved = found.steps[-1].state.displacement[first : first + 2]
     assert moved == pytest.approx([slip, dilatancy * slip], rel=1e-3, abs=1e-8)
+
+
+def trilith(rng):
+    """Two piers and a lintel whose joints dilate, pushed by 0.9 of what makes them move."""
+    height, clear, friction = float(rng.uniform(0.5, 2.0)), float(rng.uniform(0.4, 1.4)), float(rng.uniform(0.3, 0.8))
+    elastic = bool(rng.integers(2))
+    made = {
+        "floor": [(-3.0, -0.5), (5.0, 0.0)], "left": [(0.0, 0.0), (0.5, height)],
+        "right": [(0.5 + clear, 0.0), (1.0 + clear, height)],
+        "lintel": [(-0.1, height), (1.15 + clear, height + 0.3)],
+    }  # fmt: skip
+    bodies = [
+        Body(name, np.array([low, (high[0], low[1]), high, (low[0], high[1])]),
+             kind="fixed" if name == "floor" else "elastic" if elastic else "rigid", material="stone", mesh_size=0.5)
+        for name, (low, high) in made.items()
+    ]  # fmt: skip
+    stone = Elastic(3e5, 0.2, 20.0) if elastic else Rigid(20.0)
+    law = JointLaw(friction, dilatancy=float(rng.uniform(0.02, 0.8)) * friction)
+    loads = (Load("weight", (0.0, -1.0)), Load("weight", (1.0, 0.0), group="live"))
+    return Model(tuple(bodies), {"stone": stone}, {"joint": law}, loads=loads)
+
+
+@pytest.mark.parametrize("seed", range(sample(3, 12)))
+def test_joints_that_dilate_are_followed_alike_by_events_and_by_steps(seed):
+    """A joint that opens at one end slips there, too, and its slip lifts as the law of one step says."""
+    model = trilith(np.random.default_rng([71, seed]))
+    share = 0.9 * limit(model, path=False, steps=False, search=False).associated.multiplier
+    stages = [Stage("weight", {"dead": 1.0}), Stage("live", {"live": share}, steps=60)]
+    exact = run_path(model, stages)
+    stepped = run_path(model, stages, method="steps")
+    for found in (exact, stepped):
+        assert found.verdict.holds, found.verdict.sentence
+    a, b = (found.steps[-1].state for found in (exact, stepped))
+    assert a.displacement == pytest.approx(b.displacement, abs=0.03 * float(np.abs(a.displacement).max()))
+    slipped = np.abs(a.slip).max()
+    assert a.offset == pytest.approx(b.offset, abs=0.05 * float(slipped + np.abs(a.offset).max()))
+    assert np.abs(a.offset).max() > 0
 
 
 MUTANTS = {

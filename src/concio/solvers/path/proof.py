@@ -6,7 +6,8 @@ things of the past enter. Slip is measured from where the pair was in the state 
 displacements, its forces and the problem at *its* factors. Crushing and dilatant opening are an offset o that the path
 carried; it is held against the equation that defines it,
 
-.. math:: x_n + C_n u + a_n t_n + o = 0 \text{ where a pair that crushes or dilates is in contact, else } \dot o = 0.
+.. math:: x_n + C_n u + a_n t_n + o = 0 \text{ where a pair that crushes or dilates is in contact, else }
+          \dot o = -\tan\psi\,|\dot y_t|.
 """
 
 from __future__ import annotations
@@ -53,7 +54,7 @@ def certify_between(
     answer = after.displacement, after.normal_force, after.friction_force
     found = certify(problem, *answer, total_load=total_load, moved=moved)
     units = measure(now, *answer, total_load=total_load, moved=moved)
-    carried = float(in_units(np.abs(_offset_error(now, before, after)), units.pair_length).max(initial=0.0))
+    carried = float(in_units(np.abs(_offset_error(now, before, after, start)), units.pair_length).max(initial=0.0))
     return replace(found, complementarity=max(found.complementarity, carried))
 
 
@@ -63,12 +64,16 @@ def obstacles_moved(start: ContactProblem, now: ContactProblem, among: Array) ->
     return np.where(among, moved, 0.0)
 
 
-def _offset_error(now: ContactProblem, before: PathState, after: PathState) -> Array:
-    """Return by how much the offset (m,) of each pair is not what the original equations make it [m]."""
+def _offset_error(now: ContactProblem, before: PathState, after: PathState, start: Array) -> Array:
+    """Return by how much the offset (m,) of each pair is not what the original equations make it [m].
+
+    ``start`` is where the pairs slipped to in the state before (m, d-1) [m].
+    """
     law = now.laws
-    opening = plastic_position(_resting(now), after)[0]
+    opening, position = plastic_position(_resting(now), after)
     plastic = (after.contact != OPEN) & ((law.dilatancy > 0) | np.isfinite(law.cap))
-    error: Array = after.offset - np.where(plastic, -opening, before.offset)
+    lifted = before.offset - law.dilatancy * sizes(position - start)
+    error: Array = after.offset - np.where(plastic, -opening, lifted)
     return error
 
 

@@ -294,7 +294,7 @@ def state_of(
     against = -t_t / np.where(sizes(t_t) > 0, sizes(t_t), 1.0)[:, None]
     against[:, 0] = np.where(against.any(axis=1), against[:, 0], 1.0)  # any way where there is no friction to oppose
     direction = np.where((used & moved)[:, None], against, 0.0)
-    carried = before.offset if before is not None else zero
+    carried = (before.offset if before is not None else zero) - law.dilatancy * sizes(position - start)
     plastic = (contact != OPEN) & ((law.dilatancy > 0) | np.isfinite(law.cap))
     offset = np.where(plastic, -opening, carried)
     state = replace(state, states=PairStates(contact, direction), slip=position, offset=offset)
