@@ -42,6 +42,7 @@ group = "live"
 DRAWN = "window.concio && window.concio.pictured()"
 ANSWERED = "document.querySelector('#running').hidden && document.querySelector('#verdict-text .sentence')"
 SETTLED = "window.concio.pictured().startsWith(window.concio.state().document.hash)"
+SAID = "document.querySelector('#verdict-text summary')"
 AUDIT = (Path(__file__).parent / "audit.js").read_text(encoding="utf-8")
 
 
@@ -169,6 +170,7 @@ def test_from_a_drawing_to_a_limit_load(page: Browser, tmp_path: Path) -> None:
         page.click("#tab-ask")
         page.click("[data-question=limit]")
         page.js("document.querySelector('#pane-ask label.row input').click()")
+        page.until("/multiplied/.test(document.querySelector('#acts').textContent)")
         acts = page.js("document.querySelector('#acts').textContent")
         assert "live: multiplied" in acts
         assert "kN" in acts
@@ -405,6 +407,43 @@ def test_two_answers_stand_beside_each_other_and_a_mechanism_moves(page: Browser
     result = concio.solve(concio.loads(text_of(client)))
     assert f"{result.joints.N[0]:.5g}"[:5] in joint
     assert page.js(AUDIT) == []
+
+
+EXAMPLES = (
+    ("path", ROOT / "examples" / "spreading_arch.toml"), ("shake", TEMPLATES / "motion.toml"),
+    ("assess", TEMPLATES / "assessment.toml"), ("bridge", TEMPLATES / "bridge.toml"),
+    ("diagnose", ROOT / "examples" / "cracked_arch.toml"), ("study", ROOT / "examples" / "study_of_an_arch.toml"),
+    ("push", TEMPLATES / "column.toml"),
+)  # fmt: skip
+
+
+def test_every_question_is_asked_from_the_page_in_italian(page: Browser, tmp_path: Path) -> None:
+    for _, file in EXAMPLES:
+        if not (tmp_path / file.name).exists():
+            shutil.copy(file, tmp_path / file.name)
+    with window(tmp_path) as client:
+        for question, file in EXAMPLES:
+            page.go("about:blank")
+            client.call("take")
+            assert client.call("open", name=file.name)["document"]["name"] == file.name
+            client.call("bye")
+            page.go(client.server.address)
+            page.until(f"{DRAWN} && {SETTLED}")
+            page.js("document.documentElement.lang === 'it' || document.querySelector('#language').click()")
+            page.click(f"[data-question={question}]")
+            page.until("document.querySelectorAll('#acts li').length > 1")
+            assert "kN" in page.js("document.querySelector('#acts').textContent")
+            page.click("#run")
+            asked = f"window.concio.state().asked?.question === '{question}'"
+            page.until(f"document.querySelector('#running').hidden && {asked} && {SAID}")
+            said = page.js("document.querySelector('#verdict-text').innerHTML")
+            if question != "study":
+                assert 'lang="it"' in page.js("document.querySelector('#verdict-text .headline').innerHTML"), question
+                assert 'lang="it"' in page.js("document.querySelector('#verdict-text .sentence').innerHTML"), question
+            assert "Error:" not in said, question
+            page.click("#tab-report")
+            page.until("document.querySelector('#pane-report iframe, #pane-report img')")
+        page.click("#language")
 
 
 def test_a_question_is_cancelled_and_the_newest_wins(page: Browser, client: Client) -> None:

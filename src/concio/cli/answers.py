@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from concio.cli.progress import LISTENER
+from concio.window.acts import acts, in_italian
 from concio.window.worker import Tell, work
 
 MOST_NUMBERS = 60
@@ -51,7 +52,22 @@ def ask(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     return {
         "code": code, "lines": lines, "message": message, "verdict": summary.get("verdict"),
         "seconds": time.monotonic() - begun, "numbers": numbers(summary),
+        "italian": _italian(out, summary.get("verdict")),
     }  # fmt: skip
+
+
+def _italian(out: Path, verdict: Mapping[str, Any] | None) -> dict[str, Any] | None:
+    """Return headline, sentence and attention in Italian, in pieces of text and language: as written, or as known."""
+    with suppress(OSError, ValueError):
+        written = json.loads((out / "verdict.it.json").read_text(encoding="utf-8"))
+        said = {key: [[written[key], "it"]] for key in ("headline", "sentence")}
+        return {**said, "attention": [in_italian(line) for line in written["attention"]]}
+    if verdict is None:
+        return None
+    return {
+        **{key: in_italian(verdict[key]) for key in ("headline", "sentence")},
+        "attention": [in_italian(line) for line in verdict["attention"]],
+    }
 
 
 def numbers(summary: Mapping[str, Any], at: str = "") -> dict[str, float]:
@@ -86,7 +102,7 @@ def main() -> None:
     from concio.window.drawing import layers
     from concio.window.picture import picture
 
-    work({"ask": ask, "warm": warm, "picture": picture, "drag": dragged, "layers": layers})
+    work({"ask": ask, "warm": warm, "picture": picture, "drag": dragged, "layers": layers, "acts": acts})
 
 
 if __name__ == "__main__":

@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 
 from concio.analysis.seismic.assessment import Assessment
+from concio.cli.outcome import write_verdict
 from concio.io.csv_table import write_csv
 from concio.report.assessment_page import write_assessment_report
+from concio.verdict.assessment_verdict import assessment_verdict
 
 
 def write_assessment(
@@ -21,6 +23,8 @@ def write_assessment(
     (place / "summary.json").write_text(text + "\n", encoding="utf-8")
     write_assessment_report(found, place / "report.html", language=language, **options)
     written = ["report.html", "summary.json"]
+    if language != "en":
+        written += write_verdict(place, assessment_verdict(found, language), language)
     if docx:
         write_assessment_report(found, place / "report.docx", language=language, **options)
         written.append("report.docx")

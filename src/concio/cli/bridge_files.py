@@ -11,17 +11,20 @@ import numpy as np
 from concio.analysis.bridges.bridge_result import BridgeResult
 from concio.io.csv_table import write_csv
 from concio.report.bridge_page import write_bridge_report
+from concio.verdict.bridge_verdict import bridge_verdict
 
 
 def write_bridge(found: BridgeResult, told: dict[str, Any], place: Path, language: Literal["en", "it"]) -> list[str]:
     """Write summary, curve and sensitivities into a directory; return the names of the files."""
-    from concio.cli.outcome import plain
+    from concio.cli.outcome import plain, write_verdict
 
     text = json.dumps(plain(told), indent=2, ensure_ascii=False, allow_nan=False)
     (place / "summary.json").write_text(text + "\n", encoding="utf-8")
     write_csv(found.curve(), place / "curve.csv")
     write_bridge_report(found, place / "report.html", language=language)
     written = ["report.html", "summary.json", "curve.csv"]
+    if language != "en":
+        written += write_verdict(place, bridge_verdict(found, language), language)
     if found.changes:
         columns = {key: np.array([getattr(c, key) for c in found.changes])
                    for key in ("name", "unit", "low", "high", "at_low", "at_high")}  # fmt: skip

@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from concio.analysis.cracks.diagnosis import Diagnosis
-from concio.cli.outcome import plain
+from concio.cli.outcome import plain, write_verdict
 from concio.io.csv_table import write_csv
 from concio.plot.diagnosis_figure import plot_causes, plot_cracks, plot_readings
 from concio.report.diagnosis_page import write_diagnosis_report
+from concio.verdict.diagnosis_verdict import diagnosis_verdict
 
 
 def write_diagnosis(
@@ -24,6 +25,8 @@ def write_diagnosis(
     (place / "summary.json").write_text(text + "\n", encoding="utf-8")
     write_diagnosis_report(found, place / "report.html", language=language, head=head)
     written = ["report.html", "summary.json"]
+    if language != "en":
+        written += write_verdict(place, diagnosis_verdict(found, language), language)
     best = found.best
     if best is None:
         return written

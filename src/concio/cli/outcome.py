@@ -14,9 +14,12 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from pathlib import Path
-from typing import Any, NoReturn, ParamSpec
+from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec
 
 import typer
+
+if TYPE_CHECKING:
+    from concio.verdict.verdict import Verdict
 
 P = ParamSpec("P")
 
@@ -215,3 +218,10 @@ def say(text: str = "") -> None:
 def note(text: str) -> None:
     """Print a line on standard error."""
     sys.stderr.write(text + "\n")
+
+
+def write_verdict(place: Path, verdict: Verdict, language: str) -> list[str]:
+    """Write a verdict in another language than that of ``summary.json`` beside it; return the names of the files."""
+    name = f"verdict.{language}.json"
+    (place / name).write_text(json_text.dumps(verdict.as_dict(), ensure_ascii=False, indent=2) + "\n", encoding="utf-8")
+    return [name]

@@ -7,8 +7,6 @@ writes no sentence about a structure itself.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
-from math import nan
 from typing import Any
 
 import numpy as np
@@ -26,7 +24,7 @@ from concio.model.polyhedron import Polyhedron
 from concio.plot.model_figure import load_arrows
 from concio.plot.space_loads import load_direction
 from concio.verdict.attention import attention_of
-from concio.verdict.question import acting_groups, thickness_words
+from concio.window.acts import in_italian
 from concio.window.reading import own_loads, read
 from concio.window.worker import Tell
 
@@ -54,13 +52,13 @@ def picture(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     detection = detect(model)
     shown["joints"] = _joints(model, detection)
     shown["attention"] = list(attention_of(model, detection))
+    shown["attention_italian"] = [in_italian(line) for line in shown["attention"]]
     places = [(o.at, o.sentence) for o in detection.overlaps] + [(m.at, m.sentence) for m in detection.near_misses]
     shown["findings"] = [
         {"at": np.round(at, DIGITS).tolist(), "sentence": sentence} for at, sentence in places[:MOST_FINDINGS]
     ]
     shown["notes"] = [str(s) for key in ("faults", "left_out") for s in _noted(model, key)]
-    shown["acting"], shown["fault"] = _acting(model)
-    shown["assumed"] = list(thickness_words(model))
+    shown["fault"] = _fault(model)
     return shown
 
 
@@ -163,16 +161,10 @@ def _ties(model: Model, data: Mapping[str, Any]) -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
-def _acting(model: Model) -> tuple[list[dict[str, Any]], dict[str, str] | None]:
-    """Return the sentences of every load group, constant and multiplied, or why there are none."""
+def _fault(model: Model) -> dict[str, str] | None:
+    """Return why no question can be asked of a model, or None."""
     try:
-        groups = acting_groups(assemble(model))
+        assemble(model)
     except ConcioError as error:
-        return [], {"what": error.what, "where": error.where or "", "hint": error.hint or ""}
-    units = model.report
-    found = [
-        {"group": g.group, "constant": g.sentence(units), "force": list(g.force), "size": g.size,
-         "multiplied": replace(g, role="multiplied", factor=nan).sentence(units)}
-        for g in groups
-    ]  # fmt: skip
-    return found, None
+        return {"what": error.what, "where": error.where or "", "hint": error.hint or ""}
+    return None

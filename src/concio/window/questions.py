@@ -73,7 +73,7 @@ QUESTIONS = {
         Asking("bridge", ("vehicle",), (Option("required", "--required"), Option("second", "--second"),
                                         Option("language", "--language", "choice", ("en", "it"))), (),
                "concio.assess_bridge(model)"),
-        Asking("diagnose", ("survey",)),
+        Asking("diagnose", ("survey",), (Option("language", "--language", "choice", ("en", "it")),)),
         Asking("study", ("study",)),
     )
 }  # fmt: skip

@@ -61,7 +61,7 @@ class Session:
             "do": self.do, "undo": self.undo, "redo": self.redo, "save": self.save, "resolve": self.resolve,
             "picture": self.picture, "drag": self.drag, "ask": self.ask, "cancel": self.cancel, "result": self.result,
             "layers": self.layers, "export": self.export, "bye": self.bye, "take": self.take,
-            "answers": self.answers, "film": self.film,
+            "answers": self.answers, "film": self.film, "acts": self.acts,
         }  # fmt: skip
         if file is not None:
             self.document = Document(file)
@@ -271,6 +271,13 @@ class Session:
         doc = self._there()
         at = [float(v) for v in told["at"]]
         job = self.look.ask(self._request("drag", doc, table=int(told["table"]), at=at, body=str(told["body"])))
+        job.over.wait(20.0)
+        return {"state": job.state, job.state: job.answer}
+
+    def acts(self, told: Mapping[str, Any]) -> Answer:
+        """Return what will act in a question, in words."""
+        named = {"question": str(told.get("question")), "options": dict(told.get("options") or {})}
+        job = self.look.ask(self._request("acts", self._there(), **named))
         job.over.wait(20.0)
         return {"state": job.state, job.state: job.answer}
 

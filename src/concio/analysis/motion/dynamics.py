@@ -150,7 +150,11 @@ def dynamics(
     check_masses(reference)
     ground = Ground.of(motion, scale, model.dim)
     stated = None if duration is None else positive(duration, "duration")
-    shown = stated or positive(ground.duration, "duration")
+    if stated is None and not ground.duration > 0:
+        msg = "the ground does not move, and no duration is given"
+        hint = "give a record or a pulse ([motion] in a model file, --pulse), or a duration to follow the bodies for"
+        raise InputError(msg, hint=hint)
+    shown = stated or ground.duration
     step = step_asked(step, ground, shown)
     stop_at_rest = stated is None if stop_at_rest is None else stop_at_rest
     if base not in ("inertia", "moving"):

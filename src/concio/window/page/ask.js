@@ -1,5 +1,5 @@
 /* Questions: what will act before they run, progress, the verdict in its own words, report and files. */
-import { t, el, field, say, language } from "./words.js";
+import { t, el, field, say, language, spoken } from "./words.js";
 import { call } from "./net.js";
 import { view } from "./picture.js";
 
@@ -45,6 +45,7 @@ function optionField(option, changed) {
   }
   const one = option.kind === "choice" ? el("select", {}, ...["", ...option.choices].map((c) => el("option", { value: c }, c))) : el("input", {});
   if (name === "language") one.value = language;
+  one.addEventListener("change", changed);
   controls[name] = () => one.value.trim();
   return field(word, one);
 }
@@ -58,13 +59,19 @@ function options() {
   return found;
 }
 
-/* sentences of the question's loads, as the verdict will write them */
-function showActs(place, question) {
-  const shown = view.shown;
+/* what will act, in the words of the verdict; the newest question wins */
+let newest = 0;
+async function showActs(place, question) {
+  const shown = view.shown, mine = (newest += 1);
   if (!shown) return place.replaceChildren();
-  const live = question.options.some((o) => o.kind === "groups") ? options().groups || [] : [];
-  const lines = shown.acting.map((g) => (live.includes(g.group) ? g.multiplied : g.constant));
-  place.replaceChildren(el("ul", {}, ...[...lines, ...shown.assumed].map((line) => el("li", {}, line))));
+  if (shown.fault) return place.replaceChildren(el("p", { lang: "en" }, shown.fault.what));
+  try {
+    const found = await call("acts", { question: question.name, options: options() });
+    if (mine !== newest || !place.isConnected) return;
+    if (found.state === "cancelled") return void setTimeout(() => mine === newest && showActs(place, question), 150);
+    if (found.state === "error") return place.replaceChildren(el("p", { lang: "en" }, found.error.what));
+    place.replaceChildren(el("ul", {}, ...found.done.lines.map((line, k) => spoken("li", {}, line, found.done.italian[k]))));
+  } catch (error) { place.replaceChildren(el("p", {}, error.text || error.message)); }
 }
 
 export async function run() {
@@ -107,8 +114,8 @@ export function answerBox(found, old) {
   const v = found.verdict;
   if (old) box.append(el("p", { class: "stamp" }, t("changed_since")));
   if (v) {
-    box.append(el("p", { class: "headline", lang: "en" }, v.headline), el("p", { class: "sentence", lang: "en" }, v.sentence));
-    for (const line of v.attention) box.append(el("p", { lang: "en" }, `${t("attention")}: ${line}`));
+    box.append(spoken("p", { class: "headline" }, v.headline, found.italian?.headline), spoken("p", { class: "sentence" }, v.sentence, found.italian?.sentence));
+    v.attention.forEach((line, k) => box.append(el("p", {}, `${t("attention")}: `, spoken("span", {}, line, found.italian?.attention[k]))));
   }
   if (found.message) box.append(el("pre", { lang: "en" }, found.message));
   if (!v && found.lines.length) box.append(el("pre", { lang: "en" }, found.lines.slice(0, 3).join("\n")));

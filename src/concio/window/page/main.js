@@ -1,6 +1,6 @@
 /* The page: what is open, what is shown, what each key does. All that counts is on the other side; this can be reloaded. */
 import { call, drop, goodbye, Refused } from "./net.js";
-import { t, el, label, language, say, setLanguage, setWords } from "./words.js";
+import { t, el, label, language, say, setLanguage, setWords, spoken } from "./words.js";
 import { view, show, clear, draw, fit, zoom, mark, onSelected } from "./picture.js";
 import { listen } from "./hands.js";
 import { build, placed, setBuild } from "./build.js";
@@ -95,7 +95,7 @@ function fault(error) {
 function attention() {
   const shown = view.shown, lines = shown ? shown.attention : [];
   $("attention-list").replaceChildren(
-    ...lines.map((line) => el("li", { lang: "en" }, line)),
+    ...lines.map((line, k) => spoken("li", {}, line, shown.attention_italian[k])),
     ...(shown ? shown.findings : []).slice(0, 20).map((found) => el("li", { lang: "en" }, found.sentence, el("button", { onclick: () => { mark(found.at); } }, t("where")))),
     ...(shown && shown.notes.length ? [el("li", {}, el("details", {}, el("summary", {}, `${t("left_out")} (${shown.notes.length})`), ...shown.notes.map((line) => el("p", { lang: "en" }, line))))] : []),
   );

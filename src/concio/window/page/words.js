@@ -27,6 +27,12 @@ export function el(tag, attributes = {}, ...children) {
   return made;
 }
 
+/* a text of the program: in Italian where it is known, each piece with its language; otherwise as it is, in English */
+export function spoken(tag, attributes, english, italian) {
+  if (language !== "it" || !italian) return el(tag, { ...attributes, lang: "en" }, english);
+  return el(tag, attributes, ...italian.flatMap(([text, lang], k) => [k ? " " : "", el("span", { lang }, text)]));
+}
+
 let fields = 0;
 export function field(word, control, help = "") {
   const id = `field-${(fields += 1)}`;

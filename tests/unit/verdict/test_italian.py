@@ -1,0 +1,78 @@
+"""Verdicts in Italian: the same numbers, the same names, and never a sentence that is not known whole."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import concio
+from concio.problem.solution import Status
+from concio.verdict import dynamics_verdict, path_verdict, push_verdict
+from concio.verdict.italian import GAP, NUMBER, italian
+from concio.verdict.step_words import WORDS
+
+TABLE = tomllib.loads((Path(concio.__file__).parent / "verdict" / "italian.toml").read_text(encoding="utf-8"))
+ENTRIES = list(TABLE["sentences"].items())
+WHOLE = [e for e in ENTRIES if "!s" not in e[0]]
+
+
+@pytest.mark.parametrize(("english", "said"), ENTRIES, ids=lambda text: text[:40])
+def test_both_languages_of_an_entry_have_the_same_gaps_once_each(english: str, said: str) -> None:
+    gaps, own = [m[0] for m in GAP.finditer(english)], [m[0] for m in GAP.finditer(said)]
+    assert sorted(gaps) == sorted(own)
+    assert len(set(gaps)) == len(gaps)
+    assert sorted(NUMBER.findall(english)) == sorted(NUMBER.findall(said))
+    assert english.endswith(".") == said.endswith(".")
+
+
+NO = re.compile(r"\b(no|not|nothing|none|never|neither|undecided|without|cannot|withstands|locked?s?)\b", re.I)
+NON = re.compile(r"\b(non|nessun\w*|nulla|mai|né|indeciso|senza|bloccat\w*|blocca|resiste|illimitat\w*)\b", re.I)
+
+
+@pytest.mark.parametrize(("english", "said"), ENTRIES, ids=lambda text: text[:40])
+def test_what_is_denied_in_english_is_denied_in_italian(english: str, said: str) -> None:
+    assert bool(NO.search(english)) == bool(NON.search(said))
+
+
+@given(st.sampled_from(WHOLE), st.lists(st.floats(1e-3, 1e6), min_size=6, max_size=6))
+def test_numbers_stay_as_they_are(entry: tuple[str, str], numbers: list[float]) -> None:
+    values = iter(f"{v:.6g}" for v in numbers)
+    text = GAP.sub(lambda _: next(values), entry[0])
+    found = italian(text)
+    assert [piece.language for piece in found] == ["it"], text
+    assert sorted(NUMBER.findall(found[0].text)) == sorted(NUMBER.findall(text))
+
+
+@given(st.text(alphabet="abc 'd.-1", min_size=1, max_size=60))
+def test_what_is_not_known_stays_english_letter_by_letter(text: str) -> None:
+    found = italian(text)
+    assert all(piece.language == "en" for piece in found)
+    assert " ".join(piece.text for piece in found).split() == text.split()
+
+
+def test_every_outcome_of_a_step_a_path_a_push_and_a_motion_has_its_italian() -> None:
+    heads = [w.headline for w in WORDS.values()] + [s.value for s in Status]
+    for module in (path_verdict, push_verdict, dynamics_verdict):
+        heads += list(module.HEADLINES.values())
+    for head in heads:
+        assert [piece.language for piece in italian(head)] == ["it"], head
+
+
+def test_verdicts_that_were_reached_are_said_in_italian_with_their_numbers() -> None:
+    pillar = concio.column(width=0.5, height=2.0, blocks=2, block="rigid", unit_weight=20.0, horizontal=1.0)
+    found = concio.limit(pillar)
+    said = italian(found.verdict.sentence)
+    assert {piece.language for piece in said} == {"it"}
+    assert f"{found.design:.6g} volte 'live'" in said[0].text
+    step = italian(concio.solve(pillar, on_failure="return").verdict.sentence)
+    assert step[0].text == TABLE["sentences"][Status.NO_EQUILIBRIUM.value]
+
+
+def test_a_sentence_is_not_translated_where_a_gap_would_reach_over_its_end() -> None:
+    text = "The strength is lost. Nothing more is known at 3 mm."
+    assert [piece.language for piece in italian(text)] == ["en"]
