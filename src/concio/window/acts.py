@@ -10,6 +10,7 @@ from typing import Any
 from concio.analysis.path import Stage
 from concio.contact.applied import resultants, sideways
 from concio.contact.assembly import assemble
+from concio.contact.factors import load_factor
 from concio.errors import ConcioError
 from concio.model.model import Model
 from concio.verdict.italian import italian
@@ -97,7 +98,7 @@ def _added(question: str, options: Mapping[str, Any], data: Mapping[str, Any], m
 def _role(group: Acting, live: set[str], factors: Mapping[str, float]) -> Acting:
     if group.group in live:
         return replace(group, role="multiplied", factor=math.nan)
-    factor = factors.get(group.group, 1.0)
+    factor = load_factor(factors, group.group)
     return replace(group, factor=factor, role="constant" if factor else "not applied")
 
 
