@@ -38,7 +38,9 @@ from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
-from concio.problem.limits_of_work import COLLAPSE_WORK, LARGEST_PATH, LARGEST_SEARCH, UNASKED_IN_SPACE, UNASKED_WORK
+from concio.problem.limits_of_work import (
+    COLLAPSE_WORK, LARGEST_PATH, LARGEST_SEARCH, UNASKED_CONES, UNASKED_IN_SPACE, UNASKED_WORK
+)  # fmt: skip
 from concio.problem.solution import PROVEN_FAILURES, Progress, ProgressCallback, Status
 from concio.solvers.methods import find
 from concio.solvers.statics.collapse_search import find_collapse_state
@@ -180,7 +182,7 @@ def limit_stages(
         found = replace(found, search=f"not tried by default: {dead.pairs:,} contact pairs in space; request it")
 
     def seek(note: ProgressCallback) -> tuple[CollapseState | None, str]:
-        work = COLLAPSE_WORK if search else UNASKED_WORK
+        work = COLLAPSE_WORK if search else UNASKED_WORK if dead.dim == 2 else UNASKED_CONES
         return search_collapse(dead, load, work=work, bound=top, progress=note)
 
     with ExitStack() as stack:

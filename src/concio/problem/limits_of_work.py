@@ -22,6 +22,10 @@ reached is applied in one step: beyond, the few programmes of some seconds end f
 UNASKED_WORK = 40_000
 """Linear programmes times pairs of the search for collapse states where it is not asked for: some five seconds."""
 
+UNASKED_CONES = 15_000
+"""The same of a limit load in space: a cone programme costs three times a linear one, and further starts end within a
+thousandth of the first."""
+
 LARGEST_MARGIN = 10_000
 """Up to this number of pairs the friction margin is found by default: it takes some twenty linear programmes."""
 

@@ -121,7 +121,7 @@ def only_verdicts(monkeypatch):
     """Let verdicts be those of a table: holds at and above ``least``, nothing is known at ``silent``, no slope."""
 
     def put(least, silent=()):
-        def verdict(problem):
+        def verdict(problem, *, thorough=True):
             factor = float(problem.laws.friction[0] / 0.5)
             zero, none = np.zeros(problem.pairs), np.zeros(problem.unknowns)
             holds = factor >= least

@@ -91,6 +91,9 @@ class ConeProgramme:
     Parameters
     ----------
     pairs : Pairs
+    pivoting : bool
+        Whether the system is solved as a whole, with pivoting, where the condensed matrix has lost its digits: on
+        thousands of pairs each step then costs as much as some fifty others.
 
     Attributes
     ----------
@@ -100,8 +103,8 @@ class ConeProgramme:
         Number of complementarity products.
     """
 
-    def __init__(self, pairs: Pairs) -> None:
-        self.pairs = pairs
+    def __init__(self, pairs: Pairs, *, pivoting: bool = True) -> None:
+        self.pairs, self.pivoting = pairs, pivoting
         self.C, self.Ct = pairs.C, sp.csr_array(pairs.C.T)
         r = pairs.C.shape[1]
         self.factor = BlockFactor(sp.csr_array((r, r)), pairs.C, pairs.count, pairs.bodies, pairs.engine)

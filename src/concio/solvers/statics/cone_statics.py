@@ -88,9 +88,11 @@ class ConeStatics:
     problem : ContactProblem
     load : (N,) array, optional
         Loads that make up the unit of force; default those of the problem.
+    pivoting : bool
+        As in :class:`~concio.solvers.statics.cone_programme.ConeProgramme`.
     """
 
-    def __init__(self, problem: ContactProblem, load: Array | None = None) -> None:
+    def __init__(self, problem: ContactProblem, load: Array | None = None, *, pivoting: bool = True) -> None:
         self.problem = problem
         load = problem.f if load is None else load
         R = problem.R
@@ -101,7 +103,8 @@ class ConeStatics:
         self.force = float(np.abs(R.T @ load / self.scale).max(initial=0.0)) or 1.0
         motions = sp.csr_array(moved @ sp.diags_array(1.0 / self.scale))
         strengths = problem.cone.in_units(self.force)
-        self.programme = ConeProgramme(Pairs(motions, strengths.shifted, _motions_of_bodies(problem), problem.engine))
+        pairs = Pairs(motions, strengths.shifted, _motions_of_bodies(problem), problem.engine)
+        self.programme = ConeProgramme(pairs, pivoting=pivoting)
         self.shift = np.zeros((problem.pairs, problem.dim))
         self.shift[:, 0] = strengths.tension
 

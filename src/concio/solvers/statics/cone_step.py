@@ -108,6 +108,8 @@ class Step:
                 it.factor.factorise(D, PROXIMAL * min(1.0, float(np.median(D[:, 0, 0]))))
                 border = it.factor.solve(g)
             except SingularMatrixError:
+                if not it.pivoting:
+                    return None
                 it.degenerate = True
         return cls(it, p, g, (r_p, r_d, r_g), beta, scaling, F, squeeze, border)
 
@@ -138,7 +140,8 @@ class Step:
                 least, kept = worst, (dt, dl, dv)
                 if worst < 1e-15:
                     break
-            if it.degenerate or least < LOST * max(1.0, float(np.abs(self.p.t).max())) or dx.size > PIVOTED:
+            lost = not least < LOST * max(1.0, float(np.abs(self.p.t).max()))
+            if it.degenerate or not (lost and it.pivoting) or dx.size > PIVOTED:
                 return kept
             it.degenerate, solver = True, self._pivoted
             dx, dv, dl = np.zeros_like(b), np.zeros_like(g), 0.0

@@ -60,12 +60,15 @@ class StaticState:
         return self.exists or self.mechanism is not None
 
 
-def statically_admissible(problem: ContactProblem) -> StaticState:
+def statically_admissible(problem: ContactProblem, *, thorough: bool = True) -> StaticState:
     """Search forces within the cones of the joint laws that balance the loads on the rigid motions.
 
     Parameters
     ----------
     problem : ContactProblem
+    thorough : bool
+        Whether, in space, a programme that loses its digits goes on with pivoting, which costs many times as much.
+        Without, it is undecided more often.
 
     Returns
     -------
@@ -83,7 +86,7 @@ def statically_admissible(problem: ContactProblem) -> StaticState:
         proof = None if exists else mechanism_from(problem, velocity)
         return StaticState(exists, np.zeros(0), np.zeros((0, s)), residual, velocity, proof)
     if problem.dim == 3:
-        return _by_cones(problem)
+        return _by_cones(problem, thorough)
     state = _least_imbalance(problem, programme, None)
     if state.decided:
         return state
@@ -91,9 +94,9 @@ def statically_admissible(problem: ContactProblem) -> StaticState:
     return other if other.decided or other.residual < state.residual else state
 
 
-def _by_cones(problem: ContactProblem) -> StaticState:
+def _by_cones(problem: ContactProblem, thorough: bool) -> StaticState:
     """Ask the cone programme, and say what its forces and its motion prove."""
-    found = ConeStatics(problem).forces()
+    found = ConeStatics(problem, pivoting=thorough).forces()
     exists = found.residual <= BALANCED
     proof = None if exists else mechanism_from(problem, found.velocity)
     return StaticState(exists, found.t[:, 0], found.t[:, 1:], found.residual, found.velocity, proof)

@@ -58,18 +58,31 @@ BELOW = 0.1
 """Share of the bracket by which a trial lies below an upper bound that Newton's step has not come under."""
 
 
+APART = 16.0
+"""Times as far from Newton's step lies the next trial where one next to it was undecided."""
+
+
 class _Search:
     """Asks whether factors hold, and keeps the closest proofs either way."""
 
     def __init__(self, problem: ContactProblem) -> None:
         self.problem, self.programmes = problem, 0
         self.low, self.high = -np.inf, np.inf
-        self.guess = np.nan
+        self.guess, self.thorough = np.nan, problem.dim == 2
+
+    def by_all_means(self, factor: float) -> bool | None:
+        """Ask, and where that decides nothing, ask with pivoting."""
+        holds = self.ask(factor)
+        if holds is None and not self.thorough:
+            self.thorough = True
+            holds = self.ask(factor)
+            self.thorough = False
+        return holds
 
     def ask(self, factor: float) -> bool | None:
         """Return True with forces, False with a mechanism, None with neither; the guess is the dual's next factor."""
         scaled = self.problem.with_friction(factor)
-        state = statically_admissible(scaled)
+        state = statically_admissible(scaled, thorough=self.thorough)
         self.programmes += 1
         if state.exists:
             self.high = min(self.high, factor)
@@ -79,6 +92,11 @@ class _Search:
         if factor > self.low:
             self.low, self.guess = factor, self._next(scaled, state, factor)
         return False
+
+    @property
+    def settled(self) -> bool:
+        """True where the proofs are as close as an answer asks for: closer ones are worth no dear programme."""
+        return self.high - self.low <= WIDE_BRACKET * self.high < np.inf
 
     def _next(self, scaled: ContactProblem, state: StaticState, factor: float) -> float:
         """Return the factor at which the motion to blame would no longer gain power: Newton's step from below."""
@@ -90,10 +108,10 @@ class _Search:
 
     def bracket(self) -> bool:
         """Find one factor that holds, upwards from 1, and one that does not; return whether both were found."""
-        if self.ask(0.0):
+        if self.by_all_means(0.0):
             return False
         factor = 1.0
-        while factor <= LARGEST and not self.ask(factor):
+        while factor <= LARGEST and not self.by_all_means(factor):
             factor *= 2.0
         return bool(np.isfinite(self.high) and np.isfinite(self.low))
 
@@ -102,25 +120,31 @@ class _Search:
 
         Newton's step ends above the answer where what is missing is a concave function of the friction. Then the upper
         bound is close, and the next trial lies below it by a share of the bracket that shrinks while that proves right.
+        Programmes pivot only where nothing else brings the proofs as close as an answer asks for.
         """
         shares = (0.5, 0.25, 0.75, 0.125, 0.875)
-        undecided, short = 0, BELOW
+        undecided, short, step = 0, BELOW, 0.25 * width
         while self.high - self.low > width and self.programmes < FRICTION_PROGRAMMES:
-            step, beyond = 0.25 * width, False
+            beyond = False
             inside = np.isfinite(self.guess) and self.low < self.guess + step < self.high - step
             if inside and not undecided:
                 trial = max(self.guess + step, self.low + step)
             elif np.isfinite(self.guess) and self.guess + step >= self.high - step and not undecided:
                 beyond = True
-                trial = self.high - max(short * (self.high - self.low), step)
+                trial = self.high - min(max(short, step / (self.high - self.low)), 0.5) * (self.high - self.low)
             else:
                 trial = self.low + shares[undecided] * (self.high - self.low)
             holds = self.ask(trial)
+            step *= APART if holds is None and not self.thorough else 1.0
             if beyond and holds is not None:
                 short = min(4.0 * short, 0.5) if holds else max(0.1 * short, 1e-3)
             undecided = undecided + 1 if holds is None else 0
+            if self.settled and step > 0.25 * width:
+                break  # closer, programmes decide less and less
             if undecided == len(shares):
-                break
+                if self.thorough:
+                    break
+                undecided, self.thorough = 0, True
 
 
 def smallest_friction(problem: ContactProblem, *, tolerance: float = 1e-7) -> FrictionBounds:
