@@ -39,7 +39,12 @@ from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.limits_of_work import (
-    COLLAPSE_WORK, LARGEST_PATH, LARGEST_SEARCH, UNASKED_CONES, UNASKED_IN_SPACE, UNASKED_WORK
+    COLLAPSE_WORK,
+    LARGEST_PATH,
+    LARGEST_SEARCH,
+    UNASKED_CONES,
+    UNASKED_IN_SPACE,
+    UNASKED_WORK,
 )  # fmt: skip
 from concio.problem.solution import PROVEN_FAILURES, Progress, ProgressCallback, Status
 from concio.solvers.methods import find

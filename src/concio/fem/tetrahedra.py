@@ -16,7 +16,6 @@ from functools import partial
 
 import numpy as np
 import shapely
-from scipy.optimize import linprog
 from scipy.spatial import Delaunay, QhullError, cKDTree
 
 from concio.errors import GeometryError
@@ -210,6 +209,8 @@ def _distinct(points: Array, tolerance: float, keep: int) -> Array:
 
 def _star(body: Polyhedron) -> Mesh | None:
     """Return tetrahedra from one point to triangles of all faces, None where no point sees the whole surface."""
+    from scipy.optimize import linprog  # loaded where it is needed: it takes long
+
     system = np.column_stack([body.normals, np.ones(len(body.normals))])
     found = linprog([0.0, 0.0, 0.0, -1.0], A_ub=system, b_ub=body.offsets, bounds=[(None, None)] * 3 + [(0, None)])
     if found.x is None or found.x[3] <= 1e-6 * body.size:

@@ -9,7 +9,6 @@ from scipy.optimize import OptimizeResult, linprog
 
 from concio.solvers.algebra.normal_equations import NormalEquations, rebalance
 from concio.solvers.statics import linear_interior
-from concio.solvers.statics import programme as statics
 from concio.solvers.statics.linear_interior import solve_interior
 from concio.solvers.statics.programme import optimise
 from rigid_walls import running_bond
@@ -139,7 +138,7 @@ def test_where_highs_ends_with_an_error_both_its_methods_are_asked_again_for_a_d
             return OptimizeResult(status=4, x=None, message="Solve error")
         return linprog(*arguments, method=method, options=options, **others)
 
-    monkeypatch.setattr(statics, "linprog", fails_at_ten_digits)
+    monkeypatch.setattr("scipy.optimize.linprog", fails_at_ten_digits)
     cost, equations, bounds, x = programme(0)
     found = optimise(cost, equations, bounds, method="highs")
     assert found.status == 0

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
 from concio.kinematics.frames import cross
@@ -201,6 +200,8 @@ def _overlap_along(a: ConvexPiece, b: ConvexPiece, axes: Array) -> float:
 
 def _common_volume(a: ConvexPiece, b: ConvexPiece) -> tuple[float, Array]:
     """Return the volume of what two convex pieces share, and the middle of the largest ball in it."""
+    from scipy.optimize import linprog  # loaded where it is needed: it takes long
+
     planes = np.vstack([np.column_stack([piece.normals, -piece.offsets]) for piece in (a, b)])
     system = np.column_stack([planes[:, :3], np.ones(len(planes))])
     found = linprog([0.0, 0.0, 0.0, -1.0], A_ub=system, b_ub=-planes[:, 3], bounds=[(None, None)] * 3 + [(0, None)])

@@ -19,7 +19,6 @@ from typing import Any, Literal
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.optimize import linprog
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.solvers.algebra.normal_equations import rebalance
@@ -226,6 +225,8 @@ def _highs(
 
     Where the first does not finish, the other is tried, and both again with the second of ``TOLERANCES``.
     """
+    from scipy.optimize import linprog  # loaded where it is needed: it takes long
+
     unit = float(np.abs(equations[1]).max(initial=0.0)) or 1.0
     arguments: dict[str, Any] = {"A_eq": equations[0], "b_eq": equations[1] / unit, "bounds": bounds / unit}
     if inequalities is not None:
