@@ -159,3 +159,19 @@ def test_a_dry_wall_whose_courses_slide_is_followed_in_steps() -> None:
     # equilibria at large displacements of the elastic-frictional structure peak at 0.42688
     assert worst.followed.at(0.1) < worst.followed.at(0.05) < worst.multiplier
     assert not worst.unchecked
+
+
+def test_corners_are_pushed_along_their_diagonals() -> None:
+    from concio.analysis.seismic.directions import pushes
+
+    corner = concio.walls(lines=[((0, 0), (0, 1)), ((0, 0), (1, 0))], height=0.5, block_size=(0.5, 0.25, 0.25),
+                          block="rigid", friction=0.6, unit_weight=20.0)  # fmt: skip
+    made = pushes(corner, "corners", ())
+    weight = 20.0 * sum(b.volume for b in corner.free_bodies)
+    totals = [sum(force for force, _ in p.by_group().values()) for p in made]
+    assert [p.way for p in made] == ["(0.707, 0.707)", "(-0.707, 0.707)", "(-0.707, -0.707)", "(0.707, -0.707)"]
+    for total, sides in zip(totals, ((1, 1), (-1, 1), (-1, -1), (1, -1)), strict=True):
+        assert np.asarray(total)[:2] == pytest.approx(np.array(sides) * weight / np.sqrt(2.0), rel=1e-12)
+    assert len(pushes(corner, "every", ())) == 8
+    (one,) = pushes(corner, "-x-y", ())
+    assert one.way == "(-0.707, -0.707)"

@@ -69,7 +69,8 @@ def assess(
         (``*`` stands for any letters), roles or layers, or ``{"above": 3.0}`` for those whose centroid lies there.
     direction : str, or (x, y) in space
         Which way the earthquake pushes: in the plane "right", "left" or "both", by default both; in space "+x", "-x",
-        "+y", "-y", "both" (along x), "all" or a horizontal vector, by default all four. Where ``live`` is given, in the
+        "+y", "-y", "both" (along x), "all", "corners" (along the diagonals), "every" (those as well) or a horizontal
+        vector, by default all four. Where ``live`` is given, in the
         plane "left" is against it; in space both ways along it are looked at.
     live : str or sequence of str, optional
         Load groups that push, for a multiplier of one. By default "live" where the model has such a group and it

@@ -19,9 +19,14 @@ PLANE = {"right": (1.0,), "left": (-1.0,)}
 SPACE = {"+x": (1.0, 0.0), "-x": (-1.0, 0.0), "+y": (0.0, 1.0), "-y": (0.0, -1.0)}
 ALIAS = {"right": "+x", "left": "-x"}
 SEVERAL: dict[int, dict[str, tuple[str, ...]]] = {
-    2: {"both": ("right", "left")}, 3: {"both": ("+x", "-x"), "all": ("+x", "-x", "+y", "-y")}
+    2: {"both": ("right", "left")},
+    3: {"both": ("+x", "-x"), "all": ("+x", "-x", "+y", "-y"), "corners": ("+x+y", "-x+y", "-x-y", "+x-y"),
+        "every": ("+x", "-x", "+y", "-y", "+x+y", "-x+y", "-x-y", "+x-y")},
 }  # fmt: skip
-"""Words for several ways."""
+"""Words for several ways; corners are pushed along their diagonals."""
+
+DIAGONALS = {a + b: (SPACE[a][0], SPACE[b][1]) for a in ("+x", "-x") for b in ("+y", "-y")}
+"""Along both axes alike."""
 
 USUAL = {2: "both", 3: "all"}
 """What is looked at unless another is asked for."""
@@ -79,6 +84,7 @@ def pushes(model: Model, direction: Direction | None, groups: tuple[str, ...]) -
     direction : str, (2,) vector or None
         In the plane "right", "left" or "both" (the default); in space "+x", "-x", "+y", "-y", "both" (along x), "all"
         (the default), or a horizontal vector.
+        "corners" are the four diagonals, "every" is "all" and those.
     groups : tuple of str
         Load groups that push instead of the weights. In the plane "right" is along them, "left" against them; in space
         a direction is looked for along and against them.
@@ -120,7 +126,7 @@ def _by_weights(model: Model, way: str, vector: Array) -> Push:
 
 def _asked(dim: int, direction: Direction | None) -> dict[str, Array]:
     """Return the ways that are asked for, with their vectors (1,) in the plane and (2,) in space."""
-    known: dict[str, tuple[float, ...]] = dict(PLANE) if dim == 2 else dict(SPACE)
+    known: dict[str, tuple[float, ...]] = dict(PLANE) if dim == 2 else {**SPACE, **DIAGONALS}
     several = SEVERAL[dim]
     if direction is None:
         direction = USUAL[dim]
@@ -130,7 +136,8 @@ def _asked(dim: int, direction: Direction | None) -> dict[str, Array]:
         if not set(names) <= set(known):
             msg = f"there is no direction '{direction}'"
             raise InputError(msg, hint=closest(direction, (*known, *several)))
-        return {name: np.array(known[name]) for name in names}
+        vectors = [np.array(known[name]) / float(np.linalg.norm(known[name])) for name in names]
+        return {name if name not in DIAGONALS else _name(v): v for name, v in zip(names, vectors, strict=True)}
     vector = np.array(direction, dtype=float)
     if dim == 2 or vector.shape != (2,) or not 0 < float(np.linalg.norm(vector)) < np.inf:
         msg = f"{direction!r} is not a direction"
