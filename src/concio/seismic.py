@@ -19,6 +19,7 @@ from concio.analysis.seismic.free_standing import FreeStanding
 from concio.analysis.seismic.local_mechanism import LocalMechanism, NoMechanism
 from concio.analysis.seismic.sections import OutOfPlane
 from concio.analysis.seismic.site import Site
+from concio.analysis.seismic.strengthening import Measure, strengthen
 from concio.analysis.seismic.variations import TieForce, tie_force, variations
 
 __all__ = [
@@ -26,6 +27,7 @@ __all__ = [
     "Check",
     "FreeStanding",
     "LocalMechanism",
+    "Measure",
     "Mode",
     "NoMechanism",
     "OutOfPlane",
@@ -33,6 +35,7 @@ __all__ = [
     "Storeys",
     "TieForce",
     "assess",
+    "strengthen",
     "tie_force",
     "variations",
 ]

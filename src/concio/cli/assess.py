@@ -16,6 +16,7 @@ from concio.cli.progress import progress_bar
 if TYPE_CHECKING:
     from concio.analysis.seismic.assessment import Assessment
     from concio.analysis.seismic.local_mechanism import LocalMechanism
+    from concio.analysis.seismic.strengthening import Strengthened
     from concio.analysis.seismic.variations import TieForce, Variation
 
 MOST_FINDINGS = 12
@@ -47,6 +48,7 @@ def assess(
     """
     import concio
     from concio.analysis.seismic.asked import read_asked
+    from concio.analysis.seismic.strengthening import strengthen
     from concio.analysis.seismic.variations import tie_force, variations
     from concio.report.language import words_of
 
@@ -62,6 +64,9 @@ def assess(
         if asked.size_tie:
             arguments = {**asked.arguments, "progress": progress}
             tie = tie_force(model, asked.size_tie, largest=asked.largest_tie, **arguments)
+        stronger: Strengthened | None = None
+        if asked.strengthen is not None:
+            stronger = strengthen(model, **asked.strengthen, **{**asked.arguments, "progress": progress})
         varied: tuple[Variation, ...] = ()
         sensitivity = found.sensitivity() if asked.sensitivity else None
         if asked.sensitivity and out is not None:
@@ -71,6 +76,12 @@ def assess(
     if tie is not None:
         finite = tie.force if tie.force < float("inf") else None
         told["tie_force"] = {"tie": tie.tie, "force": finite, "zeta_E": tie.reached}
+    if stronger is not None:
+        told["strengthening"] = {
+            "kind": stronger.measure.kind, "of": list(stronger.measure.of), "unit": stronger.measure.unit,
+            "zeta_E_wanted": stronger.wanted, "amount": finite_or_none(stronger.amount),
+            "fails_at": finite_or_none(stronger.fails_at), "zeta_E": finite_or_none(stronger.reached),
+        }  # fmt: skip
     if sensitivity is not None:
         told["sensitivity"] = {row.name: {"value": row.value, "below": finite_or_none(row.below),
                                           "above": finite_or_none(row.above)} for row in sensitivity.rows}  # fmt: skip
@@ -81,12 +92,14 @@ def assess(
         with replaced_directory(out) as fresh:
             written = write_assessment(found, told, fresh, language or asked.head.language, head=asked.head, tie=tie,
                                        anchors=asked.anchors, varied=varied, sensitivity=sensitivity,
-                                       docx=docx)  # fmt: skip
+                                       stronger=stronger, docx=docx)  # fmt: skip
     if json:
         print_json(told)
     else:
         for line in assess_lines(found, tie):
             say(line)
+        if stronger is not None:
+            say(f"  strengthening        {stronger.sentence}")
         if sensitivity is not None:
             say(f"  depends on           {sensitivity.sentence}")
         if written:

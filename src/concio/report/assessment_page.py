@@ -24,6 +24,7 @@ from concio.report.decisions_part import coverage_html, decisions_html
 from concio.report.docx_file import write_docx
 from concio.report.html_parts import page_html
 from concio.report.sensitivity_part import sensitivity_html
+from concio.report.strengthening_part import before_after, strengthening_html
 from concio.report.strips_part import strips_html
 from concio.report.typeset import typeset
 from concio.verdict.assessment_verdict import assessment_verdict
@@ -32,6 +33,7 @@ from concio.verdict.verdict import Verdict
 if TYPE_CHECKING:
     from concio.analysis.seismic.anchors import Anchor
     from concio.analysis.seismic.assessment import Assessment
+    from concio.analysis.seismic.strengthening import Strengthened
     from concio.analysis.seismic.variations import TieForce, Variation
     from concio.analysis.sensitivity import Sensitivity
 
@@ -64,6 +66,8 @@ class AssessmentReport(Texts):
     varied : sequence of Variation
     sensitivity : Sensitivity, optional
         Of the weakest mechanism.
+    stronger : Strengthened, optional
+        A strengthening and what it needs.
     language : str, optional
         Instead of that of the head.
     pictures : {"svg", "png"}
@@ -79,13 +83,14 @@ class AssessmentReport(Texts):
         anchors: Sequence[Anchor] = (),
         varied: Sequence[Variation] = (),
         sensitivity: Sensitivity | None = None,
+        stronger: Strengthened | None = None,
         language: str | None = None,
         pictures: str = "svg",
     ) -> None:
         self.found, self.head = found, head or Head()
         super().__init__(language or self.head.language, pictures)
         self.tie, self.anchors, self.varied = tie, tuple(anchors), tuple(varied)
-        self.sensitivity = sensitivity
+        self.sensitivity, self.stronger = sensitivity, stronger
 
     # -- the whole ----------------------------------------------------------------------------------------------------
 
@@ -94,7 +99,8 @@ class AssessmentReport(Texts):
         title = self.head.project or self.found.model.title or self.words["title"]
         parts = [self.header(title), self.top(), self.site(), self.model(), self.search()]
         parts += self.mechanisms()
-        parts += [self.varied_part(), self.tie_part(), annex_html(self, self.found, self.head, self.told)]
+        stronger = "" if self.stronger is None else strengthening_html(self, self.stronger)
+        parts += [self.varied_part(), self.tie_part(), stronger, annex_html(self, self.found, self.head, self.told)]
         footer = self.say("footer", version=concio.__version__)
         parts.append(f"<footer>{footer}</footer>")
         return page_html(title, typeset("".join(parts)), language=self.language, kind="assessment")
@@ -286,6 +292,13 @@ class AssessmentReport(Texts):
             f"{self.table(head, rows)}</section>"
         )
 
+    def needed(self) -> dict[str, float]:
+        """Return the forces of ties that were found to be needed [kN]."""
+        found = {} if self.tie is None else {self.tie.tie: self.tie.force}
+        if self.stronger is not None and self.stronger.measure.kind == "tie":
+            found[self.stronger.measure.of[0]] = self.stronger.amount
+        return {name: force for name, force in found.items() if 0 < force < math.inf}
+
     def tie_part(self) -> str:
         """Return the tie force that is needed, and the checks of the anchors."""
         parts = []
@@ -295,11 +308,14 @@ class AssessmentReport(Texts):
             text = self.say(key, force=self.n(tie.force), tie=tie.tie, reached=self.n(tie.reached),
                             largest=self.n(tie.largest))  # fmt: skip
             parts.append(f"<p>{text}</p>")
+            if tie.force > 0:
+                parts.append(before_after(self, self.found, tie.assessment))
         forces = {t.name: t.strength if math.isfinite(t.strength) else None for t in self.found.model.ties}
         for anchor in self.anchors:
             force, key = forces.get(anchor.tie), "anchor_text"
-            if tie is not None and tie.tie == anchor.tie and 0 < tie.force < math.inf:
-                force, key = tie.force, "anchor_needed"
+            needed = self.needed()
+            if anchor.tie in needed:
+                force, key = needed[anchor.tie], "anchor_needed"
             if force is None:
                 continue
             rows = [

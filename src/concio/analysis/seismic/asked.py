@@ -11,8 +11,15 @@ from typing import Any
 from concio.analysis.seismic.anchors import Anchor
 from concio.analysis.seismic.hazard_grid import hazard_at
 from concio.analysis.seismic.site import Site
+from concio.analysis.seismic.strengthening import Measure
 from concio.errors import InputError
-from concio.model.file.assessment_table import AssessmentTable, HeightsTable, SiteTable, assessment_tables
+from concio.model.file.assessment_table import (
+    AssessmentTable,
+    HeightsTable,
+    SiteTable,
+    StrengthenTable,
+    assessment_tables,
+)
 from concio.model.file.reading import file_units, model_from_tables, read_tables
 from concio.model.model import Model
 
@@ -62,6 +69,8 @@ class Asked:
         Where to stop looking [kN].
     sensitivity : bool
     anchors : tuple of Anchor
+    strengthen : mapping or None
+        ``measure``, ``zeta`` and ``largest`` of :func:`concio.seismic.strengthen`.
     head : Head
     """
 
@@ -71,6 +80,7 @@ class Asked:
     largest_tie: float | None = None
     sensitivity: bool = True
     anchors: tuple[Anchor, ...] = ()
+    strengthen: Mapping[str, Any] | None = None
     head: Head = field(default_factory=Head)
 
 
@@ -101,7 +111,7 @@ def read_asked(path: str | os.PathLike[str]) -> Asked:
         raise InputError(error.what, where=where, hint=error.hint) from None
     return Asked(
         model, _arguments(asked, place), asked.size_tie, asked.largest_tie, asked.sensitivity, anchors,
-        Head(**asked.report.model_dump(), reasons=asked.reasons),
+        _strengthen(asked.strengthen), Head(**asked.report.model_dump(), reasons=asked.reasons),
     )  # fmt: skip
 
 
@@ -122,6 +132,14 @@ def _site(table: SiteTable, folder: Path) -> Site:
     if given["code"].endswith(".toml"):
         given["code"] = str(folder / given["code"])
     return Site(**given)
+
+
+def _strengthen(table: StrengthenTable | None) -> dict[str, Any] | None:
+    if table is None:
+        return None
+    given = table.model_dump()
+    zeta, largest = given.pop("zeta"), given.pop("largest")
+    return {"measure": Measure(**given | {"of": tuple(table.of)}), "zeta": zeta, "largest": largest}
 
 
 def _arguments(table: AssessmentTable, site: Site) -> dict[str, Any]:

@@ -7,23 +7,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from scipy.optimize import brentq
-
 from concio.analysis.entry_point import entry_point
 from concio.analysis.seismic.assess import EVERY, assess
 from concio.analysis.seismic.assessment import Assessment
 from concio.analysis.seismic.directions import Direction
+from concio.analysis.seismic.strengthening import Measure, strengthen
 from concio.analysis.seismic.what_if import way_of
-from concio.arguments import closest, strict
-from concio.errors import InputError, NoEquilibriumError
+from concio.arguments import strict
+from concio.errors import NoEquilibriumError
 from concio.model.model import Model
 from concio.problem.solution import ProgressCallback
-
-ENOUGH = 1e-4
-"""Relative accuracy of a tie force."""
-
-SHARES_OF_LARGEST = (1 / 64, 1 / 32, 1 / 16, 1 / 8, 1 / 4, 1 / 2, 1.0)
-"""Shares of the largest force that are tried one after the other, until one does."""
 
 SHARES = {"friction": (0.8, 1.2), "strength": (0.5, 2.0)}
 """Factors of the friction and of the compressive strength of all joints."""
@@ -96,47 +89,8 @@ def tie_force(model: Model, tie: str, *, zeta: float = 1.0, largest: float | Non
     >>> round(found.force, 1), round(found.reached, 3)
     (1.7, 1.0)
     """
-    names = [t.name for t in model.ties]
-    if tie not in names:
-        msg = f"there is no tie called '{tie}'"
-        raise InputError(msg, hint=closest(tie, names) if names else "give the model a tie")
-    if largest is None:
-        largest = sum(model.materials[b.material].unit_weight * b.volume for b in model.free_bodies)
-
-    tried: dict[float, Assessment] = {}
-
-    def with_force(force: float) -> Assessment:
-        if force not in tried:
-            ties = tuple(
-                replace(t, yield_force=force, prestress=min(t.prestress, force)) if t.name == tie else t
-                for t in model.ties
-            )
-            kept = tuple(t for t in ties if t.name != tie) if force <= 0 else ties
-            tried[force] = assess(replace(model, ties=kept), **arguments)
-        return tried[force]
-
-    def missing(force: float) -> float:
-        try:
-            return min(with_force(force).least, 10.0 * zeta) - zeta
-        except NoEquilibriumError:  # without the tie a thrust may push the wall over before any earthquake
-            return -zeta
-
-    if missing(0.0) >= 0:
-        return TieForce(tie, zeta, 0.0, with_force(0.0).least, 0.0, with_force(0.0))
-    low, high = 0.0, largest
-    for share in SHARES_OF_LARGEST:  # from below: with much larger forces other mechanisms may be worse off again
-        high = share * largest
-        if missing(high) >= 0:
-            break
-        low = high
-    else:
-        stood = [a for force, a in tried.items() if force > 0]
-        best = max(stood, key=lambda a: a.least) if stood else with_force(largest)
-        return TieForce(tie, zeta, math.inf, best.least, largest, best)
-    found = float(brentq(missing, low, high, xtol=ENOUGH * largest * 0.01, rtol=ENOUGH))
-    while missing(found) < 0:  # on the safe side of the accuracy
-        found *= 1 + ENOUGH
-    return TieForce(tie, zeta, found, with_force(found).least, largest, with_force(found))
+    made = strengthen(model, Measure("tie", (tie,)), zeta=zeta, largest=largest, **arguments)
+    return TieForce(tie, zeta, made.amount, made.reached, made.largest if made.amount else 0.0, made.after)
 
 
 @dataclass(frozen=True)

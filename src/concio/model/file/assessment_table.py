@@ -185,6 +185,36 @@ class OutOfPlaneTable(Table):
     bearing: Length | None = None
 
 
+class StrengthenTable(Table):
+    """A strengthening whose least amount is found; the arguments of ``Measure``.
+
+    Keys
+    ----
+    kind :
+        What is done: force of a tie, weight on bodies, width of a buttress, cohesion in the joints of a zone.
+    of :
+        Name of the tie, or bodies by name, role, layer or pattern.
+    zeta :
+        Value that zeta_E is to reach.
+    largest :
+        Largest amount that is tried, in kN, m or kN/m2.
+    side :
+        Of a buttress: at which side of these bodies it stands.
+    height :
+        Of a buttress; by default that of these bodies.
+    unit_weight :
+        Of a buttress.
+    """
+
+    kind: Literal["tie", "mass", "buttress", "grout"]
+    of: list[Name]
+    zeta: Number = 1.0
+    largest: Number | None = None
+    side: Literal["left", "right"] = "left"
+    height: Length | None = None
+    unit_weight: UnitWeight = 20.0
+
+
 class ReportTextTable(Table):
     """What stands in the head of the report, and its language.
 
@@ -255,6 +285,9 @@ class AssessmentTable(Table):
     ] = Field(default_factory=list)
     size_tie: Annotated[StrictStr, Field(description="tie whose force is found that brings zeta_E to one")] = ""
     largest_tie: Force | None = None
+    strengthen: Annotated[
+        StrengthenTable | None, Field(description="a strengthening whose least amount is found")
+    ] = None
     sensitivity: bool = True
     anchors: list[AnchorTable] = Field(default_factory=list)
     report: ReportTextTable = Field(default_factory=ReportTextTable)

@@ -1,0 +1,344 @@
+"""The least strengthening that brings zeta_E of an assessment to a value: a tie, mass, a buttress, a grouted zone.
+
+zeta_E follows from curves and spectra and is not a linear programme of any of them (for an associated multiplier,
+which is one, ``least`` of a limit result proves its answer). So amounts are tried from below, and each trial is a
+whole assessment: all mechanisms are sought, followed and checked again. What comes out is a bracket of two certified
+assessments, one that does not reach the value and one that does; amounts far below the first were looked at only where
+they were tried.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+from concio.analysis.entry_point import entry_point
+from concio.analysis.seismic.assess import assess
+from concio.analysis.seismic.assessment import Assessment
+from concio.analysis.seismic.mechanism import chosen_bodies
+from concio.arguments import closest, strict
+from concio.display import number
+from concio.errors import InputError, NoEquilibriumError
+from concio.model.body import Body
+from concio.model.materials import Rigid
+from concio.model.model import Model
+from concio.model.rules import JointRule
+
+KINDS = {"tie": "kN", "mass": "kN", "buttress": "m", "grout": "kN/m2"}
+"""Kinds of strengthening with the unit of their amount: yield force, weight, width, cohesion."""
+
+ENOUGH = 1e-4
+"""Relative accuracy of an amount."""
+
+SHARES_OF_LARGEST = (1 / 64, 1 / 32, 1 / 16, 1 / 8, 1 / 4, 1 / 2, 1.0)
+"""Shares of the largest amount that are tried one after the other, until one does."""
+
+STRONGEST_GROUT = 500.0
+"""Largest cohesion of a grouted zone that is tried by default [kN/m2]."""
+
+
+@dataclass(frozen=True)
+class Measure:
+    """What is strengthened, and how.
+
+    Parameters
+    ----------
+    kind : {"tie", "mass", "buttress", "grout"}
+        "tie": the yield force of a tie of the model [kN]; "mass": weight on bodies, which pushes as well [kN];
+        "buttress": the width of a block against a face, in the plane [m]; "grout": cohesion in the joints of a zone
+        [kN/m2], which holds what slides: joints have no tensile strength in an assessment.
+    of : tuple of str
+        The name of the tie; for the other kinds bodies by name, role, layer or pattern.
+    side : {"left", "right"}
+        Of a buttress: at which side of these bodies it stands.
+    height : float, optional
+        Of a buttress, from the foot of these bodies [m]; by default all of theirs.
+    unit_weight : float
+        Of a buttress [kN/m3].
+
+    Examples
+    --------
+    >>> from concio.seismic import Measure
+    >>> Measure("mass", ("c6",)).unit
+    'kN'
+    """
+
+    kind: str
+    of: tuple[str, ...]
+    side: str = "left"
+    height: float | None = None
+    unit_weight: float = 20.0
+
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS:
+            msg = f"there is no strengthening '{self.kind}'"
+            raise InputError(msg, hint=closest(self.kind, tuple(KINDS)))
+        object.__setattr__(self, "of", tuple(self.of))
+        if self.side not in ("left", "right"):
+            msg = f"a buttress has no side '{self.side}'"
+            raise InputError(msg, hint=closest(self.side, ("left", "right")))
+        if not self.of or (self.kind == "tie" and len(self.of) != 1):
+            msg = "a strengthening says what it is of: one tie, or bodies"
+            raise InputError(msg, hint='for example of = ["t1"]')
+
+    @property
+    def unit(self) -> str:
+        """Of its amount."""
+        return KINDS[self.kind]
+
+    def applied(self, model: Model, amount: float) -> Model:
+        """Return a model with this much of it; as it is for an amount of zero.
+
+        Parameters
+        ----------
+        model : Model
+        amount : float
+
+        Raises
+        ------
+        InputError
+            The model has no such tie or bodies, or no ground for a buttress.
+        """
+        return APPLIED[self.kind](self, model, amount)
+
+    def most(self, model: Model) -> float:
+        """Return the largest amount that is tried by default: the weight of the model, the height, a strong grout."""
+        if self.kind in ("tie", "mass"):
+            return sum(model.materials[b.material].unit_weight * b.volume for b in model.free_bodies)
+        if self.kind == "grout":
+            return STRONGEST_GROUT
+        low, high = _reach(self, model)
+        return float(high[1] - low[1])
+
+
+@dataclass(frozen=True, eq=False)
+class Strengthened:
+    """The least amount of a strengthening for a value of zeta_E.
+
+    Parameters
+    ----------
+    measure : Measure
+    wanted : float
+        zeta_E.
+    amount : float
+        In the unit of the measure; zero where none is needed, ``inf`` where none that was tried does.
+    fails_at : float
+        Largest smaller amount that was assessed and does not reach it; ``nan`` where none is needed.
+    reached : float
+        Least zeta_E of all limit states with the amount, or the best that was met.
+    largest : float
+        Largest amount that was tried.
+    before : Assessment or None
+        Without it; None where the model does not stand so.
+    after : Assessment
+        With the amount, or the best that was met.
+    trials : mapping of float to float
+        zeta_E by the amounts that were assessed; ``nan`` where the model does not stand.
+    """
+
+    measure: Measure
+    wanted: float
+    amount: float
+    fails_at: float
+    reached: float
+    largest: float
+    before: Assessment | None
+    after: Assessment
+    trials: Mapping[float, float] = field(default_factory=dict)
+
+    @property
+    def sentence(self) -> str:
+        """What was found, in a sentence."""
+        what = f"{self.measure.kind} of {', '.join(self.measure.of)}"
+        if self.amount == 0:
+            return f"{what}: not needed, zeta_E is {number(self.reached, 4)} without it"
+        unit = self.measure.unit
+        if math.isinf(self.amount):
+            return f"{what}: no amount up to {number(self.largest, 4)} {unit} does: zeta_E {number(self.reached, 4)}"
+        return (
+            f"{what}: {number(self.amount, 5)} {unit} bring zeta_E to {number(self.reached, 4)}, "
+            f"{number(self.fails_at, 5)} {unit} do not"
+        )
+
+
+@strict
+@entry_point
+def strengthen(
+    model: Model, measure: Measure, *, zeta: float = 1.0, largest: float | None = None, **arguments: Any
+) -> Strengthened:
+    """Return the least amount of a strengthening that brings the least zeta_E of all mechanisms to ``zeta``.
+
+    It is the least over all limit states asked for. Every trial searches the mechanisms again, since the weakest one
+    changes. More of a strengthening may also be worse: amounts are tried from below, and the first bracket counts.
+
+    Parameters
+    ----------
+    model : Model
+    measure : Measure
+    zeta : float
+    largest : float, optional
+        Largest amount to try; by default as ``Measure.most``.
+    **arguments
+        Of :func:`concio.assess`.
+
+    Raises
+    ------
+    InputError
+        There is no such tie or body; or as :func:`concio.assess`.
+    NoEquilibriumError
+        The model stands with no amount that was tried.
+
+    Examples
+    --------
+    Weight on a pillar that tips does not help, for it pushes as much as it holds:
+
+    >>> import concio
+    >>> from concio.seismic import Measure, strengthen
+    >>> pillar = concio.column(width=0.5, height=2.0, blocks=1, block="rigid", unit_weight=20.0)
+    >>> site = concio.Site({"SLV": {"a_g": 0.30, "F0": 2.45, "Tc": 0.32}}, soil="C")
+    >>> asked = {"site": site, "levels": ("SLV",), "direction": "left", "elsewhere": ("out of plane",)}
+    >>> found = strengthen(pillar, Measure("mass", ("b01",)), **asked)
+    >>> found.amount, round(found.reached, 3) < 1.0
+    (inf, True)
+    """
+    most = measure.most(model) if largest is None else largest
+    if not 0 < most < math.inf:
+        msg = f"the largest amount to try, {most:g} {measure.unit}, must be positive"
+        raise InputError(msg)
+    measure.applied(model, most)
+    tried: dict[float, Assessment | None] = {}
+
+    def assessed(amount: float) -> Assessment | None:
+        if amount not in tried:
+            try:
+                tried[amount] = assess(measure.applied(model, amount), **arguments)
+            except NoEquilibriumError:  # without a tie a thrust may push the wall over before any earthquake
+                tried[amount] = None
+        return tried[amount]
+
+    def missing(amount: float) -> float:
+        made = assessed(amount)
+        return -zeta if made is None else min(made.least, 10.0 * zeta) - zeta
+
+    amount, below = least_amount(missing, most)
+    before = assessed(0.0)
+    best = [a for a in tried.values() if a is not None]
+    after = tried[amount] if math.isfinite(amount) else max(best, key=lambda a: a.least, default=None)
+    trials = {k: math.nan if a is None else a.least for k, a in sorted(tried.items())}
+    if after is None:  # it stands with no amount: why, is told by the exception
+        after = assess(measure.applied(model, most), **arguments)
+    reached = after.least
+    return Strengthened(measure, zeta, amount, below, reached, most, before, after, trials)
+
+
+def least_amount(missing: Callable[[float], float], most: float) -> tuple[float, float]:
+    """Return the least amount met at which nothing is missing, and the largest one below it at which something is.
+
+    Parameters
+    ----------
+    missing : callable
+        Negative where something is missing.
+    most : float
+        Largest amount that is tried.
+
+    Returns
+    -------
+    (float, float)
+        ``(0, nan)`` where none is needed, ``(inf, most)`` where no amount that was tried does.
+    """
+    if missing(0.0) >= 0:
+        return 0.0, math.nan
+    low = high = 0.0
+    for share in SHARES_OF_LARGEST:  # from below: with much more of it other mechanisms may be worse off again
+        high = share * most
+        if missing(high) >= 0:
+            break
+        low = high
+    else:
+        return math.inf, most
+    found = float(brentq(missing, low, high, xtol=ENOUGH * most * 0.01, rtol=ENOUGH))
+    while missing(found) < 0:  # on the safe side of the accuracy
+        low, found = found, min(found * (1 + ENOUGH), high)
+    while found > low and missing(below := max(found * (1 - 2 * ENOUGH), low)) >= 0:
+        found = below
+    return found, max(found * (1 - 2 * ENOUGH), low)
+
+
+# -- what is applied --------------------------------------------------------------------------------------------------
+
+
+def _tie(measure: Measure, model: Model, amount: float) -> Model:
+    names, name = [t.name for t in model.ties], measure.of[0]
+    if name not in names:
+        msg = f"there is no tie called '{name}'"
+        raise InputError(msg, hint=closest(name, names) if names else "give the model a tie")
+    if amount <= 0:
+        return replace(model, ties=tuple(t for t in model.ties if t.name != name))
+    ties = tuple(replace(t, yield_force=amount, prestress=min(t.prestress, amount)) if t.name == name else t
+                 for t in model.ties)  # fmt: skip
+    return replace(model, ties=ties)
+
+
+def _mass(measure: Measure, model: Model, amount: float) -> Model:
+    chosen = chosen_bodies(model, "mass", measure.of)
+    if amount <= 0:
+        return model
+    more = amount / sum(model.bodies[i].volume for i in chosen)
+    materials, bodies = dict(model.materials), list(model.bodies)
+    for i in chosen:
+        own = bodies[i].material
+        heavier = f"{own} with mass"
+        materials[heavier] = replace(materials[own], unit_weight=materials[own].unit_weight + more)
+        bodies[i] = replace(bodies[i], material=heavier)
+    return replace(model, bodies=tuple(bodies), materials=materials)
+
+
+def _reach(measure: Measure, model: Model) -> tuple[np.ndarray, np.ndarray]:
+    """Return the low and the high corner of a buttress as high as it is to be, and of no width."""
+    if model.dim != 2:
+        msg = "the width of a buttress is found in the plane alone"
+        raise InputError(msg, hint="draw the section of the wall, or draw buttresses of several widths in space")
+    points = np.vstack([model.bodies[i].vertices for i in chosen_bodies(model, "buttress", measure.of)])
+    low, high = points.min(0), points.max(0)
+    at = low[0] if measure.side == "left" else high[0]
+    top = high[1] if measure.height is None else low[1] + measure.height
+    return np.array([at, low[1]]), np.array([at, top])
+
+
+def _buttress(measure: Measure, model: Model, amount: float) -> Model:
+    low, high = _reach(measure, model)
+    if amount <= 0:
+        return model
+    a, b = sorted((low[0], low[0] + (amount if measure.side == "right" else -amount)))
+    near = 1e-6 * model.size
+    under = [g for g in model.outlines if g.kind == "fixed" and abs(g.vertices[:, 1].max() - low[1]) <= near
+             and g.vertices[:, 0].min() <= a + near and g.vertices[:, 0].max() >= b - near]  # fmt: skip
+    if not under:
+        where = f"from x = {a:.4g} to {b:.4g} m at z = {low[1]:.4g} m"
+        msg = f"a buttress of {amount:.4g} m has no ground under it, {where}"
+        raise InputError(msg, where="strengthening", hint="make the fixed body wider, or the largest amount smaller")
+    outline = np.array([[a, low[1]], [b, low[1]], [b, high[1]], [a, high[1]]])
+    thick = max(model.outlines[i].thickness for i in chosen_bodies(model, "buttress", measure.of))
+    body = Body("buttress", outline, kind="rigid", material="buttress", thickness=thick, role="buttress")
+    materials = {**model.materials, "buttress": Rigid(unit_weight=measure.unit_weight)}
+    return replace(model, bodies=(*model.bodies, body), materials=materials)
+
+
+def _grout(measure: Measure, model: Model, amount: float) -> Model:
+    if amount <= 0:
+        return model
+    used = [model.laws[rule.law] for rule in model.rules]
+    weakest = min(used, key=lambda law: law.friction)
+    laws = {**model.laws, "grout": replace(weakest, cohesion=weakest.cohesion + amount)}
+    rules = tuple(JointRule("grout", between=(p, q)) for k, p in enumerate(measure.of) for q in measure.of[k:])
+    return replace(model, laws=laws, rules=(*model.rules, *rules))
+
+
+APPLIED: Mapping[str, Callable[[Measure, Model, float], Model]] = {
+    "tie": _tie, "mass": _mass, "buttress": _buttress, "grout": _grout
+}  # fmt: skip
