@@ -84,6 +84,12 @@ class Assembly:
         return tuple(dict.fromkeys([*self.loads, *self.moved, *self.supported.imposed, *self.expands]))
 
     @cached_property
+    def _free(self) -> tuple[sp.csr_array, sp.csr_array, sp.csr_array]:
+        """K (N, N), C_n (m, N) and C_t (m (d-1), N) of the free unknowns."""
+        T = self.supported.T
+        return sp.csr_array(T.T @ self.K @ T), sp.csr_array(self.pairs.C_n @ T), sp.csr_array(self.pairs.C_t @ T)
+
+    @cached_property
     def prestress(self) -> Array:
         """Part of the initial gap of each pair (m,) that the prestress of ties makes, none positive [m]."""
         shortened = np.zeros(len(self.pairs))
@@ -158,11 +164,11 @@ class Assembly:
         if like is not None:
             return replace(like, f=f, load=loads, gap=gap, slip_origin=origin)
         return ContactProblem(
-            K=sp.csr_array(T.T @ self.K @ T),
+            K=self._free[0],
             f=f,
             load=loads,
-            C_n=sp.csr_array(C_n @ T),
-            C_t=sp.csr_array(C_t @ T),
+            C_n=self._free[1],
+            C_t=self._free[2],
             gap=gap,
             laws=self.laws,
             R=self.supported.R,

@@ -29,6 +29,7 @@ import scipy.sparse as sp
 
 from concio.errors import InputError
 from concio.problem.cone import Cone
+from concio.problem.once import once
 from concio.problem.tolerances import SMOOTH
 from concio.representation import short_repr
 
@@ -175,13 +176,8 @@ class ContactProblem:
             if not np.isfinite(getattr(self, name)).all():
                 msg = f"{name} holds a value that is not finite"
                 raise InputError(msg)
-        if (np.abs(self.R.multiply(self.R).sum(axis=0) - 1.0) > 1e-6).any():
-            msg = "the rigid motions R are not of length one"
-            raise InputError(msg, hint="make the columns of each body orthonormal")
-        moved = self.R @ np.cos(np.arange(self.R.shape[1]) + 1.0)  # some mixture of all rigid motions
-        if (np.abs(self.K @ moved) > 1e-6 * (abs(self.K) @ np.abs(moved))).any():
-            msg = "R holds motions that deform a body: K R is not zero"
-            raise InputError(msg, hint="leave the motions out that supports or springs resist")
+        if fault := _motions_fault(self.K, self.R):
+            raise InputError(fault[0], hint=fault[1])
         bound = self.laws.friction * self.laws.tension - self.laws.cohesion
         if (bound > SMOOTH * self.laws.cohesion).any():
             k = int(np.argmax(bound))
@@ -263,4 +259,19 @@ def _mass_matrix(given: sp.csr_array | Array, n: int) -> sp.csr_array:
     """Return a mass matrix of n unknowns, of one, of its diagonal, or of nothing: ones."""
     if isinstance(given, np.ndarray):
         return sp.csr_array(sp.diags_array(given if given.size else np.ones(n)))
+    if given.shape[0] and isinstance(given, sp.csr_array):
+        return given
     return sp.csr_array(given if given.shape[0] else sp.eye_array(n))
+
+
+@once
+def _motions_fault(K: sp.csr_array, R: sp.csc_array) -> tuple[str, str] | None:
+    """Return what is wrong with rigid motions R for the stiffness K, with a hint; None where nothing is."""
+    if (np.abs(R.multiply(R).sum(axis=0) - 1.0) > 1e-6).any():
+        return "the rigid motions R are not of length one", "make the columns of each body orthonormal"
+    moved = R @ np.cos(np.arange(R.shape[1]) + 1.0)  # some mixture of all rigid motions
+    if (np.abs(K @ moved) > 1e-6 * (abs(K) @ np.abs(moved))).any():
+        return "R holds motions that deform a body: K R is not zero", (
+            "leave the motions out that supports or springs resist"
+        )
+    return None

@@ -16,6 +16,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.once import once
 from concio.representation import short_repr
 
 
@@ -56,12 +57,18 @@ def connected_parts(problem: ContactProblem) -> Parts:
     ----------
     problem : ContactProblem
     """
-    n, m = problem.unknowns, problem.pairs
-    sizes = np.diff(problem.bodies)
+    return _connected(problem.K, problem.C_n, problem.C_t, problem.bodies)
+
+
+@once
+def _connected(K: sp.csr_array, C_n: sp.csr_array, C_t: sp.csr_array, bodies: Array) -> Parts:
+    """Return the connected parts of matrices."""
+    m, n = C_n.shape
+    sizes = np.diff(bodies)
     body = np.repeat(np.arange(sizes.size), sizes)  # of each unknown
-    links = [_links(problem.K, body, body)]
+    links = [_links(K, body, body)]
     rows = np.arange(m) + sizes.size  # every pair is a node beside the bodies
-    links += [_links(problem.C_n, rows, body), _links(problem.C_t, np.repeat(rows, problem.dim - 1), body)]
+    links += [_links(C_n, rows, body), _links(C_t, np.repeat(rows, C_t.shape[0] // max(m, 1)), body)]
     start, end = np.concatenate(links, axis=1)
     nodes = sizes.size + m
     graph = sp.csr_array((np.ones(start.size, dtype=np.int8), (start, end)), shape=(nodes, nodes))

@@ -9,6 +9,7 @@ import pytest
 
 import concio
 from concio import Candidate, InputError, Measurement
+from concio.analysis.cracks import forward, search
 from concio.analysis.cracks.cause import Cause
 from concio.analysis.cracks.diagnose import expected
 from concio.analysis.cracks.forward import Forward
@@ -128,6 +129,48 @@ def test_that_there_is_no_cause_is_told_of_fine_paths_alone() -> None:
     one = diagnosed(flat_arch(), cracks, [GIVES], method="steps")
     assert one.verdict.status == "one_cause"
     assert one.forward.steps == 4
+
+
+def test_measurements_are_left_out_of_choices_that_are_simpler_than_a_cause_alone(monkeypatch) -> None:
+    asked = []
+
+    def without(fitter, fit, confidence):
+        asked.append(fit.chosen)
+        return []
+
+    monkeypatch.setattr(search, "without_one", without)
+    one = diagnosed(flat_arch(), spread_cracks(0.01), [GIVES, SINKS, TURNS])
+    assert [c.names for c in one.causes] == [("left gives way",)]
+    assert asked == [()]
+    asked.clear()
+    cracks = spread_cracks(0.01)
+    cracks[1] = dataclasses.replace(cracks[1], value=10 * cracks[1].value)
+    none = diagnosed(flat_arch(), cracks, [GIVES], most=1)
+    assert none.causes == ()
+    assert asked[:2] == [(), (0,)]
+
+
+def test_paths_in_steps_lead_to_the_same_readings_by_either_solver(monkeypatch) -> None:
+    options = {"method": "steps"}
+    quick = predicted(flat_arch(), spread_cracks(0.0), [GIVES, SINKS], [0.01, 0.002], **options)
+    monkeypatch.setattr(Forward, "_solvers", ("auto",))
+    sure = predicted(flat_arch(), spread_cracks(0.0), [GIVES, SINKS], [0.01, 0.002], **options)
+    np.testing.assert_allclose(quick, sure, rtol=1e-6, atol=1e-9)
+
+
+def test_a_path_that_the_quick_solver_loses_is_followed_by_the_sure_one(monkeypatch) -> None:
+    tried = []
+    follow = forward.run_path
+
+    def lost(assembly, stages, *, solver="auto", **options):
+        tried.append(solver)
+        if solver == "interior-point":
+            raise concio.SolverError("lost")
+        return follow(assembly, stages, solver=solver, **options)
+
+    monkeypatch.setattr(forward, "run_path", lost)
+    predicted(flat_arch(), spread_cracks(0.0), [GIVES], [0.01], method="steps")
+    assert tried[-2:] == ["interior-point", "auto"]
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ together in proportion: the openings are piecewise linear along the way and depe
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -125,15 +126,29 @@ class Forward:
             return self.predict(motions)
         return self._followed([np.asarray(motions, dtype=float)], times * self.steps)
 
+    @property
+    def _solvers(self) -> tuple[str, ...]:
+        """Solvers of the steps of a path: what fails by the first is followed again by the next.
+
+        A step that the interior point does not solve is halved by it, where ``auto`` would look for where the structure
+        comes to rest: many times the work, of the same answer where half a step is solved.
+        """
+        quick = self.method == "steps" and self.assembly.model.dim == 2
+        return ("interior-point", "auto") if quick else ("auto",)
+
     def _followed(self, ends: Sequence[Array] | Array, steps: int) -> Prediction:
         """Return the state at the last of some motions, each followed from the one before."""
         self.runs += 1
         loaded = self.loaded
-        stages = self.moved.stages(ends, steps)
-        try:
-            path = run_path(self.assembly, stages, method=self.method, restart=(loaded, len(loaded.steps) - 1))
-        except SolverError:
-            path = loaded
+        path = loaded
+        for solver in self._solvers:
+            with suppress(SolverError):
+                path = run_path(
+                    self.assembly, self.moved.stages(ends, steps), method=self.method, solver=solver,
+                    restart=(loaded, len(loaded.steps) - 1),
+                )  # fmt: skip
+            if path.complete and path is not loaded:
+                break
         last = path.steps[-1]
         u = path.assembly.displacement(last.state.displacement, last.factors)
         reached = path is not loaded and path.complete and path.certified

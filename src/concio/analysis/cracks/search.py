@@ -94,7 +94,7 @@ def search(
     candidates = range(len(movers))
     n = len(fitter.value)
     accepted: list[Fit] = []
-    spoiled: list[Fit] = []
+    turned_down: list[Fit] = []
     trials: list[Trial] = []
     last = most
     for size in range(min(most, n - 1) + 1):
@@ -119,11 +119,12 @@ def search(
             if fit.misfit <= limit:
                 accepted.append(fit)
             else:
-                spoiled += without_one(fitter, fit, confidence)
+                turned_down.append(fit)
         if accepted and last == most:
             last = min(most, size + beyond)
     simplest = min((len(f.chosen) for f in accepted), default=n)
-    spoiled = [f for f in spoiled if len(f.chosen) < simplest]
+    fewer = [f for f in turned_down if len(f.chosen) < simplest]  # what is no simpler than a cause casts no doubt
+    spoiled = [f for fit in fewer for f in without_one(fitter, fit, confidence)]
 
     def rank(fit: Fit) -> tuple[int, int, float]:
         return len({movers[c] for c in fit.chosen}), len(fit.chosen), fit.misfit
