@@ -46,7 +46,7 @@ def push_lines(result: PushResult, *, every: bool = False) -> list[str]:
     shown = result.events if every else result.events[:EVENTS]
     for e in shown:
         at = f"{units.text('motion', float(d[e.step]))}, {number(float(load[e.step]), 4)}"
-        lines.append(f"  {at}: {e.bodies[0]} | {e.bodies[1]} {e.kind} at ({e.at[0]:.4g}, {e.at[1]:.4g})")
+        lines.append(f"  {at}: {e.bodies[0]} | {e.bodies[1]} {e.kind} at ({', '.join(f'{v:.4g}' for v in e.at)})")
     if len(shown) < len(result.events):
         lines.append(f"  {len(result.events) - len(shown)} more events: --all lists them")
     return lines + [f"Note: {n}" for n in result.notes]
@@ -92,7 +92,7 @@ def write_motion(result: PushResult | DynamicsResult, place: Path, films: tuple[
             **{
                 f"reaction {axis} of {name} [kN]": result.reaction[:, r, k]
                 for r, name in enumerate(result.reactions_of)
-                for k, axis in enumerate("xy")
+                for k, axis in enumerate("xyz"[: result.model.dim])
             },
             "residual [-]": result.residual,
         }
@@ -148,6 +148,6 @@ def _events(result: PushResult) -> dict[str, np.ndarray]:
         "kind": np.array([e.kind for e in events], dtype=str),
         "body_a": np.array([e.bodies[0] for e in events], dtype=str),
         "body_b": np.array([e.bodies[1] for e in events], dtype=str),
-        "x [m]": np.array([e.at[0] for e in events], dtype=float),
-        "y [m]": np.array([e.at[1] for e in events], dtype=float),
-    }
+        **{f"{axis} [m]": np.array([e.at[k] for e in events], dtype=float)
+           for k, axis in enumerate("xyz"[: result.model.dim])},
+    }  # fmt: skip

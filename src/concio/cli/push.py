@@ -46,11 +46,17 @@ def push(
         bool, typer.Option("--weights", help="Multiply all weights, with vertical loads, as assess does.")
     ] = False,
     direction: Annotated[
-        Literal["x", "-x", "y", "-y"] | None,
-        typer.Option("--direction", "-d", help="Direction of the load; default x for a share of the weights."),
+        str | None,
+        typer.Option(
+            "--direction", "-d", help="Direction of the load: x, -y, or components '1,0.5'; default x for the weights."
+        ),
     ] = None,
-    point: Annotated[str | None, typer.Option("--point", "-p", help="Control point: BODY,X,Y.")] = None,
-    along: Annotated[Literal["x", "y", "-x", "-y"], typer.Option("--along", help="Direction of its motion.")] = "x",
+    point: Annotated[
+        str | None, typer.Option("--point", "-p", help="Control point: BODY,X,Y, in space BODY,X,Y,Z.")
+    ] = None,
+    along: Annotated[
+        Literal["x", "y", "z", "-x", "-y", "-z"], typer.Option("--along", help="Direction of its motion.")
+    ] = "x",
     load: Annotated[bool, typer.Option("--load", help="Control the load instead of a displacement.")] = False,
     step: Annotated[str | None, typer.Option("--step", help="Largest step: '5 mm', or a multiplier.")] = None,
     until: Annotated[str | None, typer.Option("--until", help="Displacement (or multiplier) at which to stop.")] = None,
@@ -88,11 +94,10 @@ def push(
     model = loaded(file, units, engine)
     kind = "number" if load else "length"
     sizes = [None if t is None else quantity(t, kind, where=w) for t, w in ((step, "--step"), (until, "--until"))]
-    sides = {"x": (1.0, 0.0), "-x": (-1.0, 0.0), "y": (0.0, 1.0), "-y": (0.0, -1.0)}
-    towards = None if direction is None else sides[direction]
+    towards = None if direction is None else _direction(direction, model.dim)
     with progress_bar(shown=not json) as progress:
         found = concio.push(
-            model, control="load" if load else None if point is None else control_of(point, along),
+            model, control="load" if load else None if point is None else control_of(point, along, model.dim),
             live=() if weights else group or None, direction=towards, step=sizes[0], until=sizes[1], smallest=smallest,
             factors=factors_of(factor), progress=progress,
         )  # fmt: skip
@@ -110,3 +115,19 @@ def push(
     if found.ending is PushEnding.STOPPED:
         return 130
     return found.verdict.exit_code
+
+
+def _direction(text: str, dim: int) -> tuple[float, ...]:
+    """Return the direction that a text names: an axis, or components with commas."""
+    from concio.errors import InputError
+
+    axes = {f"{sign}{axis}": tuple((-1.0 if sign else 1.0) * (k == i) for i in range(dim))
+            for sign in ("", "-") for k, axis in enumerate("xyz"[:dim])}  # fmt: skip
+    if text in axes:
+        return axes[text]
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        msg = f"'{text}' is not a direction"
+        hint = f"one of {', '.join(axes)}, or components such as '1,0.5'"
+        raise InputError(msg, where="--direction", hint=hint) from None

@@ -121,11 +121,11 @@ def _events(result: PushResult) -> str:
         f"<tr><td class=n>{number(1e3 * float(result.displacement[e.step]), 4)}</td><td class=n>"
         f"{number(float(result.multiplier[e.step]), 4)}</td><td>{escape(e.bodies[0])}</td>"
         f"<td>{escape(e.bodies[1])}</td>"
-        f"<td>{escape(e.kind)}</td><td class=n>{number(e.at[0], 4)}</td><td class=n>{number(e.at[1], 4)}</td></tr>"
+        f"<td>{escape(e.kind)}</td>{''.join(f'<td class=n>{number(v, 4)}</td>' for v in e.at)}</tr>"
         for e in result.events[:SHOWN]
     )
     more = f"<p>{len(result.events) - SHOWN:,} more.</p>" if len(result.events) > SHOWN else ""
-    words = ("at [mm]", "multiplier", "between", "and", "happens", "x [m]", "y [m]")
+    words = ("at [mm]", "multiplier", "between", "and", "happens", *("x [m]", "y [m]", "z [m]")[: result.model.dim])
     head = "".join(f"<th>{w}</th>" for w in words)
     table = f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
     return f"<h2>Events</h2><div class=scroll>{table}</div>{more}"

@@ -118,7 +118,7 @@ def _outcome(found: PushResult) -> Outcome:
 
 def _question(found: PushResult) -> Question:
     until = "" if found.until is None else f", to {_control(found, found.until)}"
-    to_side = f"the side ({found.direction[0]:.4g}, {found.direction[1]:.4g})"
+    to_side = f"the side ({', '.join(f'{v:.4g}' for v in found.direction)})"
     grows = ", ".join(found.live) if found.live else f"a share of the weights to {to_side}"
     asked = f"the multiplier of {grows} over a growing displacement, from equilibrium{until}, where the bodies stand"
     if found.by_load:

@@ -335,5 +335,3 @@ def test_bad_input_of_a_motion_in_space_is_told_in_words():
         concio.dynamics(model, {"w": pulse})
     with pytest.raises(concio.InputError, match=r"\(v_x, v_y, v_z\) or \(v_x, v_y, v_z, w_x, w_y, w_z\)"):
         concio.dynamics(model, duration=0.1, velocities={"b0": (1.0, 0.0)})
-    with pytest.raises(concio.InputError, match="a push at large displacements is computed in the plane"):
-        concio.push(model)

@@ -28,18 +28,18 @@ class JointEvent:
         "yields" and "breaks".
     bodies : (str, str)
         Of a tie its name and the body at its end.
-    at : (x, y)
+    at : (x, y), in space (x, y, z)
         Where it happens, in the displaced structure [m].
     """
 
     step: int
     kind: str
     bodies: tuple[str, str]
-    at: tuple[float, float]
+    at: tuple[float, ...]
 
     def __str__(self) -> str:
         a, b = self.bodies
-        return f"{self.step}: {a} | {b} {self.kind} at ({self.at[0]:.4g}, {self.at[1]:.4g})"
+        return f"{self.step}: {a} | {b} {self.kind} at ({', '.join(f'{v:.4g}' for v in self.at)})"
 
 
 def joint_events(
@@ -67,8 +67,7 @@ def joint_events(
     for kind, hit in kinds:
         for i in np.flatnonzero(hit).tolist():
             names = (model.bodies[int(slots.body_a[i])].name, model.bodies[int(slots.body_b[i])].name)
-            x, y = (float(v) for v in rows.point[i])
-            found.append(JointEvent(step, kind, names, (x, y)))
+            found.append(JointEvent(step, kind, names, tuple(rows.point[i].tolist())))
     return found
 
 
@@ -78,7 +77,7 @@ def tie_events(model: Model, places: Array, before: TieMemory, after: TieMemory,
     Parameters
     ----------
     model : Model
-    places : (k, 2) array
+    places : (k, d) array
         Of their first ends [m].
     before, after : TieMemory
     step : int
@@ -92,5 +91,5 @@ def tie_events(model: Model, places: Array, before: TieMemory, after: TieMemory,
         for i in np.flatnonzero(hit).tolist():
             tie = model.ties[i]
             names = (f"tie {tie.name}", tie.body_a or tie.body_b)
-            found.append(JointEvent(step, kind, names, (float(places[i, 0]), float(places[i, 1]))))
+            found.append(JointEvent(step, kind, names, tuple(places[i].tolist())))
     return found

@@ -10,6 +10,8 @@ from concio.analysis.motion.state import MotionState
 from concio.contact.reference import Reference
 from concio.contact.slots import KINDS
 
+Array = np.ndarray
+
 SHARE = 0.3
 """Share of an interval at which the next value is taken where no chord bounds it from one side."""
 
@@ -31,15 +33,29 @@ def ties_give_way(before: MotionState, after: MotionState) -> bool:
 
 def touching(reference: Reference, state: MotionState) -> dict[frozenset[int], float]:
     """Return the largest force of the pairs of bodies that press or hold each other [kN]."""
-    memory, body = state.memory, reference.edges.body
+    memory = state.memory
     found: dict[frozenset[int], float] = {}
     carries = np.flatnonzero(memory.force.any(axis=1))
-    first, second = np.divmod(memory.key[carries] // KINDS, len(body))
+    first, second = _bodies(reference, memory.key[carries])
     size = np.abs(memory.force[carries]).max(axis=1)
-    for a, b, force in zip(body[first].tolist(), body[second].tolist(), size.tolist(), strict=True):
+    for a, b, force in zip(first.tolist(), second.tolist(), size.tolist(), strict=True):
         pair = frozenset((a, b))
         found[pair] = max(found.get(pair, 0.0), force)
     return found
+
+
+def _bodies(reference: Reference, key: Array) -> tuple[Array, Array]:
+    """Return the bodies (k,) on both sides of pairs of given names (k,)."""
+    if reference.disc.dim == 2:
+        body = reference.edges.body
+        first, second = np.divmod(key // KINDS, len(body))
+        return body[first], body[second]
+    solids = reference.solids
+    on_face, first, second = solids.features(key)
+    found = np.empty((2, len(key)), dtype=int)
+    found[:, on_face] = solids.body[first[on_face]], solids.face_body[second[on_face]]
+    found[:, ~on_face] = solids.edge_body[first[~on_face]], solids.edge_body[second[~on_face]]
+    return found[0], found[1]
 
 
 def meetings(reference: Reference, before: MotionState, after: MotionState) -> set[frozenset[int]]:

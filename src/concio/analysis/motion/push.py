@@ -15,7 +15,6 @@ from concio.analysis.motion.push_asked import (
     control_asked,
     direction_asked,
     factors_asked,
-    in_the_plane,
     live_asked,
     side_asked,
 )
@@ -65,16 +64,18 @@ def push(
     Parameters
     ----------
     model : Model
-        Plane; elastic, rigid and fixed bodies, with every joint law, support, tie and load.
+        With every support, tie and load. In the plane elastic, rigid and fixed bodies with every joint law; in space
+        rigid and fixed ones on joints that have friction alone.
     control : ControlPoint or "load", optional
         What grows: the displacement of a point, the load, or by default the mean displacement on which the load works
         (for a share of the weights, the mean displacement of the masses).
     live : str or sequence of str, optional
         Load groups that the multiplier scales. By default the group "live", and where a model has none a share of all
         weights along ``direction``: self-weights and loads from above, as in :func:`concio.assess`.
-    direction : float or (x, y), optional
-        Direction of that share, by default along x; 1 or -1 is along x. Of load groups that are multiplied, the side to
-        which they push: where their resultant points to the other side they grow with the opposite sign.
+    direction : float, (x, y) or (x, y, z), optional
+        Direction of that share, by default along x; 1 or -1 is along x, (x, y) horizontal in space. Of load groups
+        that are multiplied, the side to which they push: where their resultant points to the other side they grow with
+        the opposite sign.
     step : float, optional
         Largest step of the controlled displacement [m], default a twentieth of the bodies' width; under load control
         of the multiplier, default 0.05.
@@ -119,10 +120,10 @@ def push(
     >>> round(float(pushed.peak), 4), round(float(pushed.capacity), 4)
     (0.25, 0.25)
     """
-    reference = in_the_plane(Reference.of(model, gravity))
+    reference = Reference.of(model, gravity)
     chosen = factors_asked(reference, factors)
     groups = stated = live_asked(reference, live)
-    along = direction_asked(1.0 if direction is None else direction)
+    along = direction_asked(1.0 if direction is None else direction, reference.disc.dim)
     sign = side_asked(reference, groups, chosen, None if direction is None else along)
     if not stated:
         groups = (free_group(model),)

@@ -24,14 +24,6 @@ ASIDE = 1e-6
 """Share of a resultant along a direction below which it points aside."""
 
 
-def in_the_plane(reference: Reference) -> Reference:
-    """Return a reference in the plane; refuse one in space."""
-    if reference.disc.dim != 2:
-        msg = "the model is in space; a push at large displacements is computed in the plane"
-        raise InputError(msg, hint="take a plane section of the structure")
-    return reference
-
-
 def what_moves(reference: Reference, found: Balanced) -> tuple[str, tuple[str, ...]]:
     """Return words on the block that moves away most and how many others go with it, and the names of them all."""
     size = np.abs(found.moved)
@@ -87,14 +79,15 @@ def live_asked(reference: Reference, live: str | Sequence[str] | None) -> tuple[
     return wanted
 
 
-def direction_asked(direction: float | Sequence[float]) -> Array:
-    """Return the unit vector (2,) of a direction that was given."""
-    given = np.array([direction, 0.0] if np.ndim(direction) == 0 else direction, dtype=float)
-    size = float(np.linalg.norm(given)) if given.shape == (2,) else np.nan
+def direction_asked(direction: float | Sequence[float], dim: int) -> Array:
+    """Return the unit vector (d,) of a direction that was given; a horizontal one in space may have two components."""
+    given = np.array([direction] if np.ndim(direction) == 0 else direction, dtype=float)
+    size = float(np.linalg.norm(given)) if given.shape in ((1,), (2,), (dim,)) else np.nan
     if not 0 < size < np.inf:
         msg = f"direction = {direction} is not a direction"
-        raise InputError(msg, hint="1 or -1 along x, or (x, y)")
-    along: Array = given / size
+        hint = "1 or -1 along x, or (x, y)" if dim == 2 else "1 or -1 along x, a horizontal (x, y), or (x, y, z)"
+        raise InputError(msg, hint=hint)
+    along: Array = np.append(given, np.zeros(dim - len(given))) / size
     return along
 
 
@@ -109,7 +102,8 @@ def side_asked(
     force = unit[Frames(reference, Scheme()).places].sum(axis=0)
     part = float(force @ along)
     if abs(part) <= ASIDE * float(np.linalg.norm(force)) or not part:
-        msg = f"the loads of {', '.join(groups)} have no resultant along the direction ({along[0]:g}, {along[1]:g})"
+        way = ", ".join(f"{v:g}" for v in along)
+        msg = f"the loads of {', '.join(groups)} have no resultant along the direction ({way})"
         hint = "leave the direction out, or multiply a share of the weights: live=(), on the command line --weights"
         raise InputError(msg, where="direction", hint=hint)
     return float(np.sign(part))

@@ -155,7 +155,7 @@ class PushCurve:
         return PushEnding.STOPPED
 
     def _tie_ends(self, state: MotionState) -> Array:
-        """Return where the first ends of the ties are (k, 2) [m]."""
+        """Return where the first ends of the ties are (k, d) [m]."""
         return self.statics.maker.ties.a.positions(state.placement, state.strain)
 
     def _meeting(self, before: MotionState, after: MotionState) -> set[frozenset[int]]:

@@ -17,6 +17,7 @@ from concio.contact.points import Followed
 from concio.contact.reference import Configuration, Reference
 from concio.errors import InputError
 from concio.kinematics.placement import Placement
+from concio.kinematics.spins import rotation_vector, turned_from
 from concio.model.model import Model
 from concio.model.stages import ControlPoint
 from concio.problem.tolerances import CERTIFIED
@@ -55,8 +56,8 @@ class PushResult(Shown):
         Worst relative violation of any equation in the displaced structure: the certificate of each point.
     centre : (n, B, d) array
         Centroids of all bodies [m].
-    rotation : (n, B) array
-        Anticlockwise [rad].
+    rotation : (n, B) array in the plane, (n, B, 3, 3) in space
+        Anticlockwise [rad]; rotation matrices in space.
     strain : (n, nodes, d) array
         Displacements of nodes of elastic bodies in the frames of their bodies [m].
     reaction : (n, r, d) array
@@ -65,9 +66,9 @@ class PushResult(Shown):
     events : tuple of JointEvent
     live : tuple of str
         Load groups that the multiplier scales; empty where it scales a share of the weights.
-    direction : (2,) array
+    direction : (d,) array
         Of that share.
-    force : (2,) array
+    force : (d,) array
         Resultant of the loads at a multiplier of one, in the structure as described [kN].
     factors : mapping of str to float
     control : ControlPoint or None
@@ -189,18 +190,19 @@ class PushResult(Shown):
         -------
         velocity : (B, d) array
             Of the centroids; zero for bodies that stand.
-        rotation : (B,) array
-            Anticlockwise [rad/m].
+        rotation : (B,) array in the plane, (B, 3) in space
+            Anticlockwise; in space vectors [rad/m].
         """
         k = range(len(self))[step]
         if k == 0:
             k = 1
         grown = self.displacement[k] - self.displacement[k - 1]
         grown = grown if grown else 1.0
-        return (self.centre[k] - self.centre[k - 1]) / grown, (self.rotation[k] - self.rotation[k - 1]) / grown
+        turned = turned_from(self.rotation[k - 1], self.rotation[k])
+        return (self.centre[k] - self.centre[k - 1]) / grown, turned / grown
 
     def rotation_of(self, body: str) -> Array:
-        """Return the rotation of a body at every point, anticlockwise (n,) [rad].
+        """Return the rotation of a body at every point, anticlockwise (n,), in space vectors (n, 3) [rad].
 
         Examples
         --------
@@ -217,7 +219,7 @@ class PushResult(Shown):
             msg = f"there is no body called '{body}'"
             raise InputError(msg, hint=closest(body, names, otherwise="see the names with 'concio check'"))
         turned: Array = self.rotation[:, names.index(body)]
-        return turned
+        return turned if self.model.dim == 2 else rotation_vector(turned)
 
     @cached_property
     def verdict(self) -> Verdict:

@@ -63,6 +63,8 @@ REACHED = 1e-6
 FAR = 0.5
 """Displacement in one equilibrium, over the width of a body, beyond which the structure moves away."""
 
+_NONE: Array = np.zeros(0, dtype=np.int64)
+
 
 @dataclass(frozen=True, eq=False)
 class Balanced:
@@ -156,11 +158,10 @@ class Statics(SmallDisplacements):
         repeated = 0
         for iteration in range(1, most + 1):
             look = self._looked(here, memory, slid, multiplier)
+            if look.memory.key is not memory.key or iteration == 1:
+                slid = self._carried(look, memory.key if iteration > 1 else _NONE, slid, since or state, here)
+                look = self._looked(here, look.memory, slid, multiplier)
             memory = look.memory
-            if since is not None and iteration == 1:
-                slid = self.slipped(look, since, state)
-                look = self._looked(here, memory, slid, multiplier)
-            slid = slid if len(slid) == len(memory.key) else np.zeros((len(memory.key), slid.shape[1]))
             p = self.problem(look, multiplier, resistance.level)
             found = self._solved(p, *_guess(p, memory, found))
             if target is not None:
@@ -185,6 +186,16 @@ class Statics(SmallDisplacements):
         if target is not None and abs(target - done) > REACHED * (abs(target) + STILL * self.width):
             return replace(answer, found=False)  # an equilibrium, but at another displacement
         return answer
+
+    def _carried(self, look: Look, key: Array, slid: Array, origin: MotionState, here: MotionState) -> Array:
+        """Return slips (m, d-1) by the names of a new layout: pairs without one before have what their points moved."""
+        found = self.slipped(look, origin, here)
+        if len(key):
+            order = np.argsort(key, kind="stable")
+            at = order[np.minimum(np.searchsorted(key, look.memory.key, sorter=order), len(order) - 1)]
+            known = key[at] == look.memory.key
+            found[known] = slid[at[known]]
+        return found
 
     def _looked(self, state: MotionState, memory: Memory, slid: Array, multiplier: float) -> Look:
         """Return what is found where the bodies stand; the solver forgets what it kept of other pairs."""
