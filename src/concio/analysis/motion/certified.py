@@ -139,7 +139,8 @@ class Certificate:
             return float("inf")
         residual = p.residual(np.zeros(self.frames.n), t)[0]
         wrong = self._slips(slots, rows, before, state, slid, t[: len(slots), 0] > 0)
-        if self.original.deepest(state.centre, state.rotation, state.strain, HIDDEN) > 1.0:
+        sunk = self.joints.lent * float(t[: len(slots), 0].max(initial=0.0))  # as far as added compliance explains it
+        if self.original.deepest(state.centre, state.rotation, state.strain, HIDDEN, sunk) > 1.0:
             return float("inf")
         return max(residual, wrong)
 

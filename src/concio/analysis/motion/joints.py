@@ -42,6 +42,9 @@ ways, and rounding of their places would choose among them again in every step."
 MOST_SAG = 20.0
 """Depth over that up to which a hard joint is sunk in by force; beyond, it was an impact felt late."""
 
+PRESSED = 2.0
+"""The same over the depth that a force and the added compliance explain, where that is more."""
+
 SOFT = 2e-3
 """Compliance of a hard joint in one step over what its bodies give way under a force; of an impact it is taken back."""
 
@@ -167,7 +170,7 @@ class Joints:
             near |= struck
             shift[struck, 0] += self.scheme.restitution * y0[struck, 0]
         else:
-            shift[:, 0] += settle * np.clip(gap, -MOST_SAG * self.sag, self.sag)
+            shift[:, 0] += settle * np.clip(gap, -self.pressed(a_n, memory.force[:, 0]), self.sag)
             shift[:, 1:] += settle[:, None] * memory.stretch
         data = PairData(
             rows.columns, rows.values, shift, cone, settle * a_n, settle * a_t, self.laws.dilatancy[slots.law],
@@ -205,6 +208,10 @@ class Joints:
         return data, JointStep(
             springy, a_n, a_t, gap, at_rest, bonded, springs, area, zero, zero, np.zeros(len(slots), dtype=bool)
         )
+
+    def pressed(self, a_n: Array, force: Array) -> Array:
+        """Return depths (m,) up to which hard joints of compliance a_n are sunk in by force: more under tall stacks."""
+        return np.maximum(MOST_SAG * self.sag, PRESSED * a_n * force)
 
     def _struck(
         self, rows: Rows, gap: Array, y0: Array, lasting: Array, springs: Springs | None, h: float, speed: float

@@ -206,7 +206,8 @@ class Stepper:
         end = joint.gap + h * y[:, 0] - 0.5 * h * joint.y0[:, 0] + memory.crushing - memory_before.crushing
         parting = relative(rows.columns, rows.values, found.x) + rows.imposed
         resting = np.where(h * parting[:, 0] > -RETURN * end, np.maximum(end, 0.0), end)  # others leave by themselves
-        apart = moved_apart(data, joint, resting, maker.joints.sag, self._movable, slots.body_a, slots.body_b)
+        pressed = maker.joints.pressed(joint.a_n, np.minimum(memory_before.force[:, 0], found.t[:m, 0]))
+        apart = moved_apart(data, joint, resting, pressed, self._movable, slots.body_a, slots.body_b)
         works["drift"] -= float(loads @ apart)
         if self.reference.loads.followers:
             works["input"] += float(self.reference.loads.following(drive.factors, turn) @ (h * x + apart))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from concio.analysis.motion.joint_step import JointStep, PairData
-from concio.analysis.motion.joints import MOST_SAG
 
 Array = np.ndarray
 
@@ -14,7 +13,7 @@ SWEEPS = 3
 
 
 def moved_apart(
-    data: PairData, step: JointStep, end: Array, sag: float, mass: Array, body_a: Array, body_b: Array
+    data: PairData, step: JointStep, end: Array, pressed: Array, mass: Array, body_a: Array, body_b: Array
 ) -> Array:
     """Return the displacement (N,) that moves apart what has sunk in, averaged over the pairs of each body.
 
@@ -24,26 +23,27 @@ def moved_apart(
     step : JointStep
     end : (m,) array
         Gaps at the end of the step [m].
-    sag : float
-        Depth to which hard joints sink in by force [m].
+    pressed : (m,) array
+        Depths to which hard joints may be sunk in by force [m].
     mass : (N,) array
         Mass of each unknown that may be moved; infinite where it may not.
     body_a, body_b : (m,) integer arrays
     """
     n = len(mass)
     moved = np.zeros(n + 1)
-    sunk = np.flatnonzero(data.active & ~step.springy & (end < -MOST_SAG * sag))
+    sunk = np.flatnonzero(data.active & ~step.springy & (end < -pressed))
     if not len(sunk):
         return moved[:n]
     columns, rows = data.columns[sunk], data.values[sunk, 0]
     inverse = np.append(1.0 / mass, 0.0)
     give = (rows**2 * inverse[columns]).sum(1)
     sunk, columns, rows, give = (v[give > 0] for v in (sunk, columns, rows, give))
+    left = 0.5 * pressed[sunk]
     count = np.bincount(np.concatenate([body_a[sunk], body_b[sunk]]))
     shared = np.maximum(count[body_a[sunk]], count[body_b[sunk]])
     for _ in range(SWEEPS):
         gap = end[sunk] + (rows * moved[columns]).sum(1)
-        push = np.maximum(-gap - 0.5 * MOST_SAG * sag, 0.0) / (give * shared)
+        push = np.maximum(-gap - left, 0.0) / (give * shared)
         added = np.bincount(columns.ravel(), (rows * push[:, None]).ravel(), n + 1)
         moved += inverse * added
     return moved[:n]
