@@ -37,6 +37,7 @@ CASES: dict[str, str] = {
     "sphere_on_base": "Sphere and cube on a plane, pressed and pushed",
     "rocking_block": "Free-standing blocks that rock",
     "moving_blocks": "Blocks that fly, slide, bounce and are pushed over",
+    "motion_in_space": "Rigid blocks that move in space",
     "mesh_orders": "Orders of convergence",
 }
 """Name of each module and the title of its section in the validation book, in the book's order."""
