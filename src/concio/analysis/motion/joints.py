@@ -211,7 +211,7 @@ class Joints:
 
     def pressed(self, a_n: Array, force: Array) -> Array:
         """Return depths (m,) up to which hard joints of compliance a_n are sunk in by force: more under tall stacks."""
-        return np.maximum(MOST_SAG * self.sag, PRESSED * a_n * force)
+        return np.asarray(np.maximum(MOST_SAG * self.sag, PRESSED * a_n * force))
 
     def _struck(
         self, rows: Rows, gap: Array, y0: Array, lasting: Array, springs: Springs | None, h: float, speed: float
