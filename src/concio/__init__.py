@@ -85,7 +85,7 @@ if TYPE_CHECKING:
     from concio.studies.variables import Variable, variable
     from concio.verdict.verdict import Outcome, Verdict
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _HOMES = {
     "concio.analysis.bridges.assess_bridge": ("assess_bridge",),
