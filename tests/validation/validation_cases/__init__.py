@@ -17,6 +17,7 @@ CASES: dict[str, str] = {
     "fill_as_blocks": "Fill as blocks beside fill as a rule",
     "loaded_bridges": "Bridges that were loaded to failure",
     "block_on_base": "Block that slides or topples",
+    "worked_examples": "Worked examples of open textbooks",
     "corners_and_edges": "Blocks on corners and edges",
     "stack_between_walls": "Wall friction in a stack between walls",
     "strip_on_base": "Elastic strip pulled along a base",

@@ -1,15 +1,15 @@
 r"""Least thickness of a hemispherical dome under its own weight, radial joints, friction 0.7.
 
-A dome of so many rings and lunes; under its own weight all lunes move alike, so that one lune between two frictionless
-vertical planes stands for it: a lune can push its neighbours, not pull them. Each piece is rigid and has the weight and
-the centroid of its part of the shell; the joints between rings are met at their two edges on the middle plane of the
-lune, meridian faces at their four corners. The thickness at which forces in balance cease to exist is bracketed by
-proofs on both sides. With an oculus the hoop that closes it is missing below less and less of the dome, and thinner
-domes stand. The literature has 0.042 for the closed hemisphere. Friction matters below 0.25 only; of segmental domes,
-which end above the horizontal, it decides: the forces cross from one face to the other over a length of about t / mu,
-which rings must resolve, and so thin domes need many.
+The dome is divided into rings and lunes. Under its own weight all lunes move alike. One lune between two frictionless
+vertical planes therefore represents the dome: a lune can push its neighbours, but not pull them. Each piece is rigid
+and has the weight and the centroid of its part of the shell; the joints between rings are met at their two edges on the
+middle plane of the lune, meridian faces at their four corners. The thickness at which forces in balance cease to exist
+is bracketed by proofs on both sides. Domes with an oculus can be thinner. The literature gives 0.042 for the closed
+hemisphere. Friction affects the closed hemisphere only below 0.25, but it determines the thickness of segmental domes,
+which end above the horizontal. There the thrust crosses from one face to the other over a length of about t / mu. The
+rings must resolve this length, so that thin domes need many rings.
 
-The least horizontal thrust is what a springer on a smooth floor must be held with.
+The least horizontal thrust is the force that holds a springer on a smooth floor.
 """
 
 from __future__ import annotations

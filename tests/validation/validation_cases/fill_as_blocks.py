@@ -6,12 +6,12 @@ from the springing: the passive mechanism of a smooth wall. Its weight is that o
 the loaded side are those of the rule. Beside it stands the rule: weight alone (k = 0), and weight with a pressure of
 at most :math:`K_p(\varphi) \gamma z` on each voussoir.
 
-What the columns carry depends on joints that nobody sees. Where fill and arch are rough and columns smooth the blocks
-carry more than the rule, since columns hand pressure on from voussoir to voussoir, which the rule's cap on each does
-not. Where the arch is smooth, columns slip off it and the blocks carry less than the rule. Where columns are rough
-too they interlock as an arch of their own. Without friction and with k = 1 both are a fluid, and differ by what is
-handed on. The rule lies within what blocks give, which is wide: the share owed to the soil is to be read with that in
-mind.
+The load that the columns carry depends on the friction of joints that cannot be measured. If the joint between fill and
+arch is rough and the joints between columns are smooth, the blocks carry more than the rule: columns transfer pressure
+from voussoir to voussoir, and the rule caps the pressure on each voussoir. If the arch is smooth, the columns slip off
+and the blocks carry less than the rule. If the columns are rough as well, they form an arch of their own. Without
+friction and with k = 1 both models are a fluid; they differ by the pressure that columns transfer. The results with
+blocks cover a wide range, and the rule lies within it. The contribution of the soil has that uncertainty.
 """
 
 from __future__ import annotations

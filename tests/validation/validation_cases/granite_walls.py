@@ -151,7 +151,7 @@ def rows() -> list[Row]:
             bound(100.0),
             bound(100.0, True),
             1e-6,
-            "the bound does not know of elasticity",
+            "the bound does not depend on elasticity",
             "kN",
             check="second method",
         ),

@@ -6,11 +6,11 @@ its head at (X, Z) and its weight at x_g the forces act at their ends, :math:`(x
 \mu_1 \mu_2 (X - w)` at the limit.
 
 A block wider below than above, between two fixed plates that lean towards each other by 30 degrees, is held from
-tan 30 degrees on: the plates push it down, friction up. Between two vertical plates forces in balance exist at any
-friction, as both are there if someone pressed the plates together: nobody did, and the block falls. A wedge lying on
-the face of a notch slides off a slope of 30 degrees at tan 30 degrees, off one of 60 degrees at tan 60 degrees. The
-shapes are those that papers and programmes on rigid blocks compare their answers on; the least friction that admits any
-forces is asked of each, and a programme that looks for forces only, whatever they come from, says yes to all.
+tan 30 degrees on: the plates push it down, friction up. Between two vertical plates, forces in balance exist at any
+friction; they need a clamping force. There is no clamping force here, so that the block falls. A wedge on the face of a
+notch slides off a slope of 30 degrees at tan 30 degrees, off one of 60 degrees at tan 60 degrees. Papers on rigid
+blocks use these shapes for comparisons. The rows give the least friction that admits forces in balance. A static
+programme, which ignores how forces arise, accepts all of them.
 """
 
 from __future__ import annotations

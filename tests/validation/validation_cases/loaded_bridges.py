@@ -1,10 +1,10 @@
 r"""Bridges that were loaded to failure, beside one model for all of them.
 
-Measured loads are failures; what is computed is the bound of rigid blocks beyond which nothing is in equilibrium, at
-the position of the test. One set of assumptions serves every bridge and nothing is tuned: masonry and fill weigh 20
-kN/m3, joints slide with mu = 0.6, the load is a strip of 0.75 m across the whole bridge (Prestwood and the model
-bridges: 0.30 and 0.215 m) that spreads 1:2, the soil presses with at most k times the vertical stress, joints crush
-at 5 MPa in one line and not at all in the others. Spandrel walls, skew, backing and tension count nothing.
+The measured loads are failure loads. The computed load is the upper bound for rigid blocks at the position of the test:
+no equilibrium exists beyond it. All bridges have the same assumptions, and no parameter is fitted: masonry and fill
+weigh 20 kN/m3, joints slide with mu = 0.6, the load is a strip of 0.75 m across the whole bridge (Prestwood and the
+model bridges: 0.30 and 0.215 m) that spreads 1:2, the soil presses with at most k times the vertical stress, joints
+crush at 5 MPa in one line and not at all in the others. Spandrel walls, skew, backing and tension are neglected.
 
 Dimensions are those that papers on these tests quote; the reports of the tests were not at hand. Prestwood and
 Torksey come nearest to a plane test. At Preston and Bargower, which are skew, and at Dundee, Strathmashie and

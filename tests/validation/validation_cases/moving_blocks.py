@@ -8,7 +8,7 @@ r"""Flight, sliding, bouncing, and structures pushed over.
 * A disc thrown at v slides until it rolls, at 2/3 v (angular momentum about a point of the ground): a polygon of 240
   sides, which loses a little at each.
 * Painleve's rod, sliding on its tip at tan q = 2 with friction 2, has no acceleration under rigid Coulomb friction, or
-  two; impulses it has in every step.
+  two; the time-stepping scheme has impulses in every step.
 * A pillar pushed over: :math:`\lambda = \tan(\arctan(b/h) - \theta)`, zero where its centroid stands above its toe.
 * Arches under a horizontal share of their weight: four hinges; the multiplier by the static theorem on the arch as
   described, which the followed curve approaches from below as its first displacement vanishes.

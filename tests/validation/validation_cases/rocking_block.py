@@ -6,8 +6,9 @@ foot or the other:
 .. math:: \ddot\theta = -p^2 \bigl[\sin(\alpha - \theta) - \tfrac{a}{g}\cos(\alpha - \theta)\bigr],
 
 with energy :math:`\tfrac12\dot\theta^2 + p^2 \cos(\alpha - \theta)` kept between impacts and the angular velocity times
-:math:`1 - \tfrac32\sin^2\alpha` at each. The program is given none of this: it knows Coulomb's law at corners
-and restitution zero. A trilith (two columns, a free lintel of mass m) begins to rock at the same multiplier, and keeps
+:math:`1 - \tfrac32\sin^2\alpha` at each. The program uses none of these formulas: its input is Coulomb's law
+at corners and restitution zero. A trilith (two columns, a free lintel of mass m) begins to rock at the same multiplier,
+and keeps
 :math:`(1 - \tfrac32 \sin^2\alpha + 3\gamma\cos 2\alpha)/(1 + 3\gamma)` of its velocity, :math:`\gamma = m/2m_c`.
 A rectangular pulse overturns it if the energy given is enough to carry the centroid over the foot, an argument of
 Housner's that is exact as long as nothing hits the ground.

@@ -7,7 +7,7 @@ B alpha x sin(alpha x)), u_x = 0 and tau = mu sigma_x at x = h = w / 2, alpha is
 
     det [ alpha^2 I_j - nu g_j'(h) ;  g_j'(h) - mu alpha g_j(h) ] = 0,     I_j = integral of g_j from 0 to h.
 
-Both are closed forms that know nothing of contact algorithms.
+Both are closed forms, independent of contact algorithms.
 """
 
 from __future__ import annotations

@@ -8,9 +8,9 @@ material of :math:`|\sigma_1 - \sigma_2| \le 2c` (a polygon of 24 sides around M
 *Halved blocks.* The limit load of a dry wall of 3.2 x 2.1 m comes down to that of the continuum; what is left goes with
 the size of the blocks. So does the difference of displacements between bonded blocks and the continuum.
 
-*The paper's panel* hangs between two walls. With all joints closed and stuck, blocks and continuum agree. The real
-joints make it an arch that settles ten times as far: the picture. As a material with the strength of its cell it could
-not hang there at all, with its blocks it carries any multiple of the load: an arch of blocks has a size.
+*The paper's panel* hangs between two walls. With all joints closed and stuck, blocks and continuum agree. With
+joints that open, the panel is an arch that settles ten times as far (figure). A continuum with the strength of the cell
+cannot carry the load at all, while the blocks carry any multiple of it: their size is finite.
 """
 
 from __future__ import annotations
