@@ -173,7 +173,7 @@ def limit_stages(
         yield "friction", found
     bound = found.associated.multiplier
     if np.isnan(bound):
-        none = "not tried: no multiple of the load is in balance"
+        none = "not tried: no multiple of the load was found to be in balance"
         yield "bound", replace(found, search=none, path_note=none)
         return
     if path and dead.dim != 2:

@@ -249,8 +249,9 @@ class LimitResult(Shown):
         if not np.isnan(self.ties_whole):
             shown.append(self.ties_whole)
         elif self.path is None and self.untied is not None:  # nobody knows how far they are stretched
-            less = self.untied.multiplier
-            state = min(state, 0.0 if np.isnan(less) else less)
+            if np.isnan(self.untied.multiplier):
+                return float("nan")
+            state = min(state, self.untied.multiplier)
         known = [value for value in shown if not np.isnan(value)]
         low = min([*known, state])
         return max(float(low), 0.0) if known or np.isfinite(low) else float("nan")

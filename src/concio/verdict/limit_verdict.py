@@ -159,6 +159,8 @@ def _design(found: LimitResult, question: Question) -> str:
         )
     if math.isnan(low):
         return f"What Coulomb friction carries of {groups} is not known: no design value was found."
+    if not low > 0 and not (found.collapse_state is not None and found.state_counts):
+        return f"The design value of {groups} is zero: without what can break no multiple was shown to be carried."
     if not low > 0:
         text = f"The design value of {groups} is zero: a certified state lets the structure begin to move without it"
         if math.isnan(found.carried):
@@ -238,7 +240,7 @@ def _upper(found: LimitResult) -> str:
     if bound.locked:
         return f"There is no upper bound: {LOCKED}."
     if math.isnan(bound.multiplier):
-        return "There is no upper bound: no multiple of the load is in balance."
+        return "No upper bound was found: no multiple of the load was found to be in balance."
     top = bound.multiplier if bound.checked else bound.upper
     if math.isclose(top, low, rel_tol=SAME):
         return "No equilibrium exists beyond it: a mechanism proves that."
@@ -316,21 +318,24 @@ def _breakable(found: LimitResult) -> tuple[str, ...]:
     names = ", ".join(f"'{t.name}'" for t in ties[:MOST_TIES]) + (" ..." if len(ties) > MOST_TIES else "")
     yields = ""
     if found.path is None:
-        yields = "; no path was followed to see how far they stretch, and the design value is at most the bound "
-        "without them"
+        yields = (
+            "; no path was followed to see how far they stretch, and the design value is at most the bound without them"
+        )
     elif not math.isnan(found.ties_whole):
         yields = f"; on the path the first breaks at {found.ties_whole:.6g} or beyond that"
     less = found.untied.multiplier
-    alone = "no multiple is in balance" if math.isnan(less) else f"the bound is {less:.6g} times {named(found)}"
+    alone = "no bound was found" if math.isnan(less) else f"the bound is {less:.6g} times {named(found)}"
+    top = found.associated.multiplier
+    whole = "" if math.isnan(top) else f", with them {top:.6g}"
     return (
         f"{counted(len(ties), 'tie')} that can break ({names}): their force at break is counted{yields}; "
-        f"once they are broken, {alone}, with them {found.associated.multiplier:.6g}",
+        f"once they are broken, {alone}{whole}",
     )
 
 
 def _torsion(found: LimitResult) -> str:
-    joints = f"{counted(found.twisting, 'joint')} with contact at their corners "
-    f"{_verb(found.twisting, 'twists', 'twist')}"
+    twist = _verb(found.twisting, "twists", "twist")
+    joints = f"{counted(found.twisting, 'joint')} with contact at their corners {twist}"
     strong = f"friction resists torsion there up to {MOTION_TURNED:g} times better than under uniform pressure"
     if found.spread is None:
         return f"{joints} as the structure begins to move: {strong}, and all numbers may be too large by that factor"

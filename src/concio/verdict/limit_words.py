@@ -84,7 +84,7 @@ def bound_lines(found: LimitResult) -> list[str]:
     if math.isinf(bound.multiplier):
         return ["  associated bound     locked, so that it bounds nothing: Coulomb friction does not wedge in that way"]
     if math.isnan(bound.multiplier):
-        return ["  associated bound     none: no multiple of the load is in balance"]
+        return ["  associated bound     none: no multiple of the load was found to be in balance"]
     violation = bound.mechanism.violation if bound.mechanism else math.nan
     residuals = f"forces {bound.residual:.0e}, mechanism {violation:.0e}, gap {bound.gap:.0e}"
     if bound.checked or not bound.bounds_hold:

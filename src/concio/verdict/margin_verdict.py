@@ -111,8 +111,7 @@ def _question(of: MarginOf | None, reached: float) -> Question:
     groups = "'" + "' and '".join(of.live) + "'"
     if of.what == LOAD:
         known = reached if math.isfinite(reached) else math.nan
-        asked = f"the largest multiple of {groups} with an equilibrium in one step from rest, all other loads with "
-        "factor 1"
+        asked = f"the largest multiple of {groups} with an equilibrium in one step from rest, all others at factor 1"
         return question_of(asked, of.assembly, multiplied=dict.fromkeys(of.live, known))
     asked = "the smallest common factor of all friction coefficients with which the loads that act are carried"
     return question_of(asked, of.assembly, dict.fromkeys(of.live, of.factor))

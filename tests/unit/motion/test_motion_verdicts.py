@@ -12,6 +12,7 @@ import concio
 from commands import run
 from concio.analysis.motion import push as push_module
 from concio.analysis.motion import push_apart
+from concio.analysis.motion.fate import tilted
 from concio.errors import NoEquilibriumError, SolverError
 from concio.verdict.not_standing import FOLLOWED_AWAY
 from concio.verdict.verdict import Outcome
@@ -282,3 +283,10 @@ def test_a_corner_with_a_compressive_strength_holds_in_no_command(tmp_path):
     assert without.verdict.outcome is Outcome.HOLDS
     on_a_face = concio.dynamics(standing(friction=crushes), duration=0.2, gravity=G)
     assert on_a_face.verdict.outcome is Outcome.HOLDS, "a joint with a length has its strength"
+
+
+def test_a_body_that_stands_upright_to_rounding_is_not_tilted() -> None:
+    """Products of rotations leave cosines above one by a rounding, where no angle exists."""
+    turned = np.eye(3)[None] * (1 + np.array([0.0, 4e-16, -4e-16]))[:, None, None]
+    assert tilted(turned) == pytest.approx(0.0, abs=1e-7)
+    assert tilted(np.array([[[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]])) == pytest.approx(np.pi / 2)

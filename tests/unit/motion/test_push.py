@@ -229,7 +229,7 @@ def test_a_block_that_hangs_straight_on_a_stiff_tie_stretches_it():
 
 def test_steps_that_nothing_solves_end_a_push_in_words(monkeypatch):
     """From some problem on no answer moves anything: the curve until there is kept, and few more are tried."""
-    first, solve, asked = 200, StepSolver.solve, []
+    first, solve, asked = 80, StepSolver.solve, []
 
     def fails(self, p, states, x, t):
         found = solve(self, p, states, x, t)

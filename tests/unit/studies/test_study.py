@@ -96,6 +96,7 @@ def test_rank_correlation_is_that_asked_for() -> None:
             2 * math.exp(0.08) * math.sqrt(math.expm1(0.16)),
         ),
         ("triangular", {"low": 0.0, "mode": 1.0, "high": 4.0}, 5 / 3, math.sqrt((16 + 1 - 4) / 18)),
+        ("triangular", {"low": 1.0, "mode": 2.0, "high": 5.0}, 8 / 3, math.sqrt((16 + 1 - 4) / 18)),
         ("beta", {"low": 2.0, "high": 6.0, "alpha": 2.0, "beta": 6.0}, 3.0, 4 * math.sqrt(12 / (64 * 9))),
         ("gumbel", {"mean": 10.0, "sd": 2.0}, 10.0, 2.0),
         ("weibull", {"shape": 1.0, "scale": 3.0}, 3.0, 3.0),

@@ -286,3 +286,37 @@ def test_ties_that_break_one_after_the_other_are_not_added_up() -> None:
 def test_one_tie_that_breaks_holds_until_it_does() -> None:
     found = concio.limit(tied(rod("one", 1000.0, 1e-3, 5.0)))
     assert found.design == pytest.approx(3.2 + 1.5, rel=1e-6)
+
+
+def test_a_load_on_the_edge_of_what_can_grow_is_locked_in_space_as_in_the_plane() -> None:
+    """Two blocks in a corner, pressed into it: what 64 points balance to rounding was "in balance with no multiple"."""
+    joint = JointLaw(0.2509639805296092, normal_stiffness=6.3e7, tangential_stiffness=2.8e7)
+    model = model_of(
+        box("floor", -6.0, 6.0, -0.5, 0.0, kind="fixed"), box("wall", -1.0, 0.0, 0.0, 3.0, kind="fixed"),
+        box("low", 0.0, 0.5445, 0.0, 0.4269, kind="rigid", material="stone"),
+        box("high", 0.0, 0.5294, 0.4269, 0.7424, kind="rigid", material="stone"),
+        law=joint,
+        loads=(DEAD, Load("point", (-0.8104, -4.9151), bodies=("low",), at=(0.5445, 0.4269), group="live")),
+    )  # fmt: skip
+    for made in (model, concio.extrude(model, 1.0)):
+        found = concio.limit(made, path=False, search=False, steps=True)
+        assert found.associated.locked
+        assert found.associated.checked
+        assert found.endless
+        assert found.verdict.holds
+
+
+def test_a_bound_that_was_not_found_is_no_proof(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Neither the words nor the outcome say that nothing is in balance where the programme gave no answer."""
+    from concio.analysis import limit as module
+    from concio.solvers.statics.limit import LimitLoad
+
+    nothing = LimitLoad(np.nan, np.nan, np.zeros(0), np.zeros((0, 1)), np.inf, None)
+    monkeypatch.setattr(module, "associated_limit", lambda *_: nothing)
+    found = concio.limit(tied(rod("one", 1000.0, 1e-3, 5.0)))
+    assert found.verdict.outcome is Outcome.UNDECIDED
+    assert np.isnan(found.design)
+    said = " ".join((*found.verdict.lines(), found.verdict.sentence, *limit_lines(found)))
+    assert "nan" not in said
+    assert "is in balance" not in said
+    assert any("at most the bound without them; once they are broken" in line for line in found.verdict.limits)

@@ -41,7 +41,8 @@ class LimitLoad:
     Parameters
     ----------
     multiplier : float
-        lambda*; ``inf`` where the load can grow without bound, ``nan`` where no multiplier at all gives equilibrium.
+        lambda*; ``inf`` where the load can grow without bound, ``nan`` where no multiplier with forces in balance was
+        found. Where ``residual`` is not small either, nothing is known.
     upper : float
         Multiplier of the mechanism, recomputed from its velocity: h(Cv) - f'v with g'v = 1.
     normal_force, friction_force : arrays (m,), (m, d-1)
@@ -69,7 +70,7 @@ class LimitLoad:
     def words(self) -> str:
         """The multiplier, or the word for it where it is not a number."""
         if np.isnan(self.multiplier):
-            return "none: no multiple of the load is carried"
+            return "none: no multiple of the load was found in balance"
         return "locked: any multiple of the load is carried" if self.locked else f"{self.multiplier:.6g}"
 
     @property
@@ -218,9 +219,10 @@ def cone_limit(problem: ContactProblem, live: Array) -> LimitLoad:
         upper, mechanism = kinematic_bound(problem, live, found.multiplier, found.velocity)
         return LimitLoad(found.multiplier, upper, found.t[:, 0], found.t[:, 1:], found.residual, mechanism)
     dead, alone = statically_admissible(problem), statically_admissible(without_bounds(problem, live))
-    locked = dead.exists and alone.exists
-    worst = max(dead.residual, alone.residual)
-    return LimitLoad(np.inf if locked else np.nan, np.inf, dead.normal_force, dead.friction_force, worst, None)
+    worst = max(dead.residual, alone.residual)  # a load on the edge of what can grow is balanced to rounding only
+    if worst <= CHECKED:
+        return LimitLoad(np.inf, np.inf, dead.normal_force, dead.friction_force, worst, None)
+    return LimitLoad(np.nan, np.nan, dead.normal_force, dead.friction_force, np.inf, None)
 
 
 def without_bounds(problem: ContactProblem, live: Array) -> ContactProblem:

@@ -30,8 +30,10 @@ from concio.solvers.stepping.matrix import FEW, StepMatrix
 DELTA = 1e-6
 """Compliance added to closed pairs in the factorised matrix, over the typical flexibility of a pair."""
 
-ENOUGH = 100.0
-"""Own compliance of a pair over that, from which on nothing is added: the first solve is exact then."""
+ENOUGH = 1e-3
+"""Own compliance of a pair over that, from which on nothing is added.
+
+Beside a compliance of their size refinement hardly converges where forces are redundant."""
 
 GLUED = 1e6
 """Tensile strength of glued pairs over F, where a method needs a number for it."""
