@@ -214,8 +214,19 @@ class _Words:
         return self.say(f"mistake_{doubt.mistake}", factor=doubt.factor, place=place)
 
     def after(self) -> tuple[str, ...]:
-        """Return whether it stands, what another centimetre does, and where to measure next."""
-        return (*self.stands(), self.next_places())
+        """Return what fits better still, whether it stands, what another centimetre does, and where to measure next."""
+        return (*self.additions(), *self.stands(), self.next_places())
+
+    def additions(self) -> tuple[str, ...]:
+        """Return the best further motion, with which the simplest cause fits clearly better."""
+        told = []
+        for a in self.found.additions[:1]:
+            parts = [
+                self.say("unseen_part", name=n, motion=self.quantity(self.kind(n), s))
+                for n, s in zip(a.names, a.motions.tolist(), strict=True)
+            ]
+            told.append(self.say("addition", motions=self.words["and"].join(parts), misfit=a.misfit))
+        return tuple(told)
 
     def stands(self) -> tuple[str, ...]:
         """Return whether the structure stands where the simplest cause has brought it."""
@@ -283,7 +294,7 @@ class _Words:
                 self.say("unseen_part", name=n, motion=self.quantity(self.kind(n), s))
                 for n, s in zip(unseen.names, unseen.motions, strict=True)
             ]
-            told.append(self.say("unseen", motions=self.words["and"].join(parts), change=f"{unseen.change:.2g}"))
+            told.append(self.say("unseen", motions=self.words["and"].join(parts), change=self.write(unseen.change, 2)))
         return tuple(told)
 
     def kind(self, name: str) -> str:

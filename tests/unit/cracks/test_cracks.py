@@ -96,6 +96,27 @@ def test_an_interval_is_that_of_least_squares_where_the_model_is_linear() -> Non
     np.testing.assert_allclose([cause.high[0] - cause.low[0]], [2 * 1.959964 * deviation], rtol=2e-2)
 
 
+def test_a_small_motion_beside_a_large_one_is_told_where_it_fits_clearly_better() -> None:
+    cracks = spread_cracks(0.0, error=0.4e-3)
+    values = predicted(flat_arch(), cracks, [GIVES, TURNS], [0.01, -3e-3])
+    values[[m.kind == "closed" for m in cracks]] = 0.0
+    found = diagnosed(flat_arch(), with_values(cracks, values), [GIVES, TURNS, SINKS])
+    assert [c.names for c in found.causes] == [("left gives way",)]
+    first = found.additions[0]
+    assert first.name == "left turns"
+    np.testing.assert_allclose(first.motions, [0.01, -3e-3], rtol=1e-2)
+    assert found.causes[0].misfit - first.misfit > 3.84
+    for language, words in (("en", "clearly better"), ("it", "nettamente migliore")):
+        assert words in diagnosis_verdict(found, language).sentence
+    assert found.summary()["additions"][0]["motions"].keys() == {"left gives way", "left turns"}
+
+
+def test_a_cause_that_explains_all_that_was_measured_has_nothing_added() -> None:
+    found = diagnosed(flat_arch(), spread_cracks(0.01), [GIVES, TURNS, SINKS])
+    assert found.additions == ()
+    assert "clearly better" not in found.verdict.sentence
+
+
 def test_which_abutment_gave_way_is_told_as_ambiguous() -> None:
     found = diagnosed(flat_arch(), spread_cracks(0.01)[:3], [GIVES, OTHER, SINKS])
     assert {c.names for c in found.causes} == {("left gives way",), ("right gives way",)}
@@ -373,4 +394,4 @@ def test_how_many_motions_were_looked_at_together_is_told_where_there_are_more()
     many = diagnosed(flat_arch(), spread_cracks(0.01), [GIVES, OTHER, SINKS, TURNS])
     looked = max(len(t.chosen) for t in many.trials)
     assert 0 < looked < 4
-    assert f"causes of more than {looked} motions were not looked at" in many.verdict.limits
+    assert f"causes of more motions than {looked} were not looked at" in many.verdict.limits

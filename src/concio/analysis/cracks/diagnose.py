@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from concio.analysis.cracks.additions import additions_of
 from concio.analysis.cracks.cause import Cause, cause_of
 from concio.analysis.cracks.diagnosis import Diagnosis
 from concio.analysis.cracks.fit import FAR, Fit, Fitter
@@ -148,11 +149,12 @@ def diagnose(
     left = [*causes, *(d.cause for d in doubts if d.cause.left_out)]
     width = float(np.median([m.error for m in given[0] if m.quantity == "motion"] or [scale.min() / LEAST]))
     names = [c.name for c in given[1]]
+    additions = additions_of(fitter, causes[0], names, confidence) if causes else ()
     return Diagnosis(
         model, *given, found, forward, causes, doubts, searched.trials, nearest,
         unseen_of(fitter, best, names) if best is not None else (), next_places(forward, left, width),
         case.future(best, large), case.orders(best), coarse, confidence, most,
-        clock.perf_counter() - begun,
+        clock.perf_counter() - begun, additions,
     )  # fmt: skip
 
 

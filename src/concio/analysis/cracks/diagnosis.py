@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from concio.analysis.cracks.additions import Addition
 from concio.analysis.cracks.cause import Cause
 from concio.analysis.cracks.forward import Forward
 from concio.analysis.cracks.future import Future
@@ -66,6 +67,8 @@ class Diagnosis(Shown):
     most : int
         Largest number of motions that were tried together.
     seconds : float
+    additions : tuple of Addition
+        Further motions with which the simplest cause fits clearly better, though it is within the errors without.
     """
 
     model: Model
@@ -85,6 +88,7 @@ class Diagnosis(Shown):
     confidence: float
     most: int
     seconds: float
+    additions: tuple[Addition, ...] = ()
 
     def __repr__(self) -> str:
         return "\n".join((self.verdict.sentence, *self.verdict.lines(self.model.report)))
@@ -146,6 +150,13 @@ class Diagnosis(Shown):
                 for d in self.doubts
             ],
             "unseen": [{"names": list(u.names), "motions": list(u.motions), "change": u.change} for u in self.unseen],
+            "additions": [
+                {
+                    "name": a.name, "motion": a.motion, "misfit": a.misfit,
+                    "motions": dict(zip(a.names, a.motions.tolist(), strict=True)),
+                }
+                for a in self.additions
+            ],
             "measure_next": [
                 {
                     "kind": p.kind, "joint": list(p.joint), "at": list(p.at), "predicted": list(p.predicted),
