@@ -44,7 +44,7 @@ def model_figure(found: Assessment, ax: Axes | None = None) -> Axes:
     size = float((high - low).max())
     ends = [np.array(p) for t in model.ties for p in (t.at_a, t.at_b)]
     box = style.box_of(np.vstack([points, *([np.array(ends)] if ends else [])]), margin=0.14)
-    ax = _drawing(box) if ax is None else ax
+    ax = _drawing(box, 0.7) if ax is None else ax
     for body in model.outlines:
         fixed = body.kind == "fixed"
         ax.fill(*body.outline.T, fc="#D9D9D9" if fixed else style.BLOCK, ec=style.EDGE, lw=0.5, hatch="////" * fixed)
@@ -204,12 +204,12 @@ def demand_figure(mechanism: LocalMechanism, words: Words, ax: Axes | None = Non
     return _finish(ax, words["axis_d"], words["axis_a"])
 
 
-def _drawing(box: Array) -> Axes:
-    """Return axes of a figure as large as a drawing is in print, so that its letters keep their size."""
+def _drawing(box: Array, share: float = 1.0) -> Axes:
+    """Return axes of a figure as large as a drawing is in print, or a share of it, so that letters keep their size."""
     width, height = np.maximum(box[1] - box[0], 1e-9)
     tall = float(np.clip(6.0 * height / width, 1.5, 4.2))
     wide = float(np.clip(tall * width / height, 1.6, 6.2))
-    return diagram_axes(None, (wide + 0.7, tall + 0.6))
+    return diagram_axes(None, (share * (wide + 0.7), share * (tall + 0.6)))
 
 
 def _finish(ax: Axes, x: str, y: str) -> Axes:

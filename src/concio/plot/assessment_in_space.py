@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from concio.plot import style
 from concio.plot.space_figures import block_colours, directions, draw_solids, plot_space_model
@@ -23,14 +24,21 @@ ENLARGED = 0.10
 """Largest motion in the picture of a mechanism, over the size of the model."""
 TINTS = ("#E9E2D3", "#CFE0EA", "#EBD3C8", "#D6E3C6", "#DFD3E8", "#F1E4AE")
 """Colours of macro-blocks, in turn."""
+ON_PAPER = (4.4, 4.4)
+"""Width and height of the picture of a model [in]."""
 ASIDE, LIFT = 0.6, 0.45
 """Angles of the eye from the way of falling, in plan, and above the horizontal [rad]."""
 
 
 def model_in_space(model: Model, ax: Axes | None = None) -> Axes:
     """Draw the blocks, point loads and ties."""
+    own = ax is None
     ax = plot_space_model(model, ax)
-    ax.set_title("")
+    for place in ("center", "left", "right"):
+        ax.set_title("", loc=place)
+    if own:  # names are read on paper, where the picture is half a page wide
+        assert isinstance(ax.figure, Figure)
+        ax.figure.set_size_inches(*ON_PAPER)
     return ax
 
 

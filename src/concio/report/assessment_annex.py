@@ -35,6 +35,9 @@ SYMBOLS = (
     ("S", "s_S"), ("q", "s_q"), ("zeta_E", "s_zeta"), ("P, Q", "s_P"), ("δ", "s_delta"),
 )  # fmt: skip
 
+ROUNDING = 1e-13
+"""Displacements and works below this share of the largest are printed as zero; the sums have them."""
+
 COMPUTER = "NTC 2018, 10.2"
 """Clause that asks for it."""
 
@@ -108,7 +111,8 @@ def _validation(t: Texts, found: Assessment) -> str:
         given = table[case]
         worst = max(given["rows"], key=lambda r: r["difference"])
         size = t.n(worst["difference"], 2) if worst["difference"] else "&lt; 1e-9"
-        rows.append([t.say(f"case_{case}"), escape(given["source"]), str(len(given["rows"])), size,
+        source = t.words.get(f"source_{case}", given["source"])
+        rows.append([t.say(f"case_{case}"), escape(source), str(len(given["rows"])), size,
                      t.n(worst["tolerance"], 2)])  # fmt: skip
     head = [t.words[k] for k in ("a_case", "a_source", "a_rows", "a_worst", "a_allowed")]
     text = f"<p>{t.say('a_validation_text')}</p>{t.table(head, rows, 2)}"
@@ -156,9 +160,16 @@ def _work(t: Texts, found: Assessment, check: HandCheck, *, whole: bool) -> str:
     weights = check.part("weight")
     rows = list(weights) if whole or len(weights) <= BLOCK_BY_BLOCK else _summed(t, weights)
     rows += [r for kind in ("load", "tie", "joint") for r in check.part(kind)]
+    numbers = ("rise", "along", "resists", "pushes")
+    tops = {key: max((abs(getattr(r, key)) for r in rows), default=0.0) for key in numbers}
+
+    def told(row: HandRow, key: str) -> str:
+        value = float(getattr(row, key))
+        return t.n(value if abs(value) > ROUNDING * tops[key] else 0.0, 6)
+
     made = [
-        [_name(t, found, r), t.n(r.size, 6), t.pair(r.point, 6), t.n(r.rise, 6), t.n(r.along, 6) if r.pushes else "",
-         t.n(r.resists, 6), t.n(r.pushes, 6) if r.pushes else ""]
+        [_name(t, found, r), t.n(r.size, 6), t.pair(r.point, 6), told(r, "rise"), told(r, "along") if r.pushes else "",
+         told(r, "resists"), told(r, "pushes") if r.pushes else ""]
         for r in rows
     ]  # fmt: skip
     made.append([f"<b>{t.say('a_sum')}</b>", "", "", "", "", f"<b>{t.n(check.resists, 7)}</b>",

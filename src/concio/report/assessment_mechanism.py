@@ -52,9 +52,10 @@ def _chain(t: Texts, m: LocalMechanism) -> str:
         name, _, count = word.partition(" ")
         return w["weight_row"] if word == "weight" else f"{w['load_' + name]} {count}"
 
+    most = max((abs(p.delta) for p in m.chain.participants), default=0.0)
     rows = [
         [escape(m.mechanics.blocks[p.block].label), escape(kind(p.kind)), t.n(p.size), t.pair(p.point),
-         t.n(p.delta)]
+         t.n(p.delta if abs(p.delta) > 1e-12 * most else 0.0)]
         for p in m.chain.participants
     ]  # fmt: skip
     others = [

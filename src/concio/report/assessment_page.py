@@ -28,6 +28,7 @@ from concio.report.strengthening_part import before_after, strengthening_html
 from concio.report.strips_part import strips_html
 from concio.report.typeset import typeset
 from concio.verdict.assessment_verdict import assessment_verdict
+from concio.verdict.assessment_words import WORDS
 from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -182,8 +183,7 @@ class AssessmentReport(Texts):
         text += "".join(f" {self.say('on_request', level=v)}" for v in asked)
         text += " " + (self.say("hazard_source", source=site.source) if site.source else self.say("hazard_no_source"))
         if site.assumed:
-            given = (self.words[f"assumed_{k}"].format(value=getattr(site, k)) for k in site.assumed)
-            text += " " + self.say("hazard_assumed", what=", ".join(given))
+            text += " " + self.say("hazard_assumed", what=", ".join(self.assumed(k) for k in site.assumed))
         building = ""
         if site.building:
             modes = "; ".join(self.mode(m) for m in site.building)
@@ -198,11 +198,17 @@ class AssessmentReport(Texts):
             f"{decisions_html(self, self.found, self.head.reasons)}</section>"
         )
 
+    def assumed(self, key: str) -> str:
+        """Return what of the site was not given, with the value that is used."""
+        value = getattr(self.found.site, key)
+        return WORDS[self.language][f"assumed_{key}"].format(value=self.n(value) if isinstance(value, float) else value)
+
     def mode(self, mode: Any) -> str:
         """Return a mode of the building in words."""
         if isinstance(mode, Storeys):
             T = mode.mode(mode.base, self.found.site.rules.tables["floor"]).T
-            return self.words["mode_regular"].format(
+            key = "mode_single" if mode.storeys == 1 else "mode_regular"
+            return self.words[key].format(
                 n=mode.storeys, H=self.n(mode.height), T=self.n(T), xi=self.n(mode.xi)
             )
         shape = abs(mode.participation * mode.shape)
@@ -215,8 +221,9 @@ class AssessmentReport(Texts):
         frictions = "; ".join(sorted({self.n(model.laws[k].friction) for k in used}))
         given = (model.laws[k].compressive_strength for k in used)
         strength = "".join(w["strength_text"].format(f=self.n(v)) for v in sorted({v for v in given if v is not None}))
-        joints = len(self.found.mechanisms[0].assembly.detection.interfaces) if self.found.mechanisms else 0
-        deep = "" if model.dim == 3 else "; ".join(sorted({self.n(b.thickness) for b in model.outlines}))
+        joints = len(self.found.assembly.detection.interfaces)
+        thick = () if model.dim == 3 else sorted({b.thickness for b in model.outlines if b.kind != "fixed"})
+        deep = "; ".join(self.n(v) for v in thick)
         deep = w["thickness_text"].format(thickness=deep) if deep else ""
         free = len(model.free_bodies)
         still = len(model.bodies) - free
@@ -246,6 +253,9 @@ class AssessmentReport(Texts):
             ]  # fmt: skip
             names = [w["tie_title"], *(w[k] for k in ("stiffness", "prestress", "yield_force", "break"))]
             ties = f"<h3>{self.say('ties_text')}</h3>{self.table(names, made)}"
+        if model.dim == 3:
+            reach = np.ptp(np.vstack([np.asarray(b.vertices) for b in model.free_bodies]), axis=0)
+            text += " " + self.say("overall", size=" x ".join(self.n(float(v)) for v in reach))
         drawn = self.figure(model_figure(self.found), "figure_model", "tall")
         return (
             f"<section id=model><h2>{self.say('model')}</h2><p>{text}</p><div class=side>{drawn}<div>"
@@ -257,6 +267,8 @@ class AssessmentReport(Texts):
         w, found = self.words, self.found
         rows = []
         for k, m in enumerate(found.mechanisms, 1):
+            if m.section is not None and k > 1 and m.least >= 1.0:
+                continue  # the table of strips holds it
             settled = m.complete or m.least < 1
             verdict = self.verdict(m.least, m.least >= 1) if settled else self.say("unchecked")
             rows.append([f'<a href="#m{k}">{escape(self.name(m))}</a>', escape(self.way(m.direction)),
@@ -278,7 +290,9 @@ class AssessmentReport(Texts):
         if self.found.worst is None or not (self.varied or self.sensitivity):
             return ""
         title = f"<h2>{self.say('sensitivity')}</h2>"
-        derivatives = sensitivity_html(self, self.sensitivity) if self.sensitivity else ""
+        strip = self.found.worst.section is not None
+        slides = f"<p>{self.say('sens_slides')}</p>" if self.found.worst.found.flow != "no sliding" else ""
+        derivatives = sensitivity_html(self, self.sensitivity, strip=strip) if self.sensitivity else slides
         if not self.varied:
             return f"<section id=sensitivity>{title}{derivatives}</section>"
         rows = [[self.say("as_given"), self.n(self.found.worst.multiplier, 6), self.n(self.found.zeta)]]

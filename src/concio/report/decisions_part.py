@@ -28,7 +28,8 @@ def coverage_html(t: Texts, found: Assessment) -> str:
     title = f"<h3>{t.say('cover_title', ways=ways)}</h3>"
     gaps = "; ".join(t.told.unchecked) if hasattr(t, "told") else ""
     note = t.say("cover_gaps", gaps=gaps) if gaps else t.say("cover_no_gaps")
-    return f"{title}{t.table(head, rows, 2)}<p>{note}</p>"
+    once = f" {t.say('cover_once')}" if any(c.searches < c.sought for c in found.covered) else ""
+    return f"{title}{t.table(head, rows, 2)}<p>{note}{once}</p>"
 
 
 def decisions_html(t: Texts, found: Assessment, reasons: Mapping[str, str]) -> str:
@@ -36,7 +37,7 @@ def decisions_html(t: Texts, found: Assessment, reasons: Mapping[str, str]) -> s
     rows = [[t.say(f"decide_{key}"), escape(value), escape(default), escape(reasons.get(key, "")) or "–"]
             for key, value, default in _decisions(t, found)]  # fmt: skip
     head = [t.words[k] for k in ("decide", "decided", "decide_default", "decide_reason")]
-    return f"<h3>{t.say('decisions')}</h3>{t.table(head, rows, 4)}"
+    return f"<div class=half><h3>{t.say('decisions')}</h3>{t.table(head, rows, 4)}</div>"
 
 
 def _decisions(t: Texts, found: Assessment) -> list[tuple[str, str, str]]:

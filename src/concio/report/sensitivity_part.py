@@ -15,11 +15,12 @@ TOLD, SHOWS = 3, 5e-4
 """Numbers in the sentence at most, and the least change in per cent that is stated."""
 
 
-def sensitivity_html(t: Texts, found: Sensitivity) -> str:
-    """Return the part of a report on what a multiplier depends on."""
+def sensitivity_html(t: Texts, found: Sensitivity, *, strip: bool = False) -> str:
+    """Return the part of a report on what a multiplier depends on; of a ``strip`` the plane thickness is its width."""
 
     def name(row: SensitivityRow) -> str:
-        return t.words[f"par_{row.kind.replace(' ', '_')}"].format(of=row.of)
+        kind = "width" if strip and row.kind == "thickness" else row.kind.replace(" ", "_")
+        return t.words[f"par_{kind}"].format(of=row.of)
 
     told = []
     for row in found.rows[:TOLD]:

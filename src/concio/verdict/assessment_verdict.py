@@ -28,6 +28,9 @@ MOST_NAMES = 4
 APART = 0.01
 """Relative difference of zeta_E and capacity over demand above which a sentence says why."""
 
+ROUNDED = 1e-16
+"""Smaller gaps are given as smaller than this."""
+
 CUT = {
     "joints end": "its joints reach the end of their travel",
     "joint opens": "a joint opens, or a tie goes slack or yields",
@@ -92,7 +95,7 @@ def grounds(
     if wrong or len(found.mechanisms) > 1:
         key, n = ("ground_differs", wrong) if wrong else ("ground_all", len(found.mechanisms))
         lines.append(words[key].format(n=n, difference=f"{worst:.0e}"))
-    lines += [words["ground_bound"].format(way=way(push), alpha=write(bound.multiplier, 6), gap=f"{bound.gap:.0e}")
+    lines += [words["ground_bound"].format(way=way(push), alpha=write(bound.multiplier, 6), gap=_gap(bound.gap))
               for push, bound in found.bounds.items() if bound.checked and math.isfinite(bound.multiplier)]  # fmt: skip
     if found.open:
         lines.append(words["ground_open"].format(n=len(found.open)))
@@ -121,6 +124,11 @@ def check_words(check: Check, language: str = "en", *, decides: bool = True, wri
 def ratio_words(ratio: float, holds: bool, language: str = "en", write: Write = number) -> str:
     """Return whether a ratio that is not a line of a mechanism is enough."""
     return WORDS[language]["row_holds" if holds else "row_fails"].format(ratio=write(ratio, 4))
+
+
+def _gap(gap: float) -> str:
+    """Return a duality gap; none is below what rounding leaves."""
+    return f"{gap:.0e}" if gap >= ROUNDED else f"< {ROUNDED:.0e}"
 
 
 class _Words:
@@ -159,7 +167,7 @@ class _Words:
     def assumed(self) -> tuple[str, ...]:
         """Return what of the site was not given."""
         site = self.found.site
-        what = ", ".join(f"{key} = {getattr(site, key)}" for key in site.assumed)
+        what = ", ".join(self.say(f"assumed_{key}", value=getattr(site, key)) for key in site.assumed)
         return (self.say("assumed", what=what),) if what else ()
 
     def by_level(self) -> dict[str, float]:
@@ -219,7 +227,7 @@ class _Words:
         if flow == "Coulomb":
             bound = self.found.bounds.get(worst.direction, bound)
         return self.say(f"proof_{flow}", name=self.name(worst.name), way=self.way(worst.direction), upper=bound.upper,
-                        gap=f"{bound.gap:.0e}")  # fmt: skip
+                        gap=_gap(bound.gap))  # fmt: skip
 
     def limits(self) -> tuple[str, ...]:
         """Return what limits the answer."""

@@ -106,7 +106,7 @@ def test_a_file_may_take_its_hazard_from_a_grid(tmp_path: Path) -> None:
     assert "14.13" in place.source
     assert place.assumed == ("topography", "nominal_life", "use_class")
     found = concio.assess(asked.model, **asked.arguments)
-    assert any("use_class = II" in line for line in found.verdict.attention)
+    assert any("class of use II" in line for line in found.verdict.attention)
     text = AssessmentReport(found, head=asked.head, language="it").html()
     assert "asked for by the client" in text
     assert "Fonte della pericolosità: g.csv" in text
@@ -200,3 +200,24 @@ def test_the_picture_of_the_model_has_its_dimensions() -> None:
     assert "0.6 m" in texts
     assert "6 m" in texts
     assert "c1" in texts
+
+
+def test_sources_of_validation_are_those_of_the_book_and_translated() -> None:
+    """The Italian annex named its sources in English; the English words are those of the validation book."""
+    from concio.report.assessment_annex import validation_rows
+    from concio.report.language import words_of
+
+    en, it = (words_of("annex_words", language) for language in ("en", "it"))
+    own = {key.removeprefix("source_"): text for key, text in en.items() if key.startswith("source_")}
+    assert {case: validation_rows()[case]["source"] for case in own} == own
+    assert all(it[f"source_{case}"] != text for case, text in own.items())
+
+
+def test_what_was_assumed_is_told_in_the_language_of_the_report() -> None:
+    found = concio.assess(overturning(), site=concio.Site({"SLV": {"a_g": 0.2, "F0": 2.4, "Tc": 0.3}}, assumed=(
+        "soil", "nominal_life")), direction="left", levels=["SLV"])  # fmt: skip
+    page = AssessmentReport(found, language="it").html()
+    assert "nominal_life" not in page
+    assert "50.0" not in page
+    assert "vita nominale 50 anni" in page
+    assert any("nominal life 50 years" in line for line in found.verdict.attention)
