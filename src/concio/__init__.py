@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from concio import generate as generate
     from concio import motion as motion
     from concio import seismic as seismic
+    from concio import trace as trace
     from concio.analysis.bridges.assess_bridge import assess_bridge
     from concio.analysis.bridges.bridge_result import BridgeResult
     from concio.analysis.cells.moduli import homogenise
@@ -162,7 +163,7 @@ _HOMES = {
     "concio.model.generate.rubble": ("rubble",),
     "concio.model.generate.walls": ("wall", "wall_of_courses"),
 }
-_NAMESPACES = ("bridges", "cells", "cracks", "generate", "motion", "seismic")
+_NAMESPACES = ("bridges", "cells", "cracks", "generate", "motion", "seismic", "trace")
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
 
 __all__ = [

@@ -21,6 +21,7 @@ ORDER = (
     "__version__", "representation", "views", "argument_types", "errors", "files", "synonyms", "arguments", "units",
     "display",
     "kinematics", "model", "model/motion", "model/road", "model/interfaces", "model/generate", "model/drawing",
+    "model/picture",
     "model/solids", "model/file",
     "fem", "problem", "contact",
     "solvers/algebra", "solvers/lcp", "solvers/states", "solvers/statics", "solvers/interior", "solvers/pivoting",
@@ -28,7 +29,7 @@ ORDER = (
     "solvers/methods/forms", "solvers/methods/iterative", "solvers/methods/exhaustive", "solvers/methods",
     "proof", "verdict", "analysis", "analysis/motion", "analysis/cells", "analysis/continuum",
     "analysis/seismic", "analysis/bridges", "analysis/cracks", "post", "plot", "report", "io",
-    "studies", "bridges", "cells", "cracks", "generate", "motion", "seismic", "window", "cli", "__main__",
+    "studies", "bridges", "cells", "cracks", "generate", "motion", "seismic", "trace", "window", "cli", "__main__",
 )  # fmt: skip
 """Rooms in the order in which things flow: each imports from itself and from those before it."""
 MODULES = sorted(ROOT.rglob("*.py"))

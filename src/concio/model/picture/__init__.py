@@ -1,0 +1,1 @@
+"""Stones from pictures: orthophotos read, scaled and rectified; courses, regions and outlines traced into blocks."""
