@@ -191,8 +191,8 @@ def _cheapest(cost: Array, start: tuple[int, int], end: tuple[int, int]) -> Arra
     far = np.concatenate([np.full(p.size, s) for p, _, s in pairs])
     graph: Any = sp.csr_array((far * 0.5 * (flat[i] + flat[j]), (i, j)), shape=(h * w, h * w))
     first, last = int(number[start]), int(number[end])
-    found: Any = dijkstra(graph, directed=False, indices=first, return_predecessors=True)
-    before, way = found[1], [last]
+    found: Any = dijkstra(graph, directed=False, indices=[first], return_predecessors=True)
+    before, way = found[1][0], [last]
     while way[-1] != first:
         way.append(int(before[way[-1]]))
     return np.column_stack(np.divmod(np.array(way[::-1]), w))
