@@ -5,7 +5,7 @@
 Twenty walls in running bond, Flemish bond, a lap of a third and with long units, at contrasts of joints from 0.25 to
 0.03 (grey values 0 to 1; noise of pixels 0.03, grain 0.02, stones among each other 0.02), traced by courses with a unit
 that is 10 % too long and 10 % too low. F1 counts blocks that overlap by 70 %. The multiplier is the associated bound of
-a horizontal share of the weights, of the wall and of what was traced. The same walls by watershed at the contrasts at
+a horizontal share of the weights, of the wall and of what was traced. The same walls from seeds at the contrasts at
 which joints are clear. Rubble by eight clicks on the outline of each stone, up to three pixels beside it: the share of
 the area that stone and outline have in common.
 """
@@ -36,7 +36,7 @@ WALLS = {
 
 def main(seed: int) -> None:
     """Print a line for each wall and contrast."""
-    print("wall      contrast     F1  multiplier     true     off  joint mm      s  watershed F1")
+    print("wall      contrast     F1  multiplier     true     off  joint mm      s  seeds F1")
     for k, contrast in enumerate(CONTRASTS):
         for j, (name, given) in enumerate(WALLS.items()):
             model = wall(given)

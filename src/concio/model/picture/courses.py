@@ -34,8 +34,8 @@ SHARED = 1.2
 """Weight of what the other courses of the same kind say of a head joint beside what its own course says."""
 WIDTHS = (0.02, 0.04, 0.07, 0.11)
 """Widths of joints that are tried, as shares of the height of a unit."""
-DOUBTFUL = 4.0
-"""A joint whose strength is less than so many deviations of the noise is doubtful."""
+LEAST_NOISE = 0.02
+"""Noise is taken to be this share of the clearest joint at least: drawn pictures have none."""
 
 
 def trace_courses(photo: Photo, unit: Sequence[float]) -> Tracing:
@@ -138,7 +138,8 @@ def _strength(profile: Array, wide: float) -> Array:
 
 def _noise(strength: Array) -> float:
     """Return the deviation of strengths where there is no joint, from the median of their sizes."""
-    return float(1.4826 * np.median(np.abs(strength - np.median(strength)))) or 1e-12
+    spread = 1.4826 * float(np.median(np.abs(strength - np.median(strength))))
+    return max(spread, LEAST_NOISE * float(np.abs(strength).max()), 1e-12)
 
 
 def _beds(smooth: Array, height: float) -> tuple[float, float, list[int]]:

@@ -1,4 +1,4 @@
-"""Stones by watershed where joints are clear, and outlines between clicks by the cheapest way along a joint."""
+"""Stones between clear joints, and outlines between clicks by the cheapest way along a joint."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def joint_likeness(photo: Photo, wide: float) -> Array:
 
 
 def trace_regions(photo: Photo, unit: float, *, joint: float | None = None) -> Tracing:
-    """Return the stones of a picture by watershed: every place far from joints begins one.
+    """Return the stones between clear joints: each place far from joints begins one, and takes what it reaches first.
 
     Parameters
     ----------
@@ -79,8 +79,7 @@ def trace_regions(photo: Photo, unit: float, *, joint: float | None = None) -> T
     seeds, count = ndimage.label(high & (away > 0.1 * size))
     if not count:
         seeds, count = ndimage.label(np.ones_like(stone))
-    labels = ndimage.watershed_ift((65535 * like).astype(np.uint16), seeds.astype(np.int32))
-    labels = _nearest(np.where(stone, labels, 0))  # on the plateau of a joint the watershed may run anywhere
+    labels = _reached_first(0.02 + like, seeds)
     labels = _without_islands(_without_small(labels, SMALL * size * size))
     return Tracing(labels, photo, _doubts(labels, like, photo), _mean_width(labels, like) * photo.pixel)
 
@@ -181,6 +180,25 @@ def _within(k: int, count: int) -> int:
 
 def _cheapest(cost: Array, start: tuple[int, int], end: tuple[int, int]) -> Array:
     """Return the cheapest way (k, 2) of rows and columns over a grid of costs, with diagonal steps."""
+    graph, number = _grid(cost)
+    first, last = int(number[start]), int(number[end])
+    found: Any = dijkstra(graph, directed=False, indices=[first], return_predecessors=True)
+    before, way = found[1][0], [last]
+    while way[-1] != first:
+        way.append(int(before[way[-1]]))
+    return np.column_stack(np.divmod(np.array(way[::-1]), cost.shape[1]))
+
+
+def _reached_first(cost: Array, seeds: Array) -> Array:
+    """Return for each pixel the number of the seed from which it is reached at the least cost."""
+    graph, number = _grid(cost)
+    begin = number[seeds > 0]
+    found: Any = dijkstra(graph, directed=False, indices=begin, min_only=True, return_predecessors=True)
+    return np.asarray(seeds.ravel()[np.maximum(found[2], 0)].reshape(cost.shape))
+
+
+def _grid(cost: Array) -> tuple[Any, Array]:
+    """Return the graph of neighbouring pixels with the cost of each step, and the number of each pixel."""
     h, w = cost.shape
     number = np.arange(h * w).reshape(h, w)
     pairs = [(number[:, :-1], number[:, 1:], 1.0), (number[:-1], number[1:], 1.0),
@@ -189,13 +207,7 @@ def _cheapest(cost: Array, start: tuple[int, int], end: tuple[int, int]) -> Arra
     i = np.concatenate([p.ravel() for p, _, _ in pairs])
     j = np.concatenate([q.ravel() for _, q, _ in pairs])
     far = np.concatenate([np.full(p.size, s) for p, _, s in pairs])
-    graph: Any = sp.csr_array((far * 0.5 * (flat[i] + flat[j]), (i, j)), shape=(h * w, h * w))
-    first, last = int(number[start]), int(number[end])
-    found: Any = dijkstra(graph, directed=False, indices=[first], return_predecessors=True)
-    before, way = found[1][0], [last]
-    while way[-1] != first:
-        way.append(int(before[way[-1]]))
-    return np.column_stack(np.divmod(np.array(way[::-1]), w))
+    return sp.csr_array((far * 0.5 * (flat[i] + flat[j]), (i, j)), shape=(h * w, h * w)), number
 
 
 def trace_outlines(photo: Photo, clicks: Sequence[Sequence[Sequence[float]]], *, joint: float | None = None) -> Tracing:
