@@ -76,6 +76,7 @@ if TYPE_CHECKING:
     from concio.model.model import Body, JointRule, Load, Model, Support, Tie
     from concio.model.motion.records import read_record
     from concio.model.motion.signals import Pulse, Record
+    from concio.model.picture.courses import trace_courses
     from concio.model.polyhedron import Polyhedron
     from concio.model.road.earth import with_fill, with_vehicle
     from concio.model.road.vehicles import find_vehicle
@@ -151,6 +152,7 @@ _HOMES = {
     "concio.model.compose": ("place",),
     "concio.model.generate.merging": ("merge",),
     "concio.model.drawing.drawing": ("model_from_dxf",),
+    "concio.model.picture.courses": ("trace_courses",),
     "concio.model.solids.importing": ("model_from_solids",),
     "concio.io.solids_out": ("write_solids",),
     "concio.model.file.reading": ("load", "loads"),
@@ -262,6 +264,7 @@ __all__ = [
     "thrust_line",
     "thrust_surface",
     "tower",
+    "trace_courses",
     "variable",
     "wall",
     "wall_of_courses",

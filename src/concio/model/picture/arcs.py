@@ -7,6 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from concio.kinematics.frames import cross
+
 Array = np.ndarray
 Corner = tuple[int, int]
 
@@ -115,7 +117,7 @@ def _fewer(points: Array, tolerance: float) -> Array:
             continue
         base, inner = points[b] - points[a], points[a + 1 : b] - points[a]
         long = float(np.hypot(*base))
-        away = np.hypot(*inner.T) if long == 0 else np.abs(base[0] * inner[:, 1] - base[1] * inner[:, 0]) / long
+        away = np.hypot(*inner.T) if long == 0 else np.abs(cross(base, inner)) / long
         k = int(np.argmax(away))
         if away[k] > tolerance:
             keep.add(a + 1 + k)

@@ -4,7 +4,7 @@ A joint is a narrow line that is darker or lighter than what is on both sides of
 second derivative across it, summed along the whole joint: noise of single pixels averages out, so that joints are found
 that no eye sees in one row of pixels. Of all sets of joints with distances near the rough size of the unit the one with
 the largest sum of strengths is taken. A joint that is missed makes two blocks one, which is too strong a wall; one too
-many makes a block weaker. So doubtful joints are kept and told.
+many makes a block weaker. So doubtful joints are kept and reported.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from itertools import pairwise
 import numpy as np
 from scipy import ndimage
 
+from concio.arguments import strict
 from concio.errors import InputError
 from concio.model.picture.photo import Photo
 from concio.model.picture.tracing import TracedJoint, Tracing
@@ -38,6 +39,7 @@ LEAST_NOISE = 0.02
 """Noise is taken to be this share of the clearest joint at least: drawn pictures have none."""
 
 
+@strict
 def trace_courses(photo: Photo, unit: Sequence[float]) -> Tracing:
     """Return the blocks of regular masonry: a picture of the wall alone, its courses level.
 
@@ -56,7 +58,7 @@ def trace_courses(photo: Photo, unit: Sequence[float]) -> Tracing:
     Raises
     ------
     InputError
-        The unit is no size, or larger than the picture.
+        The unit is not positive, or larger than the picture.
 
     Examples
     --------

@@ -9,8 +9,10 @@ from pathlib import Path
 import numpy as np
 from scipy import ndimage
 
+from concio.arguments import strict
 from concio.errors import InputError
 from concio.files import check_regular
+from concio.kinematics.frames import cross
 from concio.representation import short_repr
 
 Array = np.ndarray
@@ -35,6 +37,15 @@ class Photo:
         Side of a pixel [m].
     origin : (x, y)
         Lower left corner of the picture [m].
+
+    Examples
+    --------
+    Two points that are 100 pixels apart on the picture are half a metre apart on the wall:
+
+    >>> import numpy as np
+    >>> from concio.trace import Photo
+    >>> Photo(np.zeros((200, 300))).scaled((0, 0), (100, 0), 0.5).size
+    (1.5, 1.0)
     """
 
     grey: Array
@@ -114,12 +125,12 @@ def _check_quadrilateral(quad: Array, width: float, height: float) -> None:
         raise InputError(msg, hint="click lower left, lower right, upper right and upper left")
     ahead = np.roll(quad, -1, axis=0) - quad
     after = np.roll(ahead, -1, axis=0)
-    turns = ahead[:, 0] * after[:, 1] - ahead[:, 1] * after[:, 0]
+    turns = cross(ahead, after)
     if not (turns < 0).all():  # rows count downwards
         msg = (
             "the four points are no convex quadrilateral in the order lower left, lower right, upper right, upper left"
         )
-        raise InputError(msg, hint="click the corners anew, counter-clockwise from the lower left")
+        raise InputError(msg, hint="click the corners again, counter-clockwise from the lower left")
     if not (width > 0 and height > 0 and np.isfinite([width, height]).all()):
         msg = f"a rectangle of {width:g} x {height:g} m"
         raise InputError(msg, hint="state width and height in metres")
@@ -134,6 +145,7 @@ def homography(given: Array, wanted: Array) -> Array:
     return np.append(found, 1.0).reshape(3, 3)
 
 
+@strict
 def read_photo(path: Path | str, *, pixel: float = 1.0) -> Photo:
     """Return a picture from a PNG, JPEG or TIFF file.
 
@@ -146,7 +158,19 @@ def read_photo(path: Path | str, *, pixel: float = 1.0) -> Photo:
     Raises
     ------
     InputError
-        There is no such file, it is no picture, or it is too large.
+        There is no such file, it is not a picture, or it is too large.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import numpy as np
+    >>> from matplotlib.image import imsave
+    >>> from concio.trace import read_photo
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = f"{folder}/wall.png"
+    ...     imsave(file, np.ones((40, 60)), cmap="gray", vmin=0.0, vmax=1.0)
+    ...     read_photo(file, pixel=0.01).size
+    (0.6, 0.4)
     """
     from matplotlib.image import imread
 

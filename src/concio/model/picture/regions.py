@@ -10,6 +10,7 @@ import scipy.sparse as sp
 from scipy import ndimage
 from scipy.sparse.csgraph import dijkstra
 
+from concio.arguments import strict
 from concio.errors import InputError
 from concio.model.picture.photo import Photo
 from concio.model.picture.tracing import TracedJoint, Tracing
@@ -42,6 +43,7 @@ def joint_likeness(photo: Photo, wide: float) -> Array:
     return np.clip(found / top, 0.0, 1.0)
 
 
+@strict
 def trace_regions(photo: Photo, unit: float, *, joint: float | None = None) -> Tracing:
     """Return the stones between clear joints: each place far from joints begins one, and takes what it reaches first.
 
@@ -152,6 +154,7 @@ def _mean_width(labels: Array, like: Array) -> float:
     return float((like > _threshold(like)).sum()) / length if length else 0.0
 
 
+@strict
 def wire(photo: Photo, a: Sequence[float], b: Sequence[float], *, joint: float | None = None) -> Array:
     """Return the way (k, 2) from one point to another along what looks most like a joint [m].
 
@@ -162,6 +165,16 @@ def wire(photo: Photo, a: Sequence[float], b: Sequence[float], *, joint: float |
         [m].
     joint : float, optional
         Rough width of the joints [m]; default six pixels.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from concio.trace import Photo, wire
+    >>> grey = np.full((40, 60), 0.8)
+    >>> grey[18:22] = 0.3
+    >>> way = wire(Photo(grey, 0.01), (0.02, 0.2), (0.58, 0.2), joint=0.04)
+    >>> bool(abs(way[:, 1] - 0.2).max() < 0.03)
+    True
     """
     (x0, y0), (x1, y1) = np.floor(photo.pixels(np.array([a, b], dtype=float))).astype(int).tolist()
     rows, columns = photo.grey.shape
@@ -210,6 +223,7 @@ def _grid(cost: Array) -> tuple[Any, Array]:
     return sp.csr_array((far * 0.5 * (flat[i] + flat[j]), (i, j)), shape=(h * w, h * w)), number
 
 
+@strict
 def trace_outlines(photo: Photo, clicks: Sequence[Sequence[Sequence[float]]], *, joint: float | None = None) -> Tracing:
     """Return the stones around which was clicked: between clicks the outline follows the joint.
 
@@ -227,6 +241,16 @@ def trace_outlines(photo: Photo, clicks: Sequence[Sequence[Sequence[float]]], *,
     ------
     InputError
         A stone has less than three clicks.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from concio.trace import Photo, trace_outlines
+    >>> grey = np.full((40, 60), 0.8)
+    >>> grey[8:11] = grey[29:32] = grey[:, 8:11] = grey[:, 49:52] = 0.3
+    >>> clicks = [(0.095, 0.095), (0.505, 0.095), (0.505, 0.305), (0.095, 0.305)]
+    >>> len(trace_outlines(Photo(grey, 0.01), [clicks], joint=0.03).outlines())
+    1
     """
     import shapely
 

@@ -10,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from scipy import ndimage
 
+from concio.arguments import strict
 from concio.errors import InputError
 from concio.model.actions import Load
 from concio.model.body import Body
@@ -35,6 +36,12 @@ class TracedJoint:
         [m].
     strength : float
         How clear it is: in deviations of the noise where courses were traced, else the depth of the valley in grey.
+
+    Examples
+    --------
+    >>> from concio.trace import TracedJoint
+    >>> TracedJoint("head", ((0.5, 0.0), (0.5, 0.1)), 3.2).strength
+    3.2
     """
 
     kind: Literal["bed", "head", "joint"]
@@ -62,6 +69,17 @@ class Tracing:
         The most doubtful first.
     joint_width : float
         Measured width of the joints [m]; 0 where it was not measured.
+
+    Examples
+    --------
+    Two blocks become one, which is cut again:
+
+    >>> import numpy as np
+    >>> from concio.trace import Photo, Tracing
+    >>> found = Tracing(np.repeat([[1, 2, 3]], 20, axis=0).repeat(20, axis=1), Photo(np.zeros((20, 60)), 0.01))
+    >>> one = found.merged(1, 2)
+    >>> len(one.outlines()), len(one.split(1, [(0.15, -0.1), (0.15, 0.3)]).outlines())
+    (2, 3)
     """
 
     labels: Array
@@ -182,6 +200,7 @@ def _drawn(line: Array, shape: tuple[int, ...]) -> Array:
     return found
 
 
+@strict
 def trace_labels(labels: Array, photo: Photo) -> Tracing:
     """Return a tracing from a segmentation of your own: the number of the block of each pixel, 0 for none.
 
@@ -195,6 +214,14 @@ def trace_labels(labels: Array, photo: Photo) -> Tracing:
     ------
     InputError
         The sizes differ, or there is no block.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from concio.trace import Photo, trace_labels
+    >>> labels = np.repeat([[1, 2]], 20, axis=0).repeat(30, axis=1)
+    >>> len(trace_labels(labels, Photo(np.zeros((20, 60)), 0.01)).model(thickness=0.3).free_bodies)
+    2
     """
     own = np.asarray(labels)
     if own.shape != photo.grey.shape or not np.issubdtype(own.dtype, np.integer) or not (own > 0).any():
