@@ -124,6 +124,12 @@ def test_wall_of_courses_leaves_openings():
     assert free_area(model) == pytest.approx(0.08 * 5)
 
 
+@pytest.mark.parametrize("row", [[1, 0, 1], [0], [], [1, float("nan")]])
+def test_a_block_without_length_is_refused(row):
+    with pytest.raises(InputError, match="course 2 has the lengths"):
+        wall_of_courses([[1, 1], row], block_size=(0.4, 0.2))
+
+
 @pytest.mark.parametrize("voussoirs", [7, 12])
 @pytest.mark.parametrize("edges", ["curved", "straight"])
 def test_semicircular_arch_is_a_half_ring(voussoirs, edges):

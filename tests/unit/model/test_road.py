@@ -21,7 +21,7 @@ from concio.model.road.earth import (
     with_vehicle,
     without_pressure,
 )
-from concio.model.road.spread import spread_rules
+from concio.model.road.spread import spread, spread_rules
 from concio.model.road.vehicles import convoy, find_vehicle, vehicles
 from samples import sample
 
@@ -266,3 +266,21 @@ def test_footprints_press_with_all_factors_of_their_vehicle(direction: str) -> N
     assert (length, length2) == (lorry.footprint, 0.5)
     assert (load, load2) == pytest.approx((60.0 * 1.8, 90.0 * 1.8))
     assert not stretch
+
+
+@pytest.mark.parametrize("rule", spread_rules())
+def test_forces_on_each_voussoir_are_the_integral_of_the_pressure(rule: str) -> None:
+    """Against a sum over 100,000 strips of each piece, which knows nothing of where the pressure bends."""
+    surface, road = ground_of(covered(Fill(cover=0.25, spread=rule, gradient=0.07)))
+    one, x, footprint = spread_rules()[rule], 0.87, 0.3
+    found = spread(one, surface, road, ((x, footprint, 10.0),))
+    at = (np.arange(100_000) + 0.5) / 100_000
+    shares = np.zeros(len(surface))
+    for k, (start, end) in enumerate(zip(surface.start, surface.end, strict=True)):
+        points = start + at[:, None] * (end - start)
+        value = one.pressure(points[:, 0] - x, road.height(points[:, 0]) - points[:, 1], one.base(footprint))
+        shares[k] = value.mean() * (end[0] - start[0])
+    force = np.zeros(len(surface))
+    force[found.piece] = found.force
+    assert force == pytest.approx(10.0 * shares / shares.sum(), abs=2e-4)
+    assert found.force.min() > 0
