@@ -262,3 +262,77 @@ def test_mending_that_would_swallow_blocks_is_refused(tmp_path):
         model_from_dxf(path, mend="5 m", **options)
     with pytest.raises(GeometryError, match=r"layer 'ARCHITRAVI'.* only about 400 mm wide.* would remove it"):
         model_from_dxf(path, mend="0.22 m", **options)
+
+
+# -- ties -------------------------------------------------------------------------------------------------------------
+
+
+def two_walls():
+    sheet = Sheet()
+    sheet.box(-1, -0.5, 5, 0, "Fondazione")
+    sheet.box(0, 0, 0.5, 3, "MURATURA")
+    sheet.box(3.5, 0, 4, 3, "MURATURA")
+    return sheet
+
+
+TIED = {"FONDAZIONE": "fixed", "MURATURA": "stone",
+        "CATENE": {"tie": "5 MN/m", "yield_force": "30 kN", "prestress": 2.0}}  # fmt: skip
+
+
+def test_lines_of_a_tie_layer_join_the_blocks_that_their_ends_lie_in(tmp_path):
+    sheet = two_walls()
+    sheet.line((3.5, 2.5), (0.5, 2.5), "Catene")
+    sheet.line((6.0, 2.0), (4.0, 2.0), "CATENE")  # to a fixed point
+    model = model_from_dxf(sheet.saved(tmp_path), layers=TIED, materials={"stone": STONE})
+    one, other = model.ties
+    assert {one.body_a, one.body_b} == {b.name for b in model.free_bodies}
+    assert {one.body_a: one.at_a, one.body_b: one.at_b} == {
+        b.name: ((0.5, 2.5) if b.centroid[0] < 2 else (3.5, 2.5)) for b in model.free_bodies
+    }
+    assert (one.stiffness, one.yield_force, one.prestress, one.break_elongation) == (5000.0, 30.0, 2.0, None)
+    assert (other.body_b, other.at_b) == ("", (6.0, 2.0))
+    assert one.name != other.name
+
+
+@pytest.mark.parametrize(
+    ("ends", "words"),
+    [(((0.1, 1.0), (0.4, 2.0)), "joins .* with itself"), (((1.0, 1.0), (2.0, 1.0)), "joins no block")],
+)
+def test_a_tie_that_joins_nothing_is_a_fault(tmp_path, ends, words):
+    sheet = two_walls()
+    sheet.line(*ends, "CATENE")
+    with pytest.raises(GeometryError, match=words):
+        model_from_dxf(sheet.saved(tmp_path), layers=TIED, materials={"stone": STONE})
+    left = model_from_dxf(sheet.saved(tmp_path), layers=TIED, materials={"stone": STONE}, on_fault="skip")
+    assert not left.ties
+
+
+@pytest.mark.parametrize(
+    ("meaning", "words"),
+    [
+        ({"tie": 0.0}, "tie = 0 must be positive"),
+        ({"tie": 5e3, "yield_force": -3.0}, "yield_force = -3 must be positive"),
+        ({"tie": 5e3, "group": "live"}, "unknown key 'group' of a tie"),
+        ({"tie": "5 kN/m2"}, "kN/m"),
+    ],
+)
+def test_a_tie_layer_that_says_nothing_is_refused(tmp_path, meaning, words):
+    sheet = two_walls()
+    sheet.line((0.5, 2.5), (3.5, 2.5), "CATENE")
+    with pytest.raises(InputError, match=words):
+        model_from_dxf(sheet.saved(tmp_path), layers={**TIED, "CATENE": meaning}, materials={"stone": STONE})
+
+
+def test_a_model_file_gives_a_tie_layer(tmp_path):
+    sheet = two_walls()
+    sheet.line((0.5, 2.5), (3.5, 2.5), "CATENE")
+    sheet.saved(tmp_path)
+    (tmp_path / "m.toml").write_text(
+        'blocks_file = "d.dxf"\n[drawing.layers]\nFONDAZIONE = "fixed"\nMURATURA = "stone"\n'
+        'CATENE = { tie = "5000 kN/m", yield_force = "30 kN" }\n'
+        '[materials.stone]\nE = "4 GPa"\nnu = 0.2\nunit_weight = "20 kN/m3"\n[joints.j]\nfriction = 0.6\n',
+        encoding="utf-8",
+    )
+    (tie,) = concio.load(tmp_path / "m.toml").ties
+    assert tie.stiffness == 5000.0
+    assert tie.yield_force == 30.0

@@ -16,7 +16,7 @@ from concio.model.drawing.dxf import CHORD_TOLERANCE, Drawing, DxfFault, Outline
 from concio.model.drawing.holes import with_holes
 from concio.model.drawing.layers import Layers
 from concio.model.drawing.mend import mended
-from concio.model.drawing.places import supports_and_loads
+from concio.model.drawing.places import drawn_ties, supports_and_loads
 from concio.model.generate.arguments import Checked, Common, checked, not_negative
 from concio.model.generate.masonry import Piece, assemble
 from concio.model.interfaces.near import find_overlaps
@@ -68,7 +68,7 @@ def model_from_dxf(
     InputError
         The file or an option is not usable.
     GeometryError
-        The drawing has faults that would lose or spoil a block, a support or a load; the message lists them.
+        The drawing has faults that would lose or spoil a block, a support, a load or a tie; the message lists them.
 
     Notes
     -----
@@ -114,7 +114,8 @@ def model_from_dxf(
         size = float(np.ptp(np.concatenate([o.points for o in outlines]), axis=0).max())
         tolerance = max(within, curved, 1e-6 * size)
         supports, loads, lost = supports_and_loads(drawing, pieces, tolerance)
-        faults += lost + _overlaps(outlines, obstacles, tolerance)
+        ties, untied = drawn_ties(drawing, pieces, tolerance)
+        faults += lost + untied + _overlaps(outlines, obstacles, tolerance)
     serious = [f for f in faults if f.serious and not f.mended]
     if not pieces and not serious:
         msg = "the drawing holds no closed polyline that could be a block"
@@ -130,7 +131,7 @@ def model_from_dxf(
     }  # fmt: skip
     title = f"drawing {Path(path).name}, {len(pieces)} block{'s' if len(pieces) != 1 else ''}"
     model = assemble(options, pieces, obstacles, loads=loads, materials=table, title=title, generator=record)
-    return replace(model, supports=tuple(supports), gap_tolerance=tolerance)
+    return replace(model, supports=tuple(supports), ties=tuple(ties), gap_tolerance=tolerance)
 
 
 def usable_outlines(

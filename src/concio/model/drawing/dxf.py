@@ -40,7 +40,7 @@ Every fault names the handle of its entity and the place.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
@@ -131,6 +131,15 @@ class HeldEdge:
     group: str = "settlement"
 
 
+@dataclass(frozen=True)
+class DrawnTie:
+    """A line that is a tie: its ends [m], its numbers, its handle."""
+
+    edge: Edge
+    numbers: Mapping[str, float]
+    handle: str
+
+
 @dataclass(frozen=True, eq=False)
 class Drawing:
     """What a DXF file holds, before it is put together.
@@ -147,6 +156,7 @@ class Drawing:
         Length of a drawing unit [m].
     left_out : tuple of str
         What was left out as asked, in sentences.
+    ties : tuple of DrawnTie
     """
 
     outlines: tuple[Outline, ...]
@@ -155,6 +165,7 @@ class Drawing:
     faults: tuple[DxfFault, ...]
     metres: float
     left_out: tuple[str, ...] = ()
+    ties: tuple[DrawnTie, ...] = ()
 
 
 def read_drawing(
@@ -195,6 +206,7 @@ def read_drawing(
     loads: list[tuple[Load, str]] = []
     faults: list[DxfFault] = []
     names: list[tuple[str, Array]] = []
+    ties: list[DrawnTie] = []
     ignored: dict[tuple[str, str], Counter[str]] = {}
     lost: Counter[tuple[str, str]] = Counter()
     for e in sheet.entities:
@@ -216,6 +228,12 @@ def read_drawing(
             if not edges:
                 faults.append(_fault("place", e, f"{e.kind} is neither a LINE nor a POINT"))
             supports += [HeldEdge(edge, use.directions, e.handle, use.group) for edge in edges]
+        elif use.tie is not None:
+            edges = _edges(e)
+            if not edges or edges[0][0] == edges[0][1]:
+                faults.append(_fault("place", e, f"a tie takes a LINE, not {e.kind}"))
+                continue
+            ties += [DrawnTie(edge, use.tie, e.handle) for edge in edges]
         elif use.load is not None:
             edges = _edges(e)
             point = use.load.kind == "point"
@@ -242,7 +260,7 @@ def read_drawing(
             text += f" (draw blocks as closed polylines, or write {layer} = 'ignore' in [drawing.layers])"
         faults.append(DxfFault("ignored", "", layer, np.full(2, np.nan), text, serious=serious))
     named = _named(outlines, names, faults)
-    return Drawing(named, tuple(supports), tuple(loads), tuple(faults), sheet.metres, tuple(left_out))
+    return Drawing(named, tuple(supports), tuple(loads), tuple(faults), sheet.metres, tuple(left_out), tuple(ties))
 
 
 def outline_of(entity: Entity, chord: float) -> Outline | str | None:

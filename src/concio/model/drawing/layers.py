@@ -15,6 +15,7 @@ or a table::
     TERRENO = { use = "fixed", role = "ground" }
     SOLAIO = { load = "traction", value = [0, -12], group = "floor", face = "upper" }
     APPOGGI = { support = "y" }
+    CATENE = { tie = "5000 kN/m", yield_force = "30 kN" }     # each line a tie of this stiffness
 
 Names of layers are the same in upper and lower case; ``*`` and ``?`` stand for any characters, and a layer's own name
 goes before such a pattern.
@@ -32,8 +33,8 @@ from concio.errors import InputError
 from concio.model.model import FACES, Load
 from concio.units import quantity
 
-Use = Literal["block", "rigid", "fixed", "hole", "names", "ignore", "load", "support"]
-WORDS: dict[str, Use] = {w: w for w in get_args(Use) if w not in ("load", "support")}
+Use = Literal["block", "rigid", "fixed", "hole", "names", "ignore", "load", "support", "tie"]
+WORDS: dict[str, Use] = {w: w for w in get_args(Use) if w not in ("load", "support", "tie")}
 """Words that a layer may be given in place of a material."""
 VALUES: dict[str, tuple[str, int]] = {"pressure": ("stress", 1), "traction": ("stress", 2), "point": ("force", 2)}
 """Kind of quantity and number of values of the loads that can be drawn."""
@@ -41,7 +42,10 @@ KEYS: dict[str, tuple[str, ...]] = {
     "block": ("use", "material", "role", "thickness"),
     "load": ("load", "value", "group", "face"),
     "support": ("support", "group"),
+    "tie": ("tie", "yield_force", "prestress", "break_elongation"),
 }
+OF_TIES = {"tie": "stiffness", "yield_force": "force", "prestress": "force", "break_elongation": "length"}
+"""Kind of quantity of the keys of a tie."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +66,8 @@ class LayerUse:
         Of supports: "x", "y" or "xy".
     group : str
         Load group of supports.
+    tie : mapping or None
+        Of ties: ``stiffness``, ``yield_force``, ``prestress`` and ``break_elongation`` of :class:`~concio.Tie`.
     """
 
     use: Use = "block"
@@ -71,6 +77,7 @@ class LayerUse:
     load: Load | None = None
     directions: str = ""
     group: str = "settlement"
+    tie: Mapping[str, float] | None = None
 
 
 class Layers:
@@ -190,13 +197,15 @@ def _use_of(meaning: Any, where: str, materials: Sequence[str]) -> LayerUse:
         msg = f"{meaning!r} is neither a word nor a table"
         raise InputError(msg, where=where, hint=f"write a material, one of {', '.join(WORDS)}, or a table of keys")
     given = {key: value for key, value in meaning.items() if value is not None}
-    sort = "load" if "load" in given else "support" if "support" in given else "block"
+    sort = next((word for word in ("load", "support", "tie") if word in given), "block")
     for key in given:
         if key not in KEYS[sort]:
             msg = f"unknown key '{key}'" if sort == "block" else f"unknown key '{key}' of a {sort}"
             raise InputError(msg, where=where, hint=closest(str(key), KEYS[sort]))
     if sort == "load":
         return LayerUse("load", load=_load(given, where))
+    if sort == "tie":
+        return LayerUse("tie", tie=_tie(given, where))
     if sort == "support":
         directions = str(given["support"])
         if directions not in ("x", "y", "xy"):
@@ -215,6 +224,15 @@ def _use_of(meaning: Any, where: str, materials: Sequence[str]) -> LayerUse:
     if thickness is not None:
         thickness = quantity(thickness, "length", where=f"{where}, thickness")
     return LayerUse(WORDS[use], material, str(given.get("role", "")), thickness)
+
+
+def _tie(given: Mapping[str, Any], where: str) -> dict[str, float]:
+    found = {key: quantity(value, OF_TIES[key], where=f"{where}, {key}") for key, value in given.items()}
+    for key, value in found.items():
+        if not (0 < value < float("inf") or (key == "prestress" and value == 0)):
+            msg = f"{key} = {value:g} must be positive"
+            raise InputError(msg, where=where)
+    return {"stiffness" if key == "tie" else key: value for key, value in found.items()}
 
 
 def _load(given: Mapping[str, Any], where: str) -> Load:

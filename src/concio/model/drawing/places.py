@@ -1,4 +1,4 @@
-"""The blocks that drawn supports and loads stand on."""
+"""The blocks that drawn supports and loads stand on, and those that drawn ties join."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import shapely
 
 from concio.model.drawing.dxf import Drawing, DxfFault, Edge
 from concio.model.generate.masonry import Piece
-from concio.model.model import Load, Point, Support
+from concio.model.model import Load, Point, Support, Tie
 
 
 def supports_and_loads(
@@ -72,3 +72,40 @@ def supports_and_loads(
         else:
             nowhere(handle, at, "load")
     return supports, loads, lost
+
+
+def drawn_ties(drawing: Drawing, pieces: Sequence[Piece], tolerance: float) -> tuple[list[Tie], list[DxfFault]]:
+    """Return the ties of a drawing with the blocks that their ends lie in, and those that join nothing.
+
+    An end in no block that moves is a fixed point.
+
+    Parameters
+    ----------
+    drawing : Drawing
+    pieces : sequence of Piece
+        Blocks that are not fixed.
+    tolerance : float
+        What is drawn nearer than this to a block lies in it [m].
+    """
+    shapes = np.array([shapely.Polygon(p.outline, p.holes) for p in pieces])
+    found: list[Tie] = []
+    lost: list[DxfFault] = []
+
+    def at(place: Point) -> str:
+        near = shapely.distance(shapes, shapely.Point(place))
+        return pieces[int(np.argmin(near))].name if float(near.min()) <= tolerance else ""
+
+    for k, drawn in enumerate(drawing.ties):
+        ends = sorted(((at(end), end) for end in drawn.edge), key=lambda end: end[0] == "")
+        (a, at_a), (b, at_b) = ends
+        if a == b:
+            what = f"joins '{a}' with itself" if a else "joins no block"
+            text = f"entity {drawn.handle}: this tie {what} (draw it from one block to another, or to a fixed point)"
+            lost.append(DxfFault("place", drawn.handle, "", np.array(drawn.edge[0]), text))
+            continue
+        same = sum(other.handle == drawn.handle for other in drawing.ties[:k])
+        name = f"tie {drawn.handle}" + (f".{same + 1}" if same else "")
+        n = drawn.numbers
+        found.append(Tie(name, a, at_a, b, at_b, stiffness=n["stiffness"], prestress=n.get("prestress", 0.0),
+                         yield_force=n.get("yield_force"), break_elongation=n.get("break_elongation")))  # fmt: skip
+    return found, lost

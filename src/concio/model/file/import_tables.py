@@ -8,7 +8,7 @@ from pydantic import Discriminator, Field, StrictBool, StrictStr, Tag, Validatio
 
 from concio.model.file.acting_tables import load_value
 from concio.model.file.tables import Name, Table, word_or_table
-from concio.model.file.values import Length
+from concio.model.file.values import Force, Length, Stiffness
 from concio.model.model import Face
 
 
@@ -33,6 +33,12 @@ class LayerTable(Table):
         Side that the loaded edge looks to.
     support :
         Directions in which its points or lines are held.
+    tie :
+        Stiffness of the ties that its lines are.
+    yield_force, prestress :
+        Of these ties.
+    break_elongation :
+        Of these ties.
     """
 
     use: Literal["block", "rigid", "fixed", "hole", "names", "ignore"] | None = None
@@ -44,6 +50,10 @@ class LayerTable(Table):
     group: Name | None = None
     face: Face | None = None
     support: Literal["x", "y", "xy"] | None = None
+    tie: Stiffness | None = None
+    yield_force: Force | None = None
+    prestress: Force | None = None
+    break_elongation: Length | None = None
 
     @field_validator("value", mode="after")
     @classmethod
