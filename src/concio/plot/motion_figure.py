@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ from concio.display import number
 from concio.errors import InputError
 from concio.plot import style
 from concio.plot.diagram import diagram_axes, dress_diagram, figure_of
+from concio.plot.motion_in_space import painter
 from concio.post.frames import Frame, box_of, frames, positions
 
 if TYPE_CHECKING:
@@ -138,8 +140,10 @@ def plot_frame(result: PushResult | DynamicsResult, number: int = -1, ax: Axes |
     ax : Axes, optional
         Where to draw; default a new figure.
     """
-    _require_plane(result, "figure")
     ax = diagram_axes(ax, (6.4, 5.2))
+    if result.model.dim == 3:
+        count, _, draw_one = painter(result, len(positions(result)[0]))
+        return draw_one(ax, range(count)[number])
     at, words = positions(result)
     k = range(len(at))[number]
     standing = result.configuration(k)
@@ -147,13 +151,6 @@ def plot_frame(result: PushResult | DynamicsResult, number: int = -1, ax: Axes |
     picture = Frame(k, float(at[k]), words[k], rings)
     _draw(ax, result, picture, box_of([picture], result.model))
     return ax
-
-
-def _require_plane(result: PushResult | DynamicsResult, what: str) -> None:
-    """Refuse to draw a motion in space."""
-    if result.model.dim != 2:
-        msg = f"there is no {what} of a motion in space"
-        raise InputError(msg, hint="write_motion_series writes it for ParaView, 'concio shake' with --series")
 
 
 def _draw(ax: Axes, result: PushResult | DynamicsResult, picture: Frame, box: Array) -> None:
@@ -168,6 +165,18 @@ def _draw(ax: Axes, result: PushResult | DynamicsResult, picture: Frame, box: Ar
         if own:
             ax.add_collection(style.polygons_of([picture.rings[b] for b in own], **options))
     style.dress(ax, box, model.title or "Motion", picture.word, units=model.report)
+
+
+def _painter(result: PushResult | DynamicsResult, most: int) -> tuple[int, Array, Callable[[Axes, int], Axes]]:
+    """Return how many frames a plane motion has, the box of its pictures (2, 2), and what draws one into axes."""
+    pictures = frames(result, most)
+    box = box_of(pictures, result.model)
+
+    def draw_one(ax: Axes, k: int) -> Axes:
+        _draw(ax, result, pictures[k], box)
+        return ax
+
+    return len(pictures), box, draw_one
 
 
 @strict
@@ -193,7 +202,6 @@ def write_film(result: PushResult | DynamicsResult, path: Path | str, *, fps: in
     if path.suffix.lower() not in FILMS:
         msg = f"a film ends in .gif or .mp4, not in '{path.suffix}'"
         raise InputError(msg, where=str(path), hint="for example rocking.gif")
-    _require_plane(result, "film")
     from matplotlib.animation import FuncAnimation, writers
 
     name = "pillow" if path.suffix.lower() == ".gif" else "ffmpeg"
@@ -207,8 +215,7 @@ def write_film(result: PushResult | DynamicsResult, path: Path | str, *, fps: in
     if isinstance(result, DynamicsResult):
         span = float(result.shots.time[-1] - result.shots.time[0])
         most = max(2, min(most, round(span * fps) + 1))
-    pictures = frames(result, most)
-    box = box_of(pictures, result.model)
+    count, box, draw_one = painter(result, most) if result.model.dim == 3 else _painter(result, most)
     wide, high = box[1] - box[0]
     figure = figure_of((6.4, float(np.clip(6.4 * high / wide + 0.8, 2.4, 8.0))))
     figure.set_layout_engine("none")
@@ -216,9 +223,9 @@ def write_film(result: PushResult | DynamicsResult, path: Path | str, *, fps: in
 
     def draw(k: int) -> list[Any]:
         ax.clear()
-        _draw(ax, result, pictures[k], box)
+        draw_one(ax, k)
         return []
 
-    film = FuncAnimation(figure, draw, frames=len(pictures), interval=1000 / fps, init_func=lambda: [])
+    film = FuncAnimation(figure, draw, frames=count, interval=1000 / fps, init_func=lambda: [])
     film.save(str(path), writer=writers[name](fps=fps), dpi=90)
     return path

@@ -43,10 +43,10 @@ class Picture:
     depth: Array
 
     @classmethod
-    def of(cls, box: Array, axes: Array) -> Picture:
-        """Return an empty picture of the box ((x0, y0), (x1, y1)) [m]."""
+    def of(cls, box: Array, axes: Array, longer: int | None = None) -> Picture:
+        """Return an empty picture of the box ((x0, y0), (x1, y1)) [m], ``longer`` points along its longer side."""
         span = box[1] - box[0]
-        step = float(span.max()) / LONGER_SIDE
+        step = float(span.max()) / (longer or LONGER_SIDE)
         width, height = (max(1, int(np.ceil(s / step))) for s in span)
         white = np.full((height, width, 3), 255, dtype=np.uint8)
         return cls(box[0], step, axes, white, np.full((height, width), -np.inf))

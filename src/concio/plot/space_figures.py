@@ -157,13 +157,19 @@ def draw_solids(
     extra: Sequence[tuple[Array, str]] = (),
     note: str = "",
     bars: Array | None = None,
+    box: Array | None = None,
+    longer: int | None = None,
 ) -> tuple[Axes, Picture]:
-    """Draw bodies, each in its colour, coloured areas (n, 3) upon them and ties (t, 2, 3); return axes and picture."""
+    """Draw bodies, each in its colour, coloured areas (n, 3) upon them and ties (t, 2, 3); return axes and picture.
+
+    A ``box`` (2, 2) of the view shows what lies within it, otherwise everything is shown; ``longer`` is the number of
+    points along the longer side of the picture.
+    """
     from matplotlib.colors import to_rgb
 
     right, up, eye = directions(view)
     points = shown.moved(scale)
-    box = style.box_of(points @ np.column_stack([right, up]))
+    box = style.box_of(points @ np.column_stack([right, up])) if box is None else box
     ax = style.axes_for(box, ax)
     corners = points[shown.triangles]
     normal = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -176,7 +182,7 @@ def draw_solids(
     if extra:
         lifted = np.array([c for c, _ in extra]) + 1e-4 * shown.size * eye  # a colour lies on the face that carries it
         areas, fills = np.concatenate([areas, lifted]), np.vstack([fills, [to_rgb(tone) for _, tone in extra]])
-    picture = Picture.of(box, np.array([right, up, eye]))
+    picture = Picture.of(box, np.array([right, up, eye]), longer)
     picture.fill(areas, fills)
     wide = 1 if len(colours) > style.LARGE else 2
     picture.stroke(points[shown.edges], to_rgb(style.EDGE), wide, 1.5e-3 * shown.size)

@@ -14,8 +14,10 @@ from concio.analysis.motion.dynamics_result import DynamicsResult
 from concio.analysis.motion.push_result import PushResult
 from concio.arguments import strict
 from concio.display import number
+from concio.model.polyhedron import Polyhedron
 from concio.plot.motion_figure import plot_capacity, plot_energy, plot_ground, plot_history
-from concio.post.frames import box_of, frames
+from concio.post.frames import box_of, frames, positions
+from concio.post.solid_frames import solid_frames
 from concio.report.html_parts import figure_html, page_html, resource
 
 SECONDS = 12.0
@@ -26,6 +28,24 @@ LARGEST = 4_000_000
 
 SHOWN = 300
 """Events listed."""
+
+CANVAS = (
+    '<canvas id="film" style="width:100%;display:block" role="img" aria-label="the structure as it moves"></canvas>'
+)
+PLAY = (
+    '<button id="play" type="button" aria-pressed="false">Play</button> '
+    '<input id="frame" type="range" min="0" value="0" style="width:60%;vertical-align:middle" '
+    'aria-label="frame"> <span id="word"></span>'
+)
+SPEED = '<label>speed <select id="speed">' + "".join(
+    f"<option value={v}{' selected' if v == 1 else ''}>{v:g} ×</option>" for v in (0.1, 0.25, 0.5, 1, 2, 4)
+) + "</select></label>"
+
+HISTORY = (
+    '<p><label>Block <select id="picked"></select></label></p>'
+    '<canvas id="history" style="width:100%;display:block" role="img" aria-label="how far the block moved and turned">'
+    "</canvas>"
+)
 
 HOW = {
     "same states": "contact states unchanged",
@@ -68,24 +88,58 @@ def motion_html(result: PushResult | DynamicsResult) -> str:
             figures += figure_html(plot_ground(result), "ground", "Acceleration of the ground.")
         figures += figure_html(plot_energy(result), "energy", "Energy stored, dissipated and put in.")
         tables = _shares(result)
-    film = (
-        '<canvas id="film" style="width:100%;display:block" role="img" aria-label="the structure as it moves"></canvas>'
-        '<p><button id="play" type="button" aria-pressed="false">Play</button> '
-        '<input id="frame" type="range" min="0" value="0" style="width:60%;vertical-align:middle" '
-        'aria-label="frame"> <span id="word"></span></p>'
-    )
-    plane = result.model.dim == 2
-    moves = f"<section class=moves><h2>The structure as it moves, true to scale</h2>{film}</section>" if plane else ""
-    data = json.dumps(_film(result) if plane else None, separators=(",", ":")).replace("<", "\\u003c")
+    film, data, script = _space_film(result) if result.model.dim == 3 else _plane_film(result)
+    moves = f"<section class=moves><h2>The structure as it moves, true to scale</h2>{film}</section>"
+    text = json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
     body = (
         f'<header><p class="brand">concio</p><h1>{escape(title)}</h1></header>'
         f"<section id=verdict>{_verdict(result)}</section>"
         f"{moves}<section id=figures><h2>Figures</h2>{figures}</section>"
         f"<section id=tables>{tables}</section>"
         f"<footer>Written by concio {escape(concio.__version__)}. Forces in kN, lengths in m, time in s.</footer>"
-        f'<script type="application/json" id="data">{data}</script>'
+        f'<script type="application/json" id="data">{text}</script>'
     )
-    return page_html(title, body, script=resource("motion.js") if plane else "")
+    return page_html(title, body, script=resource(script))
+
+
+def _plane_film(result: PushResult | DynamicsResult) -> tuple[str, dict[str, Any], str]:
+    """Return the frame of the film of a plane motion, what the script plays, and its name."""
+    return CANVAS + f"<p>{PLAY}</p>", _film(result), "motion.js"
+
+
+def _space_film(result: PushResult | DynamicsResult) -> tuple[str, dict[str, Any], str]:
+    """Return the frame of the film of a motion in space, what the script plays, and its name."""
+    model = result.model
+    each = 12 * len(model.bodies)
+    most = int(np.clip(LARGEST // max(2 * each, 1), 2, 400))
+    seen = solid_frames(result, most)
+    moving = np.array([body.kind != "fixed" for body in model.bodies])
+    low, high = seen.box(moving)
+    digits = max(0, 5 - int(np.floor(np.log10(float((high - low).max())))))
+    turned = np.rad2deg(seen.turned)
+    placed = np.concatenate([seen.centre, seen.rotation.reshape(*seen.rotation.shape[:2], 9)], axis=2)
+    placed[..., :3], placed[..., 3:] = np.round(placed[..., :3], digits), np.round(placed[..., 3:], 5)
+    data = {
+        "bodies": [_surface(body, digits) for body in model.polyhedra],
+        "low": low.tolist(), "high": high.tolist(), "at": seen.at.tolist(), "words": list(seen.words),
+        "rate": 1.0 if isinstance(result, DynamicsResult) else float(seen.at[-1] - seen.at[0]) / SECONDS,
+        "frames": [frame.ravel().tolist() for frame in placed], "turned": np.round(turned, 4).tolist(),
+        "first": int(np.argmax(np.where(moving, turned.max(axis=0), -1.0))),
+    }  # fmt: skip
+    count = len(positions(result)[0])
+    told = "Drag to turn, wheel to come nearer, click a block for its history."
+    told += f" Of {count:,} places {len(seen.at):,} are shown." if len(seen.at) < count else ""
+    return CANVAS + f"<p>{PLAY} {SPEED}</p><p>{told}</p>{HISTORY}", data, "motion_space.js"
+
+
+def _surface(body: Polyhedron, digits: int) -> dict[str, Any]:
+    """Return what the script draws of a block: points from its centroid, and faces, those with holes as triangles."""
+    triangles, face = body.triangles
+    rings = [body.loops_of(f) for f in range(len(body.faces))]
+    parts = [[list(loops[0])] if len(loops) == 1 else triangles[face == f].tolist() for f, loops in enumerate(rings)]
+    points = np.round(body.vertices - body.centroid, digits)
+    faces = [ring for part in parts for ring in part]
+    return {"name": body.name, "kind": body.kind, "points": points.ravel().tolist(), "faces": faces}
 
 
 def _film(result: PushResult | DynamicsResult) -> dict[str, Any]:
