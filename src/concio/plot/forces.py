@@ -43,7 +43,7 @@ def plot_pressure(result: Result, ax: Axes | None = None, *, scale: float | None
     ax, shown, box = style.draw_at_rest(result, ax)
     pieces = joint_lines(result, shown)
     contacts = result.contacts
-    pressure = contacts.pressure[pieces.pair]
+    pressure = np.nan_to_num(contacts.pressure[pieces.pair])  # a corner has no area
     largest = float(pressure.max(initial=0.0))
     areas = [b.area for b in result.model.outlines if b.kind != "fixed" and b.role != "mortar"]
     typical = float(np.sqrt(np.median(areas or [1.0])))

@@ -126,10 +126,12 @@ def plot_space(
     faces = joint_faces(result, u)
     state = mechanism_states_in_space(result, faces) if mechanism else result.contacts.state[faces.pair]
     looks = {0: style.OPEN.colour, 2: style.SLIP.colour, 3: style.CRUSHED.colour}
+    pointed = result.assembly.pairs.interface[faces.pair] >= len(result.assembly.detection.patches)
     extra = []
     for moved in (faces.moved_a, faces.moved_b):
         corners = faces.corners + chosen * moved
         extra += [(corners[k], looks[int(state[k])]) for k in np.flatnonzero(np.isin(state, tuple(looks)))]
+        extra += [(corners[k], style.STICK.colour) for k in np.flatnonzero(pointed & (state == 1))]
     title = "Collapse mechanism" if mechanism else f"Displaced shape, {number(chosen)} times"
     factors = ", ".join(f"{group} = {number(factor)}" for group, factor in result.factors.items())
     note = f"loads {factors}" if factors else ""

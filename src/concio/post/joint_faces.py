@@ -1,7 +1,7 @@
 """Joint faces in space as they are drawn: the piece of an interface that belongs to each contact pair.
 
 The piece of a pair is what of the patch lies nearer to its point than to the points of the others, so that a face that
-opens along a hinge shows the hinge.
+opens along a hinge shows the hinge. Where bodies touch with a corner or an edge, it is a small octahedron.
 """
 
 from __future__ import annotations
@@ -23,6 +23,15 @@ Array = np.ndarray
 
 TINY = 1e-9
 """Share of a patch below which a piece of it is left out."""
+
+MARK = 0.08
+"""Half the size of the mark of a corner that touches, over the size of the smaller body."""
+
+OCTAHEDRON = np.array(
+    [[[x, 0, 0], [0, y, 0], [0, 0, z]] if x * y * z > 0 else [[0, y, 0], [x, 0, 0], [0, 0, z]]
+     for x in (1, -1) for y in (1, -1) for z in (1, -1)], dtype=float,
+)  # fmt: skip
+"""Triangles (8, 3, 3) of half a diagonal of one, counter-clockwise seen from outside."""
 
 
 @short_repr
@@ -92,9 +101,21 @@ def pieces_of(result: Result) -> tuple[Array, Array]:
             g, n = np.nonzero((j + 1 < sides) & (size > TINY * area[:, None]))
             corners.append(origin[g, None] + np.einsum("tvc,tcd->tvd", fan[g, n], frame[g]))
             owner.append(own[g, n])
+    marks, marked = _point_marks(result)
+    corners.append(marks)
+    owner.append(marked)
     pair = np.concatenate(owner)
     first = np.argsort(pair, kind="stable")
     return np.concatenate(corners)[first], pair[first]
+
+
+def _point_marks(result: Result) -> tuple[Array, Array]:
+    """Return octahedra (T, 3, 3) where bodies touch without a common face, and their pairs (T,)."""
+    pairs, detection = result.assembly.pairs, result.assembly.detection
+    pair = np.flatnonzero(pairs.interface >= len(detection.patches))
+    size = np.array([MARK * detection.interfaces[k].scale for k in pairs.interface[pair].tolist()])
+    found = pairs.point[pair][:, None, None] + size[:, None, None, None] * OCTAHEDRON
+    return found.reshape(-1, 3, 3), np.repeat(pair, len(OCTAHEDRON))
 
 
 def _triangles(patch: Patch) -> list[Array]:

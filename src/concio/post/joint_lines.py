@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from concio.analysis.result import Result
 
 Array = np.ndarray
+
+MARK = 0.25
+"""Length of the mark of a corner that touches, over the size of the smaller body."""
 
 
 @short_repr
@@ -50,11 +53,46 @@ class JointLines:
 def joint_lines(result: Result, shown: Outlines) -> JointLines:
     """Return the pieces of all joints, moved with the outlines ``shown``.
 
-    Each interface is cut into as many pieces as it has pairs, each as long as the pair's tributary length.
+    Each interface is cut into as many pieces as it has pairs, each as long as the pair's tributary length; where bodies
+    touch with a corner, the piece is a short mark along the joint.
     """
+    parts = _face_lines(result, shown), _point_marks(result, shown)
+    return JointLines(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(JointLines)))
+
+
+def _point_marks(result: Result, shown: Outlines) -> JointLines:
+    """Return a mark at each corner or edge on which bodies touch without a common face, moved with both bodies."""
+    pairs, detection = result.assembly.pairs, result.assembly.detection
+    first = len(detection.segments)
+    pair = np.flatnonzero(pairs.interface >= first)
+    size = np.array([MARK * detection.interfaces[k].scale for k in pairs.interface[pair].tolist()])
+    half = 0.5 * size[:, None] * pairs.tangent[pair]
+    ends = pairs.point[pair][:, None] + np.stack([-half, half], axis=1)
+    moved = []
+    for body in (pairs.body_a[pair], pairs.body_b[pair]):
+        at = [_displacement(shown, b, p) for b, p in zip(body.tolist(), pairs.point[pair], strict=True)]
+        moved.append(np.repeat(np.array(at).reshape(-1, 1, 2), 2, axis=1))
+    return JointLines(pair, ends.reshape(-1, 2, 2), *moved)
+
+
+def _displacement(shown: Outlines, body: int, point: Array) -> Array:
+    """Return the displacement (2,) of the place on the outline of a body that is nearest to a point [m]."""
+    own = slice(*shown.starts[body : body + 2].tolist())
+    start, arc = shown.points[own], shown.arc[own]
+    way, long = np.diff(start, axis=0), np.diff(arc)
+    square = np.maximum((way**2).sum(axis=1), 1e-300)
+    share = np.clip(((point - start[:-1]) * way).sum(axis=1) / square, 0.0, 1.0)
+    away = np.linalg.norm(start[:-1] + share[:, None] * way - point, axis=1)
+    away[np.abs(np.sqrt(square) - long) > 0.5] = np.inf  # from one ring to the next
+    k = int(away.argmin())
+    return np.asarray(shown.at(np.array([arc[k] + share[k] * long[k]]))[0])
+
+
+def _face_lines(result: Result, shown: Outlines) -> JointLines:
+    """Return the pieces of joints of faces."""
     pairs = result.assembly.pairs
     faces = result.assembly.detection.segments
-    pair = np.flatnonzero((pairs.interface >= 0) & (pairs.interface < len(faces)))  # corners have no line
+    pair = np.flatnonzero((pairs.interface >= 0) & (pairs.interface < len(faces)))
     if not len(pair):
         empty = np.zeros((0, 2, 2))
         return JointLines(pair, empty, empty, empty)

@@ -205,8 +205,8 @@
     const tones = new Float32Array(3 * cells);
     for (let k = 0; k < cells; k++) tones.set(parse(look[STATE_LOOK[step.state ? step.state[k] : 1]]), 3 * k);
     if (view.colour === "pressure" && step.pressure) {
-      let most = 0; for (const v of step.pressure) most = Math.max(most, v);
-      for (let k = 0; k < cells; k++) tones.set(step.state[k] === 0 ? parse(look.open) : ramp(1 - step.pressure[k] / (most || 1)), 3 * k);
+      let most = 0; for (const v of step.pressure) if (v > most) most = v;
+      for (let k = 0; k < cells; k++) tones.set(step.state[k] === 0 ? parse(look.open) : Number.isFinite(step.pressure[k]) ? ramp(1 - step.pressure[k] / (most || 1)) : parse(look.stick), 3 * k);
     }
     faces.tones = both(thrice(tones, cellIndex));
   }

@@ -1,0 +1,77 @@
+"""Corners and edges on which bodies touch without a common face have marks, in the plane and in space."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import concio
+from concio.plot.forces import plot_pressure
+from concio.plot.space_figures import plot_space
+from concio.post.joint_faces import joint_faces
+from concio.post.joint_lines import joint_lines
+from concio.post.outlines import outlines
+from concio.report.space_data import space_view_data
+from concio.report.view_data import view_data
+from models import model_of, weight
+
+
+def beam(live=0.0):
+    """A beam on two knife edges, its ends beside a pier that it touches nowhere else."""
+    knives = [concio.Body(f"k{x}", [(x - 0.2, 0.5), (x + 0.2, 0.5), (x, 1.0)], kind="fixed") for x in (1, 4)]
+    body = concio.Body("beam", [(0, 1), (4.5, 1), (4.5, 1.3), (0, 1.3)], kind="rigid", material="stone")
+    loads = (weight(), concio.Load("weight", (live, 0.0), group="live")) if live else (weight(),)
+    return concio.solve(model_of(*knives, body, law=0.6, loads=loads), on_failure="return")
+
+
+def slab():
+    """A slab on three spikes."""
+    sides = [(3, 2, 1, 0), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
+    spikes = []
+    for k, (x, y) in enumerate(((0.5, 0.5), (1.5, 0.5), (1.0, 1.5))):
+        foot = [(x + i, y + j, 0.0) for i, j in ((-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1))]
+        spikes.append(concio.Polyhedron(f"p{k}", [*foot, (x, y, 1.0)], sides, kind="fixed"))
+    top = concio.Polyhedron.box("slab", (0, 0, 1), (2, 2, 1.2), kind="rigid")
+    return concio.solve(concio.Model(
+        (*spikes, top), {"block": concio.Rigid(20.0)}, {"joint": concio.JointLaw(0.6)},
+        loads=(concio.Load("weight", (0, 0, -1)),),
+    ))  # fmt: skip
+
+
+def test_knife_edges_have_a_mark_at_their_points():
+    result = beam()
+    marks = joint_lines(result, outlines(result))
+    assert sorted(marks.ends.mean(axis=1)[:, 0].tolist()) == pytest.approx([1.0, 4.0])
+    assert marks.ends[..., 1] == pytest.approx(np.ones((2, 2)))
+    assert np.ptp(marks.ends[0, :, 0]) > 0.05
+
+
+def test_marks_move_with_the_bodies_that_touch():
+    """Beyond its friction the beam slides over the knives: its side of each mark moves, theirs stays."""
+    result = beam(live=0.7)
+    assert not result.solved
+    shown = outlines(result, result.mechanism_velocity)
+    marks = joint_lines(result, shown)
+    sides = np.stack([np.abs(marks.moved_a).max(axis=(1, 2)), np.abs(marks.moved_b).max(axis=(1, 2))])
+    assert sides.min(axis=0) == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert (sides.max(axis=0) > 0).all()
+
+
+def test_spikes_have_octahedra_around_their_points():
+    result = slab()
+    faces = joint_faces(result)
+    assert len(faces.corners) == 3 * 8
+    for pair in range(3):
+        own = faces.corners[faces.pair == pair].reshape(-1, 3)
+        assert own.mean(axis=0) == pytest.approx(result.assembly.pairs.point[pair])
+    corner = faces.corners[:8] - faces.corners[:8].reshape(-1, 3).mean(axis=0)
+    out = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    assert ((out * corner.mean(axis=1)).sum(axis=1) > 0).all()
+
+
+def test_pages_and_figures_take_them():
+    flat, solid = beam(), slab()
+    assert len(view_data([flat], [""])["steps"]) == 1
+    assert len(space_view_data([solid], [""])["steps"]) == 1
+    assert np.isfinite(plot_pressure(flat).get_ylim()).all()
+    assert plot_space(solid).images
