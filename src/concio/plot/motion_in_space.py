@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 Array = np.ndarray
 
-VIEW = "axonometry"
+VIEW: Literal["axonometry"] = "axonometry"
 """From where motions are looked at."""
 
 POINTS = 800
