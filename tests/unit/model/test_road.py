@@ -284,3 +284,14 @@ def test_forces_on_each_voussoir_are_the_integral_of_the_pressure(rule: str) -> 
     force[found.piece] = found.force
     assert force == pytest.approx(10.0 * shares / shares.sum(), abs=2e-4)
     assert found.force.min() > 0
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [("Linee Guida 2020 schema A", "for want of a source"), ("RA7 axle", "3, 5, 8 and 10"), ("LM3", "LM2")],
+)
+def test_vehicles_whose_loads_have_no_source_are_named_with_the_reason(name: str, words: str) -> None:
+    with pytest.raises(concio.InputError) as caught:
+        concio.find_vehicle(name)
+    assert words in (caught.value.hint or "")
+    assert "your own is axles" in (caught.value.hint or "")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -12,6 +13,13 @@ from typing import Any
 from concio.arguments import closest, strict
 from concio.errors import InputError
 from concio.model.crossing import Axle, Vehicle
+
+WITHOUT_SOURCE = {
+    r"linee guida|guidelines|2020": "schemes of the Italian guidelines of 2020 are not in the library, for want of a "
+    "source of their axle loads",
+    r"^ra ?\d+": "of Route Availability the library has 3, 5, 8 and 10, whose axle loads Network Rail publishes",
+}
+"""What a name is taken to mean that is looked for in vain, with the reason."""
 
 
 @cache
@@ -52,7 +60,8 @@ def find_vehicle(name: str) -> Vehicle:
     if name not in known:
         msg = f"there is no vehicle '{name}'"
         own = "your own is axles = [[place, load], ...]"
-        raise InputError(msg, where="vehicle", hint=f"{closest(name, known)}; {own}")
+        told = (why for meant, why in WITHOUT_SOURCE.items() if re.search(meant, name, re.IGNORECASE))
+        raise InputError(msg, where="vehicle", hint=f"{next(told, None) or closest(name, known)}; {own}")
     return known[name]
 
 
