@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 import shapely
 
+from concio.kinematics.boxes import meeting_boxes
 from concio.kinematics.frames import cross, dot, norm, tangents, turned_right
 from concio.kinematics.placement import Placement
 from concio.model.body import Body
@@ -313,16 +314,10 @@ def pairs_of(pieces: ConvexBodies, skin: float, still: Array) -> tuple[Array, Ar
         Bodies that do not move: pairs of two such are left out.
     """
     low, high = pieces.boxes
-    low, high = low - 0.5 * skin, high + 0.5 * skin
-    extent = (high - low).mean(0) / np.maximum(high.max(0) - low.min(0), 1e-300)
-    x, y, *z = np.argsort(extent, kind="stable").tolist()  # the tree has two dimensions, those with the finest boxes
-    boxes = shapely.box(low[:, x], low[:, y], high[:, x], high[:, y])
-    i, j = shapely.STRtree(boxes).query(boxes)
+    i, j = meeting_boxes(low - 0.5 * skin, high + 0.5 * skin)
     a, b = pieces.body[i], pieces.body[j]
-    some = (a < b) & ~(still[a] & still[b])
-    for k in z:
-        some &= (low[i, k] <= high[j, k]) & (low[j, k] <= high[i, k])
-    i, j = i[some], j[some]
+    some = (a != b) & ~(still[a] & still[b])
+    i, j = np.where(a < b, i, j)[some], np.where(a < b, j, i)[some]
     order = np.lexsort([j, i, pieces.body[j], pieces.body[i]])
     return i[order], j[order]
 

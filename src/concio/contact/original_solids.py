@@ -9,15 +9,20 @@ of their convex pieces, without any pair (:meth:`OriginalSolids.deepest`).
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
+from concio.contact.convex_bodies import ConvexBodies, pairs_of
+from concio.contact.laws import RuleBook
 from concio.contact.reference import Reference
 from concio.contact.rows import Rows
+from concio.contact.separating_axes import Sides, every_axis
 from concio.contact.slots import Slots
 from concio.contact.solid_search import SolidLayout
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID
+from concio.kinematics.placement import Placement
 
 Array = np.ndarray
 
@@ -26,6 +31,9 @@ SLACK = 2e-9
 
 SAME = 2e-7
 """Distance along the joint over the size of the model below which a point stands for another."""
+
+CHUNK = 4000
+"""Pairs of convex pieces whose separating axes are worked out together; bounds the memory."""
 
 SKEW = 2e-3
 """Sine of the angle between edges that cross."""
@@ -80,16 +88,20 @@ class OriginalSolids:
         self.owner = np.repeat(np.arange(len(bodies)), count)
         self.first = np.cumsum(count, dtype=np.intp) - count
         self._named: tuple[SolidLayout, _Named] | None = None
-        self._rule: dict[tuple[int, int], tuple[int, float]] = {}
-        self._pieces: dict[int, list[tuple[Array, Array, Array]]] = {}
+        self.rules = RuleBook(reference.model)
+        self.rings, self.level = self._faces()
 
-    def law(self, a: int, b: int) -> tuple[int, float]:
-        """Return number and opening [m] of the law between two bodies."""
-        if (a, b) not in self._rule:
-            model = self.reference.model
-            rule = model.rule_between(model.bodies[a], model.bodies[b])
-            self._rule[a, b] = list(model.laws).index(rule.law), rule.gap
-        return self._rule[a, b]
+    def _faces(self) -> tuple[Array, Array]:
+        """Return vertices at both ends of the sides of each face (f, s, 2), and its first tangent (f, 3)."""
+        rings, level = [], []
+        for first, body in zip(self.first, self.bodies, strict=True):
+            for f in range(len(body.faces)):
+                loops = [first + np.array(loop) for loop in body.loops_of(f)]
+                rings.append(np.concatenate([np.column_stack([loop, np.roll(loop, -1)]) for loop in loops]))
+                level.append(_level(body.normals[f]))
+        wide = max(len(ring) for ring in rings)
+        filled = [np.concatenate([r, np.full((wide - len(r), 2), r[0, 0])]) for r in rings]
+        return np.array(filled, dtype=int), np.array(level)
 
     def named(self, layout: SolidLayout) -> _Named:
         """Return the pairs that a layout names."""
@@ -105,22 +117,12 @@ class OriginalSolids:
         corner, face, edges = first[:faces], second[:faces], np.column_stack([first, second])[faces:]
         of_face = solids.face_body[face]
         body = np.concatenate([np.column_stack([of_face, self.owner[corner]]), solids.edge_body[edges]])
-        begin = np.searchsorted(solids.face_body, np.arange(len(self.bodies)))
-        numbers = (face - begin[of_face]).tolist()
-        rings, level = [], np.zeros((faces, 3))
-        for i, (b, f) in enumerate(zip(of_face.tolist(), numbers, strict=True)):
-            loops = [self.first[b] + np.array(loop) for loop in self.bodies[b].loops_of(f)]
-            rings.append(np.concatenate([np.column_stack([loop, np.roll(loop, -1)]) for loop in loops]))
-            level[i] = _level(self.bodies[b].normals[f])
-        wide = max((len(ring) for ring in rings), default=1)
-        filled = [np.concatenate([r, np.full((wide - len(r), 2), r[0, 0])]) for r in rings]
-        laws = [self.law(min(a, b), max(a, b)) for a, b in body.tolist()]
-        law, opening = np.array([v[0] for v in laws], dtype=int), np.array([v[1] for v in laws], dtype=float)
+        law, opening = self.rules.find(body.min(axis=1), body.max(axis=1))
         free = disc.shape_of[body] == RIGID
         columns = np.where(free[..., None], disc.offsets[body][..., None] + np.arange(6), disc.unknowns)
         slots = replace(layout.slots, body_a=body[:, 0], body_b=body[:, 1], law=law, opening=opening)
         return _Named(
-            slots, faces, body, np.array(filled, dtype=int).reshape(faces, wide, 2), level, corner, solids.edge[edges],
+            slots, faces, body, self.rings[face], self.level[face], corner, solids.edge[edges],
             columns.reshape(len(body), 12),
         )  # fmt: skip
 
@@ -225,7 +227,7 @@ class OriginalSolids:
     # -- what nobody found ---------------------------------------------------------------------------------------------
 
     def deepest(self, centre: Array, rotation: Array, strain: Array, share: float, more: float = 0.0) -> float:
-        """Return how deep a body stands inside another one, over what it may.
+        """Return how deep a body stands inside another one, over what it may; at most, where that is less than 1.
 
         Parameters
         ----------
@@ -235,35 +237,28 @@ class OriginalSolids:
         more : float
             What it may beside [m].
         """
-        reference = self.reference
-        place = self._placed(centre, rotation)
-        low, high = np.minimum.reduceat(place, self.first), np.maximum.reduceat(place, self.first)
-        fixed = reference.disc.shape_of == FIXED
-        worst = 0.0
-        for a in range(len(low)):
-            near = (low[a + 1 :] < high[a]).all(axis=1) & (high[a + 1 :] > low[a]).all(axis=1)
-            near &= ~(fixed[a] & fixed[a + 1 :])
-            for b in (a + 1 + np.flatnonzero(near)).tolist():
-                _, opening = self.law(a, b)
-                width = float(reference.surface.width[[a, b]].min())
-                allowed = share * width + 2 * reference.tolerance + abs(opening) + more
-                depth = max(
-                    _depth([v @ rotation[a].T + centre[a], *(w @ rotation[a].T for w in ways)],
-                           [u @ rotation[b].T + centre[b], *(w @ rotation[b].T for w in others)])
-                    for v, *ways in self.pieces(a) for u, *others in self.pieces(b)
-                )  # fmt: skip
-                worst = max(worst, depth / allowed)
-        return worst
+        disc, width = self.reference.disc, self.reference.surface.width
+        pieces = self.pieces.placed(Placement(centre, rotation), disc.centroids)
+        i, j = pairs_of(pieces, 0.0, disc.shape_of == FIXED)
+        a, b = pieces.body[i], pieces.body[j]
+        _, opening = self.rules.find(a, b)
+        allowed = share * np.minimum(width[a], width[b]) + 2 * self.reference.tolerance + np.abs(opening) + more
+        low, high = pieces.boxes
+        depth = np.minimum(high[i] - low[j], high[j] - low[i]).min(axis=1, initial=np.inf)
+        for k in np.array_split(doubt := np.flatnonzero(depth > allowed), 1 + len(doubt) // CHUNK):
+            if len(k):
+                one, other = Sides.of(pieces, i[k]), Sides.of(pieces, j[k])
+                depth[k] = np.minimum(depth[k], -every_axis(one, other)[1].max(axis=1))
+        return float((np.maximum(depth, 0.0) / allowed).max(initial=0.0))
 
-    def pieces(self, b: int) -> list[tuple[Array, Array, Array]]:
-        """Return vertices, normals and directions of edges of the convex pieces of a body, from its centroid."""
-        if b not in self._pieces:
-            body, centroid = self.bodies[b], self.reference.disc.centroids[b]
-            if body.pieces is None:
-                msg = f"block '{body.name}' falls into too many convex pieces: its motion cannot be certified"
-                raise InputError(msg, hint="divide it into simpler blocks")
-            self._pieces[b] = [(p.vertices - centroid, p.normals, p.directions) for p in body.pieces]
-        return self._pieces[b]
+    @cached_property
+    def pieces(self) -> ConvexBodies:
+        """The convex pieces of all bodies."""
+        found = ConvexBodies.of(self.bodies)
+        if found.left_out:
+            msg = f"block '{self.bodies[found.left_out[0]].name}' falls into too many convex pieces: its motion cannot "
+            raise InputError(msg + "be certified", hint="divide it into simpler blocks")
+        return found
 
 
 def _level(normal: Array) -> Array:
@@ -308,11 +303,3 @@ def _crossings(ends: Array, sign: Array) -> tuple[Array, Array, Array, Array]:
     return point, frame, gap, np.where(skew, beyond, np.inf)
 
 
-def _depth(one: list[Array], other: list[Array]) -> float:
-    """Return how deep two convex pieces (vertices, normals, directions of edges) stand in each other [m]."""
-    crossed = np.cross(one[2][:, None], other[2][None]).reshape(-1, 3)
-    size = np.linalg.norm(crossed, axis=1)
-    ways = np.concatenate([one[1], other[1], crossed[size > 1e-6] / size[size > 1e-6, None]])
-    p, q = one[0] @ ways.T, other[0] @ ways.T
-    overlap = np.minimum(p.max(axis=0) - q.min(axis=0), q.max(axis=0) - p.min(axis=0))
-    return max(float(overlap.min()), 0.0)

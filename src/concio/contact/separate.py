@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-import shapely
 from scipy.sparse.csgraph import connected_components
 
+from concio.kinematics.boxes import meeting_boxes
 from concio.model.interfaces.detect import Detection
 from concio.model.interfaces.point_contact import PointContact
 from concio.model.model import Model
@@ -87,10 +87,9 @@ def _near(low: Array, high: Array, reach: float) -> tuple[Array, Array]:
     """Return the pairs of bodies whose boxes come as near each other as the smaller one's size makes near."""
     size = (high - low).max(axis=1)
     margin = np.maximum(NEAR * size, reach)[:, None]
-    tree = shapely.STRtree(shapely.box(*(low - margin)[:, :2].T, *(high + margin)[:, :2].T))
-    a, b = tree.query(tree.geometries)
+    a, b = meeting_boxes(low - margin, high + margin)
     apart = np.maximum(low[b] - high[a], low[a] - high[b]).max(axis=1)
-    near = (a < b) & (apart <= np.maximum(NEAR * np.minimum(size[a], size[b]), reach))
+    near = apart <= np.maximum(NEAR * np.minimum(size[a], size[b]), reach)
     return a[near], b[near]
 
 

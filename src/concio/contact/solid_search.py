@@ -18,6 +18,7 @@ from concio.contact.moving_solids import MovingSolids, PlacedSolids
 from concio.contact.rows import RowMaker, Rows
 from concio.contact.slots import Slots
 from concio.contact.solid_touch import SAME, Crossing, SolidTouch, SolidToucher, outside
+from concio.kinematics.boxes import meeting_boxes
 from concio.kinematics.frames import cross, dot, norm
 from concio.kinematics.placement import Placement
 
@@ -190,14 +191,9 @@ def near_bodies(solids: MovingSolids, placed: PlacedSolids, fixed: Array, skin: 
     low, high = np.full((2, count, 3), np.inf) * [[[1.0]], [[-1.0]]]
     np.minimum.at(low, solids.body, placed.start)
     np.maximum.at(high, solids.body, placed.start)
-    order = np.argsort(low[:, 0], kind="stable")
-    last = np.searchsorted(low[order, 0], high[order, 0] + 2 * skin, side="right")
-    size = np.maximum(last - np.arange(count) - 1, 0)
-    first = np.repeat(np.arange(count), size)
-    second = first + 1 + np.arange(len(first)) - np.repeat(np.cumsum(size) - size, size)
-    i, j = order[first], order[second]
-    meet = ((low[i] - 2 * skin <= high[j]) & (low[j] - 2 * skin <= high[i])).all(axis=1) & ~(fixed[i] & fixed[j])
-    return np.minimum(i, j)[meet], np.maximum(i, j)[meet]
+    i, j = meeting_boxes(low - skin, high + skin)
+    free = ~(fixed[i] & fixed[j])
+    return i[free], j[free]
 
 
 def _products(of: Array, body: Array, of_other: Array, other: Array) -> tuple[Array, Array]:

@@ -185,7 +185,7 @@ class Stepper:
             if np.abs(again - swing).max(initial=0.0) <= SWUNG * force:
                 break
             problem, swing = replace(problem, b=problem.b + again - swing), again
-            found = self.solver.solve(problem, found.states, found.x, found.t)
+            found = self.solver.solve_again(problem, found)
         theta = self.scheme.theta
         x = theta * found.x + (1 - theta) * x0
         y = relative(rows.columns, rows.values, x) + rows.imposed

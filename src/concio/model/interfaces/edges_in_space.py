@@ -14,8 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from concio.kinematics.frames import cross, tangents
-from concio.model.interfaces.faces import Faces, neighbours, spread
+from concio.kinematics.boxes import boxes_meeting
+from concio.kinematics.frames import cross, dot, norm, tangents
+from concio.model.interfaces.faces import Faces, spread
 from concio.model.interfaces.meeting import connected_at
 from concio.model.interfaces.near import NearMiss
 from concio.model.interfaces.near_space import touch_in_space
@@ -178,32 +179,21 @@ def _clipped(
     """
     ring = table.first[face]
     point, owner = spread(table.rings[ring], np.diff(table.rings)[ring] - 1)
-    p, q = table.points[point], table.points[point + 1]
-    normal = table.normal[face]
-    inward = cross(normal[owner], q - p)
-    inward /= np.linalg.norm(inward, axis=1)[:, None]
-    turn = (cross(q - p, table.points[_after(point, owner, table.rings[ring])] - q) * normal[owner]).sum(1)
-    size = np.linalg.norm(q - p, axis=1)
-    doubtful = np.diff(table.first)[face] > 1
-    doubtful[owner[turn < -1e-9 * size * size]] = True
-    deep = ((start[owner] - p) * inward).sum(1) - margin[owner]
-    rate = (way[owner] * inward).sum(1)
-    level = np.abs(rate) <= 1e-12 * np.linalg.norm(way, axis=1)[owner]
+    every, bent = table.boundaries
+    inward, doubtful = every[point], bent[face]
+    deep = dot(start[owner] - table.points[point], inward) - margin[owner]
+    rate = dot(way[owner], inward)
+    level = np.abs(rate) <= 1e-12 * norm(way)[owner]
     share = -deep / np.where(level, 1.0, rate)
     low = np.where(level, np.where(deep >= 0, 0.0, 2.0), np.where(rate > 0, share, 0.0))
     high = np.where(level | (rate > 0), 1.0, share)
     found = ends.copy()
-    np.maximum.at(found[:, 0], owner, low)
-    np.minimum.at(found[:, 1], owner, high)
+    if len(face):
+        begin = np.searchsorted(owner, np.arange(len(face)))
+        found[:, 0] = np.maximum(ends[:, 0], np.maximum.reduceat(low, begin))
+        found[:, 1] = np.minimum(ends[:, 1], np.minimum.reduceat(high, begin))
     found[doubtful] = ends[doubtful]
     return found, doubtful
-
-
-def _after(point: Array, owner: Array, begin: Array) -> Array:
-    """Return the vertex after the end of each side (s,) of rings that repeat their first vertex at their end."""
-    last = np.ones(len(point), dtype=bool)
-    last[:-1] = owner[1:] != owner[:-1]
-    return np.where(last, begin[owner] + 1, point + 2)
 
 
 def _cut(table: Faces, face: Array, points: Array, near: Array) -> tuple[Array, Array, Array]:
@@ -297,10 +287,7 @@ class _Joints:
         """Return which joints come within ``near`` (k,) of which points ``at`` (k, 3): numbers of both."""
         if not len(self.bodies) or not len(at):
             return np.zeros(0, dtype=int), np.zeros(0, dtype=int)
-        low, high = np.concatenate([at - near[:, None], self.low]), np.concatenate([at + near[:, None], self.high])
-        first, second = neighbours(low, high)
-        some = (first < len(at)) & (second >= len(at))
-        place, joint = first[some], second[some] - len(at)
+        place, joint = boxes_meeting(at - near[:, None], at + near[:, None], self.low, self.high)
         arm = at[place] - self.origin[joint]
         beside = np.abs((arm * self.normal[joint]).sum(1)) <= near[place]
         place, joint, arm = place[beside], joint[beside], arm[beside]

@@ -1,14 +1,15 @@
-"""Faces of polyhedra in one table, and the pairs of them that face each other, found with an R-tree."""
+"""Faces of polyhedra in one table, and the pairs of them that face each other."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import shapely
 
-from concio.kinematics.frames import cross
+from concio.kinematics.frames import cross, dot, norm
 from concio.model.polyhedron import Polyhedron
 
 Array = np.ndarray
@@ -94,6 +95,25 @@ class Faces:
             of_body=of_body,
         )
 
+    @cached_property
+    def boundaries(self) -> tuple[Array, Array]:
+        """Directions (P, 3) into faces, and which faces (F,) have corners that point inwards, or holes.
+
+        A direction is that across the side from each point of a boundary; zero where no side begins.
+        """
+        ring = self.first[:-1]
+        point, owner = spread(self.rings[ring], np.diff(self.rings)[ring] - 1)
+        side = self.points[point + 1] - self.points[point]
+        across = cross(self.normal[owner], side)
+        inward = np.zeros_like(self.points)
+        inward[point] = across / norm(across)[:, None]
+        last = np.append(owner[1:] != owner[:-1], True)
+        behind = np.where(last, self.rings[ring][owner] + 1, point + 2)
+        turn = dot(cross(side, self.points[behind] - self.points[point + 1]), self.normal[owner])
+        doubtful = np.diff(self.first) > 1
+        doubtful[owner[turn < -1e-9 * dot(side, side)]] = True
+        return inward, doubtful
+
     def polygons(self, faces: Array, origin: Array, frame: Array) -> Array:
         """Return faces (k,) as shapely polygons in planes of their own.
 
@@ -155,21 +175,6 @@ class FacePairs:
         n = table.normal[face]
         found: Array = (table.offset[face] - (n * at).sum(1)) / (n * self.normal[pair]).sum(1)
         return found
-
-
-def neighbours(low: Array, high: Array) -> tuple[Array, Array]:
-    """Return all pairs i < j of boxes that meet, from their corners (n, 3).
-
-    The R-tree has two dimensions: it takes those two axes along which boxes are smallest beside the whole.
-    """
-    extent = (high - low).mean(0) / np.maximum(high.max(0) - low.min(0), 1e-300)
-    x, y, z = np.argsort(extent)
-    boxes = shapely.box(low[:, x], low[:, y], high[:, x], high[:, y])
-    i, j = shapely.STRtree(boxes).query(boxes)
-    meet = (i < j) & (low[i, z] <= high[j, z]) & (low[j, z] <= high[i, z])
-    i, j = i[meet], j[meet]
-    order = np.lexsort([j, i])
-    return i[order], j[order]
 
 
 def facing_faces(table: Faces, bodies: tuple[Array, Array], near: Array, angle: float) -> FacePairs:

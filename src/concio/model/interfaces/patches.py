@@ -21,6 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from concio.kinematics.boxes import meeting_boxes
 from concio.kinematics.frames import cross, turned_left
 from concio.model.interfaces.detect import (
     FACING_ANGLE,
@@ -32,7 +33,7 @@ from concio.model.interfaces.detect import (
     touching,
 )
 from concio.model.interfaces.edges_in_space import find_touches
-from concio.model.interfaces.faces import FacePairs, Faces, facing_faces, neighbours
+from concio.model.interfaces.faces import FacePairs, Faces, facing_faces
 from concio.model.interfaces.near import MissKind, NearMiss
 from concio.model.interfaces.near_space import find_overlaps_in_space, miss_in_space
 from concio.model.interfaces.patch import Patch
@@ -72,7 +73,7 @@ def detect_patches(
     touch = touching(size, tolerance, reach)
     low, high = (f.reduceat(v, table.of_body[:-1]) for f, v in ((np.minimum, table.low), (np.maximum, table.high)))
     around = 0.5 * np.maximum(NEAR_SHARE * size, 2 * touch)[:, None]
-    i, j = neighbours(low - around, high + around)
+    i, j = meeting_boxes(low - around, high + around)
     some = ~(fixed[i] & fixed[j])
     i, j = i[some], j[some]
     smaller = np.minimum(size[i], size[j])

@@ -73,14 +73,17 @@ class StepFactor:
         self._matrix_slot, self._diagonal_slot = pattern.slot[: coo.nnz], pattern.slot[coo.nnz : coo.nnz + n]
         slot = np.full(m * w * w, pattern.nnz, dtype=np.int64)
         slot[inside] = pattern.slot[coo.nnz + n :]
-        self._slot = slot
+        self._slot = slot.reshape(m, w * w)
         self.numeric: SmallInverse | OrderedFactor = SmallInverse(pattern) if n <= SMALL else OrderedFactor(pattern)
         self.D: Array | None = None
         self.diagonal: Springs | None = None
 
+    _assembled: tuple[Array, Array] | None = None
+    """Blocks D of the last matrix of these rows, and its entries."""
+
     def take(self, matrix: sp.csr_array, values: Array) -> None:
         """Take other entries of A, and other rows ``values`` (m, d, w), for the factors to come."""
-        self._matrix, self._values = matrix, values
+        self._matrix, self._values, self._assembled = matrix, values, None
 
     @property
     def count(self) -> int:
@@ -95,16 +98,32 @@ class StepFactor:
         SingularMatrixError
             A pivot is zero or not finite.
         """
-        nnz, values = self.pattern.nnz, self._values
-        local = np.matmul(values.transpose(0, 2, 1), np.matmul(D, values))
-        data = np.bincount(self._slot, weights=local.ravel(), minlength=nnz + 1)[:nnz].astype(float)
-        data += np.bincount(self._matrix_slot, weights=self._matrix.data, minlength=nnz)
+        before = self._assembled
+        change = D if before is None else D - before[0]
+        some = np.flatnonzero(change.any(axis=(1, 2)))  # open pairs have none; from round to round few pairs change
+        if before is not None and 2 * len(some) > len(D):
+            before, change, some = None, D, np.flatnonzero(D.any(axis=(1, 2)))
+        data = self._products(change, some)
+        data += self._of_matrix() if before is None else before[1]
+        self._assembled = D.copy(), data
+        data = data.copy()
         assert not isinstance(diagonal, sp.csr_array), "a diagonal"
         if np.any(diagonal):
             data[self._diagonal_slot] += diagonal
         self.D = None
         self.numeric.factorise(data)
         self.D, self.diagonal = D, diagonal
+
+    def _products(self, D: Array, some: Array) -> Array:
+        """Return the entries of C'DC of some pairs."""
+        nnz, values = self.pattern.nnz, self._values[some]
+        local = np.matmul(values.transpose(0, 2, 1), np.matmul(D[some], values))
+        found = np.bincount(self._slot[some].ravel(), weights=local.ravel(), minlength=nnz + 1)[:nnz]
+        return np.asarray(found, dtype=float)
+
+    def _of_matrix(self) -> Array:
+        """Return the entries of A."""
+        return np.bincount(self._matrix_slot, weights=self._matrix.data, minlength=self.pattern.nnz)
 
     def solve(self, b: Array) -> Array:
         """Return the solution for the last matrix factorised; ``b`` is (N,) or (N, k)."""

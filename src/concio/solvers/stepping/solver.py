@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from concio.problem.contact_problem import Array, Engine
@@ -34,11 +36,26 @@ class StepSolver:
     def __init__(self, engine: Engine = "superlu") -> None:
         self.engine = engine
         self.factor: StepFactor | None = None
+        self._linear: Linear | None = None
         self.counts: dict[str, int] = {}
 
     def new_layout(self) -> None:
         """Forget the pattern: the rows meet other unknowns from now on."""
-        self.factor = None
+        self.factor = self._linear = None
+
+    def solve_again(self, p: StepProblem, found: StepSolution) -> StepSolution:
+        """Solve a step of which only the forces have changed a little since :meth:`solve`, with the factors of then.
+
+        Where the states or the slips have become others, the step is solved anew.
+        """
+        linear, factor = self._linear, self.factor
+        if linear is not None and factor is not None and factor.D is not None:
+            x, t, errors = solve_states(p, factor, linear, found.x, found.t, factor.D)
+            residual, _ = p.violation(t, errors)
+            if residual < STEP_GOOD:
+                return StepSolution(x, t, found.states, residual, found.how, found.factorisations)
+        again = self.solve(p, found.states, found.x, found.t)
+        return replace(again, factorisations=found.factorisations + again.factorisations)
 
     def solve(self, p: StepProblem, states: PairStates, x: Array, t: Array, *, polish: bool = True) -> StepSolution:
         """Solve a step from the states of the one before and a point near the answer.
@@ -68,6 +85,7 @@ class StepSolver:
                 x1, t1, errors = solve_states(p, factor, linear, x, t, D)
             except SingularMatrixError:
                 break
+            self._linear = linear
             residual, laws = p.violation(t1, errors)
             found = keep(x1, t1, states, residual, "same states" if not round_ else "active set")
             if residual < STEP_GOOD:
