@@ -7,6 +7,7 @@ strained in its own frame. Interfaces are looked for on the placed bodies, by th
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -176,6 +177,23 @@ class Reference:
             own = self.mass[slice(*self.disc.offsets[b : b + 2])]
             mass[b] = own[0] if self.disc.shape_of[b] == RIGID else own[:: self.disc.dim].sum()
         return mass
+
+    def strength(self, forces: Array) -> float:
+        """Return the sum of the sizes of forces (N,) on centroids and nodes, and of moments over the reach [kN].
+
+        It does not depend on the axes of coordinates.
+        """
+        return float(np.sqrt(np.add.reduceat(forces**2, self._vectors)).sum()) if len(forces) else 0.0
+
+    @cached_property
+    def _vectors(self) -> Array:
+        """Where among the unknowns forces, and moments, of bodies and nodes begin (k,)."""
+        d, first = self.disc.dim, self.disc.offsets
+        found = [np.zeros(0, dtype=int)]
+        for b, (begin, end) in enumerate(itertools.pairwise(first.tolist())):
+            rigid = self.disc.shape_of[b] == RIGID
+            found.append(np.array([begin, begin + d]) if rigid else np.arange(begin, end, d))
+        return np.concatenate(found)
 
     @cached_property
     def typical_mass(self) -> float:

@@ -99,6 +99,30 @@ def test_a_rocking_block_extruded_and_turned_is_that_of_the_plane():
     assert turn.T @ placed.spin[1] == pytest.approx([0.0, -state.spin[1], 0.0], abs=1e-11)
 
 
+@pytest.mark.parametrize("vector", [(0.0, 0.0, 0.0), (0.3, 0.5, -0.8)])
+def test_impacts_of_a_rocking_block_extruded_and_turned_are_those_of_the_plane(vector):
+    """Both ends of an edge move a block apart from the floor as the corner of the plane does, however it is turned."""
+    width, height = 0.4, 1.2
+    plane = standing(width=width, height=height, tilt=0.01)
+    depth = 2.0 * width * height / (width + height)  # of the same mean width
+    plane = replace(plane, bodies=tuple(replace(b, thickness=depth) for b in plane.bodies))
+    turn = Rotation.from_rotvec(vector).as_matrix()
+    flat, state = stepper_of(plane, 1e-4)
+    solid, placed = stepper_of(extruded(plane, depth, turn), 1e-4)
+    nothing, impacts = Drive(np.zeros(2), np.zeros(2), {}), 0
+    for _ in range(110):
+        state, one = flat.step(state, 2e-3, nothing)
+        placed, other = solid.step(placed, 2e-3, STILL)
+        assert max(one.solution.residual, other.solution.residual) < 1e-9
+        impacts += one.works["impact"] > 1e-7
+        assert other.works["impact"] == pytest.approx(one.works["impact"], abs=1e-12)
+        assert (turn.T @ placed.centre[1])[[0, 2]] == pytest.approx(state.centre[1], abs=1e-12)
+        flown = np.insert(state.velocity[1], 1, 0.0)
+        assert turn.T @ placed.velocity[1] == pytest.approx(flown, abs=1e-11)
+        assert turn.T @ placed.spin[1] == pytest.approx([0.0, -state.spin[1], 0.0], abs=1e-11)
+    assert impacts >= 2
+
+
 @pytest.mark.long
 def test_an_impact_of_a_rocking_block_is_housners():
     """With e = 0 the ratio of the spins is 1 - 1.5 sin^2 alpha, and the plane's to what joints sink in."""

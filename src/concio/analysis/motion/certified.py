@@ -335,7 +335,7 @@ class Certificate:
 
 def measures(reference: Reference, acting: Array, x0: Array, h: float) -> tuple[float, float]:
     """Return the force and the velocity by which residuals of a step are measured: loads, and what they do in it."""
-    force = float(np.abs(acting).sum())
+    force = reference.strength(acting)
     if not force:
         force = float(np.abs(reference.mass * x0).sum()) / h or 1.0
     return force, h * force / float(reference.body_mass.sum())

@@ -26,6 +26,7 @@ from concio.analysis.motion.state import Memory
 from concio.contact.laws import LawTable
 from concio.contact.rows import Rows
 from concio.contact.slots import Slots
+from concio.kinematics.frames import norm
 from concio.problem.cone import Cone
 
 Array = np.ndarray
@@ -265,5 +266,5 @@ class Joints:
 def turning_velocity(rows: Rows, lasting: Array, h: float, speed: float) -> Array:
     """Return what turning adds to the relative velocities (m, d) of pairs that carried force before [m/s]."""
     turning: Array = 0.5 * h * rows.turning
-    turning[~(lasting & (np.abs(turning) > NOTHING * speed).any(axis=1))] = 0.0
+    turning[~(lasting & (norm(turning) > NOTHING * speed))] = 0.0  # whichever way tangents point
     return turning

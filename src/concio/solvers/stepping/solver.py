@@ -46,7 +46,7 @@ class StepSolver:
     def solve_again(self, p: StepProblem, found: StepSolution) -> StepSolution:
         """Solve a step of which only the forces have changed a little since :meth:`solve`, with the factors of then.
 
-        Where the states or the slips have become others, the step is solved anew.
+        Where the states or the slips have become others, the step is solved again.
         """
         linear, factor = self._linear, self.factor
         if linear is not None and factor is not None and factor.D is not None:
