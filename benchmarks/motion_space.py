@@ -2,7 +2,7 @@
 
     python benchmarks/motion_space.py [--seconds 5] [--only rest|shaken|heads|grid|profile]
 
-Bricks of 0.2 x 0.1 x 0.06 m in running bond, 15 courses of 20, stand on each other with head joints open (2,340 contact
+Bricks of 0.2 x 0.1 x 0.06 m in running bond, 15 courses of 20, stand on each other with head joints open (2,260 contact
 points) or closed. Times are CPU times of this process at 2 ms a step, the averages of what was computed.
 """
 
