@@ -1,12 +1,16 @@
-"""Measures of the window, without a browser: time to the first picture, to an answer, of a drag, and memory after many.
+"""Measures of the window, without a browser: first picture, answer, drags, memory, random commands, attacks.
 
     python benchmarks/window.py [DRAGS]
+
+as many random commands as drags, and a hundred times as many requests.
 
 Times are those of this machine; what is compared is the worker's own calculation with what the page waits for.
 """
 
 from __future__ import annotations
 
+import json
+import random
 import resource
 import shutil
 import statistics
@@ -55,6 +59,9 @@ def main(drags: int) -> None:
             answer = client.answer("run")
             waited, own = time.perf_counter() - begun, answer["seconds"]
             print(f"facade: opened to verdict {waited:.2f} s, of which the command {own:.2f} s ({own / waited:.0%})")
+            commands(client, drags)
+            requests(client, 100 * drags)
+            large_drop(client, 200)
 
 
 def drag(client: Client, drags: int) -> None:
@@ -72,6 +79,82 @@ def drag(client: Client, drags: int) -> None:
     share = statistics.median(own) / statistics.median(waited)
     print(f"drag: median {1e3 * statistics.median(waited):.0f} ms of {drags}, of which the bound {share:.0%}")
     print(f"memory of the process: {before:.0f} MB after some, {resident(pid):.0f} MB after {drags} drags")
+
+
+def commands(client: Client, count: int) -> None:
+    """Print whether random commands, taken back to the first, leave the text as it was."""
+    draw = random.Random(1)
+    client.call("open", name="arch.toml")
+    before = (client.server.session.folder / "arch.toml").read_text(encoding="utf-8")
+    begun, done = time.perf_counter(), 0
+    for k in range(count):
+        what = draw.choice(("load", "tie", "value", "group"))
+        if what == "load":
+            table = {**LOAD, "at": [round(draw.uniform(-1.0, 1.0), 3), 1.7], "group": f"g{k % 3}"}
+            found = client.do({"do": "add", "to": "loads", "table": table})
+        elif what == "tie":
+            ends = {"at_a": [-1.0, 0.5], "at_b": [1.0, 0.5]}
+            found = client.do({"do": "add", "to": "ties", "table": {"name": f"tie {k}", "body_a": "v01", **ends}})
+        elif what == "value":
+            found = client.do({"do": "set", "path": ["arch", "ring"], "value": round(draw.uniform(0.1, 0.5), 3)})
+        else:
+            found = client.do({"do": "set", "path": ["loads", 0, "group"], "value": f"h{k % 5}"})
+        done += "error" not in found
+        if draw.random() < 0.2:
+            client.call("undo")
+    while client.call("state")["document"]["undo"]:
+        client.call("undo")
+    same = client.call("state", version=0)["document"]["text"] == before
+    text = "the same text" if same else "ANOTHER TEXT"
+    print(f"{done} random commands, some taken back at once, then all: {text} ({time.perf_counter() - begun:.0f} s)")
+
+
+def requests(client: Client, count: int) -> None:
+    """Print how many requests a second are answered on one connection, and the memory before and after."""
+    import http.client
+    import os
+
+    connection = http.client.HTTPConnection("127.0.0.1", client.server.server_port, timeout=60)
+    path, own = (
+        f"/{client.server.token}/api/state",
+        {"Origin": client.server.origin, "Content-Type": "application/json"},
+    )
+    body = json.dumps({"page": client.page, "version": 10**9}).encode()
+    wrong = f"/{'x' * len(client.server.token)}/api/state"
+    before, begun, refused = resident(os.getpid()), time.perf_counter(), 0
+    for k in range(count):
+        connection.request("POST", wrong if k % 10 == 0 else path, body, own)
+        answer = connection.getresponse()
+        answer.read()
+        refused += answer.status == 403
+    rate = count / (time.perf_counter() - begun)
+    print(f"{count} requests, one in ten with a wrong token: {rate:.0f} a second, {refused} refused,"
+          f" memory {before:.0f} MB before, {resident(os.getpid()):.0f} MB after")  # fmt: skip
+
+
+def large_drop(client: Client, megabytes: int) -> None:
+    """Print what becomes of a file that is too large."""
+    import socket
+
+    begun, size = time.perf_counter(), megabytes * 1_000_000
+    head = (f"POST /{client.server.token}/drop HTTP/1.1\r\nHost: 127.0.0.1:{client.server.server_port}\r\n"
+            f"Origin: {client.server.origin}\r\nX-Name: large.dxf\r\nContent-Length: {size}\r\n\r\n")  # fmt: skip
+    with socket.create_connection(("127.0.0.1", client.server.server_port), timeout=30) as connection:
+        connection.sendall(head.encode())
+        sent = 0
+        try:
+            while sent < size:
+                sent += connection.send(b"0" * 1_000_000)
+        except OSError:
+            pass
+        try:
+            said = connection.recv(100).decode(errors="replace").split("\r\n")[0]
+        except OSError:
+            said = "connection closed"
+    there = "taken" if (client.server.session.folder / "large.dxf").exists() else "not taken"
+    print(
+        f"drop of {megabytes} MB: {said}, {there}, {sent / 1e6:.0f} MB were sent ({time.perf_counter() - begun:.2f} s)"
+    )
 
 
 if __name__ == "__main__":

@@ -7,6 +7,8 @@ They are no part of `pytest tests`, because they need Chromium; `.ci/run` makes 
 
 from __future__ import annotations
 
+import base64
+import dataclasses
 import json
 import os
 import shutil
@@ -18,9 +20,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from matplotlib.image import imsave
 
 import concio
 from browser import Browser, browser
+from rendered import rendered
 from windows import LATE, Client, window
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -444,6 +448,69 @@ def test_every_question_is_asked_from_the_page_in_italian(page: Browser, tmp_pat
             page.click("#tab-report")
             page.until("document.querySelector('#pane-report iframe, #pane-report img')")
         page.click("#language")
+
+
+def test_a_picture_becomes_blocks_that_are_corrected_and_asked(page: Browser, tmp_path: Path) -> None:
+    wall = concio.wall(block_size=(0.25, 0.125), length=1.0, height=0.5, block="rigid")
+    imsave(tmp_path / "wall.png", rendered(wall, contrast=0.2, seed=1).grey, cmap="gray", vmin=0.0, vmax=1.0)
+    with window(tmp_path) as client:
+        page.go(client.server.address)
+        page.until("document.querySelector('#start').open")
+        page.js("[...document.querySelectorAll('#start button')].find((b) => b.textContent === 'wall.png').click()")
+        page.until("document.querySelector('[data-photo=flat]') && document.querySelector('#picture image')")
+
+        def corner(x: float, y: float) -> None:
+            at = page.js("(() => { const r = document.querySelector('#picture image').getBoundingClientRect(); "
+                         f"return [r.x + {x} * r.width, r.y + {y} * r.height]; }})()")  # fmt: skip
+            page.click_at(*at)
+
+        value(page, "[name=photo-size]", "1, 0.5")
+        page.click("[data-photo=flat]")
+        for x, y in ((0, 1), (1, 1), (1, 0), (0, 0)):
+            corner(x, y)
+        page.until("document.querySelector('#trace')", "the picture is flat and has its scale")
+        assert page.js(AUDIT) == []
+        page.click("#trace")
+        page.until("document.querySelectorAll('#picture .traced').length === 18")
+        assert "18 stones" in page.js("document.querySelector('#pane-photo [role=status]').textContent")
+        page.click("#take-stones")
+        page.until(f"{SETTLED} && window.concio.view.shown.bodies.length === 19")
+        page.click_at(*page.where(0.25, 0.44))
+        page.mouse("mousePressed", *page.where(0.5, 0.44), modifiers=8)
+        page.mouse("mouseReleased", *page.where(0.5, 0.44), modifiers=8)
+        page.click("#merge")
+        page.until(f"{SETTLED} && window.concio.view.shown.bodies.length === 18")
+        page.click_at(*page.where(0.25, 0.44))
+        page.click("[data-photo=cut]")
+        page.click_at(*page.where(0.375, 0.55))
+        page.click_at(*page.where(0.375, 0.31))
+        page.until(f"{SETTLED} && window.concio.view.shown.bodies.length === 19")
+        page.click("#tab-ask")
+        page.click("#run")
+        page.until(ANSWERED)
+        said = page.js("document.querySelector('#verdict-text .sentence').textContent")
+        assert said == concio.solve(concio.loads(text_of(client), folder=tmp_path)).verdict.sentence
+        assert "In equilibrium" in said
+
+
+@pytest.mark.parametrize("suffix", ["obj", "stl"])
+def test_solids_are_dropped_and_asked(page: Browser, tmp_path: Path, suffix: str) -> None:
+    tower = concio.drums(height=1.0, drums=2, diameter=0.5, block="rigid")
+    tower = dataclasses.replace(tower, bodies=tower.free_bodies)  # the window adds the ground
+    concio.write_solids(tmp_path / f"piece.{suffix}", tower)
+    content = base64.b64encode((tmp_path / f"piece.{suffix}").read_bytes()).decode()
+    (tmp_path / f"piece.{suffix}").unlink()
+    with window(tmp_path) as client:
+        page.go(client.server.address)
+        page.until("document.querySelector('#start').open")
+        page.js(f"""(() => {{ const bytes = Uint8Array.from(atob('{content}'), (c) => c.charCodeAt(0));
+            const given = new DataTransfer(); given.items.add(new File([bytes], 'piece.{suffix}'));
+            dispatchEvent(new DragEvent('drop', {{ dataTransfer: given, cancelable: true }})); }})()""")
+        page.until(f"{DRAWN} && window.concio.view.shown && window.concio.view.shown.dim === 3", "the solids")
+        assert (tmp_path / f"piece.{suffix}").is_file()
+        page.until("document.querySelector('#acts li')", "what acts")
+        page.click("#run")
+        page.until(ANSWERED)
 
 
 def test_a_question_is_cancelled_and_the_newest_wins(page: Browser, client: Client) -> None:

@@ -101,8 +101,10 @@ def main() -> None:
     from concio.window.drag import dragged
     from concio.window.drawing import layers
     from concio.window.picture import picture
+    from concio.window.tracing import traced, underlay
 
-    work({"ask": ask, "warm": warm, "picture": picture, "drag": dragged, "layers": layers, "acts": acts})
+    work({"ask": ask, "warm": warm, "picture": picture, "drag": dragged, "layers": layers, "acts": acts,
+          "underlay": underlay, "trace": traced})  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def window(
     file: Annotated[
         Path | None,
-        typer.Argument(help="Model file, DXF drawing or folder; by default this folder.", show_default=False),
+        typer.Argument(help="Model, drawing, solids, picture or folder; by default this folder.", show_default=False),
     ] = None,
     folder: Annotated[
         Path | None, typer.Option("--folder", help="Folder in which files may be opened; by default that of the file.")
@@ -78,7 +78,7 @@ def _server(make: type[Server], session: Session, port: int) -> Server:
 
 
 def model_file(file: Path, folder: Path) -> Path:
-    """Return the model file to open: of a drawing the file beside it that names it, made where it is missing.
+    """Return the model file to open: of anything else the file beside it that names it, made if missing.
 
     Raises
     ------
@@ -87,8 +87,8 @@ def model_file(file: Path, folder: Path) -> Path:
     """
     from concio.errors import InputError
     from concio.files import check_regular
-    from concio.window.drawing import starting_text
     from concio.window.folder import named
+    from concio.window.starting import model_text
 
     check_regular(file, hint="start one with: concio new panel")
     if file.parent.resolve() != folder.resolve():
@@ -97,9 +97,10 @@ def model_file(file: Path, folder: Path) -> Path:
             raise InputError(msg, where=str(file), hint="give a folder that holds it with --folder")
     else:
         named(folder, file.name)
-    if file.suffix.lower() != ".dxf":
+    text = model_text(file)
+    if text is None:
         return file
     model = file.with_suffix(".toml")
     if not model.exists():
-        model.write_text(starting_text(file), encoding="utf-8")
+        model.write_text(text, encoding="utf-8")
     return model

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from concio.errors import InputError
+from concio.window.block_edits import BLOCK_COMMANDS
 from concio.window.toml_edits import Patch, add_table, difference, literal, remove, set_value
 from concio.window.toml_places import KeyPath
 
@@ -112,5 +113,5 @@ def _text(text: str, command: Command) -> tuple[Patch, str]:
 
 
 _COMMANDS: dict[str, Callable[[str, Command], tuple[Patch, str]]] = {
-    "set": _set, "add": _add, "remove": _remove, "text": _text,
+    "set": _set, "add": _add, "remove": _remove, "text": _text, **BLOCK_COMMANDS,
 }  # fmt: skip

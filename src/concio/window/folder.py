@@ -9,7 +9,9 @@ from typing import Any
 
 from concio.errors import InputError
 
-SUFFIXES = (".toml", ".dxf")
+SOLIDS = (".obj", ".ply", ".stl", ".off", ".ifc", ".3dm")
+PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
+SUFFIXES = (".toml", ".dxf", *SOLIDS, *PICTURES)
 """Files that can be opened or dropped."""
 FILE_KEYS = ("blocks_file", "solids_file", "file", "code", "record", "vertical")
 """Keys of a model file whose texts may be names of files."""
@@ -36,8 +38,8 @@ def named(folder: Path, name: object) -> Path:
         raise InputError(msg, hint="give a name without slashes, such as wall.toml")
     path = folder / plain
     if path.suffix.lower() not in SUFFIXES:
-        msg = f"'{plain}' is neither a model file nor a drawing"
-        raise InputError(msg, hint="names end in .toml or .dxf")
+        msg = f"'{plain}' is neither a model file, nor a drawing, solids or a picture"
+        raise InputError(msg, hint="names end in " + ", ".join(SUFFIXES))
     if not inside(folder, path):
         msg = f"'{plain}' leads out of the folder of this window"
         raise InputError(msg, hint="copy the file into the folder")

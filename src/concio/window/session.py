@@ -17,10 +17,10 @@ from concio.plot import style
 from concio.window.asking import Asked
 from concio.window.commands import patch_of
 from concio.window.document import Document
-from concio.window.drawing import starting_text
 from concio.window.folder import SUFFIXES, named
 from concio.window.lane import Job, Lane
 from concio.window.questions import QUESTIONS
+from concio.window.starting import model_text
 from concio.window.toml_places import places
 
 HOLDS = 12.0
@@ -62,6 +62,7 @@ class Session:
             "picture": self.picture, "drag": self.drag, "ask": self.ask, "cancel": self.cancel, "result": self.result,
             "layers": self.layers, "export": self.export, "bye": self.bye, "take": self.take,
             "answers": self.answers, "film": self.film, "acts": self.acts,
+            "underlay": self.underlay, "trace": self.trace,
         }  # fmt: skip
         if file is not None:
             self.document = Document(file)
@@ -148,14 +149,15 @@ class Session:
         return {**found, "document": document}
 
     def open(self, told: Mapping[str, Any]) -> Answer:
-        """Open a file of the folder; of a drawing the model file that names it, which is made where it is missing."""
+        """Open a file of the folder; of anything else the model file that names it, made if missing."""
         if not self._holds(str(told.get("page", ""))):
             self._writing(told)
         path = named(self.folder, told.get("name"))
-        if path.suffix.lower() == ".dxf":
+        text = model_text(path)
+        if text is not None:
             model = path.with_suffix(".toml")
             if not model.exists():
-                _write(model, starting_text(path))
+                _write(model, text)
             path = model
         self._change_to(path)
         return self.state(told)
@@ -279,6 +281,19 @@ class Session:
         named = {"question": str(told.get("question")), "options": dict(told.get("options") or {})}
         job = self.look.ask(self._request("acts", self._there(), **named))
         job.over.wait(20.0)
+        return {"state": job.state, job.state: job.answer}
+
+    def underlay(self, told: Mapping[str, Any]) -> Answer:
+        """Return the picture under the model."""
+        job = self.look.ask(self._request("underlay", self._there()))
+        job.over.wait(60.0)
+        return {"state": job.state, job.state: job.answer}
+
+    def trace(self, told: Mapping[str, Any]) -> Answer:
+        """Return the stones that are traced in the picture."""
+        asked = {key: told.get(key) for key in ("method", "unit", "joint", "clicks")}
+        job = self.look.ask(self._request("trace", self._there(), **asked))
+        job.over.wait(300.0)
         return {"state": job.state, job.state: job.answer}
 
     def ask(self, told: Mapping[str, Any]) -> Answer:

@@ -12,7 +12,7 @@ from concio.window.questions import QUESTIONS
 WINDOW = Path(concio.__file__).parent / "window"
 WORDS = tomllib.loads((WINDOW / "words.toml").read_text(encoding="utf-8"))
 PAGE = "\n".join(p.read_text(encoding="utf-8") for p in (WINDOW / "page").iterdir() if p.suffix in (".js", ".html"))
-BUILT = ("q_", "a_", "layer_")
+BUILT = ("q_", "a_", "layer_", "photo_")
 """Words whose names are put together from a question or a use of layers."""
 
 

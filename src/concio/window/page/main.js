@@ -7,10 +7,11 @@ import { build, placed, setBuild } from "./build.js";
 import { data, setTables, showChosen, tables } from "./tables.js";
 import { answer, follow, programs, questionPane, reportPane, run, setAsk } from "./ask.js";
 import { layersPane, setLayers } from "./layers.js";
+import { hasPicture, photoPane, setPhoto, underlay } from "./photo.js";
 import { answered, lookPane, modelChanged, setLook } from "./look.js";
 
 const $ = (id) => document.getElementById(id);
-const TABS = ["ask", "build", "tables", "look", "data", "text", "python", "report", "layers"];
+const TABS = ["ask", "build", "tables", "look", "data", "text", "python", "report", "layers", "photo"];
 let hello = null, state = {}, doc = null, tab = "ask", pictured = "", gone = 0, shownReport = "";
 const panes = {};
 
@@ -29,6 +30,9 @@ function banner(id, text = "", buttons = []) {
   const made = el("div", { class: "banner", "data-banner": id, "data-text": text, role: "alert" }, el("span", {}, text), ...buttons.map(([word, act]) => el("button", { onclick: act }, word)));
   if (old) old.replaceWith(made); else $("banners").append(made);
 }
+
+/* a model that cannot be read yet, above a picture in which it is to be traced */
+const NOTHING = { dim: 2, title: "", tables: [], bodies: [], joints: [], loads: [], supports: [], ties: [], findings: [], notes: [], attention: [], attention_italian: [], groups: [], materials: {}, laws: {}, fixed: 0, fault: null };
 
 /* --- the state --- */
 function take(found) {
@@ -78,9 +82,9 @@ async function picture() {
       const asked = doc.hash + doc.name, found = await call("picture", { wait: 5 });
       if (!doc || found.hash + doc.name !== asked) continue;
       if (found.state === "done") { pictured = asked; show(found.done); fault(null); }
-      else if (found.state === "error") { pictured = asked; fault(found.error); }
+      else if (found.state === "error") { pictured = asked; if (hasPicture() && !view.shown) show(NOTHING); fault(found.error); }
       else if (found.state === "cancelled") await new Promise((then) => setTimeout(then, 100));
-      if (pictured === asked) { attention(); refresh(["ask", "build", "tables", "layers"]); tabs(); }
+      if (pictured === asked) { attention(); refresh(["ask", "build", "tables", "layers", "photo"]); tabs(); underlay(() => refresh(["photo"], true)); }
     }
   } catch (error) { fail(error); }
   clearTimeout(late); $("busy").hidden = true; again = false;
@@ -99,7 +103,7 @@ function attention() {
     ...(shown ? shown.findings : []).slice(0, 20).map((found) => el("li", { lang: "en" }, found.sentence, el("button", { onclick: () => { mark(found.at); } }, t("where")))),
     ...(shown && shown.notes.length ? [el("li", {}, el("details", {}, el("summary", {}, `${t("left_out")} (${shown.notes.length})`), ...shown.notes.map((line) => el("p", { lang: "en" }, line))))] : []),
   );
-  if (shown && !lines.length && !shown.findings.length && !shown.notes.length) $("attention-list").append(el("li", { class: "quiet" }, t("no_attention")));
+  if (shown && shown !== NOTHING && !lines.length && !shown.findings.length && !shown.notes.length) $("attention-list").append(el("li", { class: "quiet" }, t("no_attention")));
 }
 
 /* --- commands --- */
@@ -117,7 +121,7 @@ const ask = (question, options) => tried(async () => take(await call("ask", { qu
 
 /* --- tabs --- */
 function tabs() {
-  const shownTabs = TABS.filter((name) => name !== "layers" || (doc?.values || []).some((v) => v.path[0] === "blocks_file" && /\.dxf["']$/i.test(v.written)));
+  const shownTabs = TABS.filter((name) => (name !== "photo" || hasPicture()) && (name !== "layers" || (doc?.values || []).some((v) => v.path[0] === "blocks_file" && /\.dxf["']$/i.test(v.written))));
   if (!shownTabs.includes(tab)) tab = "ask";
   const key = shownTabs.join() + language + tab;
   if ($("tabs").dataset.key === key) return;
@@ -144,7 +148,7 @@ function go(name, focus = false) {
 
 const fill = {
   ask: (pane) => questionPane(pane), build: (pane) => build(pane), tables: (pane) => tables(pane), data: (pane) => data(pane, doc),
-  report: (pane) => reportPane(pane), layers: (pane) => layersPane(pane), look: (pane) => lookPane(pane).catch(fail), text: textPane, python: pythonPane,
+  report: (pane) => reportPane(pane), layers: (pane) => layersPane(pane), photo: (pane) => photoPane(pane), look: (pane) => lookPane(pane).catch(fail), text: textPane, python: pythonPane,
 };
 const stale = new Set(TABS);
 function refresh(names, force = false) {
@@ -181,9 +185,9 @@ function pythonPane(pane) {
 /* --- open, templates, drop --- */
 async function start() {
   const found = (await tried(() => call("start"))) || { files: [], folder: "" }, dialog = $("start");
-  const chooser = el("input", { type: "file", accept: ".toml,.dxf", id: "chooser" });
+  const chooser = el("input", { type: "file", accept: ".toml,.dxf,.obj,.ply,.stl,.off,.ifc,.3dm,.png,.jpg,.jpeg,.tif,.tiff", id: "chooser" });
   chooser.addEventListener("change", () => chooser.files[0] && dropped(chooser.files[0]));
-  const pick = (action) => tried(async () => { take(await action()); dialog.close(); if (tabNames().includes("layers")) go("layers"); });
+  const pick = (action) => tried(async () => { take(await action()); dialog.close(); const own = ["layers", "photo"].find((n) => tabNames().includes(n)); if (own) go(own); });
   dialog.replaceChildren(
     el("h2", { id: "start-head" }, `${t("open_file")}: ${found.folder}`),
     el("div", { class: "choices" }, ...(found.files.length ? found.files.map((name) => el("button", { onclick: () => pick(() => call("open", { name })) }, name)) : [el("p", { class: "quiet" }, t("no_files"))])),
@@ -198,7 +202,7 @@ const tabNames = () => [...document.querySelectorAll("#tabs button")].map((b) =>
 
 async function dropped(file) {
   const done = await tried(async () => take(await drop(file)));
-  if (done) { $("start").close(); if (/\.dxf$/i.test(file.name)) go("layers"); }
+  if (done) { $("start").close(); const own = ["layers", "photo"].find((n) => tabNames().includes(n)); if (own) go(own); }
 }
 addEventListener("dragover", (event) => { event.preventDefault(); });
 addEventListener("drop", (event) => { event.preventDefault(); if (event.dataTransfer.files[0]) dropped(event.dataTransfer.files[0]); });
@@ -270,7 +274,7 @@ async function begin() {
   setWords(hello.words);
   for (const [name, colour] of Object.entries(hello.look)) document.documentElement.style.setProperty(`--look-${name}`, colour);
   for (const name of TABS) { panes[name] = el("div", { role: "tabpanel", id: `pane-${name}`, "aria-labelledby": `tab-${name}`, tabindex: -1, hidden: name !== tab }); $("panes").append(panes[name]); }
-  setBuild(() => doc, send); setTables(send); setLayers(send); setLook(() => doc, () => refresh(["tables"])); setAsk(hello.questions, ask, () => doc);
+  setBuild(() => doc, send); setTables(send); setLayers(send); setLook(() => doc, () => refresh(["tables"])); setPhoto(() => doc, send); setAsk(hello.questions, ask, () => doc);
   for (const [id, act] of [["save", save], ["undo", undo], ["redo", redo], ["open", start], ["keys", help], ["cancel", cancel], ["fit", fit], ["zoom-in", () => zoom(1.4)], ["zoom-out", () => zoom(1 / 1.4)]]) $(id).addEventListener("click", act);
   $("names").addEventListener("change", () => { view.names = $("names").checked; draw(); });
   $("language").addEventListener("click", () => { setLanguage(language === "it" ? "en" : "it"); label(); header(); attention(); fault(null); tabs(); refresh(TABS, true); follow(state, () => {}); });

@@ -1,0 +1,62 @@
+"""Model texts for files that are opened: a drawing, solids, or a picture of a wall."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from concio.window.drawing import starting_text
+from concio.window.folder import PICTURES, SOLIDS
+from concio.window.toml_edits import literal
+
+
+def model_text(file: Path) -> str | None:
+    """Return the text of a model that names a file; None for a model file itself."""
+    suffix = file.suffix.lower()
+    if suffix == ".dxf":
+        return starting_text(file)
+    if suffix in SOLIDS:
+        return _solids(file)
+    return _picture(file) if suffix in PICTURES else None
+
+
+def _solids(file: Path) -> str:
+    return f"""# Solids of {file.name}. State the unit, the material and the joints.
+title = {literal(file.stem)}
+solids_file = {literal(file.name)}
+
+[solids]
+ground = true                     # a fixed body under the lowest blocks
+mend = "1 mm"                     # faces that nearly touch are moved together within
+
+[materials.block]
+kind = "rigid"
+unit_weight = "20 kN/m3"
+
+[joints.joint]
+friction = 0.6
+# The self-weight acts in the load group "dead".
+"""
+
+
+def _picture(file: Path) -> str:
+    return f"""# Blocks of the picture {file.name}: give it its scale, then trace its stones under Picture.
+title = {literal(file.stem)}
+
+[record.picture]
+file = {literal(file.name)}
+
+[analysis]
+thickness = 1.0                   # out of plane
+
+[materials.block]
+kind = "rigid"
+unit_weight = "20 kN/m3"
+
+[joints.joint]
+friction = 0.6
+
+[[loads]]
+kind = "weight"
+value = [0, -1]
+group = "dead"
+"""

@@ -1,0 +1,127 @@
+"""A picture under the model: scale, stones, and blocks of the text corrected with all that share their corners."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+from PIL import Image
+
+import concio
+from concio.errors import InputError
+from concio.window.commands import patch_of
+from concio.window.starting import model_text
+from concio.window.tracing import traced, underlay
+from rendered import rendered
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("photo")
+    wall = concio.wall(block_size=(0.25, 0.125), length=1.0, height=0.5, block="rigid")
+    grey = rendered(wall, contrast=0.25, seed=1).grey
+    Image.fromarray((255 * grey).astype(np.uint8)).save(place / "wall.png")
+    return place
+
+
+def request(folder: Path, text: str, **more: Any) -> dict[str, Any]:
+    return {"text": text, "base": str(folder), "folder": str(folder), "name": "wall.toml", **more}
+
+
+def done(text: str, **command: Any) -> str:
+    return patch_of(text, command)[0].applied(text)
+
+
+@pytest.fixture
+def scaled(folder: Path) -> str:
+    text = model_text(folder / "wall.png")
+    assert text is not None
+    text = done(text, do="set", path=["record", "picture", "points"], value=[[0, 10], [300, 10]])
+    return done(text, do="set", path=["record", "picture", "distance"], value=1.0)
+
+
+def test_a_picture_lies_where_its_scale_puts_it(folder: Path, scaled: str) -> None:
+    text = model_text(folder / "wall.png")
+    assert text is not None
+    assert not underlay(request(folder, text), lambda *_: None)["known"]
+    found = underlay(request(folder, scaled), lambda *_: None)
+    assert found["known"]
+    assert found["box"] == pytest.approx([0.0, 0.0, 1.0, 0.5])
+    corners = [[0, 150], [300, 150], [300, 0], [0, 0]]
+    flat = done(text, do="set", path=["record", "picture", "corners"], value=corners)
+    flat = done(flat, do="set", path=["record", "picture", "size"], value=[1.0, 0.5])
+    assert underlay(request(folder, flat), lambda *_: None)["flat"]
+    with pytest.raises(InputError, match="no scale yet"):
+        traced(request(folder, text, method="courses", unit=[0.25, 0.125]), lambda *_: None)
+
+
+def test_traced_stones_become_blocks_that_stand(folder: Path, scaled: str) -> None:
+    found = traced(request(folder, scaled, method="courses", unit=[0.25, 0.125]), lambda *_: None)
+    text = done(scaled, do="stones", stones=found["stones"])
+    model = concio.loads(text, folder=folder)
+    assert len(model.free_bodies) == len(found["stones"]) == 18
+    assert concio.solve(model).solved
+    again = done(text, do="stones", stones=found["stones"][:5])
+    assert len(tomllib.loads(again)["blocks"]) == 6, "they replace those that were traced before, with one ground"
+
+
+SQUARES = """title = "two"   # a comment that stays
+[[blocks]]
+name = "a"
+outline = [[0, 0], [1, 0], [1, 1], [0, 1]]
+[[blocks]]
+name = "b"
+rectangle = [[1, 0], [2, 1]]
+[[blocks]]
+name = "far"
+rectangle = [[5, 0], [6, 1]]
+"""
+
+
+def test_blocks_are_merged_and_split_again() -> None:
+    one = done(SQUARES, do="merge", names=["a", "b"])
+    blocks = tomllib.loads(one)["blocks"]
+    assert [b["name"] for b in blocks] == ["a", "far"]
+    assert shapely.Polygon(blocks[0]["outline"]).area == pytest.approx(2.0)
+    two = tomllib.loads(done(one, do="split", name="a", line=[[1.0, -1.0], [1.0, 2.0]]))["blocks"]
+    assert sorted(shapely.Polygon(b["outline"]).area for b in two if "outline" in b) == pytest.approx([1.0, 1.0])
+    assert len({b["name"] for b in two}) == 3
+    assert one.startswith('title = "two"   # a comment that stays\n')
+
+
+def test_a_corner_moves_in_every_block_that_has_it() -> None:
+    moved = tomllib.loads(done(SQUARES, do="corner", **{"from": [1.0, 1.0]}, to=[1.1, 1.2]))["blocks"]
+    assert [1.1, 1.2] in moved[0]["outline"]
+    assert [1.1, 1.2] in moved[1]["outline"]
+    a, b = (shapely.Polygon(one["outline"]) for one in moved[:2])
+    assert a.intersection(b).area == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        ({"do": "merge", "names": ["a", "far"]}, "do not touch"),
+        ({"do": "merge", "names": ["a"]}, "one block alone"),
+        ({"do": "merge", "names": ["a", "c"]}, "block 'c' does not stand"),
+        ({"do": "split", "name": "a", "line": [[3, 3], [4, 4]]}, "does not cut"),
+        ({"do": "corner", "from": [9.0, 9.0], "to": [0.0, 0.0]}, "no block of the text has a corner"),
+        ({"do": "corner", "from": [1.0, 1.0], "to": [-3.0, 0.5]}, "would cross itself"),
+        ({"do": "stones", "stones": []}, "0 stones"),
+        ({"do": "stones", "stones": [[[0, 0], [1, 1], [1, 0], [0, 1]]]}, "crosses itself"),
+        ({"do": "stones", "stones": "all"}, "pairs of numbers"),
+    ],
+)
+def test_what_cannot_be_corrected_is_refused(command: dict[str, Any], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        patch_of(SQUARES, command)
+
+
+@pytest.mark.parametrize("name", ["a.obj", "a.ifc", "a.ply", "a.stl"])
+def test_solids_start_a_model_that_names_them(name: str) -> None:
+    text = model_text(Path(name))
+    assert text is not None
+    assert tomllib.loads(text)["solids_file"] == name
