@@ -106,7 +106,8 @@ def live_load_path(
     if growing.outcome not in (Outcome.LIMIT, Outcome.LOST) or not moved > 0:
         return growing, shown or growing.outcome is Outcome.MECHANISM
     until = float(control @ start.displacement) + FAR * moved
-    falling = follow_parts(path, growing.end, until=until, control=control, progress=progress)
+    looked = growing.outcome is Outcome.LOST
+    falling = follow_parts(path, growing.end, until=until, control=control, progress=progress, looked=looked)
     whole = EventPath(
         growing.states + falling.states[1:],
         growing.events + tuple(replace(e, step=e.step + len(growing.states) - 1) for e in falling.events),

@@ -81,6 +81,18 @@ def solve(
     return first_answer(Run(scale(problem), progress), STRATEGIES)
 
 
+def without_release(problem: ContactProblem, progress: ProgressCallback | None = None) -> Solution:
+    """Solve one load step by what comes before a release in the table; UNDECIDED where that does not decide.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    progress : callable, optional
+    """
+    before = tuple(s for s in STRATEGIES if not s.name.startswith("release"))
+    return first_answer(Run(scale(problem), progress), before)
+
+
 def let_go(problem: ContactProblem, u: Array, progress: ProgressCallback | None = None) -> Solution:
     """Follow the slow motion from given displacements: the answer where it comes to rest, or COLLAPSES, or UNDECIDED.
 

@@ -43,12 +43,13 @@ def follow_parts(
     max_events: int = 20_000,
     progress: ProgressCallback | None = None,
     stop: Stop | None = None,
+    looked: bool = False,
 ) -> EventPath:
     """Follow a path from a state in equilibrium, each connected part by itself.
 
     Parameters
     ----------
-    path, start, until, control, max_events, progress, stop
+    path, start, until, control, max_events, progress, stop, looked
         See :func:`concio.solvers.path.event_path.follow`; ``max_events`` is that of each part. A control that belongs
         to several parts makes them one.
     """
@@ -57,14 +58,16 @@ def follow_parts(
     alone = len(parts) == 1 and parts[0].pairs.size == path.problem.pairs
     if alone or (control is not None and leader is None):
         return follow(
-            path, start, until=until, control=control, max_events=max_events, progress=progress, stop=stop
-        )
+            path, start, until=until, control=control, max_events=max_events, progress=progress, stop=stop,
+            looked=looked,
+        )  # fmt: skip
 
     def walk(part: Part, begin: PathState, end: float, by: Array | None) -> EventPath:
         asked = None if stop is None else _asked(stop, start, part)
         return follow(
-            path_of(path, part), begin, until=end, control=by, max_events=max_events, progress=progress, stop=asked
-        )
+            path_of(path, part), begin, until=end, control=by, max_events=max_events, progress=progress, stop=asked,
+            looked=looked,
+        )  # fmt: skip
 
     tracks = []
     if leader is not None and control is not None:

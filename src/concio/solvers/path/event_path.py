@@ -69,6 +69,7 @@ def follow(
     max_events: int = 20_000,
     progress: ProgressCallback | None = None,
     stop: Callable[[PathState], bool] | None = None,
+    looked: bool = False,
 ) -> EventPath:
     """Follow a path from a state in equilibrium.
 
@@ -86,16 +87,21 @@ def follow(
     progress : callable, optional
     stop : callable, optional
         Asked at every corner; true ends the path there with outcome REACHED.
+    looked : bool
+        Whether a path under growing load was lost at ``start``: its search for a state beyond is not made again.
     """
     if path.problem.dim != 2:
         msg = "event-by-event paths are two-dimensional, the problem is in space"
         raise InputError(msg, hint="use load steps")
-    return _Follower(path, start, until, control).run(max_events, progress, stop)
+    return _Follower(path, start, until, control, looked=looked).run(max_events, progress, stop)
 
 
 class _Follower(PathPoint):
-    def __init__(self, path: LinearPath, start: PathState, until: float, control: Array | None) -> None:
+    def __init__(
+        self, path: LinearPath, start: PathState, until: float, control: Array | None, *, looked: bool
+    ) -> None:
         super().__init__(path, start, until, control)
+        self.looked_from = start if looked else None
         self.driven = False  # a pair's slip or opening stands in for the control
         self.restarts, self.restarted, self.share = 0, -np.inf, SHARES[0]
 
@@ -175,9 +181,10 @@ class _Follower(PathPoint):
         """Look for a certified state at a finite distance, by a growing load (or, asked to go down, a falling one)."""
         point, sense = self.state, self.sense if self.by_load else 1.0
         walked = abs(point.parameter - self.restarted) / load_unit(self.path, point)
-        self.share = 10 * self.share if walked <= CLOSE * self.share else SHARES[0]
+        self.share = min(10 * self.share, SHARES[-1]) if walked <= CLOSE * self.share else SHARES[0]
         end = self.until if self.by_load else np.inf
-        found = look_beyond(self.path, point, sense, end=end, free=free, least=self.share, progress=progress)
+        quick = free or point is self.looked_from
+        found = look_beyond(self.path, point, sense, end=end, quick=quick, least=self.share, progress=progress)
         if found.state is None:
             return found
         if not self.by_load and (self.control @ self.unknowns(found.state) - self.given()) * self.sense <= 0:
