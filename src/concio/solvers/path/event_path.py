@@ -38,6 +38,7 @@ from concio.solvers.path.rates import (
     vertex_size,
     wrong,
 )
+from concio.solvers.path.ray import homogeneous, ray
 from concio.solvers.path.record import Event, EventPath, Outcome
 from concio.solvers.path.restart import SHARES, Beyond, load_unit, look_beyond, moves_freely
 from concio.solvers.path.state import (
@@ -183,6 +184,9 @@ class _Follower(PathPoint):
         walked = abs(point.parameter - self.restarted) / load_unit(self.path, point)
         self.share = min(10 * self.share, SHARES[-1]) if walked <= CLOSE * self.share else SHARES[0]
         end = self.until if self.by_load else np.inf
+        straight = self.straight(progress)
+        if straight is not None:
+            return Beyond(straight)
         quick = free or point is self.looked_from
         found = look_beyond(self.path, point, sense, end=end, quick=quick, least=self.share, progress=progress)
         if found.state is None:
@@ -191,6 +195,16 @@ class _Follower(PathPoint):
             return Beyond(None)  # the control point would go back
         self.restarts, self.restarted = self.restarts + 1, found.state.parameter
         return found
+
+    def straight(self, progress: ProgressCallback | None) -> PathState | None:
+        """Return the end of the ray on which the path begins, where no rates were found at rest; else None."""
+        rest = self.state
+        if not self.by_load or self.until <= 0 or rest.parameter or rest.displacement.any() or rest.normal_force.any():
+            return None
+        if not homogeneous(self.path):
+            return None
+        end = ray(self.path, rest, until=min(self.until, 1.0), progress=progress)
+        return end if end is not None and certify_step(self.path, rest, end).certified else None
 
     def name_step(self, old: Moment, beyond: Beyond, states: list[PathState]) -> list[Event]:
         """Name a finite step after the pair that moves most in it, and what changed in it."""
