@@ -47,6 +47,8 @@ def moved_apart(
     inverse = np.append(1.0 / mass, 0.0)
     give = (rows**2 * inverse[columns]).sum(1)
     sunk, columns, rows, give = (v[give > 0] for v in (sunk, columns, rows, give))
+    if not len(sunk):
+        return moved[:n]
     wanted = -end[sunk] - 0.5 * pressed[sunk]
     for own in _parts(columns, inverse):
         if len(own) <= FEW:
