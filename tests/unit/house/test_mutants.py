@@ -31,3 +31,9 @@ def test_every_file_belongs_to_a_room_or_has_no_numerics():
         path = file.relative_to(package)
         places = {p.as_posix() for p in (path, *path.parents)}
         assert file.name == "__init__.py" or len(places & without) + bool(places & rooms) == 1, path
+
+
+def test_no_two_test_files_have_one_name() -> None:
+    """Pytest imports test files by name alone: of two with one name the second is an error, in a whole run only."""
+    names = [p.name for p in (Path(__file__).parents[2]).rglob("test_*.py")]
+    assert not {name for name in names if names.count(name) > 1}
