@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import concio
@@ -104,6 +104,7 @@ def test_stones_that_reach_across_a_cut_are_cut_and_thin_ones_set_the_thickness(
 
 @settings(max_examples=sample(2, 12), deadline=None)
 @given(st.floats(0.15, 0.9), st.floats(0.0, 20.0))
+@example(0.5, 5e-255)
 def test_a_wall_overturns_at_its_thickness_over_its_height(thickness: float, roof: float) -> None:
     """Free at its top: alpha_0 = (W + N) t/2 / (W h/2 + N h), of the whole as of each strip of the full height."""
     found = assessed(facade(thickness, window=False, roof=roof))

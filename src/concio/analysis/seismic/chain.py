@@ -13,6 +13,7 @@ times alpha. With delta the displacement of its point of application along the p
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -53,7 +54,7 @@ class Participant:
     @property
     def size(self) -> float:
         """Size of the force [kN]."""
-        return float(np.linalg.norm(self.force))
+        return math.hypot(*self.force)
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,12 +109,13 @@ def gathered(
         if block is not None and found.force.any():
             kind = model.loads[found.load].kind
             name = "weight" if kind == "weight" else f"{kind} {origin.get(found.load, found.load) + 1}"
-            sideways = float(np.linalg.norm(found.force[:-1])) > abs(float(found.force[-1]))
+            sideways = math.hypot(*found.force[:-1]) > abs(float(found.force[-1]))
             key = (block, name, sideways)
             sums.setdefault(key, []).append((found.force, found.point))
     result = []
     for (block, name, _), parts in sorted(sums.items(), key=lambda item: item[0][:2]):
-        size = np.array([np.linalg.norm(force) for force, _ in parts])
+        forces = np.array([force for force, _ in parts])
+        size = np.array([math.hypot(*force) for force in forces])  # no square of a small force vanishes
         point = size @ np.array([point for _, point in parts]) / size.sum()
-        result.append((name, Force(block, np.sum([force for force, _ in parts], axis=0), point)))
+        result.append((name, Force(block, forces.sum(axis=0), point)))
     return result

@@ -159,7 +159,7 @@ def prepared(assembly: Assembly, found: Found, push: Push, name: str, control: C
         tuple(
             Participant(f.block, kind, f.force, f.point,
                         float(carried(motion[f.block], f.point - mechanics.blocks[f.block].centre) @ f.force)
-                        / float(np.linalg.norm(f.force)))
+                        / math.hypot(*f.force))
             for kind, f in pushing
         )
     )  # fmt: skip

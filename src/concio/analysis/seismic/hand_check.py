@@ -13,6 +13,7 @@ carries force, and the normal forces of joints that slide, without which frictio
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -221,7 +222,7 @@ class _Hand:
         work = 0.0 if pushing else float(f.force @ d)
         down = 0.0 if self.live else max(-float(f.force[-1]), 0.0)
         push = sign * float(f.force @ d) if pushing else down * float(self.way @ d)
-        size = float(np.sqrt((f.force**2).sum()))
+        size = math.hypot(*f.force)
         along = push / (size if pushing else down) if pushing or down > 0 else 0.0
         return HandRow(kind, self.model.bodies[f.body].name, g, f.load, size, tuple(f.point.tolist()), -work / size,
                        along, -work, push, f.own)  # fmt: skip

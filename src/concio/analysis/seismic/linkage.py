@@ -14,6 +14,7 @@ the friction they really have. Redundant conditions (two hinges on one line) do 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -58,12 +59,12 @@ def merged(forces: Iterable[Force]) -> tuple[Force, ...]:
     """Return forces with those of one block and direction as one, in the centre of them, which turns with the block."""
     groups: dict[tuple[int, tuple[float, ...]], list[Force]] = {}
     for f in forces:
-        size = float(np.linalg.norm(f.force))
+        size = math.hypot(*f.force)
         if size > 0:
             groups.setdefault((f.block, tuple(np.round(f.force / size, 12).tolist())), []).append(f)
     made = []
     for (block, _), own in groups.items():
-        sizes = np.array([float(np.linalg.norm(f.force)) for f in own])
+        sizes = np.array([math.hypot(*f.force) for f in own])
         total: Array = np.sum([f.force for f in own], axis=0)
         made.append(Force(block, total, sizes @ np.array([f.point for f in own]) / sizes.sum()))
     return tuple(made)
