@@ -111,14 +111,14 @@ class Browser:
         assert "exceptionDetails" not in found, f"{code}: {found['exceptionDetails'].get('exception')}"
         return found["result"].get("value")
 
-    def until(self, code: str, why: str = "") -> None:
+    def until(self, code: str, why: str = "", pause: float = 0.05) -> None:
         """Wait until an expression of the page is true."""
         end = time.monotonic() + LATE
         while time.monotonic() < end:
             value = self.js(f"(() => {{ try {{ return Boolean({code}); }} catch {{ return false; }} }})()")
             if value:
                 return
-            time.sleep(0.05)
+            time.sleep(pause)
         msg = f"{why or code} did not happen; the page says: {self.js('document.body.innerText')[:1500]}"
         raise AssertionError(msg)
 

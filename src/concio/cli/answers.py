@@ -8,13 +8,21 @@ import time
 from collections.abc import Mapping
 from contextlib import redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from concio.cli.progress import LISTENER
-from concio.window.acts import acts, in_italian
-from concio.window.worker import Tell, work
+from concio.verdict.italian import in_italian
+from concio.window.worker import Handler, Tell, later, work
+
+if TYPE_CHECKING:
+    from concio.verdict.verdict import Verdict
 
 MOST_NUMBERS = 60
+LATER = {
+    "picture": ("picture", "picture"), "drag": ("drag", "dragged"), "layers": ("drawing", "layers"),
+    "acts": ("acts", "acts"), "underlay": ("tracing", "underlay"), "trace": ("tracing", "traced"),
+}  # fmt: skip
+"""Handlers by kind of request: module of the window and function. Each is loaded when first asked: a picture first."""
 
 
 def ask(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
@@ -31,7 +39,7 @@ def ask(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     from concio.cli.main import app
 
     begun, printed, said = time.monotonic(), io.StringIO(), io.StringIO()
-    token = LISTENER.set(tell)
+    token = LISTENER.set(lambda word, what: tell(*(("early", _early(what)) if word == "verdict" else (word, what))))
     try:
         with redirect_stdout(printed), redirect_stderr(said):
             try:
@@ -56,18 +64,24 @@ def ask(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def _early(verdict: Verdict) -> dict[str, Any]:
+    """Return what an answer says before its report is written."""
+    told = verdict.as_dict()
+    return {"code": verdict.exit_code, "verdict": told, "italian": _said_in_italian(told)}
+
+
+def _said_in_italian(verdict: Mapping[str, Any]) -> dict[str, Any]:
+    said = {key: in_italian(verdict[key]) for key in ("headline", "sentence")}
+    return {**said, "attention": [in_italian(line) for line in verdict["attention"]]}
+
+
 def _italian(out: Path, verdict: Mapping[str, Any] | None) -> dict[str, Any] | None:
     """Return headline, sentence and attention in Italian, in pieces of text and language: as written, or as known."""
     with suppress(OSError, ValueError):
         written = json.loads((out / "verdict.it.json").read_text(encoding="utf-8"))
         said = {key: [[written[key], "it"]] for key in ("headline", "sentence")}
         return {**said, "attention": [in_italian(line) for line in written["attention"]]}
-    if verdict is None:
-        return None
-    return {
-        **{key: in_italian(verdict[key]) for key in ("headline", "sentence")},
-        "attention": [in_italian(line) for line in verdict["attention"]],
-    }
+    return None if verdict is None else _said_in_italian(verdict)
 
 
 def numbers(summary: Mapping[str, Any], at: str = "") -> dict[str, float]:
@@ -98,13 +112,8 @@ def warm(_: Mapping[str, Any], __: Tell) -> bool:
 
 def main() -> None:
     """Answer requests of a window until it closes."""
-    from concio.window.drag import dragged
-    from concio.window.drawing import layers
-    from concio.window.picture import picture
-    from concio.window.tracing import traced, underlay
-
-    work({"ask": ask, "warm": warm, "picture": picture, "drag": dragged, "layers": layers, "acts": acts,
-          "underlay": underlay, "trace": traced})  # fmt: skip
+    there: dict[str, Handler] = {"ask": ask, "warm": warm}
+    work(there | {kind: later(f"concio.window.{room}", name) for kind, (room, name) in LATER.items()})
 
 
 if __name__ == "__main__":

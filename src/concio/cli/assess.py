@@ -11,7 +11,7 @@ import typer
 from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, in_units
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
-from concio.cli.progress import progress_bar
+from concio.cli.progress import progress_bar, verdict_so_far
 
 if TYPE_CHECKING:
     from concio.analysis.seismic.assessment import Assessment
@@ -87,6 +87,7 @@ def assess(
                                           "above": finite_or_none(row.above)} for row in sensitivity.rows}  # fmt: skip
     written: list[str] = []
     if out is not None:
+        verdict_so_far(verdict)
         from concio.cli.assess_files import write_assessment
 
         with replaced_directory(out) as fresh:

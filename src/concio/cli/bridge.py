@@ -10,7 +10,7 @@ import typer
 from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
-from concio.cli.progress import progress_bar
+from concio.cli.progress import progress_bar, verdict_so_far
 
 
 @guarded
@@ -72,6 +72,7 @@ def bridge(
     told = {"status": found.verdict.status, **found.summary()}
     written: list[str] = []
     if out is not None:
+        verdict_so_far(found.verdict)
         from concio.cli.bridge_files import write_bridge
 
         with replaced_directory(out) as fresh:

@@ -11,7 +11,7 @@ import typer
 from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
-from concio.cli.progress import found_so_far, progress_bar
+from concio.cli.progress import found_so_far, progress_bar, verdict_so_far
 from concio.problem.limits_of_work import LARGEST_MARGIN
 
 if TYPE_CHECKING:
@@ -96,6 +96,7 @@ def limit(
         raise
     assert found is not None  # the bound comes first, or an error
     verdict = found.verdict
+    verdict_so_far(verdict)
     tell(limit_lines(found))
     told = {"status": verdict.status, "groups": groups, **found.summary()}
     if solves:

@@ -10,7 +10,7 @@ import typer
 from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, factors_of, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
-from concio.cli.progress import progress_bar
+from concio.cli.progress import progress_bar, verdict_so_far
 
 if TYPE_CHECKING:
     from concio.analysis.path import ControlPoint
@@ -85,6 +85,7 @@ def path(
     with progress_bar(shown=not json) as progress:
         found = run_path(assembly, stages, method=method, brittle=brittle, progress=progress)
     chosen = control or most_moving(found)
+    verdict_so_far(found.verdict)
     if out is not None:
         with replaced_directory(out) as fresh:
             write_path(found, chosen, fresh)

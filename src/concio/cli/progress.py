@@ -14,6 +14,7 @@ from concio.cli.outcome import QUIET
 
 if TYPE_CHECKING:
     from concio.problem.solution import Progress, ProgressCallback
+    from concio.verdict.verdict import Verdict
 
 TARGET = 1e-6
 """Residual at which the bar is full: where the exact finish begins, at the latest."""
@@ -25,7 +26,7 @@ SOON = 5.0
 
 
 LISTENER: ContextVar[Callable[[str, Any], None] | None] = ContextVar("listener", default=None)
-"""Receives what is known on the way in place of a terminal: ("progress", {...}) and ("found", lines)."""
+"""Receives what is known on the way: ("progress", {...}), ("found", lines), ("verdict", verdict)."""
 
 
 @contextmanager
@@ -71,6 +72,13 @@ def found_so_far(lines: list[str]) -> None:
     listener = LISTENER.get()
     if listener is not None:
         listener("found", lines)
+
+
+def verdict_so_far(verdict: Verdict) -> None:
+    """Send a verdict to the listener, where there is one, before the report and the tables are written."""
+    listener = LISTENER.get()
+    if listener is not None:
+        listener("verdict", verdict)
 
 
 class Share:

@@ -11,7 +11,7 @@ from concio.cli.options import EngineOf, Factors, File, Json, Quiet, UnitsOf, fa
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.path import control_of
-from concio.cli.progress import progress_bar
+from concio.cli.progress import progress_bar, verdict_so_far
 
 Film = Annotated[
     list[str] | None,
@@ -103,6 +103,7 @@ def push(
         )  # fmt: skip
     written: list[str] = []
     if out is not None:
+        verdict_so_far(found.verdict)
         with replaced_directory(out) as fresh:
             written = write_motion(found, fresh, tuple(film or ()), series)
     if json:

@@ -10,7 +10,7 @@ import typer
 from concio.cli.options import EngineOf, Factors, File, Json, Out, Quiet, UnitsOf, factors_of, in_units
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory
-from concio.cli.progress import progress_bar
+from concio.cli.progress import progress_bar, verdict_so_far
 
 
 @guarded
@@ -40,6 +40,7 @@ def run(
         result = concio.solve(
             model, method=method, factors=factors_of(factor), on_failure="return", progress=progress, **chosen
         )
+    verdict_so_far(result.verdict)
     written: list[Path] = []
     if out is not None:
         from concio.io.result_dir import write_result

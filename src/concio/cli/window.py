@@ -33,11 +33,7 @@ def window(
 
     Example: concio window wall.toml
     """
-    import webbrowser
-
     from concio.errors import InputError
-    from concio.window.server import Server
-    from concio.window.session import Session
 
     if file is not None and file.is_dir():
         file, folder = None, folder or file
@@ -46,7 +42,19 @@ def window(
         msg = "there is no such folder"
         raise InputError(msg, where=str(place), hint="give the name of a folder that exists")
     model = None if file is None else model_file(file, place)
-    session = Session(place, [sys.executable, "-m", "concio.cli.answers"], model)
+    from concio.window.lane import PATIENCE, Lane
+
+    worker = [sys.executable, "-m", "concio.cli.answers"]
+    look = Lane(worker, PATIENCE)
+    look.start()  # it loads what pictures need while this process loads the server
+    from concio.window.server import Server
+    from concio.window.session import Session
+
+    try:
+        session = Session(place, worker, model, look)
+    except InputError:
+        look.close()
+        raise
     try:
         server = _server(Server, session, port)
         if session.document is not None and session.document.read_only:
@@ -54,8 +62,11 @@ def window(
         say(f"The window is at {server.address}")
         say("Ctrl-C ends it. Changes that are not saved are kept in a journal beside the file.")
         sys.stdout.flush()
-        if show and not webbrowser.open(server.address):
-            say("No browser could be started; open this address in a browser.")
+        if show:
+            import webbrowser
+
+            if not webbrowser.open(server.address):
+                say("No browser could be started; open this address in a browser.")
         try:
             server.serve_forever(poll_interval=0.2)
         except KeyboardInterrupt:

@@ -74,13 +74,15 @@ def _write_all(result: Result, place: Path, figures: bool, report: bool) -> list
     drawn: list[str] = []
     if figures:
         from concio.plot.figures import write_figures
+        from concio.report.html_parts import LARGEST_SVG
         from concio.report.page import captioned
 
         folder = place / "figures"
         folder.mkdir()
 
         def into_the_report(name: str, axes: Axes) -> None:
-            drawn.append(captioned(name, axes))
+            drawing = folder / f"{name}.svg"
+            drawn.append(captioned(name, axes, dots=drawing.stat().st_size > LARGEST_SVG))
 
         written += write_figures(result, folder, then=into_the_report if report else None)
     if report:

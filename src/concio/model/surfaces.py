@@ -7,14 +7,12 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import scipy.sparse as sp
 import shapely
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from concio.errors import GeometryError
 from concio.kinematics.frames import cross, tangents
 from concio.kinematics.mass import signed_area
+from concio.model.linked import linked, pairs_within
 from concio.model.polyhedron import Polyhedron
 from concio.model.topology import Loop, topology
 
@@ -56,8 +54,8 @@ def merged_faces(
         off = np.abs(((points[top.start[side]] - middle[first][edge]) * normal[first][edge]).sum(1))
         np.maximum.at(worst, edge, off)
     same = (worst <= max(COPLANAR * size, within)) & ((normal[a] * normal[b]).sum(1) > 0.5)
-    graph = sp.coo_array((np.ones(same.sum()), (a[same], b[same])), shape=(len(faces), len(faces)))
-    number, group = connected_components(graph, directed=False)
+    group = linked(np.stack([a[same], b[same]], 1), len(faces))
+    number = int(group.max(initial=-1)) + 1
     if number == len(faces):
         return straightened(points, tuple(faces), tuple(holes))
     inner = same[_edge_of_side(top)]
@@ -141,10 +139,8 @@ def straightened(points: Array, faces: tuple[Loop, ...], holes: tuple[tuple[int,
 
 def welded(points: Array, faces: Iterable[Sequence[int]], tolerance: float) -> tuple[Array, tuple[Loop, ...]]:
     """Return vertices put together within a tolerance [m], and the faces without repeated or lost vertices."""
-    pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
-    n = len(points)
-    graph = sp.coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    number, group = connected_components(graph, directed=False)
+    group = linked(pairs_within(points, tolerance), len(points))
+    number = int(group.max(initial=-1)) + 1
     count = np.bincount(group, minlength=number)
     mean = np.stack([np.bincount(group, points[:, k], number) / count for k in range(3)], 1)
     kept = []

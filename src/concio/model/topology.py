@@ -8,9 +8,9 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 import shapely
-from scipy.spatial import cKDTree
 
 from concio.kinematics.frames import cross, tangents
+from concio.model.linked import nearest
 from concio.representation import short_repr
 
 Array = np.ndarray
@@ -134,8 +134,7 @@ def face_triangles(points: Array, loops: Sequence[Loop], normal: Array) -> Array
     rings = [points[list(loop)] @ frame.T for loop in loops]
     parts = shapely.get_parts(shapely.constrained_delaunay_triangles(shapely.Polygon(rings[0], rings[1:])))
     corners = shapely.get_coordinates(parts).reshape(-1, 4, 2)[:, :3]
-    _, at = cKDTree(points[every] @ frame.T).query(corners.reshape(-1, 2))
-    cells = every[at].reshape(-1, 3)
+    cells: Array = every[nearest(points[every] @ frame.T, corners.reshape(-1, 2))].reshape(-1, 3)
     p, q, r = (np.moveaxis(corners, 1, 0)[k] for k in range(3))
     left = (q[:, 0] - p[:, 0]) * (r[:, 1] - p[:, 1]) - (q[:, 1] - p[:, 1]) * (r[:, 0] - p[:, 0]) > 0
     cells[~left] = cells[~left][:, ::-1]

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from concio.display import DEFAULT, Units, number
-from concio.post.outlines import Outlines, outlines
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from concio.analysis.result import Result
     from concio.model.model import Model
+    from concio.post.outlines import Outlines
 
 Array = np.ndarray
 
@@ -86,6 +86,8 @@ def draw_at_rest(result: Result, ax: Axes | None, *, face: Sequence[Any] | None 
     box : (2, 2) array
         Corners of the drawing [m].
     """
+    from concio.post.outlines import outlines
+
     shown = outlines(result)
     box = box_of(shown.points)
     ax = axes_for(box, ax)

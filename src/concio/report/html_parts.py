@@ -120,10 +120,10 @@ def figure_html(axes: Axes, name: str, caption: str, *, dots: bool = False) -> s
 
     figure = axes.get_figure(root=True)
     assert figure is not None
-    with mpl.rc_context({"svg.hashsalt": "concio", "svg.fonttype": "path"}):
-        drawing = io.BytesIO()
-        figure.savefig(drawing, format="svg", metadata={"Date": None})
-    kind = "svg+xml"
+    drawing, kind = io.BytesIO(), "svg+xml"
+    if not dots:
+        with mpl.rc_context({"svg.hashsalt": "concio", "svg.fonttype": "path"}):
+            figure.savefig(drawing, format="svg", metadata={"Date": None})
     if dots or drawing.tell() > LARGEST_SVG:
         drawing, kind = io.BytesIO(), "png"
         figure.savefig(drawing, format="png", dpi=140)

@@ -87,9 +87,9 @@ def report_of(result: Result, drawn: Sequence[str] | None = None) -> str:
     return page([result], [_label(result, 0)], verdict=_verdict(result), figures=figures)
 
 
-def captioned(name: str, axes: Axes) -> str:
-    """Return a figure of a result for its report, under its title."""
-    return figure_html(axes, name, TITLES[name])
+def captioned(name: str, axes: Axes, *, dots: bool = False) -> str:
+    """Return a figure of a result for its report, under its title; with ``dots`` as PNG without trying SVG."""
+    return figure_html(axes, name, TITLES[name], dots=dots)
 
 
 def page(steps: Sequence[Result], labels: Sequence[str], *, verdict: str, figures: str, more: str = "") -> str:

@@ -61,6 +61,11 @@ def italian(text: str) -> tuple[Piece, ...]:
     return tuple(found)
 
 
+def in_italian(text: str) -> list[list[str]]:
+    """Return a text of a verdict in Italian as pairs of text and language, as :func:`italian` gives them."""
+    return [[piece.text, piece.language] for piece in italian(text)]
+
+
 def _first(text: str) -> tuple[Piece, str]:
     """Return the first sentence, in Italian where it is known, and what follows it."""
     for entry in _entries():

@@ -13,7 +13,7 @@ from concio.contact.assembly import assemble
 from concio.contact.factors import load_factor
 from concio.errors import ConcioError
 from concio.model.model import Model
-from concio.verdict.italian import italian
+from concio.verdict.italian import in_italian
 from concio.verdict.path_verdict import stage_words
 from concio.verdict.question import Acting, acting_groups, thickness_words
 from concio.window.reading import read
@@ -40,11 +40,6 @@ def acts(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     data, model = read(request)
     lines = list(_lines(str(request["question"]), dict(request["options"]), data, model))
     return {"lines": lines, "italian": [in_italian(line) for line in lines]}
-
-
-def in_italian(text: str) -> list[list[str]]:
-    """Return a text of a verdict as pairs of text and language."""
-    return [[piece.text, piece.language] for piece in italian(text)]
 
 
 def _lines(question: str, options: Mapping[str, Any], data: Mapping[str, Any], model: Model) -> Iterator[str]:

@@ -158,7 +158,7 @@ class Asked:
             if job is None:
                 return {**now, "state": "waiting"}
             state = "working" if job.state in ("done", "error") else job.state  # its files are being put down
-            return {**now, "state": state, "progress": job.progress, "found": job.found,
+            return {**now, "state": state, "progress": job.progress, "found": job.found, "early": job.early,
                     "seconds": (job.ended or time.monotonic()) - job.begun}  # fmt: skip
 
     def result(self, key: str) -> Answer:

@@ -15,7 +15,6 @@ from concio.errors import InputError
 from concio.model.drawing.dxf_entities import Entity, read_sheet
 from concio.model.drawing.layers import LayerUse, named_use
 from concio.window.folder import check_files
-from concio.window.toml_edits import literal
 from concio.window.worker import Tell
 
 COARSE = 0.01
@@ -25,27 +24,6 @@ FIXED = ("ground", "terren", "fondaz", "found", "suolo", "soil", "fixed", "base"
 IGNORED = ("quot", "dim", "text", "test", "ass", "axis", "axes", "grid", "retin", "hatch", "annot", "cartigl", "frame")
 NAMED = ("nomi", "name", "numer", "label")
 LOADED = ("solai", "copert", "floor", "roof", "caric", "load", "tett")
-
-
-def starting_text(drawing: Path) -> str:
-    """Return the text of a model file that names a drawing."""
-    return f"""# Blocks of the drawing {drawing.name}.
-# State what its layers mean, the thickness, the material and the joints.
-title = {literal(drawing.stem)}
-blocks_file = {literal(drawing.name)}
-
-[analysis]
-thickness = 1.0                   # out of plane
-
-[materials.block]
-kind = "rigid"
-unit_weight = "20 kN/m3"
-
-[joints.joint]
-friction = 0.6
-
-[drawing.layers]
-"""
 
 
 def layers(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:

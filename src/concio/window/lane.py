@@ -13,6 +13,8 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+PATIENCE = 1.5
+"""A picture that takes longer is given up when the text has changed again [s]."""
 CRASHED = "the process that computes was ended from outside"
 State = Literal["waiting", "working", "done", "error", "cancelled"]
 
@@ -30,6 +32,8 @@ class Job:
         What was reported last.
     found : list of str
         Lines that are known so far.
+    early : Any
+        What can be shown before the answer is there, or None.
     answer : Any
         What was found, or what went wrong.
     begun, ended : float
@@ -41,16 +45,25 @@ class Job:
     state: State = "waiting"
     progress: dict[str, Any] = field(default_factory=dict)
     found: list[str] = field(default_factory=list)
+    early: Any = None
     answer: Any = None
     begun: float = field(default_factory=time.monotonic)
     ended: float = 0.0
     over: threading.Event = field(default_factory=threading.Event)
+    shown: threading.Event = field(default_factory=threading.Event)
+    """Set as soon as there is anything to show: an early answer, or the end."""
 
     def end(self, state: State, answer: Any = None) -> None:
         """Put down how the request ended, once."""
         if not self.over.is_set():
             self.state, self.answer, self.ended = state, answer, time.monotonic()
             self.over.set()
+            self.shown.set()
+
+    def show(self, early: Any) -> None:
+        """Put down what can be shown before the answer is there."""
+        self.early = early
+        self.shown.set()
 
 
 class Lane:
@@ -74,8 +87,14 @@ class Lane:
         self._open = True
         threading.Thread(target=self._run, name="lane", daemon=True).start()
 
+    def start(self) -> None:
+        """Start the process before anything is asked: it loads what it needs meanwhile."""
+        with self._guard:
+            if self._open:
+                self._started()
+
     def warm(self) -> None:
-        """Start the process before anything is asked."""
+        """Load what questions need before one is asked."""
         self.ask({"kind": "warm"})
 
     def ask(self, request: dict[str, Any]) -> Job:
@@ -178,6 +197,8 @@ def _exchange(process: subprocess.Popen[bytes], job: Job) -> bool:
                 job.progress = answer["progress"]
             elif "found" in answer:
                 job.found = answer["found"]
+            elif "early" in answer:
+                job.show(answer["early"])
             else:
                 word: State = "done" if "done" in answer else "error"
                 job.end(word, answer[word])

@@ -11,29 +11,23 @@ from typing import Any
 
 import numpy as np
 
-from concio.contact.assembly import assemble
-from concio.contact.detection import detect
-from concio.errors import ConcioError
 from concio.model.body import Body
 from concio.model.described import law_words, material_words, tie_words
-from concio.model.interfaces.detect import Detection, Interface
-from concio.model.interfaces.patch import Patch
-from concio.model.interfaces.point_contact import PointContact
 from concio.model.model import Load, Model
 from concio.model.polyhedron import Polyhedron
 from concio.plot.model_figure import load_arrows
 from concio.plot.space_loads import load_direction
-from concio.verdict.attention import attention_of
-from concio.window.acts import in_italian
-from concio.window.reading import own_loads, read
+from concio.window.reading import DIGITS, own_loads, read
 from concio.window.worker import Tell
 
-DIGITS = 9
-MOST_FINDINGS = 200
+UNKNOWN: dict[str, Any] = {
+    "early": True, "joints": [], "attention": [], "attention_italian": [], "findings": [], "notes": [], "fault": None,
+}  # fmt: skip
+"""What a picture of the geometry alone does not know."""
 
 
 def picture(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
-    """Return the picture of a model; ``tell`` gets the bodies before the joints and the forces are known.
+    """Return the picture of a model; ``tell`` gets its geometry before joints are sought and the model is assembled.
 
     Raises
     ------
@@ -49,22 +43,10 @@ def picture(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
         "groups": sorted({load.group for load in model.loads} | {s.group for s in model.supports if s.moves}),
         "fixed": sum(b.kind == "fixed" for b in model.bodies),
     }  # fmt: skip
-    detection = detect(model)
-    shown["joints"] = _joints(model, detection)
-    shown["attention"] = list(attention_of(model, detection))
-    shown["attention_italian"] = [in_italian(line) for line in shown["attention"]]
-    places = [(o.at, o.sentence) for o in detection.overlaps] + [(m.at, m.sentence) for m in detection.near_misses]
-    shown["findings"] = [
-        {"at": np.round(at, DIGITS).tolist(), "sentence": sentence} for at, sentence in places[:MOST_FINDINGS]
-    ]
-    shown["notes"] = [str(s) for key in ("faults", "left_out") for s in _noted(model, key)]
-    shown["fault"] = _fault(model)
-    return shown
+    tell("early", {**shown, **UNKNOWN})
+    from concio.window.joints import contacts
 
-
-def _noted(model: Model, key: str) -> list[str]:
-    found = model.generator.get(key, ())
-    return [str(s) for s in found[:MOST_FINDINGS]] if isinstance(found, list | tuple) else []
+    return {**shown, "early": False, **contacts(model)}
 
 
 def _bodies(model: Model) -> list[dict[str, Any]]:
@@ -88,27 +70,6 @@ def _shape(body: Body | Polyhedron) -> dict[str, Any]:
         "rings": [], "vertices": np.round(body.vertices, DIGITS).tolist(), "faces": [list(f) for f in body.faces],
         "edges": body.topology.edges.tolist(), "triangles": np.column_stack([triangles, face]).tolist(),
     }  # fmt: skip
-
-
-def _joints(model: Model, detection: Detection) -> list[dict[str, Any]]:
-    found = []
-    for joint in detection.interfaces:
-        a, b = model.bodies[joint.a], model.bodies[joint.b]
-        ends: list[list[float]] = []
-        if isinstance(joint, Interface):
-            ends = np.round([joint.start, joint.end], DIGITS).tolist()
-        elif isinstance(joint, PointContact) and model.dim == 2:
-            ends = np.round(joint.points[[0, -1]], DIGITS).tolist()
-        else:
-            ends = np.round(joint.polygon if isinstance(joint, Patch) else joint.points, DIGITS).tolist()
-        try:
-            law = model.rule_between(a, b).law
-        except ConcioError:
-            law = ""
-        found.append(
-            {"a": joint.a, "b": joint.b, "ends": ends, "law": law, "size": joint.size, "gap": float(np.max(joint.gap))}
-        )
-    return found
 
 
 def _loads(model: Model, data: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -159,12 +120,3 @@ def _ties(model: Model, data: Mapping[str, Any]) -> list[dict[str, Any]]:
          "body_b": t.body_b, "at_a": t.at_a, "at_b": t.at_b, "words": tie_words(t, model.report)}
         for t in model.ties if t.kind == "bar"
     ]  # fmt: skip
-
-
-def _fault(model: Model) -> dict[str, str] | None:
-    """Return why no question can be asked of a model, or None."""
-    try:
-        assemble(model)
-    except ConcioError as error:
-        return {"what": error.what, "where": error.where or "", "hint": error.hint or ""}
-    return None

@@ -13,6 +13,8 @@ from concio.window.folder import check_files
 from concio.window.journal import hash_of
 
 KEPT = 4
+DIGITS = 9
+"""Coordinates are sent with so many decimals [m]."""
 _MODELS: OrderedDict[str, tuple[dict[str, Any], Model]] = OrderedDict()
 
 

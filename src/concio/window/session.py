@@ -18,7 +18,7 @@ from concio.window.asking import Asked
 from concio.window.commands import patch_of
 from concio.window.document import Document
 from concio.window.folder import SUFFIXES, named
-from concio.window.lane import Job, Lane
+from concio.window.lane import PATIENCE, Job, Lane
 from concio.window.questions import QUESTIONS
 from concio.window.starting import model_text
 from concio.window.toml_places import places
@@ -28,8 +28,6 @@ HOLDS = 12.0
 LOOK_EVERY = 1.0
 """The file on the disk is looked at as often as this [s]."""
 MOST_NAMES = 300
-PATIENCE = 1.5
-"""A picture that takes longer is given up when the text has changed again [s]."""
 Answer = dict[str, Any]
 
 
@@ -44,12 +42,16 @@ class Session:
         Starts a process that computes.
     file : Path, optional
         The file to open at the beginning.
+    look : Lane, optional
+        Draws pictures, where its process has been started before; by default one is made here.
     """
 
-    def __init__(self, folder: Path, worker: Sequence[str], file: Path | None = None) -> None:
+    def __init__(
+        self, folder: Path, worker: Sequence[str], file: Path | None = None, look: Lane | None = None
+    ) -> None:
         self.folder = folder.resolve()
         self.document: Document | None = None
-        self.look = Lane(worker, PATIENCE)
+        self.look = look or Lane(worker, PATIENCE)
         self.asked = Asked(self.folder, worker)
         self._guard = threading.RLock()
         self._pen, self._heard = "", 0.0
@@ -66,6 +68,7 @@ class Session:
         }  # fmt: skip
         if file is not None:
             self.document = Document(file)
+            self._picture_of(self.document)
             self.asked.tidy(self.document)
 
     def close(self) -> None:
@@ -256,17 +259,23 @@ class Session:
                 "name": doc.file.name, **more}  # fmt: skip
 
     def picture(self, told: Mapping[str, Any]) -> Answer:
-        """Return the picture of the text as it is; wait for it a while."""
+        """Return the picture of the text as it is; wait for it a while. With ``early`` the geometry alone will do."""
         doc = self._there()
-        with self._guard:
-            key = f"{doc.file}:{doc.hash}:{told.get('again', '')}"
-            if self._picture is None or self._picture[0] != key or self._picture[1].state == "cancelled":
-                self._picture = key, self.look.ask(self._request("picture", doc))
-            job = self._picture[1]
-        job.over.wait(min(float(told.get("wait", 5.0)), 20.0))
+        job = self._picture_of(doc, told.get("again", ""))
+        (job.shown if told.get("early") else job.over).wait(min(float(told.get("wait", 5.0)), 20.0))
         if job.over.is_set():
             self.asked.warm()
+        elif told.get("early") and job.early is not None:
+            return {"hash": doc.hash, "state": "early", "early": job.early}
         return {"hash": doc.hash, "state": job.state, job.state: _without_folder(job, doc)}
+
+    def _picture_of(self, doc: Document, again: Any = "") -> Job:
+        """Return the job that draws the text as it is, begun where it is not."""
+        with self._guard:
+            key = f"{doc.file}:{doc.hash}:{again}"
+            if self._picture is None or self._picture[0] != key or self._picture[1].state == "cancelled":
+                self._picture = key, self.look.ask(self._request("picture", doc))
+            return self._picture[1]
 
     def drag(self, told: Mapping[str, Any]) -> Answer:
         """Return a bound while a load is dragged; newer requests win."""

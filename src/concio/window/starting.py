@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from concio.window.drawing import starting_text
 from concio.window.folder import PICTURES, SOLIDS
 from concio.window.toml_edits import literal
 
@@ -13,10 +12,30 @@ def model_text(file: Path) -> str | None:
     """Return the text of a model that names a file; None for a model file itself."""
     suffix = file.suffix.lower()
     if suffix == ".dxf":
-        return starting_text(file)
+        return _drawing(file)
     if suffix in SOLIDS:
         return _solids(file)
     return _picture(file) if suffix in PICTURES else None
+
+
+def _drawing(drawing: Path) -> str:
+    return f"""# Blocks of the drawing {drawing.name}.
+# State what its layers mean, the thickness, the material and the joints.
+title = {literal(drawing.stem)}
+blocks_file = {literal(drawing.name)}
+
+[analysis]
+thickness = 1.0                   # out of plane
+
+[materials.block]
+kind = "rigid"
+unit_weight = "20 kN/m3"
+
+[joints.joint]
+friction = 0.6
+
+[drawing.layers]
+"""
 
 
 def _solids(file: Path) -> str:

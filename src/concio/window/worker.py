@@ -12,6 +12,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Mapping
+from importlib import import_module
 from typing import Any
 
 from concio.errors import ConcioError
@@ -20,7 +21,7 @@ OFTEN = 1.0
 """Time between two looks whether the window lives [s]."""
 Tell = Callable[[str, Any], None]
 Handler = Callable[[Mapping[str, Any], Tell], Any]
-"""Answers a request; ``tell("progress", ...)`` sends what is known on the way."""
+"""Answers a request; ``tell`` sends what is known on the way: "progress", "found" (lines), "early" (a first answer)."""
 
 
 def work(handlers: Mapping[str, Handler]) -> None:
@@ -54,6 +55,15 @@ def work(handlers: Mapping[str, Handler]) -> None:
         except Exception as error:
             what = f"this is a bug in concio: {type(error).__name__}: {error}"
             tell("error", {"what": what, "where": "", "hint": "send the model file with a report of the bug"})
+
+
+def later(module: str, name: str) -> Handler:
+    """Return a handler whose module is loaded at the first request."""
+
+    def handler(request: Mapping[str, Any], tell: Tell) -> Any:
+        return getattr(import_module(module), name)(request, tell)
+
+    return handler
 
 
 def _end_with_parent(parent: int) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -55,3 +57,23 @@ def test_joints_in_space_are_the_faces_that_touch(in_space: tuple[dict[str, Any]
     lower = found["left pier", "lintel"]
     assert np.ptp(lower, axis=0) == pytest.approx([0.4, 0.4, 0.0])
     assert set(lower[:, 2]) == {1.2}
+
+
+def test_the_geometry_is_shown_before_joints_are_sought(tmp_path: Path) -> None:
+    text = (TEMPLATES / "arch.toml").read_text(encoding="utf-8")
+    told: list[tuple[str, dict[str, Any]]] = []
+    request = {"text": text, "base": str(tmp_path), "folder": str(tmp_path), "name": "arch.toml"}
+    found = picture(request, lambda word, what: told.append((word, what)))
+    [(word, early)] = told
+    assert (word, early["early"], found["early"]) == ("early", True, False)
+    assert early.keys() == found.keys()
+    assert early["joints"] == []
+    assert found["joints"] != []
+    unknown = {"early", "joints", "attention", "attention_italian", "findings", "notes", "fault"}
+    assert {k for k in found if found[k] != early[k]} <= unknown
+
+
+def test_what_draws_the_geometry_loads_no_solver_and_no_scipy() -> None:
+    code = "import sys, concio.window.picture; print([m for m in sys.modules if m.split('.')[0] in ('scipy', 'skfem')])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

@@ -13,10 +13,12 @@ import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import concio
+from concio.cli.answers import ask
 from concio.cli.main import COMMANDS
 from concio.window.document import Document
 from concio.window.lane import Lane
@@ -354,3 +356,32 @@ def test_the_worker_answers_in_lines_of_its_own() -> None:
     asked = '{"id": 1, "kind": "nothing"}\n'
     done = subprocess.run(WORKER, input=asked, capture_output=True, text=True, timeout=LATE, check=True)
     assert json.loads(done.stdout)["error"]["what"].startswith("this is a bug")
+
+
+def test_a_verdict_is_told_before_its_report_is_written(file: Path, tmp_path: Path) -> None:
+    out, told = tmp_path / "out", []
+
+    def tell(word: str, what: Any) -> None:
+        if word == "early":
+            told.append((what, out.exists()))
+
+    argv = ["run", str(file), "--out", str(out), "--no-figures"]
+    answer = ask({"argv": argv, "out": str(out), "file": str(file), "name": file.name}, tell)
+    [(early, written)] = told
+    assert not written
+    assert json.loads(json.dumps(early)) == {key: answer[key] for key in ("code", "verdict", "italian")}
+
+
+def test_a_lane_shows_what_is_early_before_the_end() -> None:
+    code = ("import sys, json\nfor line in sys.stdin:\n r = json.loads(line)\n"
+            " print(json.dumps({'id': r['id'], 'early': 'soon'}), flush=True)\n"
+            " sys.stdin.readline()\n print(json.dumps({'id': r['id'], 'done': 1}), flush=True)\n")  # fmt: skip
+    lane = Lane([sys.executable, "-c", code])
+    try:
+        lane.start()
+        job = lane.ask({"kind": "x"})
+        assert job.shown.wait(LATE)
+        assert (job.early, job.answer, job.over.is_set()) == ("soon", None, False)
+    finally:
+        lane.close()
+    assert job.state == "cancelled"

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from scipy.spatial import cKDTree
 
+from concio.model.linked import pairs_within
 from concio.model.model import Array
 
 SWEEPS = 6
@@ -109,7 +109,7 @@ class _Groups:
 
     def join(self) -> None:
         """Put together corners within the diagonal of the tolerance, nearest first, while none moves too far."""
-        near = cKDTree(self.points).query_pairs(np.sqrt(2.0) * self.tolerance, output_type="ndarray")
+        near = pairs_within(self.points, np.sqrt(2.0) * self.tolerance)
         apart = np.hypot(*(self.points[near[:, 0]] - self.points[near[:, 1]]).T)
         order = np.lexsort([near[:, 1], near[:, 0], apart])
         for i, j in near[order].tolist():

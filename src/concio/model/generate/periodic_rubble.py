@@ -9,14 +9,12 @@ outlines that hold it, on whichever side of the cell they are.
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sp
 import shapely
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import Voronoi, cKDTree
 
 from concio.errors import InputError
 from concio.model.generate.arguments import count, positive
 from concio.model.limits import LARGEST_SEED, LARGEST_SWEEPS
+from concio.model.linked import linked, pairs_within
 from concio.model.model import Array, Periods
 
 LARGEST_STONES = 20_000
@@ -80,6 +78,8 @@ def _diagram(points: Array, box: Array) -> tuple[Array, list[Ring]]:
     """Return vertices (v, 2) within one period and the rings, counter-clockwise, of a periodic Voronoi diagram."""
     shifts = np.array([(i, j) for j in range(-2, 3) for i in range(-2, 3)])
     shifts = shifts[np.argsort(np.abs(shifts).sum(1), kind="stable")]  # the cell itself comes first
+    from scipy.spatial import Voronoi  # loaded where it is needed: it takes long
+
     diagram = Voronoi((points[None] + shifts[:, None] * box).reshape(-1, 2))
     number = len(points)
     regions = [diagram.regions[diagram.point_region[k]] for k in range(number)]
@@ -89,9 +89,7 @@ def _diagram(points: Array, box: Array) -> tuple[Array, list[Ring]]:
     home = places - away * box
     # the same vertex, seen from several cells, differs by rounding
     inside = np.where(home % box >= box, 0.0, home % box)
-    same = cKDTree(inside, boxsize=box).query_pairs(1e-7 * float(box.max()), output_type="ndarray")
-    graph = sp.coo_array((np.ones(len(same)), same.T), shape=(len(home), len(home)))
-    _, group = connected_components(graph, directed=False)
+    group = linked(pairs_within(inside, 1e-7 * float(box.max()), box), len(home))
     alias = np.unique(group, return_index=True)[1][group]
     offset = np.round((home - home[alias]) / box).astype(int)
     rings = []

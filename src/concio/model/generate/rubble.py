@@ -12,7 +12,6 @@ from typing import Unpack
 
 import numpy as np
 import shapely
-from scipy.spatial import Voronoi
 
 from concio.arguments import strict_with
 from concio.errors import InputError
@@ -121,6 +120,8 @@ def _diagram(points: Array, box: Array) -> tuple[Array, list[list[int]]]:
             image = points.copy()
             image[:, axis] = 2 * side - image[:, axis]
             mirrored.append(image)
+    from scipy.spatial import Voronoi  # loaded where it is needed: it takes long
+
     diagram = Voronoi(np.concatenate(mirrored))
     cells = [list(diagram.regions[diagram.point_region[k]]) for k in range(len(points))]
     used = np.unique(np.concatenate(cells))

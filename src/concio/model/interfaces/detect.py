@@ -28,9 +28,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from concio.errors import InputError
 from concio.model.interfaces.corners import find_corner_touches
@@ -38,6 +35,7 @@ from concio.model.interfaces.facing import Edges, FacingPairs, facing_pairs
 from concio.model.interfaces.near import MissKind, NearMiss, Overlap, find_overlaps, size_of_bodies
 from concio.model.interfaces.point_contact import PointContact
 from concio.model.interfaces.sight import visible_parts
+from concio.model.linked import linked, pairs_within
 from concio.model.model import Array, Body
 from concio.representation import short_repr
 
@@ -247,10 +245,9 @@ def _continues(pairs: FacingPairs, long: Array, short: Array, tolerance: float, 
     members = np.flatnonzero((long | short) & np.isin(key, np.unique(key[short])))
     count = len(members)
     ends = np.concatenate([pairs.a_lo[members], pairs.a_hi[members]])
-    near = cKDTree(ends).query_pairs(2 * tolerance, output_type="ndarray") % count
+    near = pairs_within(ends, 2 * tolerance) % count
     near = near[key[members[near[:, 0]]] == key[members[near[:, 1]]]]
-    graph = sp.coo_array((np.ones(len(near)), (near[:, 0], near[:, 1])), shape=(count, count))
-    _, chain = connected_components(graph, directed=False)
+    chain = linked(near, count)
     total = np.bincount(chain, (pairs.hi - pairs.lo)[members])
     result[members] = short[members] & (total[chain] >= thin[members])
     return result

@@ -8,8 +8,8 @@ of joints at the place connects the two bodies.
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components
+
+from concio.model.linked import linked
 
 Array = np.ndarray
 
@@ -33,8 +33,6 @@ def connected_at(bodies: Array, place: Array, joined: Array, count: int) -> Arra
     ends = place[:, None] * np.int64(count) + joined
     asked = np.arange(len(bodies))[:, None] * np.int64(count) + bodies
     names, number = np.unique(np.concatenate([ends.ravel(), asked.ravel()]), return_inverse=True)
-    p, q = number.ravel()[: ends.size].reshape(-1, 2).T
-    graph = sp.coo_array((np.ones(len(p)), (p, q)), shape=(len(names), len(names)))
-    _, part = connected_components(graph, directed=False)
+    part = linked(number.ravel()[: ends.size], len(names))
     own = part[number.ravel()[ends.size :]].reshape(-1, 2)
     return np.asarray(own[:, 0] == own[:, 1])

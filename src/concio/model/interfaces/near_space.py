@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
 from concio.kinematics.frames import cross
 from concio.model.convex_pieces import ConvexPiece
@@ -201,6 +200,7 @@ def _overlap_along(a: ConvexPiece, b: ConvexPiece, axes: Array) -> float:
 def _common_volume(a: ConvexPiece, b: ConvexPiece) -> tuple[float, Array]:
     """Return the volume of what two convex pieces share, and the middle of the largest ball in it."""
     from scipy.optimize import linprog  # loaded where it is needed: it takes long
+    from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
     planes = np.vstack([np.column_stack([piece.normals, -piece.offsets]) for piece in (a, b)])
     system = np.column_stack([planes[:, :3], np.ones(len(planes))])

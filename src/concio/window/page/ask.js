@@ -80,7 +80,7 @@ export async function run() {
 }
 
 /* the state of the question in the verdict's place */
-let shownKey = "";
+let shownKey = "", early = "";
 export async function follow(state, after) {
   const running = document.getElementById("running"), now = state.asked;
   const busy = Boolean(now) && (now.state === "working" || now.state === "waiting");
@@ -91,6 +91,7 @@ export async function follow(state, after) {
     document.getElementById("progress-text").textContent = `${t("working")}: ${t(`q_${now.question}`)}, ${Math.round(now.seconds || 0)} ${t("seconds")}. ${now.progress?.text || ""}`;
     document.getElementById("found").textContent = (now.found || []).join("\n");
     shownKey = "";
+    if (now.early && early !== now.key + language) { early = now.key + language; answerSoon(now); }
     return;
   }
   if (!now) { if (answer) { answer = null; shownKey = ""; } return verdict(after); }
@@ -119,8 +120,15 @@ export function answerBox(found, old) {
   }
   if (found.message) box.append(el("pre", { lang: "en" }, found.message));
   if (!v && found.lines.length) box.append(el("pre", { lang: "en" }, found.lines.slice(0, 3).join("\n")));
-  box.append(el("details", {}, el("summary", {}, t("all_lines") + (found.kept ? ` (${t("kept")})` : "")), el("pre", { lang: "en" }, found.lines.join("\n"))));
+  if (found.lines.length || found.kept) box.append(el("details", {}, el("summary", {}, t("all_lines") + (found.kept ? ` (${t("kept")})` : "")), el("pre", { lang: "en" }, found.lines.join("\n"))));
   return box;
+}
+
+/* the verdict is known, its report is still being written */
+function answerSoon(now) {
+  const place = document.getElementById("verdict-text");
+  place.dataset.note = "early";
+  place.replaceChildren(answerBox({ lines: [], ...now.early }, now.hash !== doc()?.hash), el("p", { class: "quiet" }, t("report_follows")));
 }
 
 function verdict(after, note = "") {

@@ -79,9 +79,10 @@ async function picture() {
   const late = setTimeout(() => { $("busy").textContent = t("drawing_busy"); $("busy").hidden = false; }, 300);
   try {
     while (doc && pictured !== doc.hash + doc.name) {
-      const asked = doc.hash + doc.name, found = await call("picture", { wait: 5 });
+      const asked = doc.hash + doc.name, found = await call("picture", { wait: 5, early: !view.shown });
       if (!doc || found.hash + doc.name !== asked) continue;
-      if (found.state === "done") { pictured = asked; show(found.done); fault(null); }
+      if (found.state === "early") { show(found.early); attention(); }
+      else if (found.state === "done") { pictured = asked; show(found.done); fault(null); }
       else if (found.state === "error") { pictured = asked; if (hasPicture() && !view.shown) show(NOTHING); fault(found.error); }
       else if (found.state === "cancelled") await new Promise((then) => setTimeout(then, 100));
       if (pictured === asked) { attention(); refresh(["ask", "build", "tables", "layers", "photo"]); tabs(); underlay(() => refresh(["photo"], true)); }
@@ -103,7 +104,7 @@ function attention() {
     ...(shown ? shown.findings : []).slice(0, 20).map((found) => el("li", { lang: "en" }, found.sentence, el("button", { onclick: () => { mark(found.at); } }, t("where")))),
     ...(shown && shown.notes.length ? [el("li", {}, el("details", {}, el("summary", {}, `${t("left_out")} (${shown.notes.length})`), ...shown.notes.map((line) => el("p", { lang: "en" }, line))))] : []),
   );
-  if (shown && shown !== NOTHING && !lines.length && !shown.findings.length && !shown.notes.length) $("attention-list").append(el("li", { class: "quiet" }, t("no_attention")));
+  if (shown && shown !== NOTHING && !shown.early && !lines.length && !shown.findings.length && !shown.notes.length) $("attention-list").append(el("li", { class: "quiet" }, t("no_attention")));
 }
 
 /* --- commands --- */
