@@ -15,7 +15,7 @@ Array = np.ndarray
 
 @dataclass(frozen=True, eq=False)
 class LawTable:
-    """Constants of all joint laws of a model, one entry each.
+    """Constants of all joint laws of a model, one entry each; in space twice, see :meth:`with_bare`.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class LawTable:
         def soft(stiffness: float | None) -> float:
             return 0.0 if stiffness is None else 1.0 / stiffness
 
-        return cls(
+        found = cls(
             friction=np.array([law.friction for law in laws]),
             cohesion=np.array([law.cohesion for law in laws]),
             tension=np.array([law.tensile_strength for law in laws]),
@@ -59,7 +59,18 @@ class LawTable:
             points=np.array([points_along(law.compressive_strength, law.normal_stiffness) for law in laws]),
             names=tuple(model.laws),
         )
+        return found if model.dim == 2 else found.with_bare()
 
+    def with_bare(self) -> LawTable:
+        """Return the table with a hard law of the same friction, and nothing else, behind for each of its laws.
+
+        In space it is that of corners and edges, which have no area.
+        """
+        none = np.zeros_like(self.friction)
+        wanted = {"friction": self.friction, "cap": none + np.inf, "points": self.points, "dilatancy": self.dilatancy}
+        both = {name: np.concatenate([getattr(self, name), wanted.get(name, none)]) for name in vars(self)
+                if name != "names"}  # fmt: skip
+        return LawTable(**both, names=self.names)
 
     def laws(self, law: Array, area: Array, bonded: Array) -> Laws:
         """Return the laws of pairs (m,) as forces and lengths: strengths times area, compliance over area.

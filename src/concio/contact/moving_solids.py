@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from concio.contact.face_joints import FaceJoints
 from concio.kinematics.frames import cross, dot, norm, tangents
 from concio.kinematics.placement import Placement
 from concio.model.polyhedron import Polyhedron
@@ -19,6 +21,12 @@ Array = np.ndarray
 
 FLAT = 1e-6
 """Sine of the angle between two faces below which their common edge does not stand out."""
+
+POINTS = 65536
+"""Points of the joints of two faces that names can tell apart."""
+
+ON_FACE, ON_EDGES, IN_JOINT = 0, 1, 2
+"""Sorts of pairs: a corner on a face, two edges, a point of a joint of two faces."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +64,10 @@ class MovingSolids:
         Vertices of bodies that do not move freely.
     width : (B,) array
         Mean width of each body, three times its volume over its surface [m].
+    rings : sequence of f integer arrays
+        Vertices of each face.
+    joints : FaceJoints or None
+        Joints of faces as described whose laws need areas.
     """
 
     body: Array
@@ -71,6 +83,8 @@ class MovingSolids:
     edge_faces: Array
     fixed: Array
     width: Array
+    rings: Sequence[Array]
+    joints: FaceJoints | None = None
 
     @classmethod
     def of(cls, bodies: Sequence[Polyhedron]) -> MovingSolids:
@@ -103,6 +117,7 @@ class MovingSolids:
             body[edge[stands, 0]], edge[stands], edge_faces[stands],
             np.array([bodies[b].kind == "fixed" for b in body.tolist()]),
             3.0 * np.array([b.volume for b in bodies]) / area,
+            np.split(side[:, 1], np.searchsorted(side[:, 0], np.arange(1, len(normal)))),
         )  # fmt: skip
 
     def placed(self, placement: Placement) -> PlacedSolids:
@@ -112,19 +127,52 @@ class MovingSolids:
 
     # -- names of pairs of features ------------------------------------------------------------------------------------
 
+    @cached_property
+    def face_edges(self) -> list[Array]:
+        """Edges of each face that stand out."""
+        own = self.edge_faces.ravel()
+        order = np.argsort(own, kind="stable")
+        return np.split(order // 2, np.searchsorted(own[order], np.arange(1, len(self.normal))))
+
     def key(self, corner: Array, face: Array, edges: Array) -> Array:
         """Return names of corners on faces (q,), then of pairs of edges (r, 2): (q + r,) integers."""
         on_faces = corner.astype(np.int64) * len(self.normal) + face
         on_edges = edges[:, 0].astype(np.int64) * len(self.edge) + edges[:, 1]
-        return np.concatenate([on_faces, len(self.start) * len(self.normal) + on_edges])
+        return np.concatenate([on_faces, self._begins[ON_EDGES] + on_edges])
+
+    def joint_key(self, face: Array, number: Array) -> Array:
+        """Return names (p,) of points of joints of faces (p, 2) by their numbers (p,)."""
+        both = face[:, 0].astype(np.int64) * len(self.normal) + face[:, 1]
+        return np.asarray(self._begins[IN_JOINT] + both * POINTS + number)
+
+    @property
+    def _begins(self) -> tuple[int, int, int]:
+        """First name of each sort."""
+        on_edges = len(self.start) * len(self.normal)
+        return 0, on_edges, on_edges + len(self.edge) ** 2
 
     def features(self, key: Array) -> tuple[Array, Array, Array]:
-        """Return which names (m,) are corners on faces, and the numbers of their two features (m,) each."""
-        most = len(self.start) * len(self.normal)
-        on_face = key < most
-        count = np.where(on_face, len(self.normal), len(self.edge))
-        first, second = np.divmod(np.where(on_face, key, key - most), count)
-        return on_face, first, second
+        """Return the sorts of names (m,), and the numbers of their two features (m,) each: faces for joints."""
+        _, edges, joints = self._begins
+        sort = np.where(key < edges, ON_FACE, np.where(key < joints, ON_EDGES, IN_JOINT))
+        from_begin = np.where(sort == IN_JOINT, (key - joints) // POINTS, key - np.take(self._begins, sort))
+        first, second = np.divmod(from_begin, np.where(sort == ON_EDGES, len(self.edge), len(self.normal)))
+        return sort, first, second
+
+    def point_number(self, key: Array) -> Array:
+        """Return the numbers (p,) of points of joints of given names (p,)."""
+        return np.asarray((key - self._begins[IN_JOINT]) % POINTS)
+
+    def sides_of(self, key: Array) -> Array:
+        """Return the bodies (2, m) of the features of names (m,): of a corner on a face that of the corner first."""
+        sort, *features = self.features(key)
+        found = np.empty((2, len(key)), dtype=int)
+        for k, owners in enumerate(((self.body, self.edge_body, self.face_body),
+                                    (self.face_body, self.edge_body, self.face_body))):  # fmt: skip
+            for which, owner in enumerate(owners):
+                own = sort == which
+                found[k, own] = owner[features[k][own]]
+        return found
 
     @property
     def counts(self) -> tuple[int, int, int]:
@@ -142,14 +190,22 @@ def renamed(key: Array, old: MovingSolids, new: MovingSolids, numbers: Sequence[
 
     ``numbers`` are those of vertices, faces and edges, negative where a feature is missing.
     """
-    on_face, first, second = old.features(key)
+    sort, first, second = old.features(key)
     vertex, face, edge = numbers
-    most_v, most_e = len(vertex) - 1, len(edge) - 1
-    first = np.where(on_face, vertex[np.minimum(first, most_v)], edge[np.minimum(first, most_e)])
-    second = np.where(on_face, face[np.minimum(second, len(face) - 1)], edge[np.minimum(second, most_e)])
-    kept, first = (first >= 0) & (second >= 0), first.astype(np.int64)
-    most = len(new.start) * len(new.normal)
-    return np.where(on_face, first * len(new.normal) + second, most + first * len(new.edge) + second), kept
+    found, kept = np.zeros(len(key), dtype=np.int64), np.zeros(len(key), dtype=bool)
+    for which, (one, other) in enumerate(((vertex, face), (edge, edge), (face, face))):
+        own = np.flatnonzero(sort == which)
+        pair = np.column_stack([one[first[own]], other[second[own]]])
+        own, pair = own[has := (pair >= 0).all(axis=1)], pair[has]
+        none = np.zeros((0, 2), dtype=int)
+        if which == ON_FACE:
+            found[own] = new.key(pair[:, 0], pair[:, 1], none)
+        elif which == ON_EDGES:
+            found[own] = new.key(none[:, 0], none[:, 1], pair)
+        else:
+            found[own] = new.joint_key(pair, old.point_number(key[own]))
+        kept[own] = True
+    return found, kept
 
 
 def _padded(of: Array, value: Array, count: int) -> Array:

@@ -15,6 +15,8 @@ import numpy as np
 
 from concio.contact.convex_bodies import ConvexBodies, pairs_of
 from concio.contact.laws import RuleBook
+from concio.contact.moving_solids import IN_JOINT, ON_FACE
+from concio.contact.original_joints import OriginalJoints
 from concio.contact.reference import Reference
 from concio.contact.rows import Rows
 from concio.contact.separating_axes import Sides, every_axis
@@ -49,6 +51,8 @@ class _Named:
         With laws and openings as the model has them.
     faces : int
         How many of the pairs, the first ones, are corners on faces.
+    lone : int
+        How many are corners on faces or edges; those behind are points of joints.
     body : (m, 2) integer array
     rings : (faces, s, 2) integer array
         Vertices at both ends of the sides of each face; a side that begins where it ends fills up.
@@ -58,17 +62,25 @@ class _Named:
     edges : (m - faces, 2, 2) integer array
         Vertices at both ends of the edges of either body.
     columns : (m, 12) integer array
+    joints : OriginalJoints or None
+    joint : (lone,) integer array
+        Joint that stands for a pair, -1 for none.
+    sound : bool
+        Whether the points of joints are those of the patches.
     """
 
     slots: Slots
     faces: int
+    lone: int
     body: Array
     rings: Array
     level: Array
     corner: Array
     edges: Array
     columns: Array
-    sound: bool = True
+    joints: OriginalJoints | None
+    joint: Array
+    sound: bool
 
 
 class OriginalSolids:
@@ -112,19 +124,43 @@ class OriginalSolids:
     def _read(self, layout: SolidLayout) -> _Named:
         """Read the names of the pairs of a layout."""
         solids, disc = self.reference.solids, self.reference.disc
-        on_face, first, second = solids.features(layout.slots.key)
-        faces = int(on_face.sum())
-        corner, face, edges = first[:faces], second[:faces], np.column_stack([first, second])[faces:]
+        key = layout.slots.key
+        sort, first, second = solids.features(key)
+        faces, lone = int((sort == ON_FACE).sum()), int((sort != IN_JOINT).sum())
+        corner, face, edges = first[:faces], second[:faces], np.column_stack([first, second])[faces:lone]
         of_face = solids.face_body[face]
-        body = np.concatenate([np.column_stack([of_face, self.owner[corner]]), solids.edge_body[edges]])
+        in_joint = solids.face_body[np.column_stack([first, second])[lone:]]
+        body = np.concatenate([np.column_stack([of_face, self.owner[corner]]), solids.edge_body[edges], in_joint])
         law, opening = self.rules.find(body.min(axis=1), body.max(axis=1))
+        joints, joint = None, np.full(lone, -1)
+        share, bonded = np.ones(len(key)), np.zeros(len(key), dtype=bool)
+        if layout.toucher.joints is not None:
+            joints = OriginalJoints(
+                self.reference, layout.toucher.joints, self.rings, self.level, law[lone:], opening[lone:]
+            )
+            opening[lone:] -= joints.drawn
+            bonded[lone:] = joints.bonded
+            joint = self._joint_of(joints, corner, face, edges)
+        law[:lone] += len(self.reference.model.laws)
         free = disc.shape_of[body] == RIGID
         columns = np.where(free[..., None], disc.offsets[body][..., None] + np.arange(6), disc.unknowns)
-        slots = replace(layout.slots, body_a=body[:, 0], body_b=body[:, 1], law=law, opening=opening)
+        slots = replace(
+            layout.slots, body_a=body[:, 0], body_b=body[:, 1], law=law, opening=opening, share=share, bonded=bonded
+        )
         return _Named(
-            slots, faces, body, self.rings[face], self.level[face], corner, solids.edge[edges],
-            columns.reshape(len(body), 12),
+            slots, faces, lone, body, self.rings[face], self.level[face], corner, solids.edge[edges],
+            columns.reshape(len(body), 12), joints, joint, joints is None or joints.sound,
         )  # fmt: skip
+
+    def _joint_of(self, joints: OriginalJoints, corner: Array, face: Array, edges: Array) -> Array:
+        """Return the joint to whose two faces corners and faces (q,), or both edges (r, 2), belong; -1 for none."""
+        solids, found = self.reference.solids, np.full(len(corner) + len(edges), -1)
+        rings = self.rings[:, :, 0]
+        for k, (a, b) in enumerate(joints.joints.face.tolist()):
+            on = ((face == a) & np.isin(corner, rings[b])) | ((face == b) & np.isin(corner, rings[a]))
+            along = [np.isin(solids.edge[edges[:, side]], rings[f]).all(axis=1) for side, f in ((0, a), (1, b))]
+            found[np.concatenate([on, along[0] & along[1]])] = k
+        return found
 
     def at(
         self, layout: SolidLayout, centre: Array, rotation: Array, velocity: Array, spin: Array, strain: Array
@@ -150,11 +186,22 @@ class OriginalSolids:
         corners = self._corners(n, place, rotation)
         crossings = _crossings(place[n.edges], sign)
         point, frame, gap, beyond = (np.concatenate(both) for both in zip(corners, crossings, strict=True))
-        valid = self._standing(layout, point, frame[:, 0], beyond)
+        area = np.ones(len(gap))
+        if n.joints is None:
+            valid = self._standing(layout, n, point, frame[:, 0], beyond, np.zeros(0, dtype=bool))
+        else:
+            where = n.joints.at(place, centre, rotation)
+            valid = self._standing(layout, n, point, frame[:, 0], beyond, where.stands)
+            point, frame, gap, valid, area = (
+                np.concatenate(both) for both in (
+                    (point, where.point), (frame, where.frame), (gap, where.gap),
+                    (valid, where.stands[n.joints.joints.of]), (area, where.area),
+                )
+            )  # fmt: skip
         values, imposed = self._rows(n, point, frame, centre, rotation, velocity)
         turning = self._turning(n, place, point, frame, centre, velocity, spin, sign)
         return n.slots, Rows(
-            n.columns, values, gap + n.slots.opening, imposed, turning, valid, np.ones(len(gap)), point, frame
+            n.columns, values, gap + n.slots.opening, imposed, turning, valid, area, point, frame
         )
 
     def _placed(self, centre: Array, rotation: Array) -> Array:
@@ -173,16 +220,24 @@ class OriginalSolids:
         flat = np.einsum("fsec,fdc->fsed", sides - at[:, None, None], frame[:, 1:])
         return at, frame, gap, _beyond(flat)
 
-    def _standing(self, layout: SolidLayout, point: Array, normal: Array, beyond: Array) -> Array:
-        """Return the pairs that touch: those chosen that stand over each other, and those that no other stands for."""
-        size = self.reference.disc.size
-        chosen = layout.toucher.chosen & (beyond <= SLACK * size)
+    def _standing(
+        self, layout: SolidLayout, n: _Named, point: Array, normal: Array, beyond: Array, stands: Array
+    ) -> Array:
+        """Return the pairs that touch: those chosen that stand over each other, and those that no other stands for.
+
+        Joints that stand, ``stands`` (j,), do so for the corners and edges of their faces.
+        """
+        size, old = self.reference.disc.size, layout.toucher.chosen[: n.lone]
+        free = np.ones(n.lone, dtype=bool)
+        own = np.flatnonzero(n.joint >= 0)
+        free[own] = ~stands[n.joint[own]]
+        chosen = old & (beyond <= SLACK * size) & free
         i, j = layout.toucher.near.T
         same = np.linalg.norm(np.cross(point[i] - point[j], normal[i]), axis=1) <= SAME * size
-        stood_for = np.zeros(len(point), dtype=bool)
+        stood_for = np.zeros(n.lone, dtype=bool)
         for one, other in ((i, j), (j, i)):
             stood_for[other[same & chosen[one]]] = True
-        missed = (beyond <= -SLACK * size) & ~chosen & ~stood_for
+        missed = (beyond <= -SLACK * size) & ~chosen & ~stood_for & free
         return np.asarray(chosen | missed)
 
     def _rows(
@@ -211,23 +266,28 @@ class OriginalSolids:
         """Return what turning adds to the relative velocities of pairs (m, 3), per time [m/s2]."""
         if not spin.any():
             return np.zeros((len(point), 3))
-        a, b, f = n.body[:, 0], n.body[:, 1], n.faces
+        a, b, f, e = n.body[:, 0], n.body[:, 1], n.faces, slice(n.faces, n.lone)
         swung = [np.cross(spin[c], point - centre[c]) for c in (a, b)]
         slip = velocity[b] + swung[1] - velocity[a] - swung[0]
         seen = np.cross(spin[b], swung[1]) - np.cross(spin[a], swung[0])
         seen[:f] -= 2.0 * np.cross(spin[a[:f]], slip[:f])
         ends = place[n.edges]
         d_a, d_b = (ends[:, k, 1] - ends[:, k, 0] for k in (0, 1))
-        grown = np.cross(np.cross(spin[a[f:]], d_a), d_b) + np.cross(d_a, np.cross(spin[b[f:]], d_b))
-        rate, normal = (sign / np.linalg.norm(np.cross(d_a, d_b), axis=1))[:, None] * grown, frame[f:, 0]
+        grown = np.cross(np.cross(spin[a[e]], d_a), d_b) + np.cross(d_a, np.cross(spin[b[e]], d_b))
+        rate, normal = (sign / np.linalg.norm(np.cross(d_a, d_b), axis=1))[:, None] * grown, frame[e, 0]
         rate = rate - (rate * normal).sum(axis=1, keepdims=True) * normal
-        seen[f:] += 2.0 * (rate * slip[f:]).sum(axis=1, keepdims=True) * normal
+        seen[e] += 2.0 * (rate * slip[e]).sum(axis=1, keepdims=True) * normal
+        if n.joints is not None:
+            main = n.body[n.lone :][np.arange(len(point) - n.lone), n.joints.joints.master[n.joints.joints.of]]
+            seen[n.lone :] -= 2.0 * np.cross(spin[main], slip[n.lone :])
         return np.asarray(np.matmul(frame, seen[:, :, None])[:, :, 0])
 
     # -- what nobody found ---------------------------------------------------------------------------------------------
 
     def deepest(self, centre: Array, rotation: Array, strain: Array, share: float, more: float = 0.0) -> float:
         """Return how deep a body stands inside another one, over what it may; at most, where that is less than 1.
+
+        Joints with a stiffness of their own, and joints that crush, are left out, as in the plane.
 
         Parameters
         ----------
@@ -241,7 +301,10 @@ class OriginalSolids:
         pieces = self.pieces.placed(Placement(centre, rotation), disc.centroids)
         i, j = pairs_of(pieces, 0.0, disc.shape_of == FIXED)
         a, b = pieces.body[i], pieces.body[j]
-        _, opening = self.rules.find(a, b)
+        law, opening = self.rules.find(a, b)
+        laws = self.reference.laws
+        hard = ~((laws.normal[law] > 0) | np.isfinite(laws.cap[law]))
+        i, j, a, b, opening = i[hard], j[hard], a[hard], b[hard], opening[hard]
         allowed = share * np.minimum(width[a], width[b]) + 2 * self.reference.tolerance + np.abs(opening) + more
         low, high = pieces.boxes
         depth = np.minimum(high[i] - low[j], high[j] - low[i]).min(axis=1, initial=np.inf)

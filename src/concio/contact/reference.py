@@ -17,6 +17,7 @@ import numpy as np
 from concio.contact.detection import default_tolerance, detect_without_overlap
 from concio.contact.edges import MovingEdges
 from concio.contact.expansion import refuse_temperatures
+from concio.contact.face_joints import face_joints
 from concio.contact.geometry import GEOMETRIES
 from concio.contact.laws import LawTable, RuleBook
 from concio.contact.matrices import BodyMatrices
@@ -227,8 +228,11 @@ class Reference:
 
     @cached_property
     def solids(self) -> MovingSolids:
-        """The surfaces of polyhedra."""
-        return MovingSolids.of(self.model.polyhedra)
+        """The surfaces of polyhedra, with the joints of faces whose laws need areas."""
+        solids = MovingSolids.of(self.model.polyhedra)
+        return replace(
+            solids, joints=face_joints(self.model, self.rules, self.detection.patches, solids, self.tolerance)
+        )
 
     @property
     def surface(self) -> MovingEdges | MovingSolids:
@@ -286,7 +290,7 @@ class Reference:
 
 
 def refuse_in_space(model: Model) -> None:
-    """Refuse what motion in space does not compute yet: rigid blocks on hard joints without strength move."""
+    """Refuse what motion in space does not compute: elastic blocks, and joints that dilate."""
     if model.dim == 2:
         return
     for body in model.bodies:
@@ -294,11 +298,9 @@ def refuse_in_space(model: Model) -> None:
             msg = f"block '{body.name}' is elastic; in space only rigid blocks move"
             raise InputError(msg, hint='give it kind = "rigid"')
     for name, law in model.laws.items():
-        soft = law.normal_stiffness is not None or law.tangential_stiffness is not None
-        bonded = law.cohesion or law.tensile_strength
-        if soft or bonded or law.dilatancy or law.compressive_strength is not None:
-            msg = f"joint '{name}' has more than friction; in space joints of blocks that move have friction alone"
-            raise InputError(msg, hint="leave out stiffness, cohesion, strength and dilatancy")
+        if law.dilatancy:
+            msg = f"joint '{name}' dilates; in space joints of blocks that move do not"
+            raise InputError(msg, hint="leave out dilatancy")
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,17 +7,19 @@ away from each other along the normal.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from concio.contact.candidates import THROUGH
+from concio.contact.face_joints import FaceJoints
 from concio.contact.moving_solids import MovingSolids, PlacedSolids
+from concio.contact.polygon_points import outside
 from concio.contact.rows import RowMaker, Rows
 from concio.contact.slots import Slots
-from concio.contact.solid_touch import SAME, Crossing, SolidTouch, SolidToucher, outside
+from concio.contact.solid_touch import SAME, Crossing, SolidTouch, SolidToucher
 from concio.kinematics.boxes import meeting_boxes
 from concio.kinematics.frames import cross, dot, norm
 from concio.kinematics.placement import Placement
@@ -94,16 +96,21 @@ class SolidSearch:
         return True
 
     def _slots(self, toucher: SolidToucher) -> Slots:
-        """Return the slots of contact points: one each."""
+        """Return the slots of contact points: one each. Corners and edges have no area, and friction alone."""
         a, b = toucher.body_a, toucher.body_b
         law, opening = self.reference.rules.find(a, b)
-        m = len(a)
-        number, one = np.arange(m), np.ones(m)
+        m, joints, lone = len(a), toucher.joints, len(toucher.joint)
+        face, share, bonded = np.full(m, -1), np.ones(m), np.zeros(m, dtype=bool)
+        law[:lone] += len(self.reference.laws.names)
         key = self.edges.key(toucher.corner, toucher.face, toucher.edges)
+        if joints is not None:
+            face[lone:], share[lone:], bonded[lone:] = joints.of, joints.share, joints.bonded
+            opening[lone:] -= joints.drawn
+            key = np.concatenate([key, self.edges.joint_key(joints.face[joints.of], joints.number)])
+        number = np.arange(m)
         return Slots(
-            number, number, np.zeros(m), one, np.full(m, -1), key, a, b, law, opening, one.copy(),
-            np.zeros(m, dtype=bool), None, None,
-        )  # fmt: skip
+            number, number, np.zeros(m), share, face, key, a, b, law, opening, np.ones(m), bonded, None, None
+        )
 
     def touch(self, placed: PlacedSolids) -> SolidTouch:
         """Return the contact points of the present layout."""
@@ -168,9 +175,12 @@ def find_solid_candidates(
     edges, sign = _across(solids, placed, np.column_stack([first, second]), skin)
     body_a = np.concatenate([solids.face_body[face], solids.edge_body[edges[:, 0]]])
     body_b = np.concatenate([solids.body[corner], solids.edge_body[edges[:, 1]]])
+    joints, joint = _near_joints(solids, a, b), np.full(len(body_a), -1)
+    if joints is not None:
+        joint = joints.covers(solids, corner, face, edges)
     toucher = SolidToucher(
         solids, corner, face, edges, sign, body_a, body_b, slack, same, np.zeros((0, 2), dtype=int),
-        np.zeros(len(body_a), dtype=bool),
+        np.zeros(len(body_a), dtype=bool), None, joint,
     )  # fmt: skip
     found = toucher.touch(placed)
     near = cKDTree(found.point).query_pairs(2.0 * skin, output_type="ndarray") if len(found.point) else toucher.near
@@ -179,10 +189,20 @@ def find_solid_candidates(
     turn = np.where(body_a < body_b, 1.0, -1.0)
     alike = dot(found.normal[i], found.normal[j]) * turn[i] * turn[j] > ALIKE
     near = near[(pair[i] == pair[j]).all(axis=1) & alike]
-    toucher.chosen[:] = False
-    return SolidToucher(
-        solids, corner, face, edges, sign, body_a, body_b, slack, same, near, toucher.chosen,
-    )  # fmt: skip
+    if joints is not None:
+        body_a, body_b = (np.concatenate([own, joints.body[joints.of, k]]) for k, own in enumerate((body_a, body_b)))
+    return replace(
+        toucher, body_a=body_a, body_b=body_b, near=near, chosen=np.zeros(len(body_a), dtype=bool), joints=joints
+    )
+
+
+def _near_joints(solids: MovingSolids, a: Array, b: Array) -> FaceJoints | None:
+    """Return the joints of faces of pairs of bodies (n,) that are near; None where there are none."""
+    if solids.joints is None:
+        return None
+    count = len(solids.width)
+    picked = solids.joints.picked(np.isin(solids.joints.body @ [count, 1], a * count + b))
+    return picked if len(picked) else None
 
 
 def near_bodies(solids: MovingSolids, placed: PlacedSolids, fixed: Array, skin: float) -> tuple[Array, Array]:

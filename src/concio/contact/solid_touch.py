@@ -14,7 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from concio.contact.face_joints import FaceJoints
 from concio.contact.moving_solids import MovingSolids, PlacedSolids
+from concio.contact.polygon_points import outside
 from concio.kinematics.frames import cross, dot, norm
 from concio.kinematics.placement import Placement
 from concio.kinematics.rigid import swept
@@ -30,7 +32,7 @@ SAME = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class SolidTouch:
-    """Contact points: corners on faces, then pairs of edges; m in all.
+    """Contact points: corners on faces, then pairs of edges, then points of joints of faces; m in all.
 
     Parameters
     ----------
@@ -41,8 +43,8 @@ class SolidTouch:
         [m].
     valid : (m,) boolean array
         Whether the features stand over each other, and no other point stands for them.
-    length : (0,) array
-        Common lengths of edges: there are none in space.
+    length : (j,) array
+        Areas of joints of faces over those as described.
     """
 
     point: Array
@@ -77,8 +79,12 @@ class SolidToucher:
         Distance along the joint below which points are one [m].
     near : (n, 2) integer array
         Points of one pair of bodies that may coincide.
-    chosen : (q + r,) boolean array
+    chosen : (m,) boolean array
         Points that were valid when last looked at.
+    joints : FaceJoints or None
+        Whose points come last.
+    joint : (q + r,) integer array
+        Joint that a corner or a pair of edges belongs to, -1 for none: it touches where that joint is none.
     """
 
     solids: MovingSolids
@@ -92,10 +98,12 @@ class SolidToucher:
     same: float
     near: Array
     chosen: Array
+    joints: FaceJoints | None
+    joint: Array
 
     def touch(self, placed: PlacedSolids) -> SolidTouch:
         """Return the contact points of placed surfaces."""
-        solids, q = self.solids, len(self.corner)
+        solids = self.solids
         point, normal = placed.start[self.corner], placed.normal[self.face]
         tangent = placed.tangent[self.face]
         away = point - placed.start[solids.face_start[self.face]]
@@ -107,10 +115,22 @@ class SolidToucher:
             np.concatenate([point, crossing.point]), np.concatenate([frame, crossing.frame]),
             np.concatenate([gap, crossing.gap]), np.concatenate([over, crossing.beyond <= self.slack]), np.zeros(0),
         )  # fmt: skip
-        self._one_for_all(touch, q)
+        if self.joints is not None:
+            touch = self._with_joints(touch, self.joints, placed)
+        self._one_for_all(touch)
         return touch
 
-    def _one_for_all(self, touch: SolidTouch, q: int) -> None:
+    def _with_joints(self, touch: SolidTouch, joints: FaceJoints, placed: PlacedSolids) -> SolidTouch:
+        """Return the contact points with those of joints, and without the corners and edges that these stand for."""
+        point, frame, gap, stands, area = joints.touch(self.solids, placed)
+        own = np.flatnonzero(self.joint >= 0)
+        touch.valid[own[stands[self.joint[own]]]] = False
+        return SolidTouch(
+            np.concatenate([touch.point, point]), np.concatenate([touch.frame, frame]),
+            np.concatenate([touch.gap, gap]), np.concatenate([touch.valid, stands[joints.of]]), area,
+        )  # fmt: skip
+
+    def _one_for_all(self, touch: SolidTouch) -> None:
         """Leave one of the points that coincide: that which was there before, else corners before edges."""
         valid = touch.valid
         if len(self.near):
@@ -143,16 +163,21 @@ class SolidToucher:
         found = swept(w_b, swung_b) - swept(w_a, swung_a)
         found[:q] -= 2.0 * swept(w_a[:q], slip[:q])
         if len(self.edges):
-            n = touch.normal[q:]
+            e = slice(q, q + len(self.edges))
+            n = touch.normal[e]
             along = self.solids.edge[self.edges]
             turn = placement.turns
-            d_a, d_b = (turn[body[q:]].apply(self.solids.start[along[:, k, 1]] - self.solids.start[along[:, k, 0]])
+            d_a, d_b = (turn[body[e]].apply(self.solids.start[along[:, k, 1]] - self.solids.start[along[:, k, 0]])
                         for k, body in enumerate((a, b)))  # fmt: skip
             both = cross(d_a, d_b)
-            grown = cross(swept(w_a[q:], d_a), d_b) + cross(d_a, swept(w_b[q:], d_b))
+            grown = cross(swept(w_a[e], d_a), d_b) + cross(d_a, swept(w_b[e], d_b))
             rate = self.sign[:, None] * grown / norm(both)[:, None]
             rate -= dot(rate, n)[:, None] * n
-            found[q:] += 2.0 * dot(rate, slip[q:])[:, None] * n
+            found[e] += 2.0 * dot(rate, slip[e])[:, None] * n
+        if self.joints is not None:
+            j = slice(q + len(self.edges), None)
+            main = np.where(self.joints.master[self.joints.of, None] == 0, w_a[j], w_b[j])
+            found[j] -= 2.0 * swept(main, slip[j])
         return np.asarray(found)
 
 
@@ -194,18 +219,3 @@ class Crossing:
         frame = np.stack([normal, tangent, cross(normal, tangent)], axis=1)
         point = p[:, 0] + s[:, None] * d_a + 0.5 * gap[:, None] * normal
         return cls(point, frame, gap, np.where(skew, beyond, np.inf))
-
-
-def outside(sides: Array, x: Array, y: Array) -> Array:
-    """Return how far points (k,) lie outside polygons with sides (k, s, 2, 2), negative inside [m]."""
-    p, d = sides[:, :, 0], sides[:, :, 1] - sides[:, :, 0]
-    from_x, from_y = x[:, None] - p[..., 0], y[:, None] - p[..., 1]
-    size = d[..., 0] ** 2 + d[..., 1] ** 2
-    share = np.clip((from_x * d[..., 0] + from_y * d[..., 1]) / np.where(size > 0, size, 1.0), 0.0, 1.0)
-    distance = np.hypot(from_x - share * d[..., 0], from_y - share * d[..., 1])
-    distance = np.where(size > 0, distance, np.inf).min(axis=1)
-    below, above = from_y < 0, y[:, None] - sides[:, :, 1, 1] < 0  # the same of the end that two sides share
-    upward = np.where(d[..., 1] != 0, d[..., 1], 1.0)
-    left = from_x < d[..., 0] * from_y / upward
-    inside = ((below != above) & left).sum(axis=1) % 2 == 1
-    return np.asarray(np.where(inside, -distance, distance))

@@ -81,7 +81,7 @@ def dynamics(
     Parameters
     ----------
     model : Model
-        In the plane elastic, rigid and fixed bodies; in space rigid and fixed ones on joints that have friction alone.
+        In the plane elastic, rigid and fixed bodies; in space rigid and fixed ones on joints that do not dilate.
     motion : Signal, path, mapping, optional
         Motion of the ground along x (a record, a pulse, the name of a file), or by component: ``{"x": ..., "y": ...}``,
         in space also "z", which is vertical there.

@@ -127,7 +127,7 @@ def _plastic_slip(
     A hard pair that is hit keeps no stretch: what an impact moves was never elastic.
     """
     soft, slips, elastic = step.a_t > 0, slip.any(axis=1), -step.a_t[:, None] * t[:, 1:]
-    hit = (contact != Normal.OPEN) & ~(memory.force[:, 0] > 0) & ~step.springy
+    hit = (contact != Normal.OPEN) & (memory.force[:, 0] == 0) & ~step.springy
     stuck = soft & ~slips & (contact != Normal.OPEN) & ~hit
     stretch = np.where(stuck[:, None], memory.stretch + moved, np.where((soft & ~hit)[:, None], elastic, 0.0))
     slid = moved - np.where(soft[:, None], stretch - memory.stretch, 0.0)

@@ -162,7 +162,7 @@ class Joints:
         gap, area, bonded, cone = self._here(rows, slots, memory)
         ground = standing(memory, area) if self.any_stiffness else zero
         a_n, a_t, springs = self.compliances(slots, ground, cone.tension)
-        lasting = memory.force[:, 0] > 0
+        lasting = memory.force[:, 0] != 0  # pressed, or held by a bond
         shift = rows.imposed + turning_velocity(rows, lasting, h, speed)
         near = gap <= np.where(lasting, FALL * speed * h, self.touching)
         settle = np.minimum(SOFT * give / np.where(a_n > 0, a_n, np.inf), RETURN / h)
@@ -171,7 +171,8 @@ class Joints:
             near |= struck
             shift[struck, 0] += self.scheme.restitution * y0[struck, 0]
         else:
-            shift[:, 0] += settle * np.clip(gap, -self.pressed(a_n, memory.force[:, 0]), self.sag)
+            drawn = np.maximum(self.sag, -PRESSED * a_n * memory.force[:, 0])
+            shift[:, 0] += settle * np.clip(gap, -self.pressed(a_n, memory.force[:, 0]), drawn)
             shift[:, 1:] += settle[:, None] * memory.stretch
         data = PairData(
             rows.columns, rows.values, shift, cone, settle * a_n, settle * a_t, self.laws.dilatancy[slots.law],

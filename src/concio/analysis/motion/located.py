@@ -50,12 +50,8 @@ def _bodies(reference: Reference, key: Array) -> tuple[Array, Array]:
         body = reference.edges.body
         first, second = np.divmod(key // KINDS, len(body))
         return body[first], body[second]
-    solids = reference.solids
-    on_face, first, second = solids.features(key)
-    found = np.empty((2, len(key)), dtype=int)
-    found[:, on_face] = solids.body[first[on_face]], solids.face_body[second[on_face]]
-    found[:, ~on_face] = solids.edge_body[first[~on_face]], solids.edge_body[second[~on_face]]
-    return found[0], found[1]
+    first, second = reference.solids.sides_of(key)
+    return first, second
 
 
 def meetings(reference: Reference, before: MotionState, after: MotionState) -> set[frozenset[int]]:

@@ -65,7 +65,7 @@ def push(
     ----------
     model : Model
         With every support, tie and load. In the plane elastic, rigid and fixed bodies with every joint law; in space
-        rigid and fixed ones on joints that have friction alone.
+        rigid and fixed ones on joints that do not dilate.
     control : ControlPoint or "load", optional
         What grows: the displacement of a point, the load, or by default the mean displacement on which the load works
         (for a share of the weights, the mean displacement of the masses).

@@ -217,9 +217,9 @@ class Stepper:
         found = self._certified(found, state, new, memory_before, h, drive, returned)
         hard = rows.valid & ~joint.springy
         depth = float(np.maximum(-end[hard & data.active], 0.0).max(initial=0.0))
-        hit = hard & ~(memory_before.force[:, 0] > 0) & (joint.gap > 0.5 * h * joint.y0[:, 0] - maker.joints.sag)
+        hit = hard & (memory_before.force[:, 0] == 0) & (joint.gap > 0.5 * h * joint.y0[:, 0] - maker.joints.sag)
         struck = float(np.maximum(-end[hit], 0.0).max(initial=0.0))
-        free = hard & ~(memory_before.force[:, 0] > 0)
+        free = hard & (memory_before.force[:, 0] == 0)
         part, part_of_pair = self.parts.of(slots)
         meets = first_meetings(joint, end, free, speed, h, part_of_pair, 1 + int(part.max(initial=-1)))
         nearing = free & ~joint.struck & (parting[:, 0] < -speed)
