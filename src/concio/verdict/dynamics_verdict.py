@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.contact.applied import resultants
+from concio.contact.factors import load_factor
 from concio.display import number
 from concio.problem.tolerances import CERTIFIED, ENERGY_ROUNDING
 from concio.units import GRAVITY
@@ -68,11 +70,24 @@ def dynamics_verdict(found: DynamicsResult) -> Verdict:
             "Every step satisfies the equations of motion with contact and friction. A slightly different earthquake "
             "may give another outcome."
         ),
-        limits=(*joints_not_made(seen), SENSITIVE),
+        limits=(*joints_not_made(seen), *_without_mass(found), SENSITIVE),
         unchecked=(*_unchecked(found, shown), *capped, *small),
         attention=(*attention_of(found.model, seen), *_noticed(found)),
         next_steps=("Repeat it with half the step, and with the record scaled by 0.9 and 1.1.",),
     )
+
+
+def _without_mass(found: DynamicsResult) -> tuple[str, ...]:
+    """Return which loads from above act as forces alone: what they stand for has no inertia in the motion."""
+    loads = [k for k, load in enumerate(found.model.loads) if load.kind != "weight"]
+    told = []
+    for group, (force, _) in resultants(found.model, loads).items():
+        down = -float(force[-1]) * load_factor(found.factors, group)
+        if down > 0:
+            told.append(f"{found.model.report.text('force', down, 4)} of '{group}'")
+    if not told:
+        return ()
+    return (f"loads from above act as forces and have no mass: the inertia of {', '.join(told)} is not in the motion",)
 
 
 def _headline(found: DynamicsResult, outcome: Outcome) -> str:

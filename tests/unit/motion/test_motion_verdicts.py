@@ -160,6 +160,20 @@ def test_a_pulse_above_any_earthquake_asks_for_attention():
     assert any("more than any earthquake" in line for line in found.verdict.attention)
 
 
+def test_a_motion_says_which_loads_have_no_mass():
+    """A roof of 10 kN at a factor of 2 is a force; what pushes sideways or lifts stands for no mass."""
+    loads = [concio.Load("point", force, bodies=("block",), at=(0.0, 1.0), group=group)
+             for group, force in (("roof", (0.0, -10.0)), ("wind", (1.0, 0.0)), ("lift", (0.0, 1.0)))]  # fmt: skip
+    bare = standing()
+    model = replace(bare, loads=(*bare.loads, *loads))
+    told = concio.dynamics(model, None, 4e-3, 2e-3, gravity=G, factors={"roof": 2.0}).verdict.limits
+    line = next(line for line in told if "have no mass" in line)
+    assert "20 kN of 'roof'" in line
+    assert "wind" not in line
+    assert "lift" not in line
+    assert not any("have no mass" in t for t in concio.dynamics(bare, None, 4e-3, 2e-3, gravity=G).verdict.limits)
+
+
 def test_a_push_that_ends_before_its_peak_shows_no_peak(tmp_path):
     path = file_of(tmp_path)
     code, out, _ = run("push", path, "--until", "0.001 mm")

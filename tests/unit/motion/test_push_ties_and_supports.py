@@ -142,3 +142,31 @@ def test_a_push_of_the_weights_has_the_multiplier_of_an_assessment():
     assert min(m.multiplier for m in checked.mechanisms) == pytest.approx(found.peak, rel=3e-4)
     doubled = concio.push(model, live=(), factors={"floor": 2.0}).peak
     assert doubled == pytest.approx((own + 2 * floor) * B / 2 / (own * H / 2 + 2 * floor * H), rel=3e-4)
+
+
+@pytest.mark.parametrize("cap", [2.0, 9.0])
+def test_a_pillar_pushed_into_soil_carries_what_hand_statics_says(cap):
+    """About the toe: weight, and soil that presses with its stiffness times the shortening up to its cap."""
+    height, far, stiffness = 1.2, 10.0, 4000.0
+    soil = concio.Tie(
+        "soil", "pillar", (B / 2, height), "", (B / 2 + far, height), stiffness, yield_force=cap, kind="soil"
+    )
+    model = pillar(ties=(soil,))
+    found = concio.push(model, direction=1.0)
+    weighs = 20.0 * B * H * model.bodies[1].thickness
+    angle = -found.rotation[1:, 1]
+    sine, cosine = np.sin(angle), np.cos(angle)
+    at = np.column_stack([height * sine, height * cosine])  # from the toe, about which it turns
+    centroid = np.column_stack([-B / 2 * cosine + H / 2 * sine, B / 2 * sine + H / 2 * cosine])
+    back = at - np.array([far, height])
+    length = np.hypot(*back.T)
+    force = (np.minimum(stiffness * (far - length), cap) / length)[:, None] * back
+    turning = at[:, 0] * force[:, 1] - at[:, 1] * force[:, 0] - weighs * centroid[:, 0]
+    carried = turning / (weighs * centroid[:, 1])
+    assert found.certified
+    assert found.ending.name == "LOST"
+    assert (np.diff(angle) > 0).all()
+    beyond = angle > 2 * cap / stiffness / height  # hard joints of rigid blocks give way by a millionth of a width
+    assert beyond.sum() > 10
+    assert found.multiplier[1:][beyond] == pytest.approx(carried[beyond], abs=1e-6)
+    assert found.peak > B / H + 0.9 * cap * height / (weighs * H / 2)

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from concio.analysis.motion.state import MotionState
+from concio.contact.attachments import Ties
 from concio.contact.reference import Reference
 from concio.contact.slots import KINDS
 
@@ -29,6 +30,17 @@ def ties_give_way(before: MotionState, after: MotionState) -> bool:
     """Return whether a tie begins to yield or breaks between two states."""
     old, new = before.ties, after.ties
     return bool(((new.plastic > 0) & ~(old.plastic > 0)).any() or (new.broken & ~old.broken).any())
+
+
+def bars_give_way(ties: Ties, before: MotionState, after: MotionState) -> bool:
+    """Return whether a tie begins to yield or breaks between two equilibria, other than soil with all its pressure.
+
+    Soil has an element for each block, and does not break: each reaches its cap within a step as within two, since
+    its law is evaluated at the end of a step.
+    """
+    old, new = before.ties, after.ties
+    yields = (new.plastic > 0) & ~(old.plastic > 0) & (ties.sign > 0)
+    return bool(yields.any() or (new.broken & ~old.broken).any())
 
 
 def touching(reference: Reference, state: MotionState) -> dict[frozenset[int], float]:

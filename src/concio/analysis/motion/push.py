@@ -133,9 +133,6 @@ def push(
         reference, Scheme(brittle=brittle), chosen, groups, point, by_load, step, until, float(smallest), sign, engine,
         progress,
     )  # fmt: skip
-    if any(tie.kind == "soil" for tie in model.ties):
-        msg = "fill presses on the blocks, and a push does not follow the pressure of soil"
-        raise InputError(msg, where="[fill]", hint="set mobilised = 0 (weight alone), or use 'concio limit' or 'path'")
     whole = asked.statics(reference)
     unit = whole.unit(reference.at_rest().placement.turns)
     if not unit.any():

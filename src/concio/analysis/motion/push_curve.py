@@ -9,7 +9,7 @@ import numpy as np
 
 from concio.analysis.motion.interruption import Interruption
 from concio.analysis.motion.joint_events import JointEvent, joint_events, tie_events
-from concio.analysis.motion.located import highest, meetings, ties_give_way, touching
+from concio.analysis.motion.located import bars_give_way, highest, meetings, touching
 from concio.analysis.motion.observer import Observer
 from concio.analysis.motion.push_result import PushEnding
 from concio.analysis.motion.state import MotionState
@@ -136,13 +136,13 @@ class PushCurve:
             failed = 0 if wanted >= self.step else failed
             if found.multiplier > LOCKED:
                 return PushEnding.LOCKED
-            gave = ties_give_way(here, found.state)
+            gave = self._gives_way(here, found.state)
             if found.multiplier <= self.smallest < load and not gave:
                 return self._last(here, d, load, found, wanted)
             pairs = self._meeting(here, found.state)
             if gave or pairs:
                 found, wanted = self._where_it_changes(here, load, found, wanted, pairs)
-                gave = ties_give_way(here, found.state)
+                gave = self._gives_way(here, found.state)
             self.keep(found, d + wanted)
             self._sharpen(located=gave)
             if self.told(min(d / self.until, 1 - max(found.multiplier, 0.0) / max(self.multiplier[1:]))):
@@ -158,6 +158,10 @@ class PushCurve:
         """Return where the first ends of the ties are (k, d) [m]."""
         return self.statics.maker.ties.a.positions(state.placement, state.strain)
 
+    def _gives_way(self, before: MotionState, after: MotionState) -> bool:
+        """Return whether a bar begins to yield or breaks between two equilibria."""
+        return bars_give_way(self.statics.maker.ties, before, after)
+
     def _meeting(self, before: MotionState, after: MotionState) -> set[frozenset[int]]:
         """Return the pairs of bodies that begin or cease to touch between two equilibria; each is located once."""
         pairs = meetings(self.reference, before, after) - self.met
@@ -167,7 +171,7 @@ class PushCurve:
     def _changes(self, before: MotionState, after: MotionState, pairs: set[frozenset[int]]) -> bool:
         """Return whether a tie gives way between two equilibria, or one of some pairs begins or ceases to touch."""
         old, new = touching(self.reference, before), touching(self.reference, after)
-        return ties_give_way(before, after) or any((pair in old) != (pair in new) for pair in pairs)
+        return self._gives_way(before, after) or any((pair in old) != (pair in new) for pair in pairs)
 
     def _sharpen(self, *, located: bool) -> None:
         """Look for the peak between the points beside the largest, once the curve falls behind it; keep it.
@@ -185,7 +189,7 @@ class PushCurve:
 
         def at(share: float) -> float:
             trial = self.statics.balance(start, load, target=share)
-            fine = trial.found and not ties_give_way(start, trial.state)
+            fine = trial.found and not self._gives_way(start, trial.state)
             return trial.multiplier if fine else -np.inf
 
         known = [(x - d, f) for x, f in zip(self.displacement[top - 1 :], self.multiplier[top - 1 :], strict=True)]
@@ -282,7 +286,7 @@ class PushCurve:
                 continue
             assert followed is None
             pairs = self._meeting(here, found.state)
-            if pairs or ties_give_way(here, found.state):
+            if pairs or self._gives_way(here, found.state):
                 found = self._load_where_it_changes(here, load, found, pairs)
             moved += self.statics.work_displacement(here, found)
             self.keep(found, moved)
