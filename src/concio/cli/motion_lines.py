@@ -15,6 +15,7 @@ from concio.errors import InputError
 from concio.io.csv_table import write_csv
 from concio.io.motion_file import save_motion
 from concio.io.motion_series import write_motion_series
+from concio.io.solids_out import write_solids
 from concio.plot.motion_figure import plot_capacity, plot_energy, plot_ground, plot_history, write_film
 from concio.report.motion_page import HOW, write_motion_report
 from concio.units import GRAVITY
@@ -129,7 +130,10 @@ def write_motion(result: PushResult | DynamicsResult, place: Path, films: tuple[
     save_motion(result, place / "motion.npz")
     for film in films:
         try:
-            write_film(result, place / f"film.{film}")
+            if film == "glb":
+                write_solids(place / "film.glb", result)
+            else:
+                write_film(result, place / f"film.{film}")
             names.append(f"film.{film}")
         except InputError as error:
             note(f"Note: no film.{film}: {error.what}")

@@ -15,7 +15,9 @@ from concio.cli.progress import progress_bar, verdict_so_far
 
 Film = Annotated[
     list[str] | None,
-    typer.Option("--film", help="Write a film into --out: gif, or mp4 where FFmpeg is installed (repeatable)."),
+    typer.Option(
+        "--film", help="Write a film into --out: gif, mp4 where FFmpeg is installed, in space also glb (repeatable)."
+    ),
 ]
 Series = Annotated[bool, typer.Option("--vtu", help="Write a series of VTU files for ParaView into --out.")]
 
@@ -30,9 +32,9 @@ def check_out(out: Path | None, film: list[str] | None, series: bool) -> None:
         msg = "a film or a series needs a directory"
         raise InputError(msg, where="--film, --vtu", hint="add --out DIRECTORY")
     for form in film or ():
-        if form not in ("gif", "mp4"):
+        if form not in ("gif", "mp4", "glb"):
             msg = f"'{form}' is not a film"
-            raise InputError(msg, where="--film", hint="gif or mp4")
+            raise InputError(msg, where="--film", hint="gif, mp4 or, in space, glb")
 
 
 @guarded

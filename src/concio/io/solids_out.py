@@ -1,4 +1,4 @@
-"""Blocks in space to OBJ, STL, COMPAS JSON, glTF, DXF and 3dm: as they are described, or displaced."""
+"""Blocks in space to OBJ, STL, COMPAS JSON, glTF, DXF and 3dm: as they are described, displaced, or as they move."""
 
 from __future__ import annotations
 
@@ -11,11 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from concio.analysis.motion.dynamics_result import DynamicsResult
+from concio.analysis.motion.push_result import PushResult
 from concio.arguments import strict
 from concio.errors import InputError
 from concio.files import whole_file
 from concio.io.compas_json import block_model
-from concio.io.gltf import glb_bytes
+from concio.io.gltf import Moving, glb_bytes
 from concio.kinematics.frames import cross
 from concio.model.model import Model
 from concio.post.solids import solids
@@ -24,6 +26,9 @@ if TYPE_CHECKING:
     from concio.analysis.result import Result
 
 Array = np.ndarray
+
+FILM = 10.0
+"""Duration of the animation of a push [s]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,8 +49,13 @@ class Drawn:
 
 
 @strict
-def write_solids(path: str | Path, what: Model | Result, *, scale: float = 1.0) -> None:
+def write_solids(
+    path: str | Path, what: Model | Result | DynamicsResult | PushResult, *, scale: float = 1.0
+) -> None:
     """Write the blocks of a model in space, or those of a result displaced, for another program.
+
+    A motion or a push is written as animation, in glTF alone: its shots are the key times, from zero on; the points of
+    a push follow each other evenly within :data:`FILM` seconds.
 
     Parameters
     ----------
@@ -53,14 +63,15 @@ def write_solids(path: str | Path, what: Model | Result, *, scale: float = 1.0) 
         Its end gives the format: ``.obj`` (an object for each block), ``.stl`` (a named solid for each), ``.json``
         (a COMPAS BlockModel), ``.glb`` (glTF, a node for each), ``.dxf`` (a MESH for each, ``dxf`` extra) or ``.3dm``
         (a mesh for each, ``rhino`` extra). An existing file is replaced only when the new one is complete.
-    what : Model or Result
+    what : Model, Result, DynamicsResult or PushResult
     scale : float
-        By which displacements of a result, or the velocities of its mechanism, are multiplied.
+        By which displacements of a result, or the velocities of its mechanism, are multiplied; those of a motion are
+        true to scale.
 
     Raises
     ------
     InputError
-        The model is in the plane, the format is not known, or a package is missing.
+        The model is in the plane, the format is not known or has no animation, or a package is missing.
 
     Examples
     --------
@@ -79,9 +90,31 @@ def write_solids(path: str | Path, what: Model | Result, *, scale: float = 1.0) 
     if writer is None:
         msg = f"'{path.suffix}' is not a format of solids"
         raise InputError(msg, where=str(path), hint="one of " + ", ".join(WRITERS))
+    if isinstance(what, DynamicsResult | PushResult):
+        _animated(path, what, scale)
+        return
     blocks = _blocks(what) if isinstance(what, Model) else _displaced(what, scale)
     with whole_file(path) as fresh:
         writer(fresh, blocks)
+
+
+def _animated(path: Path, result: DynamicsResult | PushResult, scale: float) -> None:
+    """Write a motion as animation."""
+    if path.suffix.lower() != ".glb":
+        msg = f"'{path.suffix}' has no animation"
+        raise InputError(msg, where=str(path), hint="write a motion as .glb")
+    if scale != 1.0:
+        msg = f"scale = {scale:g}: a motion is written true to scale"
+        raise InputError(msg, where=str(path), hint="leave the scale out")
+    drawn = [(b.name, b.triangles, b.fixed) for b in _blocks(result.model)]
+    if isinstance(result, PushResult):
+        time, centre, rotation = np.linspace(0.0, FILM, len(result)), result.centre, result.rotation
+    else:
+        shots = result.shots
+        time, centre, rotation = shots.time - shots.time[0], shots.centre, shots.rotation
+    centroid = np.array([body.centroid for body in result.model.polyhedra])
+    with whole_file(path) as fresh:
+        fresh.write_bytes(glb_bytes(drawn, Moving(time, centroid, centre, rotation)))
 
 
 def _blocks(model: Model) -> list[Drawn]:
