@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -235,6 +236,23 @@ def proofs(assembly: concio.Assembly, limit: LimitResult) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.parametrize("angle", [20.0, 45.0])
+def test_a_cube_pushed_just_beyond_its_friction_is_proved_to_slide(angle: float) -> None:
+    """Between two of the planes that cut the round cone coarsely there is more friction than 1.002 times its own."""
+    cube = concio.extrude(concio.column(width=0.5, height=0.25, blocks=1, block="rigid", friction=0.6), 0.5)
+    for share, falls in ((1.002, True), (0.998, False)):
+        push = 0.6 * share * np.array([np.cos(np.deg2rad(angle)), np.sin(np.deg2rad(angle))])
+        assembly = concio.assemble(replace(cube, loads=(concio.Load("weight", (*push.tolist(), -1.0)),)))
+        with pytest.raises(concio.SolverError):
+            prove_collapse(assembly)
+        if falls:
+            assert check(collapse_proof(assembly)).startswith("no forces")
+        else:
+            with pytest.raises(concio.SolverError):
+                collapse_proof(assembly)
+
+
+@pytest.mark.long  # the cube above is pushed as near
 def test_a_collapse_in_space_is_proved_near_its_mechanism() -> None:
     """Round cones cut by planes: cut coarsely they resist a motion that the round ones do not."""
     assembly = concio.assemble(drawn(5, 3))

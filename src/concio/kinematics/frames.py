@@ -33,7 +33,10 @@ def turned_right(v: Array) -> Array:
 def turned(v: Array, angle: Array | float) -> Array:
     """Return plane vectors (..., 2) turned left by angles (...) [rad]."""
     v, c, s = np.asarray(v), np.cos(angle), np.sin(angle)
-    return np.stack([c * v[..., 0] - s * v[..., 1], s * v[..., 0] + c * v[..., 1]], axis=-1)
+    x = c * v[..., 0] - s * v[..., 1]
+    found = np.empty((*x.shape, 2))
+    found[..., 0], found[..., 1] = x, s * v[..., 0] + c * v[..., 1]
+    return found
 
 
 def dot(p: Array, q: Array) -> Array:

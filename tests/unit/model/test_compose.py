@@ -103,6 +103,11 @@ def test_an_elastic_vault_keeps_its_mesh_when_mirrored() -> None:
         assert assembly.pairs.contact_model == concio.assemble(dome).pairs.contact_model
 
 
+def bound(model: Model) -> float:
+    """Return the largest multiplier of the live loads, friction taken as associated."""
+    return concio.limit(model, path=False, steps=False, search=False).associated.multiplier
+
+
 def arcade(space: bool) -> Model:
     parts = [concio.place(concio.column(**PIER), (3.8 * k, 0), name=f"pier{k}") for k in range(3)]
     ring = concio.arch(span=3.0, ring=0.4, voussoirs=9, block="rigid")
@@ -267,13 +272,13 @@ def leaning(seed: int) -> Model:
 def test_what_is_mirrored_or_turned_in_plan_carries_as_much(seed: int) -> None:
     """Whatever pushes: a share of the weight, a body force, a force, a traction; gravity stays."""
     model = leaning(seed)
-    wanted = concio.limit(model).associated.multiplier
+    wanted = bound(model)
     mirrored = concio.place(model, mirror="x")
-    assert concio.limit(mirrored).associated.multiplier == pytest.approx(wanted, rel=1e-9)
+    assert bound(mirrored) == pytest.approx(wanted, rel=1e-9)
     assert mirrored.loads[0].value == (0, -1)
     space = concio.extrude(model, 1.0)
     placed = concio.place(space, turn=40.0 + 50 * seed, mirror="xy"[: seed % 3])
-    assert concio.limit(placed).associated.multiplier == pytest.approx(wanted, rel=1e-7)
+    assert bound(placed) == pytest.approx(wanted, rel=1e-7)
 
 
 def test_the_world_keeps_the_directions_of_forces_where_it_is_asked_to() -> None:
@@ -312,9 +317,8 @@ def test_the_order_of_parts_decides_no_law() -> None:
         with pytest.raises(InputError, match=words):
             concio.merge(*(concio.extrude(p, 1.0) for p in order))
     for joint in (0.2, 0.7):
-        found = [concio.limit(concio.merge(*order, joint=joint)).associated.multiplier
-                 for order in (parts, parts[::-1])]  # fmt: skip
+        found = [bound(concio.merge(*order, joint=joint)) for order in (parts, parts[::-1])]
         assert found == pytest.approx([joint, joint], rel=1e-9)
     assert len(concio.merge(*stacked(0.7, 0.2, apart=0.1)).bodies) == 3
     same = [concio.merge(*order) for order in (stacked(0.4, 0.4), stacked(0.4, 0.4)[::-1])]
-    assert [concio.limit(m).associated.multiplier for m in same] == pytest.approx([0.4, 0.4])
+    assert [bound(m) for m in same] == pytest.approx([0.4, 0.4])

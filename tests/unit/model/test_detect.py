@@ -95,13 +95,18 @@ def test_sliver_is_dropped_and_reported():
     assert [(m.kind, m.a, m.b) for m in found.near_misses] == [("sliver", "lower", "upper")]
 
 
-def test_short_pieces_of_a_long_joint_are_no_slivers():
-    x = np.linspace(0, 1, 4001)
-    lower = Body("lower", [(0, 0), (1, 0), *[(v, 1) for v in x[::-1]]])
-    found = detect_interfaces([lower, box("upper", 0, 1, 1, 2)], tolerance=1e-6)
-    assert len(found.interfaces) == 4000
-    assert sum(f.length for f in found.interfaces) == pytest.approx(1)
+@pytest.mark.parametrize("pieces", [400, pytest.param(4000, marks=pytest.mark.long)])
+def test_short_pieces_of_a_long_joint_are_no_slivers(pieces):
+    """Each is a quarter of a millimetre, and one alone would be left out."""
+    width = 2.5e-4 * pieces
+    top = [(v, 1) for v in np.linspace(0, width, pieces + 1)[::-1]]
+    lower = Body("lower", [(0, 0), (2, 0), (2, 1), *top])
+    found = detect_interfaces([lower, box("upper", 0, 1, width, 2)], tolerance=1e-6)
+    assert len(found.interfaces) == pieces
+    assert sum(f.length for f in found.interfaces) == pytest.approx(width)
     assert not found.near_misses
+    alone = detect_interfaces([lower, box("upper", -1, 1, 2.5e-4, 2)], tolerance=1e-6)
+    assert [m.kind for m in alone.near_misses] == ["sliver"]
 
 
 def test_corner_on_an_edge_is_reported_and_corner_on_corner_is_not():

@@ -9,6 +9,7 @@ import pytest
 
 import concio
 from models import box, model_of, weight
+from samples import sample
 from seismic_walls import site
 
 B, H = 0.4, 1.6
@@ -32,7 +33,7 @@ def on_a_floor_turned_by(angle, **kw):
     return pillar(supports=(concio.Support("turn", "floor", rotation=angle),), **kw)
 
 
-@pytest.mark.parametrize("angle", np.deg2rad([-10.0, -5.0, 2.0, 8.0]))
+@pytest.mark.parametrize("angle", np.deg2rad([8.0, -10.0, -5.0, 2.0][: sample(2, 4)]))
 def test_a_pillar_on_a_floor_that_has_turned_carries_what_hand_statics_says(angle):
     """tan(atan(b/h) + angle) to the right, tan(atan(b/h) - angle) to the left; as one drawn on a turned floor does."""
     for side in (1.0, -1.0):
@@ -82,7 +83,7 @@ def test_motion_that_is_mirrored_is_the_mirrored_motion():
     assert [e.kind for e in left.events if "tie" in str(e)] == [e.kind for e in right.events if "tie" in str(e)]
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(sample(1, 3)))
 def test_a_tie_pulls_to_its_elongation_at_break_whatever_the_step(seed):
     """A low block that slides with a tie along its motion: friction, and stiffness times the elongation at break."""
     rng = np.random.default_rng(seed)

@@ -369,7 +369,7 @@ def test_a_wall_with_a_door_is_assessed() -> None:
         length=2.0, height=1.25, block_size=(0.5, 0.25), friction=0.6, block="rigid",
         openings=[{"x": 0.75, "y": 0.0, "width": 0.5, "height": 0.75, "lintel": 0.25}],
     )  # fmt: skip
-    worst = concio.assess(model, site=site(), direction="right", levels=["SLV"]).worst
+    worst = concio.assess(model, site=site(), direction="right", levels=["SLV"], elsewhere=("out of plane",)).worst
     assert worst is not None
     assert worst.found.flow == "Coulomb"
     assert worst.multiplier < worst.found.associated.multiplier

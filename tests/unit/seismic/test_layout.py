@@ -98,7 +98,7 @@ def test_parts_stand_beside_every_line_and_are_counted_by_kind() -> None:
 
 def test_the_sentence_counts_each_kind() -> None:
     model = wall((0, 0, 0.5, 1.0), (1.2, 0, 1.7, 1.0), (0, 1.0, 1.7, 1.4))
-    found = concio.assess(model, site=site(), levels=["SLV"], direction="right", elsewhere=("height",))
+    found = concio.assess(model, site=site(), levels=["SLV"], direction="right", elsewhere=("height", "out of plane"))
     assert found.places["openings"] == (2, 2)
     assert found.places["levels"] == (1, 1)
     assert found.summary()["sought_at"]["openings"] == {"sought": 2, "there": 2}

@@ -123,7 +123,8 @@ def test_cone_programmes_of_space_are_solved_by_the_engine_of_the_model(monkeypa
         wall = replace(WALLS["space"], engine=engine)
         assert engines_of(lambda m=wall: concio.friction_margin(m, factor=0.2), monkeypatch) == {engine}
         facade = replace(concio.extrude(overturning(2), 0.5), engine=engine)
-        assert engines_of(lambda m=facade: concio.assess(m, site=site(), direction="-x"), monkeypatch) == {engine}
+        asked = {"site": site(), "direction": "-x", "levels": ["SLV"]}
+        assert engines_of(lambda m=facade, a=asked: concio.assess(m, **a), monkeypatch) == {engine}
 
 
 def test_a_comparison_of_methods_takes_the_engine_of_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

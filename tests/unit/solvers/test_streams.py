@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from samples import sample
+
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="needs a shell")
 
 SMALL = "[panel]\ncourses = 1\nblocks = 2\ntop_pressure = 10\nelements_per_block = [2, 1]\n"
@@ -59,7 +61,7 @@ def test_a_reader_that_has_gone_is_no_error(tmp_path: Path) -> None:
     assert (found.returncode, found.stdout, found.stderr) == (0, "{\n", "")
 
 
-@pytest.mark.parametrize("title", ["\u77f3\u9020", "\U0001f9f1 wall"])
+@pytest.mark.parametrize("title", ["\U0001f9f1 wall", "\u77f3\u9020"][: sample(1, 2)])
 def test_letters_that_the_font_lacks_are_told_once(title: str, tmp_path: Path) -> None:
     path = tmp_path / "m.toml"
     path.write_text(f'title = "{title}"\n[column]\nwidth = 1.0\nheight = 1.0\nblocks = 1\n', encoding="utf-8")

@@ -19,7 +19,7 @@ from concio.analysis.seismic.mechanism import chosen_bodies
 from concio.analysis.seismic.open_items import ELSEWHERE, in_elevation
 from concio.analysis.seismic.out_of_plane import covered_by, of_strips, strips_assessed
 from concio.analysis.seismic.searching import EVERY, Search, search_all
-from concio.analysis.seismic.sections import OutOfPlane
+from concio.analysis.seismic.sections import OutOfPlane, strips_of
 from concio.analysis.seismic.site import STRONG, Site
 from concio.analysis.seismic.tie_history import with_strength
 from concio.arguments import closest, strict
@@ -166,14 +166,15 @@ def assess(
     terms = Terms(site, wanted, factor, control, limits or {}, curve, accept_linear)
     acting = acting_in(model, ways)
     held_out = _held_out(model, out_of_plane)
+    aside = in_elevation(model) and "out of plane" not in elsewhere and not groups
+    drawn = strips_of(model, held_out) if aside else ()  # before the search: what they refuse is refused at once
     try:
         found = search_all(searches, chosen, terms, elements, progress)
     except NoEquilibriumError as error:
         side = [a.sentence() for a in acting if a.role == "constant" and np.abs(a.force[:-1]).max(initial=0.0) > 0]
         hint = f"{error.hint}; sideways act, as they are: {'; '.join(side)}" if side else error.hint
         raise NoEquilibriumError(error.what, where=error.where, hint=hint) from None
-    aside = in_elevation(model) and "out of plane" not in elsewhere and not groups
-    strips = strips_assessed(model, held_out, terms, progress) if aside else ()
+    strips = strips_assessed(drawn, terms, progress)
     beside, rest = of_strips(strips)
     ranked = tuple(sorted([*found.shown, *beside], key=lambda m: (m.zeta, m.least, m.multiplier)))
     arguments = {

@@ -148,6 +148,14 @@ class Linkage:
             found[3 * block + 2] = float(turned_left(self.arm(q, block, point)) @ direction)
         return found
 
+    def rows(self, q: Array, block: int, point: Array) -> Array:
+        """Return how fast a point (2,) moves along both axes with each unknown (2, 3 G)."""
+        found = np.zeros((2, self.unknowns))
+        if block != GROUND:
+            found[0, 3 * block] = found[1, 3 * block + 1] = 1.0
+            found[:, 3 * block + 2] = turned_left(self.arm(q, block, point))
+        return found
+
     def normal(self, q: Array, joint: MacroJoint) -> Array:
         """Return the normal (2,) of the face of a roller, turned with its macro-block."""
         block = joint.b if joint.face else joint.a
@@ -168,9 +176,8 @@ class Linkage:
         for joint in self.mechanics.joints:
             apart = self.apart(q, joint)
             if joint.kind == "hinge":
-                for axis in np.eye(2):
-                    values.append(float(apart @ axis))
-                    rows.append(self.row(q, joint.b, joint.point, axis) - self.row(q, joint.a, joint.point, axis))
+                values += apart.tolist()
+                rows += [*(self.rows(q, joint.b, joint.point) - self.rows(q, joint.a, joint.point))]
             elif joint.kind == "roller":
                 normal = self.normal(q, joint)
                 row = self.row(q, joint.b, joint.point, normal) - self.row(q, joint.a, joint.point, normal)

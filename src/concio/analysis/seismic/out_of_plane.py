@@ -18,10 +18,9 @@ from concio.analysis.seismic.directions import pushes
 from concio.analysis.seismic.examine import Terms
 from concio.analysis.seismic.local_mechanism import LocalMechanism, NoMechanism
 from concio.analysis.seismic.searching import EVERY, Search, Searched, search_all
-from concio.analysis.seismic.sections import OutOfPlane, Strip, strips_of
+from concio.analysis.seismic.sections import Strip
 from concio.contact.assembly import assemble
 from concio.errors import NoEquilibriumError
-from concio.model.model import Model
 from concio.problem.solution import ProgressCallback
 
 SENSES: Mapping[str, str] = {"left": "outward", "right": "inward"}
@@ -84,15 +83,14 @@ class StripFound:
 
 
 def strips_assessed(
-    model: Model, held: OutOfPlane, terms: Terms, progress: ProgressCallback | None = None
+    strips: Sequence[Strip], terms: Terms, progress: ProgressCallback | None = None
 ) -> tuple[StripFound, ...]:
     """Return what was found of each strip of a facade, the weakest first.
 
     Parameters
     ----------
-    model : Model
-        The facade in elevation.
-    held : OutOfPlane
+    strips : sequence of Strip
+        From :func:`~concio.analysis.seismic.sections.strips_of`.
     terms : Terms
     progress : callable, optional
 
@@ -104,7 +102,7 @@ def strips_assessed(
     own = replace(terms, control=None)
     done: dict[tuple[float, ...], StripFound] = {}
     found = []
-    for strip in strips_of(model, held):
+    for strip in strips:
         key = strip.likeness
         if key in done:
             found.append(_as(done[key], strip))
