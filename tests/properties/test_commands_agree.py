@@ -11,6 +11,7 @@ import pytest
 
 from commands import run
 from pillars import ARCH, NARROW, THIN, hanging, held, pillar, point, sideways, slot, soft, strip, turned
+from samples import sample
 
 HOLDS, FAILS = "holds", "fails"
 MODELS: dict[str, tuple[str, str]] = {
@@ -45,6 +46,9 @@ MODELS: dict[str, tuple[str, str]] = {
 The last but four is statics of small displacements: weights do not turn with the floor. Where they do, at large
 displacements, the pillar tips at 0.159, and every command says that the two differ.
 """
+LARGE = ("narrow panel", "slot of elastic blocks")
+CASES = [pytest.param(name, marks=pytest.mark.long) if name in LARGE else name for name in MODELS]
+"""Of the structures that forces can balance and that fall, the slot of rigid blocks is the one tried quickly."""
 LIVE = {"narrow panel": "top"}
 """Groups that grow, where they are not called live."""
 
@@ -73,7 +77,7 @@ def answer_of_limit(found: dict[str, Any]) -> str:
     return HOLDS if carried >= 1 else "open"
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", CASES)
 def test_run_path_and_compare_give_the_answer_of_statics(name: str, tmp_path: Path) -> None:
     text, right = MODELS[name]
     path = tmp_path / "model.toml"
@@ -90,7 +94,7 @@ def test_run_path_and_compare_give_the_answer_of_statics(name: str, tmp_path: Pa
     assert compared in ((right,) if right == HOLDS else (FAILS, "undecided", "incomplete"))
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", CASES)
 def test_limit_gives_the_answer_of_statics(name: str, tmp_path: Path) -> None:
     text, right = MODELS[name]
     path = tmp_path / "model.toml"
@@ -112,7 +116,7 @@ def test_push_starts_where_statics_says_that_the_dead_load_stands(name: str, tmp
     assert (found["outcome"] == FAILS) == (dead == FAILS), found
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", list(MODELS)[:: sample(3, 1)])
 def test_every_command_carries_the_same_list_of_what_is_odd(name: str, tmp_path: Path) -> None:
     text = MODELS[name][0].replace("friction = 0.", "friction = 3.", 1)
     path = tmp_path / "model.toml"

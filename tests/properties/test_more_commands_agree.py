@@ -144,7 +144,7 @@ def test_at_the_multiplier_of_an_assessment_a_load_step_ceases_to_hold(name: str
                 'group = "quake"\n'
             )
         path = written(name, tmp_path, quake)
-        bound = asked("limit", path, "--no-friction", "--group", "quake")
+        bound = asked("limit", path, "--no-path", "--no-steps", "--no-friction", "--group", "quake")
         least.append(bound["associated_multiplier"])
         for share, right in ((0.999, HOLDS), (1.001, FAILS)):
             step = asked("run", path, "--factor", f"quake={share * least[-1]!r}")["verdict"]["outcome"]

@@ -12,6 +12,7 @@ from concio.analysis.motion.push_result import PushEnding
 from concio.solvers.stepping.solver import StepSolver
 from models import box, model_of, weight
 from motion_models import standing
+from samples import sample
 
 SLENDER = np.arctan(0.2)
 
@@ -261,7 +262,7 @@ def test_blocks_that_could_all_slide_part():
     assert curve.multiplier[1:] == pytest.approx(0.6, abs=3e-6)
 
 
-@pytest.mark.parametrize("E", [3e5, 1e7])
+@pytest.mark.parametrize("E", [3e5, 1e7][: sample(1, 2)])
 @pytest.mark.parametrize("elastic", [("pier",), ("slab",), ("pier", "slab")])
 def test_an_elastic_slab_that_leans_on_a_corner_stands_and_is_pushed_as_a_rigid_one(elastic: tuple[str, ...], E: float):
     """The corner meets the slab inside an element: no force acts where the corner is not.

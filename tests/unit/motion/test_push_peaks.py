@@ -49,10 +49,10 @@ def arch(rng):
     return concio.arch(span=3.0, ring=rng.uniform(0.35, 0.5), voussoirs=7, friction=0.7, unit_weight=25, block="rigid")
 
 
-LONG = (pytest.param(stack, marks=pytest.mark.long), pytest.param(arch, marks=pytest.mark.long))
+LONG = tuple(pytest.param(kind, marks=pytest.mark.long) for kind in (neighbours, stack, arch))
 
 
-@pytest.mark.parametrize("kind", [pillar, tied, neighbours, *LONG], ids=lambda f: f.__name__)
+@pytest.mark.parametrize("kind", [pillar, tied, *LONG], ids=lambda f: f.__name__)
 @pytest.mark.parametrize("seed", range(sample(1, 6)))
 def test_the_peak_does_not_depend_on_the_step(kind, seed):
     """Within a millionth, with steps from a sixth of the usual one to its double."""
@@ -76,7 +76,7 @@ def test_a_peak_is_as_hand_statics_says_but_for_what_joints_give_way():
         assert concio.push(model, step=step).peak == pytest.approx(0.25, rel=1e-5)
 
 
-@pytest.mark.parametrize("seed", range(sample(2, 8)))
+@pytest.mark.parametrize("seed", range(sample(1, 8)))
 def test_bodies_meet_where_they_do(seed):
     """The top corner of a pillar that turns about its toe has moved by the gap; nothing is carried across before.
 

@@ -9,6 +9,7 @@ from scipy.linalg import expm
 import concio
 from concio.analysis.motion.springs import Springs
 from motion_models import G, standing
+from samples import sample
 
 
 def test_springs_store_the_work_that_deforms_them():
@@ -36,7 +37,7 @@ def test_springs_store_the_work_that_deforms_them():
     assert springs.broken(np.array([True, False, False, True])).longest.tolist() == [0.0, 0.0, 0.0, 0.0]
 
 
-@pytest.mark.parametrize("start", [(0.0, -0.01), (0.02, 0.0)])
+@pytest.mark.parametrize("start", [(0.02, 0.0), (0.0, -0.01)][: sample(1, 2)])
 def test_damping_in_proportion_to_joints_against_the_exact_motion_of_a_block(start):
     """M q'' + b K q' + K q = 0 about the rest, K = C' k C of the joint in statics; normal and tangential springs."""
     law = concio.JointLaw(1.0, normal_stiffness=2e3, tangential_stiffness=6e2)

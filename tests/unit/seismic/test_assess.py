@@ -74,7 +74,7 @@ def test_the_followed_curve_of_one_block_is_that_of_its_turning_resultants() -> 
     assert worst.limits["SLV"].T > 2.85835
 
 
-@pytest.mark.parametrize(("n", "alpha"), [(20, 0.7644110), (80, 0.7643824)])
+@pytest.mark.parametrize(("n", "alpha"), [(20, 0.7644110), pytest.param(80, 0.7643824, marks=pytest.mark.long)])
 def test_vertical_bending_finds_the_best_joint(n: int, alpha: float) -> None:
     worst = concio.assess(bending(n), site=site(), live="live", direction="right", levels=["SLV"]).worst
     assert worst is not None
@@ -336,7 +336,7 @@ def test_the_spectrum_of_another_code() -> None:
     assert check(found, "SLV", "displacement").demand == pytest.approx(demand)
 
 
-@pytest.mark.parametrize("n", [1, 30])
+@pytest.mark.parametrize("n", [1, 6, pytest.param(30, marks=pytest.mark.long)])
 def test_courses_that_crush_tend_to_the_monolithic_wall_from_below(n: int) -> None:
     """The hinge stands N / (2 f) from the edge: alpha_0 falls short of the closed form by 84.4^2 / (2 f 271.2)."""
     closed = 27.42 / 271.2

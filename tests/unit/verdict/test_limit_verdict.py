@@ -200,7 +200,7 @@ def walls(seed: int) -> Model:
     return concio.wall(length=rng.uniform(0.3, 0.6), height=0.5, block_size=(0.3, 0.25), **options)
 
 
-@pytest.mark.parametrize("seed", range(sample(3, 30)))
+@pytest.mark.parametrize("seed", range(sample(1, 30)))
 def test_what_to_design_with_is_least_and_below_the_bound(seed: int) -> None:
     found = concio.limit(walls(seed), path=True, steps=True, search=True)
     low, top = found.bracket
@@ -217,7 +217,7 @@ def test_what_to_design_with_is_least_and_below_the_bound(seed: int) -> None:
     assert "not carried" not in text or "in one step" in text
 
 
-@pytest.mark.parametrize("seed", range(sample(3, 12)))
+@pytest.mark.parametrize("seed", range(sample(1, 12)))
 def test_a_load_s_times_as_large_has_one_s_th_of_the_multiplier_and_the_same_kN(seed: int) -> None:
     model = walls(seed)
     s = float(np.exp(np.random.default_rng(seed).uniform(-3, 3)))
@@ -230,7 +230,7 @@ def test_a_load_s_times_as_large_has_one_s_th_of_the_multiplier_and_the_same_kN(
     assert two.associated.multiplier * s == pytest.approx(one.associated.multiplier, rel=1e-6)
 
 
-@pytest.mark.parametrize("seed", range(sample(3, 12)))
+@pytest.mark.parametrize("seed", range(sample(1, 12)))
 def test_names_of_groups_and_a_block_elsewhere_change_nothing(seed: int) -> None:
     model = walls(seed)
     one = concio.limit(model, search=False)
