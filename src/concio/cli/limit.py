@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, loaded
+from concio.cli.options import EngineOf, File, Json, Language, Quiet, UnitsOf, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import found_so_far, progress_bar, verdict_so_far
@@ -49,6 +49,7 @@ def limit(
         bool, typer.Option("--quick", help="The upper bound alone: no path, no steps, no search, no friction margin.")
     ] = False,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for figures of the mechanisms.")] = None,
+    language: Language = "en",
     engine: EngineOf = None,
     units: UnitsOf = None,
     json: Json = False,
@@ -107,7 +108,7 @@ def limit(
             tell([solving_line(word, solved)])
     if out is not None:
         with replaced_directory(out) as fresh:
-            written = write_limit(found, told, fresh)
+            written = write_limit(found, told, fresh, language)
         tell([f"  written              {out}: {', '.join(written)}"])
     if json:
         print_json(told)

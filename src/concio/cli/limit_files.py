@@ -1,22 +1,25 @@
-"""What ``concio limit --out`` writes: numbers, and a figure of each mechanism."""
+"""What ``concio limit --out`` writes: numbers, a figure of each mechanism, and the report."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from concio.analysis.limit import LimitResult
+from concio.report.limit_page import write_limit_report
 from concio.report.page import view_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def write_limit(found: LimitResult, told: dict[str, Any], place: Path) -> list[str]:
-    """Write ``summary.json`` and the figures there are; return the names of the files."""
+def write_limit(
+    found: LimitResult, told: dict[str, Any], place: Path, language: Literal["en", "it"] = "en"
+) -> list[str]:
+    """Write ``summary.json``, the figures there are and the report; return the names of the files."""
     text = json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False)
     (place / "summary.json").write_text(text + "\n", encoding="utf-8")
     written, plots = ["summary.json"], found.plot
@@ -31,7 +34,8 @@ def write_limit(found: LimitResult, told: dict[str, Any], place: Path) -> list[s
         shown = {**view_of([result for _, result in motions], [words for words, _ in motions]), "alternatives": True}
         (place / "motions.json").write_text(json.dumps(shown, allow_nan=False), encoding="utf-8")
         written.append("motions.json")
-    return written
+    write_limit_report(found, place / "report.html", language=language)
+    return [*written, "report.html"]
 
 
 def _save(axes: Axes, place: Path) -> list[str]:

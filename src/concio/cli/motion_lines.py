@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
@@ -80,7 +81,10 @@ def shake_lines(result: DynamicsResult) -> list[str]:
     ]
 
 
-def write_motion(result: PushResult | DynamicsResult, place: Path, films: tuple[str, ...], series: bool) -> list[str]:
+def write_motion(
+    result: PushResult | DynamicsResult, place: Path, films: tuple[str, ...], series: bool,
+    language: Literal["en", "it"] = "en",
+) -> list[str]:  # fmt: skip
     """Write summary, histories, figures, report, the motion itself, films and VTU files; return their names."""
     (place / "summary.json").write_text(
         json.dumps(result.summary(), indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8"
@@ -126,7 +130,7 @@ def write_motion(result: PushResult | DynamicsResult, place: Path, films: tuple[
             assert figure is not None
             figure.savefig(place / f"{name}.{form}", dpi=150)
         names.append(f"{name}.png")
-    write_motion_report(result, place / "report.html")
+    write_motion_report(result, place / "report.html", language=language)
     save_motion(result, place / "motion.npz")
     for film in films:
         try:

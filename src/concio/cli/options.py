@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 File = Annotated[Path, typer.Argument(help="Model file (TOML); - reads standard input.", show_default=False)]
 Out = Annotated[Path | None, typer.Option("--out", "-o", help="Directory for figures, report and numbers.")]
+Language = Annotated[Literal["en", "it"], typer.Option("--language", "-l", help="Language of the report.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing; only the exit code is set.")]
 UnitsOf = Annotated[

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, factors_of, loaded
+from concio.cli.options import EngineOf, File, Json, Language, Quiet, UnitsOf, factors_of, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar, verdict_so_far
@@ -42,6 +42,7 @@ def path(
     ] = False,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for curve, events and last state.")] = None,
     every: Annotated[bool, typer.Option("--all", help="List every event.")] = False,
+    language: Language = "en",
     engine: EngineOf = None,
     units: UnitsOf = None,
     json: Json = False,
@@ -88,7 +89,7 @@ def path(
     verdict_so_far(found.verdict)
     if out is not None:
         with replaced_directory(out) as fresh:
-            write_path(found, chosen, fresh)
+            write_path(found, chosen, fresh, language)
     if json:
         print_json(path_facts(found, chosen))
     else:

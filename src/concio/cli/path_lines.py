@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -112,7 +112,7 @@ def _tensions(found: PathResult) -> dict[str, np.ndarray]:
     return {f"tension {tie.name} [kN]": forces[:, k] for k, tie in enumerate(found.assembly.model.ties)}
 
 
-def write_path(found: PathResult, point: ControlPoint, place: Path) -> None:
+def write_path(found: PathResult, point: ControlPoint, place: Path, language: Literal["en", "it"]) -> None:
     """Write summary, curve, events, figure, a report with a slider of load steps, and the last state's results."""
     from matplotlib.figure import Figure
 
@@ -146,4 +146,4 @@ def write_path(found: PathResult, point: ControlPoint, place: Path) -> None:
     for form in ("png", "svg"):
         figure.savefig(place / f"path.{form}", dpi=150)
     write_result(found.result(), place / "end", report=False)
-    write_path_report(found, place / "report.html", point=point)
+    write_path_report(found, place / "report.html", point=point, language=language)

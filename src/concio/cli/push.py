@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from concio.cli.options import EngineOf, Factors, File, Json, Quiet, UnitsOf, factors_of, loaded
+from concio.cli.options import EngineOf, Factors, File, Json, Language, Quiet, UnitsOf, factors_of, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.path import control_of
@@ -68,6 +68,7 @@ def push(
     film: Film = None,
     series: Series = False,
     every: Annotated[bool, typer.Option("--all", help="List every event.")] = False,
+    language: Language = "en",
     engine: EngineOf = None,
     units: UnitsOf = None,
     json: Json = False,
@@ -107,7 +108,7 @@ def push(
     if out is not None:
         verdict_so_far(found.verdict)
         with replaced_directory(out) as fresh:
-            written = write_motion(found, fresh, tuple(film or ()), series)
+            written = write_motion(found, fresh, tuple(film or ()), series, language)
     if json:
         print_json(found.summary())
     else:

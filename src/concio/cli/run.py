@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from concio.cli.options import EngineOf, Factors, File, Json, Out, Quiet, UnitsOf, factors_of, in_units
+from concio.cli.options import EngineOf, Factors, File, Json, Language, Out, Quiet, UnitsOf, factors_of, in_units
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory
 from concio.cli.progress import progress_bar, verdict_so_far
@@ -18,6 +18,7 @@ def run(
     file: File,
     out: Out = None,
     method: Annotated[str, typer.Option("--method", "-m", help="Solver by name.")] = "auto",
+    language: Language = "en",
     engine: EngineOf = None,
     factor: Factors = None,
     json: Json = False,
@@ -45,7 +46,7 @@ def run(
     if out is not None:
         from concio.io.result_dir import write_result
 
-        written = write_result(result, out, figures=figures)
+        written = write_result(result, out, figures=figures, language=language)
     if json:
         print_json(result.summary())
     else:

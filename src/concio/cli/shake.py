@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from concio.cli.options import EngineOf, Factors, File, Json, Quiet, UnitsOf, factors_of, loaded
+from concio.cli.options import EngineOf, Factors, File, Json, Language, Quiet, UnitsOf, factors_of, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import replaced_directory
 from concio.cli.path import control_of
@@ -47,6 +47,7 @@ def shake(
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for histories, report and film.")] = None,
     film: Film = None,
     series: Series = False,
+    language: Language = "en",
     engine: EngineOf = None,
     units: UnitsOf = None,
     json: Json = False,
@@ -115,7 +116,7 @@ def shake(
     if out is not None:
         verdict_so_far(found.verdict)
         with replaced_directory(out) as fresh:
-            written = write_motion(found, fresh, tuple(film or ()), series)
+            written = write_motion(found, fresh, tuple(film or ()), series, language)
     if json:
         print_json(found.summary())
     else:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from concio.cli.options import File, Json, Quiet
+from concio.cli.options import File, Json, Language, Quiet
 from concio.cli.outcome import QUIET, guarded, print_json, say
 from concio.cli.output import replaced_file
 from concio.cli.progress import duration
@@ -36,6 +36,7 @@ def study(
     ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Resume the study in --out.")] = False,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw figures into the report.")] = True,
+    language: Language = "en",
     json: Json = False,
     quiet: Quiet = False,
 ) -> int:
@@ -66,8 +67,9 @@ def study(
     table, report = (directory / name for name in WRITTEN)
     with replaced_file(table) as fresh:
         write_csv(found.table(), fresh)
+    title = f"Study of {file.name}" if language == "en" else f"Studio di {file.name}"
     with replaced_file(report) as fresh:
-        write_study_report(found, fresh, title=f"Study of {file.name}", figures=figures)
+        write_study_report(found, fresh, title=title, figures=figures, language=language)
     add_own(directory, [table, report], begin=True)
     if json:
         print_json({"status": found.verdict.status, **found.summary()})

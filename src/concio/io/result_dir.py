@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from concio.arguments import strict
 from concio.io.csv_table import write_csv
@@ -34,7 +34,14 @@ if TYPE_CHECKING:
 
 
 @strict
-def write_result(result: Result, directory: Path | str, *, figures: bool = True, report: bool = True) -> list[Path]:
+def write_result(
+    result: Result,
+    directory: Path | str,
+    *,
+    figures: bool = True,
+    report: bool = True,
+    language: Literal["en", "it"] = "en",
+) -> list[Path]:
     """Write a result directory; what an earlier run wrote there is replaced, anything else stays.
 
     Parameters
@@ -43,6 +50,8 @@ def write_result(result: Result, directory: Path | str, *, figures: bool = True,
     directory : Path or str
     figures, report : bool
         Whether to draw the figures and to write the HTML report.
+    language : {"en", "it"}
+        Of the report.
 
     Returns
     -------
@@ -58,11 +67,13 @@ def write_result(result: Result, directory: Path | str, *, figures: bool = True,
     """
     directory = Path(directory)
     with owned_directory(directory) as fresh:
-        written = _write_all(result, fresh, figures, report)
+        written = _write_all(result, fresh, figures, report, language)
     return [directory / path.relative_to(fresh) for path in written]
 
 
-def _write_all(result: Result, place: Path, figures: bool, report: bool) -> list[Path]:
+def _write_all(
+    result: Result, place: Path, figures: bool, report: bool, language: Literal["en", "it"]
+) -> list[Path]:
     summary = place / "summary.json"
     text = json.dumps(result.summary(), indent=2, ensure_ascii=False, allow_nan=False)
     summary.write_text(text + "\n", encoding="utf-8")
@@ -82,13 +93,13 @@ def _write_all(result: Result, place: Path, figures: bool, report: bool) -> list
 
         def into_the_report(name: str, axes: Axes) -> None:
             drawing = folder / f"{name}.svg"
-            drawn.append(captioned(name, axes, dots=drawing.stat().st_size > LARGEST_SVG))
+            drawn.append(captioned(name, axes, language, dots=drawing.stat().st_size > LARGEST_SVG))
 
         written += write_figures(result, folder, then=into_the_report if report else None)
     if report:
         from concio.report.page import report_of
 
         page = place / "report.html"
-        page.write_text(report_of(result, drawn if figures else None), encoding="utf-8")
+        page.write_text(report_of(result, drawn if figures else None, language), encoding="utf-8")
         written.append(page)
     return written

@@ -21,11 +21,15 @@ if TYPE_CHECKING:
 Array = np.ndarray
 
 HEADINGS: dict[str, str] = {
-    "body": "block", "body_a": "between", "body_b": "and", "u_x": "move x", "u_y": "move y", "s_1": "largest stress",
+    "body": "block", "body_a": "between", "body_b": "and", "u_x": "move x", "u_y": "move y",
+    "u_z": "move z", "s_1": "largest stress",
     "s_2": "smallest stress", "normal_force": "normal force", "shear_force": "shear force", "shear_size": "shear force",
     "open_share": "open", "force_x": "force x", "force_y": "force y",
 }  # fmt: skip
 """Headings of columns where their names are not words."""
+
+GIVEN = frozenset({"body", "body_a", "body_b", "support", "tie", "role"})
+"""Columns whose words the engineer gave: they stay as they are in every language."""
 
 LARGEST_SVG = 350_000
 """Drawings above this many bytes are embedded as images of dots."""
@@ -52,7 +56,7 @@ def page_html(
     return (
         f'<!DOCTYPE html><html lang="{language}"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f'<title>{escape(title)} &middot; concio</title><link rel="icon" href="data:,">'
+        f'<title translate=no>{escape(title)} &middot; concio</title><link rel="icon" href="data:,">'
         f'<style>{styles}{style}</style></head><body class="{kind}"><main>{body}</main>'
         f"<script>{script}{resource('print.js')}</script></body></html>\n"
     )
@@ -102,16 +106,16 @@ def _column(name: str, values: Array, units: Units) -> tuple[str, list[str]]:
     """Return the heading and the cells of a column; what a cell rounds stands in its title, in kN and m."""
     word = HEADINGS.get(name, name.replace("_", " "))
     if not np.issubdtype(values.dtype, np.floating):
-        return word, [_cell(value) for value in values]
+        return word, [_cell(value, given=name in GIVEN) for value in values]
     texts, symbol = units.column(KINDS.get(name, "number"), values.tolist())
     told = [f'<td class=n title="{float(v)!r}">{text}</td>' for v, text in zip(values, texts, strict=True)]
     return f"{word} [{symbol}]" if symbol else word, told
 
 
-def _cell(value: object) -> str:
+def _cell(value: object, *, given: bool) -> str:
     if isinstance(value, bool | np.bool_):
         return f"<td>{'yes' if value else 'no'}</td>"
-    return f"<td>{escape(str(value))}</td>"
+    return f"<td{' translate=no' * given}>{escape(str(value))}</td>"
 
 
 def figure_html(axes: Axes, name: str, caption: str, *, dots: bool = False) -> str:

@@ -2,6 +2,7 @@
 // Plays the frames of a motion on a canvas: bodies true to scale, a slider, a button. No library.
 (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
+  const say = (word) => (data.said || {})[word] ?? word;
   const canvas = document.getElementById("film");
   const slider = document.getElementById("frame");
   const button = document.getElementById("play");
@@ -58,13 +59,13 @@
     window.requestAnimationFrame(step);
   }
 
-  function stop() { playing = false; button.textContent = "Play"; button.setAttribute("aria-pressed", "false"); }
+  function stop() { playing = false; button.textContent = say("Play"); button.setAttribute("aria-pressed", "false"); }
 
   button.addEventListener("click", () => {
     if (playing) { stop(); return; }
     if (now === data.at.length - 1) now = 0;
     playing = true;
-    button.textContent = "Pause";
+    button.textContent = say("Pause");
     button.setAttribute("aria-pressed", "true");
     window.requestAnimationFrame((time) => { begun = time; from = data.at[now]; step(time); });
   });

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,7 +18,11 @@ from concio.model.polyhedron import Polyhedron
 from concio.plot.motion_figure import plot_capacity, plot_energy, plot_ground, plot_history
 from concio.post.frames import box_of, frames, positions
 from concio.post.solid_frames import solid_frames
-from concio.report.html_parts import figure_html, page_html, resource
+from concio.report.html_parts import figure_html, page_html, resource, verdict_html
+from concio.report.italian_page import Language, figure_in, page_in, script_words, text_in
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 SECONDS = 12.0
 """How long the film of a push takes; a motion plays at its own speed."""
@@ -58,13 +62,16 @@ HOW = {
 
 
 @strict
-def write_motion_report(result: PushResult | DynamicsResult, path: Path | str) -> Path:
+def write_motion_report(
+    result: PushResult | DynamicsResult, path: Path | str, *, language: Language = "en"
+) -> Path:
     """Write the report of a push or a time history.
 
     Parameters
     ----------
     result : PushResult or DynamicsResult
     path : Path or str
+    language : {"en", "it"}
 
     Returns
     -------
@@ -72,34 +79,40 @@ def write_motion_report(result: PushResult | DynamicsResult, path: Path | str) -
         ``path``.
     """
     path = Path(path)
-    path.write_text(motion_html(result), encoding="utf-8")
+    path.write_text(motion_html(result, language), encoding="utf-8")
     return path
 
 
-def motion_html(result: PushResult | DynamicsResult) -> str:
+def motion_html(result: PushResult | DynamicsResult, language: Language = "en") -> str:
     """Return the report as a text; see :func:`write_motion_report`."""
     title = result.model.title or ("Pushed over" if isinstance(result, PushResult) else "Motion")
+
+    def drawn(axes: Axes, name: str, caption: str) -> str:
+        return figure_html(figure_in(axes, language), name, caption)
+
     if isinstance(result, PushResult):
-        figures = figure_html(plot_capacity(result), "capacity", "Multiplier over the controlled displacement.")
+        figures = drawn(plot_capacity(result), "capacity", "Multiplier over the controlled displacement.")
         tables = _events(result)
     else:
-        figures = figure_html(plot_history(result), "rotations", "Blocks that turn most.")
+        figures = drawn(plot_history(result), "rotations", "Blocks that turn most.")
         if result.ground.any():
-            figures += figure_html(plot_ground(result), "ground", "Acceleration of the ground.")
-        figures += figure_html(plot_energy(result), "energy", "Energy stored, dissipated and put in.")
+            figures += drawn(plot_ground(result), "ground", "Acceleration of the ground.")
+        figures += drawn(plot_energy(result), "energy", "Energy stored, dissipated and put in.")
         tables = _shares(result)
-    film, data, script = _space_film(result) if result.model.dim == 3 else _plane_film(result)
+    film, told, script = _space_film(result) if result.model.dim == 3 else _plane_film(result)
     moves = f"<section class=moves><h2>The structure as it moves, true to scale</h2>{film}</section>"
+    kept = " translate=no" if result.model.title else ""
+    data = {**told, **script_words(language), "words": [text_in(word, language) for word in told["words"]]}
     text = json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
     body = (
-        f'<header><p class="brand">concio</p><h1>{escape(title)}</h1></header>'
+        f'<header><p class="brand">concio</p><h1{kept}>{escape(title)}</h1></header>'
         f"<section id=verdict>{_verdict(result)}</section>"
         f"{moves}<section id=figures><h2>Figures</h2>{figures}</section>"
         f"<section id=tables>{tables}</section>"
         f"<footer>Written by concio {escape(concio.__version__)}. Forces in kN, lengths in m, time in s.</footer>"
         f'<script type="application/json" id="data">{text}</script>'
     )
-    return page_html(title, body, script=resource(script))
+    return page_in(page_html(title, body, script=resource(script)), language)
 
 
 def _plane_film(result: PushResult | DynamicsResult) -> tuple[str, dict[str, Any], str]:
@@ -162,19 +175,14 @@ def _film(result: PushResult | DynamicsResult) -> dict[str, Any]:
 
 def _verdict(result: PushResult | DynamicsResult) -> str:
     """Return the verdict of a motion as its own section, word for word what every other place says."""
-    verdict = result.verdict
-    lines = "".join(f"<li>{escape(line)}</li>" for line in verdict.lines(result.model.report, indent=""))
-    return (
-        f'<div class="verdict {verdict.tone}"><h2>{escape(verdict.headline)}</h2><p>{escape(verdict.sentence)}</p>'
-        f"<p>{escape(verdict.proof)}</p><p>{escape(verdict.meaning)}</p><ul>{lines}</ul></div>"
-    )
+    return verdict_html(result.verdict, result.verdict.proof, units=result.model.report)
 
 
 def _events(result: PushResult) -> str:
     rows = "".join(
         f"<tr><td class=n>{number(1e3 * float(result.displacement[e.step]), 4)}</td><td class=n>"
-        f"{number(float(result.multiplier[e.step]), 4)}</td><td>{escape(e.bodies[0])}</td>"
-        f"<td>{escape(e.bodies[1])}</td>"
+        f"{number(float(result.multiplier[e.step]), 4)}</td><td translate=no>{escape(e.bodies[0])}</td>"
+        f"<td translate=no>{escape(e.bodies[1])}</td>"
         f"<td>{escape(e.kind)}</td>{''.join(f'<td class=n>{number(v, 4)}</td>' for v in e.at)}</tr>"
         for e in result.events[:SHOWN]
     )

@@ -2,6 +2,7 @@
 // Plays a motion in space on a canvas: faces sorted by depth, dragged to turn, wheel to come nearer. No library.
 (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
+  const say = (word) => (data.said || {})[word] ?? word, told = (v) => { const text = v.toPrecision(4); return data.said ? text.replace(".", ",") : text; };
   const [canvas, slider, button, word, speed, chart, picked] =
     ["film", "frame", "play", "word", "speed", "history", "picked"].map((id) => document.getElementById(id));
   const bodies = data.bodies, frames = data.frames, last = frames.length - 1;
@@ -88,8 +89,8 @@
     line(away, most[0], "#8C4A1F"); line(turned, most[1], "#2F5D8A");
     pen.beginPath(); pen.moveTo(x(now), 20); pen.lineTo(x(now), 140); pen.strokeStyle = "#5B5346"; pen.stroke();
     pen.font = "12px sans-serif";
-    pen.fillStyle = "#8C4A1F"; pen.fillText(`moved: ${away[now].toPrecision(4)} mm, at most ${most[0].toPrecision(4)} mm`, left, 14);
-    const text = `turned: ${turned[now].toPrecision(4)}°, at most ${most[1].toPrecision(4)}°`;
+    pen.fillStyle = "#8C4A1F"; pen.fillText(`${say("moved")}: ${told(away[now])} mm, ${say("at most")} ${told(most[0])} mm`, left, 14);
+    const text = `${say("turned")}: ${told(turned[now])}°, ${say("at most")} ${told(most[1])}°`;
     pen.fillStyle = "#2F5D8A"; pen.fillText(text, right - pen.measureText(text).width, 14);
     picked.value = String(b);
   }
@@ -103,12 +104,12 @@
     if (k !== now) { now = k; draw(); }
     window.requestAnimationFrame(step);
   }
-  const stop = () => { playing = false; button.textContent = "Play"; button.setAttribute("aria-pressed", "false"); };
+  const stop = () => { playing = false; button.textContent = say("Play"); button.setAttribute("aria-pressed", "false"); };
   const start = () => window.requestAnimationFrame((time) => { begun = time; from = data.at[now]; step(time); });
   button.addEventListener("click", () => {
     if (playing) { stop(); return; }
     if (now === last) now = 0;
-    playing = true; button.textContent = "Pause"; button.setAttribute("aria-pressed", "true");
+    playing = true; button.textContent = say("Pause"); button.setAttribute("aria-pressed", "true");
     start();
   });
   speed.addEventListener("change", () => { if (playing) { playing = false; window.requestAnimationFrame(() => { playing = true; start(); }); } });

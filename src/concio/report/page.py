@@ -17,6 +17,7 @@ from concio.errors import InputError
 from concio.model.described import law_words, material_words
 from concio.plot.figures import TITLES, suitable_figures
 from concio.report.html_parts import figure_html, resource, table_html, verdict_html
+from concio.report.italian_page import Language, figure_in, page_in, script_words, text_in
 from concio.report.space_data import space_view_data
 from concio.report.space_tables import space_tables_html, ties_html
 from concio.report.view_data import view_data
@@ -35,7 +36,12 @@ ROWS = 250
 
 @strict
 def write_report(
-    results: Result | Sequence[Result], path: Path | str, *, labels: Sequence[str] | None = None, figures: bool = True
+    results: Result | Sequence[Result],
+    path: Path | str,
+    *,
+    labels: Sequence[str] | None = None,
+    figures: bool = True,
+    language: Language = "en",
 ) -> Path:
     """Write the report of a result, or of a load path.
 
@@ -48,6 +54,7 @@ def write_report(
         What the steps are called; default their load factors.
     figures : bool
         Whether to draw figures into it; the interactive view is always there.
+    language : {"en", "it"}
 
     Returns
     -------
@@ -55,13 +62,18 @@ def write_report(
         ``path``.
     """
     path = Path(path)
-    path.write_text(report_html(results, labels=labels, figures=figures), encoding="utf-8")
+    text = report_html(results, labels=labels, figures=figures, language=language)
+    path.write_text(text, encoding="utf-8")
     return path
 
 
 @strict
 def report_html(
-    results: Result | Sequence[Result], *, labels: Sequence[str] | None = None, figures: bool = True
+    results: Result | Sequence[Result],
+    *,
+    labels: Sequence[str] | None = None,
+    figures: bool = True,
+    language: Language = "en",
 ) -> str:
     """Return the report as a text; see :func:`write_report`.
 
@@ -78,28 +90,38 @@ def report_html(
         msg = "the steps belong to different models"
         raise InputError(msg, hint="write one report for each model")
     labels = [_label(s, i) for i, s in enumerate(steps)] if labels is None else list(labels)
-    return page(steps, labels, verdict=_verdict(steps[-1]), figures=_figures(steps[-1]) if figures else "")
+    drawn = _figures(steps[-1], language) if figures else ""
+    return page(steps, labels, verdict=_verdict(steps[-1]), figures=drawn, language=language)
 
 
-def report_of(result: Result, drawn: Sequence[str] | None = None) -> str:
+def report_of(result: Result, drawn: Sequence[str] | None = None, language: Language = "en") -> str:
     """Return the report of one result with figures that are drawn already, as :func:`captioned` gives them."""
-    figures = _figures(result) if drawn is None else "".join(drawn)
-    return page([result], [_label(result, 0)], verdict=_verdict(result), figures=figures)
+    figures = _figures(result, language) if drawn is None else "".join(drawn)
+    return page([result], [_label(result, 0)], verdict=_verdict(result), figures=figures, language=language)
 
 
-def captioned(name: str, axes: Axes, *, dots: bool = False) -> str:
+def captioned(name: str, axes: Axes, language: Language = "en", *, dots: bool = False) -> str:
     """Return a figure of a result for its report, under its title; with ``dots`` as PNG without trying SVG."""
-    return figure_html(axes, name, TITLES[name], dots=dots)
+    return figure_html(figure_in(axes, language), name, TITLES[name], dots=dots)
 
 
-def page(steps: Sequence[Result], labels: Sequence[str], *, verdict: str, figures: str, more: str = "") -> str:
+def page(
+    steps: Sequence[Result],
+    labels: Sequence[str],
+    *,
+    verdict: str,
+    figures: str,
+    more: str = "",
+    language: Language = "en",
+) -> str:
     """Return a report of steps that share one assembly: what was found in HTML, the view, figures, ``more``, tables."""
     last = steps[-1]
     space = last.model.dim == 3
-    shown = view_of(steps, labels)
+    shown = {**view_of(steps, [text_in(label, language) for label in labels]), **script_words(language)}
     data = json.dumps(shown, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     parts = {
         "TITLE": escape(last.model.title or "Result"),
+        "NAME": _title(last),
         "STYLE": resource("report.css") + (resource("space_view.css") if space else ""),
         "SCRIPT": resource("space_view.js" if space else "view.js") + resource("print.js"),
         "VIEW": resource("space_view.html" if space else "view.html"),
@@ -117,12 +139,17 @@ def page(steps: Sequence[Result], labels: Sequence[str], *, verdict: str, figure
     for piece in pieces:
         name, rest = piece.split("}}", 1)
         head += parts[name] + rest
-    return head
+    return page_in(head, language)
 
 
 def view_of(steps: Sequence[Result], labels: Sequence[str]) -> dict[str, Any]:
     """Return what the view of steps on one assembly draws, as plain types: outlines, motions, states of joints."""
     return (space_view_data if steps[-1].model.dim == 3 else view_data)(steps, labels)
+
+
+def _title(result: Result) -> str:
+    """Return the heading: a title that was given is a name, and stays as it is in every language."""
+    return f"<h1 translate=no>{escape(result.model.title)}</h1>" if result.model.title else "<h1>Result</h1>"
 
 
 def _units_sentence(units: Units) -> str:
@@ -173,23 +200,24 @@ def _model(result: Result) -> str:
     ]
     for name, material in model.materials.items():
         if any(b.material == name and b.kind != "fixed" for b in model.bodies):
-            rows.append((f"material {name}", material_words(material, units)))
-    rows += [(f"joint {name}", law_words(law, units)) for name, law in model.laws.items()]
+            rows.append((f"material '{name}'", material_words(material, units)))
+    rows += [(f"joint law '{name}'", law_words(law, units)) for name, law in model.laws.items()]
     rows.append(("total load", units.force_vector(result.total_load)))
     if result.factors:
-        rows.append(("load factors", ", ".join(f"{g} = {number(v)}" for g, v in result.factors.items())))
+        rows.append(("load factors", _label(result, 0)))
     if result.solved:
         contacts = result.contacts
         rows.append(("largest settlement", units.text("motion", result.max_settlement)))
         rows.append(("contact pairs", contacts.counted))
-    seconds = result.seconds.get("total", float("nan"))
-    rows.append(("solved by", f"{result.solved_by}, {result.solution.iterations} iterations, {seconds:.2g} s"))
+    if "total" in result.seconds:
+        spent = f"{result.solution.iterations} iterations, {result.seconds['total']:.2g} s"
+        rows.append(("solved by", f"{result.solved_by}, {spent}"))
     cells = "".join(f"<tr><th>{escape(k)}</th><td>{escape(v)}</td></tr>" for k, v in rows)
     return f'<div class=scroll><table class="facts"><tbody>{cells}</tbody></table></div>'
 
 
-def _figures(result: Result) -> str:
-    return "".join(captioned(name, draw()) for name, draw in suitable_figures(result).items())
+def _figures(result: Result, language: Language) -> str:
+    return "".join(captioned(name, draw(), language) for name, draw in suitable_figures(result).items())
 
 
 def _tables(result: Result) -> str:
@@ -228,4 +256,5 @@ def _note(count: int, what: str) -> str:
 
 def _tried(result: Result) -> str:
     lines = "".join(f"<li>{escape(line)}</li>" for line in result.solution.trace)
-    return f"<details><summary>What the solver did</summary><ol>{lines}</ol></details>" if lines else ""
+    log = f'<ol lang="en" translate=no>{lines}</ol>'
+    return f'<details class="log"><summary>What the solver did</summary>{log}</details>' if lines else ""

@@ -14,6 +14,7 @@ from concio.display import number
 from concio.plot.path_accessor import PathPlots
 from concio.post.path_curve import most_moving
 from concio.report.html_parts import figure_html, verdict_html
+from concio.report.italian_page import Language, figure_in
 from concio.report.page import page
 from concio.verdict.path_verdict import stage_loads, stage_sentence
 
@@ -29,7 +30,9 @@ MOST_EVENTS = 250
 
 
 @strict
-def write_path_report(found: PathResult, path: Path | str, *, point: ControlPoint | None = None) -> Path:
+def write_path_report(
+    found: PathResult, path: Path | str, *, point: ControlPoint | None = None, language: Language = "en"
+) -> Path:
     """Write the report of a load path.
 
     Parameters
@@ -38,6 +41,7 @@ def write_path_report(found: PathResult, path: Path | str, *, point: ControlPoin
     path : Path or str
     point : ControlPoint, optional
         Whose motion the load curve shows; by default the point that moved most in the end.
+    language : {"en", "it"}
 
     Returns
     -------
@@ -45,21 +49,22 @@ def write_path_report(found: PathResult, path: Path | str, *, point: ControlPoin
         ``path``.
     """
     path = Path(path)
-    path.write_text(path_html(found, point=point), encoding="utf-8")
+    path.write_text(path_html(found, point=point, language=language), encoding="utf-8")
     return path
 
 
 @strict
-def path_html(found: PathResult, *, point: ControlPoint | None = None) -> str:
+def path_html(found: PathResult, *, point: ControlPoint | None = None, language: Language = "en") -> str:
     """Return the report of a load path as a text; see :func:`write_path_report`."""
     chosen = report_steps(found)
     curves = PathPlots(found).stages(point=most_moving(found) if point is None else point)
     return page(
         [found.result(i) for i in chosen],
-        [step_words(found, i) for i in chosen],
+        [step_words(found, i, language) for i in chosen],
         verdict=verdict_html(found.verdict, found.verdict.proof, units=found.assembly.model.report),
-        figures=figure_html(curves[-1], "path", "Load against motion, stage by stage"),
+        figures=figure_html(figure_in(curves[-1], language), "path", "Load against motion, stage by stage"),
         more=_stages(found) + _events(found),
+        language=language,
     )
 
 
@@ -71,13 +76,14 @@ def report_steps(found: PathResult) -> list[int]:
     return sorted(ends | {int(i) for i in spread})
 
 
-def step_words(found: PathResult, step: int) -> str:
+def step_words(found: PathResult, step: int, language: Language = "en") -> str:
     """Return where a step lies, in words: stage and load."""
+    at = {"en": "at", "it": "a"}[language]
     chosen = found.steps[step]
     own = [i for i, s in enumerate(found.steps) if s.stage == chosen.stage]
     name, values = found.load(chosen.stage)
     value = float(values[len(values) - len(own) + own.index(step)])
-    return f"{found.stages[chosen.stage].name}: {name} at {number(value, 4)}"
+    return f"{found.stages[chosen.stage].name}: {name} {at} {number(value, 4)}"
 
 
 def _stages(found: PathResult) -> str:
@@ -117,6 +123,8 @@ def event_load(found: PathResult, event: NamedEvent) -> float:
 
 def _table(title: str, heads: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
     head = "".join(f"<th>{escape(h)}</th>" for h in heads)
-    body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
+    named = [" translate=no" * (head in ("stage", "joint")) for head in heads]
+    cells = [[f"<td{kept}>{escape(cell)}</td>" for kept, cell in zip(named, row, strict=True)] for row in rows]
+    body = "".join(f"<tr>{''.join(row)}</tr>" for row in cells)
     table = f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
     return f"<h2>{escape(title)}</h2><div class=scroll>{table}</div>"

@@ -1,9 +1,9 @@
-"""What alpha_0 depends on, in the assessment report: a sentence and a chart of bars."""
+"""What a multiplier depends on, in reports: a sentence and a chart of bars."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from concio.plot.sensitivity_figure import sensitivity_figure
 
@@ -11,12 +11,23 @@ if TYPE_CHECKING:
     from concio.analysis.sensitivity import Sensitivity, SensitivityRow
     from concio.report.assessment_texts import Texts
 
+Of = Literal["sens", "limit"]
+
 TOLD, SHOWS = 3, 5e-4
 """Numbers in the sentence at most, and the least change in per cent that is stated."""
 
 
-def sensitivity_html(t: Texts, found: Sensitivity, *, strip: bool = False) -> str:
-    """Return the part of a report on what a multiplier depends on; of a ``strip`` the plane thickness is its width."""
+def sensitivity_html(t: Texts, found: Sensitivity, *, strip: bool = False, of: Of = "sens") -> str:
+    """Return the part of a report on what a multiplier depends on; of a ``strip`` the plane thickness is its width.
+
+    Parameters
+    ----------
+    t : Texts
+    found : Sensitivity
+    strip : bool
+    of : {"sens", "limit"}
+        Whether it is alpha_0 of an assessment, or the associated bound of a limit load.
+    """
 
     def name(row: SensitivityRow) -> str:
         kind = "width" if strip and row.kind == "thickness" else row.kind.replace(" ", "_")
@@ -28,7 +39,7 @@ def sensitivity_html(t: Texts, found: Sensitivity, *, strip: bool = False) -> st
         change = more if math.isfinite(more) else -less
         if abs(change) > SHOWS:
             told.append(t.words["sens_part"].format(name=name(row), change=f"{'+' * (change > 0)}{t.n(change, 2)}"))
-    sides = " " + t.say("sens_sides") if any(row.one_sided for row in found.rows) else ""
+    sides = " " + t.say(f"{of}_sides") if any(row.one_sided for row in found.rows) else ""
     text = t.say("sens_sentence", parts="; ".join(told) or t.words["sens_none"])
-    drawn = t.figure(sensitivity_figure(found, t.words["sens_axis"], name), "figure_sensitivity", "bars")
-    return f"<p>{t.say('sens_text')}{sides}</p>{drawn}<p>{text}</p>"
+    drawn = t.figure(sensitivity_figure(found, t.words[f"{of}_axis"], name), f"figure_{of}", "bars")
+    return f"<p>{t.say(f'{of}_text')}{sides}</p>{drawn}<p>{text}</p>"

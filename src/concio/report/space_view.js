@@ -18,6 +18,8 @@
   };
 
   const data = JSON.parse($("data").textContent);
+  const said = data.said || {}, say = (word) => said[word] ?? word; /* another language than English */
+  const written = (number) => (data.said ? number.replace(".", ",") : number);
   const look = data.look, bodies = unpacked(data.bodies), pieces = unpacked(data.pieces), joints = unpacked(data.joints), ties = unpacked(data.ties);
   const steps = data.steps.map(() => null);
   const stepAt = (k) => (steps[k] ??= stepOf(unpacked(data.steps[k])));
@@ -43,7 +45,7 @@
     }
     return found;
   }
-  const STATES = ["open", "sticks", "slips", "is crushed"], STATE_LOOK = ["open", "stick", "slip", "crushed"];
+  const STATES = ["open", "sticks", "slips", "is crushed"].map(say), STATE_LOOK = ["open", "stick", "slip", "crushed"];
   const view = {
     turn: -0.7, lift: 0.45, x: 0, y: 0, z: 0, distance: 1, scale: data.scale, step: data.steps.length - 1, colour: "none",
     joints: true, forces: false, crosses: false, solid: 1, cut: [1, 1, 1], picked: null, playing: false, phase: 1,
@@ -58,9 +60,9 @@
     if (!Number.isFinite(v)) return "–";
     const size = Math.abs(v);
     if (v === 0 || size <= 1e-6 * beside) return "0";
-    if (size < 1e-4) return v.toExponential(2);
+    if (size < 1e-4) return written(v.toExponential(2));
     const short = Number(v.toPrecision(4));
-    return size >= 1e4 ? short.toLocaleString("en", { maximumFractionDigits: 0 }) : String(short);
+    return size >= 1e4 ? short.toLocaleString(document.documentElement.lang, { maximumFractionDigits: 0 }) : written(String(short));
   };
   const told = (v, kind, beside = 0) => {
     const [factor, symbol] = data.units[kind] || [1, kind];
@@ -258,7 +260,7 @@
   const typical = free[Math.floor(0.75 * (free.length - 1))] || data.size / 10;
 
   /* colours of blocks */
-  const WORDS = { s1: "largest principal stress", s3: "smallest principal stress", move: "displacement", pressure: "contact pressure" };
+  const WORDS = { s1: say("largest principal stress"), s3: say("smallest principal stress"), move: say("displacement"), pressure: say("contact pressure") };
   const KINDS = { s1: "stress", s3: "stress", move: "motion", pressure: "stress" };
   function recolour() {
     const pick = view.colour;
@@ -284,14 +286,14 @@
     const parts = [];
     if (shade) {
       const steps = Array.from({ length: 9 }, (_, i) => `rgb(${ramp(view.colour === "s3" ? i / 8 : 1 - i / 8).map((c) => Math.round(255 * c)).join()})`);
-      parts.push(`<span class="bar" style="background:linear-gradient(90deg,${steps.join()})"></span>${told(range[0], KINDS[view.colour])} to ${told(range[1], KINDS[view.colour])}, ${WORDS[view.colour]}`);
+      parts.push(`<span class="bar" style="background:linear-gradient(90deg,${steps.join()})"></span>${told(range[0], KINDS[view.colour])} ${say("to")} ${told(range[1], KINDS[view.colour])}, ${WORDS[view.colour]}`);
     }
     if (view.joints && step.state) {
-      const held = new Set(step.state), words = data.mechanism && !step.pressure ? ["opens", "stays closed", "slides", "is crushed"] : STATES;
-      for (const k of [0, 1, 2, 3]) if (held.has(k)) parts.push(`<span class="key" style="background:${look[STATE_LOOK[k]]}"></span>joint ${words[k]}`);
+      const held = new Set(step.state), words = data.mechanism && !step.pressure ? ["opens", "stays closed", "slides", "is crushed"].map(say) : STATES;
+      for (const k of [0, 1, 2, 3]) if (held.has(k)) parts.push(`<span class="key" style="background:${look[STATE_LOOK[k]]}"></span>${say("joint")} ${words[k]}`);
     }
-    if (view.crosses || view.forces) parts.push(`<span class="key" style="background:${look.compression}"></span>compression <span class="key" style="background:${look.tension}"></span>tension`);
-    if (ties.name.length) parts.push(`<span class="key" style="background:${look.tension}"></span>tie`);
+    if (view.crosses || view.forces) parts.push(`<span class="key" style="background:${look.compression}"></span>${say("compression")} <span class="key" style="background:${look.tension}"></span>${say("tension")}`);
+    if (ties.name.length) parts.push(`<span class="key" style="background:${look.tension}"></span>${say("tie")}`);
     $("legend").innerHTML = parts.map((p) => `<span>${p}</span>`).join(" ");
   }
 
@@ -391,22 +393,22 @@
   function describe() {
     const p = view.picked, info = $("info");
     const text = (s) => { const d = document.createElement("span"); d.textContent = s; return d.innerHTML; };
-    if (!p) { info.textContent = "Click a block or a joint to read its numbers."; return; }
+    if (!p) { info.textContent = say("Click a block or a joint to read its numbers."); return; }
     const answer = !!step.pressure, rows = [];
     if (p.body !== undefined) {
       const b = p.body, m = step.motion.subarray(6 * b, 6 * b + 6);
-      rows.push(`<b>${text(bodies.name[b])}</b> (${bodies.kind[b]}), volume ${digits(bodies.volume[b])} m³`);
-      const kind = answer ? "motion" : "m (direction only)";
-      rows.push(`moves x ${told(m[0], kind)}, y ${told(m[1], kind)}, z ${told(m[2], kind)}`);
-      rows.push(`turns about x ${digits(m[3])}, y ${digits(m[4])}, z ${digits(m[5])} rad`);
-      if (step.stress && Number.isFinite(step.stress[3 * b])) rows.push(`mean principal stresses ${[0, 1, 2].map((k) => told(step.stress[3 * b + k], "stress")).join(", ")}`);
+      rows.push(`<b>${text(bodies.name[b])}</b> (${say(bodies.kind[b])}), ${say("volume")} ${digits(bodies.volume[b])} m³`);
+      const kind = answer ? "motion" : say("m (direction only)");
+      rows.push(`${say("moves")} x ${told(m[0], kind)}, y ${told(m[1], kind)}, z ${told(m[2], kind)}`);
+      rows.push(`${say("turns about")} x ${digits(m[3])}, y ${digits(m[4])}, z ${digits(m[5])} rad`);
+      if (step.stress && Number.isFinite(step.stress[3 * b])) rows.push(`${say("mean principal stresses")} ${[0, 1, 2].map((k) => told(step.stress[3 * b + k], "stress")).join(", ")}`);
     } else {
       const k = p.cell, j = pieces.face[k], pair = pieces.pair[k];
-      rows.push(`joint <b>${text(bodies.name[joints.a[j]])}</b> | <b>${text(bodies.name[joints.b[j]])}</b>, ${digits(joints.area[j])} m²`);
+      rows.push(`${say("joint")} <b>${text(bodies.name[joints.a[j]])}</b> | <b>${text(bodies.name[joints.b[j]])}</b>, ${digits(joints.area[j])} m²`);
       if (answer) {
-        rows.push(`N ${told(step.N[j], "force")}, V ${told(step.V[j], "force")}, ${digits(100 * step.open_share[j])} % open`);
-        rows.push(`contact point ${pair}: ${STATES[step.state[k]]}, pressure ${told(step.pressure[k], "stress")}, gap ${told(step.gap[k], "motion")}, slip ${told(step.slip[k], "motion")}`);
-      } else if (step.state) rows.push(["opens", "stays closed", "slides"][step.state[k]]);
+        rows.push(`N ${told(step.N[j], "force")}, V ${told(step.V[j], "force")}, ${digits(100 * step.open_share[j])} % ${say("open")}`);
+        rows.push(`${say("contact point")} ${pair}: ${STATES[step.state[k]]}, ${say("pressure")} ${told(step.pressure[k], "stress")}, ${say("gap")} ${told(step.gap[k], "motion")}, ${say("slip")} ${told(step.slip[k], "motion")}`);
+      } else if (step.state) rows.push(say(["opens", "stays closed", "slides"][step.state[k]]));
     }
     info.innerHTML = rows.join("<br>");
   }
@@ -460,7 +462,7 @@
   const scaleText = () => { $("scale-text").textContent = data.mechanism && !step.pressure ? "" : `× ${digits(view.scale)}`; };
   listen("scale", "input", (e) => { view.scale = data.scale * (e.value / 100) ** 2; scaleText(); });
   listen("step", "input", (e) => { view.step = Number(e.value); setStep(); });
-  listen("play", "click", (e) => { view.playing = !view.playing; e.textContent = view.playing ? "stop" : "play"; if (view.playing) requestAnimationFrame(tick); else { view.phase = 1; } });
+  listen("play", "click", (e) => { view.playing = !view.playing; e.textContent = say(view.playing ? "stop" : "play"); if (view.playing) requestAnimationFrame(tick); else { view.phase = 1; } });
   let began = 0;
   function tick(now) {
     if (!view.playing) return;

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 import concio
 from concio.display import number
 from concio.plot.study_figures import suitable
-from concio.report.html_parts import figure_html, page_html
+from concio.report.html_parts import figure_html, page_html, question_html
+from concio.report.italian_page import Language, figure_in, page_in
 from concio.verdict.study_verdict import output_words, verdict_counts
 
 if TYPE_CHECKING:
@@ -22,7 +23,14 @@ SHOWN = 200
 """Failed runs listed one by one; of more, the first."""
 
 
-def write_study_report(study: StudyResult, path: Path | str, *, title: str = "Study", figures: bool = True) -> Path:
+def write_study_report(
+    study: StudyResult,
+    path: Path | str,
+    *,
+    title: str = "Study",
+    figures: bool = True,
+    language: Language = "en",
+) -> Path:
     """Write the report of a study.
 
     Parameters
@@ -31,6 +39,7 @@ def write_study_report(study: StudyResult, path: Path | str, *, title: str = "St
     path : Path or str
     title : str
     figures : bool
+    language : {"en", "it"}
 
     Returns
     -------
@@ -38,34 +47,38 @@ def write_study_report(study: StudyResult, path: Path | str, *, title: str = "St
         ``path``.
     """
     path = Path(path)
-    path.write_text(study_html(study, title=title, figures=figures), encoding="utf-8")
+    text = study_html(study, title=title, figures=figures, language=language)
+    path.write_text(text, encoding="utf-8")
     return path
 
 
-def study_html(study: StudyResult, *, title: str = "Study", figures: bool = True) -> str:
+def study_html(
+    study: StudyResult, *, title: str = "Study", figures: bool = True, language: Language = "en"
+) -> str:
     """Return the report as a text; see :func:`write_study_report`."""
     parts = [
-        f'<header><p class="brand">concio</p><h1>{escape(title)}</h1></header>',
+        f'<header><p class="brand">concio</p><h1 translate=no>{escape(title)}</h1></header>',
         f"<section id=verdict>{_head(study)}</section>",
         f"<section><h2>Outputs</h2>{_outputs(study)}</section>",
         f"<section><h2>Variables</h2>{_variables(study)}</section>",
     ]
     if figures:
-        drawn = "".join(figure_html(axes, name, caption) for name, axes, caption in suitable(study))
+        drawn = "".join(
+            figure_html(figure_in(axes, language), name, caption) for name, axes, caption in suitable(study)
+        )
         parts.append(f"<section id=figures><h2>Figures</h2>{drawn}</section>")
     parts.append(f"<section id=failed><h2>Runs without an answer</h2>{_failed(study)}</section>")
     parts.append(f"<footer>Written by concio {escape(concio.__version__)}. Forces in kN, lengths in m.</footer>")
-    return page_html(title, "".join(parts))
+    return page_in(page_html(title, "".join(parts)), language)
 
 
 def _head(study: StudyResult) -> str:
     v = study.verdict
-    rows = "".join(f"<li>{escape(line)}</li>" for line in v.lines(indent=""))
     early = " It stopped there because the stopping criterion was met." if study.stopped else ""
     counts = escape(verdict_counts(study))
     return (
         f'<div class="verdict {v.tone}"><h2>{escape(v.headline)}</h2><p>Sample: {escape(study.sample.design)}, seed '
-        f"{study.sample.seed}.{early} {escape(v.meaning)}</p><p>{counts}</p><ul>{rows}</ul></div>"
+        f"{study.sample.seed}.{early} {escape(v.meaning)}</p><p>{counts}</p></div>{question_html(v)}"
     )
 
 
@@ -77,14 +90,17 @@ def _outputs(study: StudyResult) -> str:
         cells = [f"{len(spread.known)} of {len(spread.values)}"]
         cells += [number(x) if math.isfinite(x) else "&ndash;" for x in (spread.mean, spread.sd)]
         numbers = "".join(f"<td class=n>{c}</td>" for c in cells)
-        rows.append(f"<tr><td>{escape(o.name)}{unit}</td><td>{escape(output_words(study, o))}</td>{numbers}</tr>")
-    head = "".join(f"<th>{w}</th>" for w in ("output", "all runs", "finite numbers", "their mean", "their sd"))
+        words = escape(output_words(study, o))
+        rows.append(f"<tr><td translate=no>{escape(o.name)}{unit}</td><td>{words}</td>{numbers}</tr>")
+    heads = ("output", "all runs", "finite numbers", "their mean", "their standard deviation")
+    head = "".join(f"<th>{w}</th>" for w in heads)
     return f"<div class=scroll><table><thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table></div>"
 
 
 def _variables(study: StudyResult) -> str:
     rows = "".join(
-        f"<tr><td>{escape(v.name)}</td><td>{escape(v.describe())}</td><td>{escape(', '.join(v.keys))}</td></tr>"
+        f"<tr><td translate=no>{escape(v.name)}</td><td>{escape(v.describe())}</td>"
+        f"<td translate=no>{escape(', '.join(v.keys))}</td></tr>"
         for v in study.sample.variables
     )
     head = "<th>variable</th><th>distribution</th><th>keys of the model file</th>"
@@ -112,4 +128,5 @@ def _failed_row(study: StudyResult, row: Row) -> str:
         name = f"run-{row.index}.toml"
         link = f'<a download="{name}" href="data:application/toml;base64,{data}">{name}</a>'
     said = f"{row.verdict.replace('_', ' ')}: {row.message}" if row.message else row.verdict.replace("_", " ")
-    return f"<tr><td class=n>{row.index}</td><td>{escape(values)}</td><td>{escape(said)}</td><td>{link}</td></tr>"
+    told = f"<td translate=no>{escape(values)}</td><td>{escape(said)}</td><td translate=no>{link}</td>"
+    return f"<tr><td class=n>{row.index}</td>{told}</tr>"

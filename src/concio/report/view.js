@@ -18,10 +18,12 @@
   };
 
   const data = JSON.parse($("data").textContent);
+  const said = data.said || {}, say = (word) => said[word] ?? word; /* another language than English */
+  const written = (number) => (data.said ? number.replace(".", ",") : number);
   const look = data.look, bodies = unpacked(data.bodies), pieces = unpacked(data.pieces), joints = unpacked(data.joints);
   const steps = data.steps.map(() => null);
   const count = bodies.name.length, pieceCount = pieces.pair.length;
-  const STATES = ["open", "sticks", "slips", "is crushed"];
+  const STATES = ["open", "sticks", "slips", "is crushed"].map(say);
   const canvas = $("canvas"), pen = canvas.getContext("2d");
   const view = { x: 0, y: 0, zoom: 1, scale: data.scale, step: data.steps.length - 1, colour: "none", states: true, crosses: true, picked: null };
   const moved = new Float32Array(bodies.point.length);
@@ -64,9 +66,9 @@
     if (!Number.isFinite(v)) return "–";
     const size = Math.abs(v);
     if (v === 0 || size <= 1e-6 * beside) return "0";
-    if (size < 1e-4) return v.toExponential(2);
+    if (size < 1e-4) return written(v.toExponential(2));
     const short = Number(v.toPrecision(4));
-    return size >= 1e4 ? short.toLocaleString("en", { maximumFractionDigits: 0 }) : String(short);
+    return size >= 1e4 ? short.toLocaleString(document.documentElement.lang, { maximumFractionDigits: 0 }) : written(String(short));
   };
   /* quantities come in kN and m, and are reported in the units of the report: [factor, symbol] of each kind */
   const units = data.units;
@@ -118,7 +120,7 @@
     return `rgb(${a.map((v, j) => Math.round(v + f * (b[j] - v))).join()})`;
   });
   const KINDS = { s1: "stress", s2: "stress", move: "motion", pressure: "stress" };
-  const WORDS = { s1: "largest principal stress", s2: "smallest principal stress", move: "displacement", pressure: "contact pressure" };
+  const WORDS = { s1: say("largest principal stress"), s2: say("smallest principal stress"), move: say("displacement"), pressure: say("contact pressure") };
   function valuesOf(name) {
     if (name === "s1" || name === "s2") return step[name] || null;
     if (name === "pressure") return step.pressure || null;
@@ -249,24 +251,24 @@
 
   /* words */
   function legend() {
-    const item = (colour, word, style = "solid") => `<span><i style="border-color:${colour};border-top-style:${style}"></i>${word}</span>`;
+    const item = (colour, word, style = "solid") => `<span><i style="border-color:${colour};border-top-style:${style}"></i>${say(word)}</span>`;
     const parts = [];
     if (view.colour !== "none" && shade) {
       const stops = ramp.filter((_, k) => k % 6 === 0 || k === BINS - 1);
       const order = view.colour === "s2" ? stops : [...stops].reverse(), kind = KINDS[view.colour], wide = Math.max(Math.abs(range[0]), Math.abs(range[1]));
       const low = told(range[0], kind, wide), high = told(range[1], kind, wide);
       parts.push(`<span>${WORDS[view.colour]} ${low}<i class="bar" style="background:linear-gradient(90deg,${order.join()})"></i>${high}</span>`);
-    } else if (view.colour !== "none") parts.push(`<span>no ${WORDS[view.colour]} in this step</span>`);
+    } else if (view.colour !== "none") parts.push(`<span>${say("not in this step")}: ${WORDS[view.colour]}</span>`);
     if (view.states && step.state) parts.push(item(look.stick, "sticks"), item(look.slip, "slips", "dashed"), item(look.open, "open"));
     if (view.states && step.state && step.state.includes(3)) parts.push(item(look.crushed, "crushed"));
     if (view.crosses && step.s2) parts.push(item(look.compression, "compression"), item(look.tension, "tension", "dashed"));
     $("legend").innerHTML = parts.join("");
   }
   const escaped = (text) => text.replace(/[&<>"]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" })[c]);
-  const row = (name, value, kind) => `<div><dt>${name}</dt><dd data-name="${name}" data-value="${value}">${told(value, kind, beside[kind])}</dd></div>`;
+  const row = (name, value, kind) => `<div><dt>${say(name)}</dt><dd data-name="${name}" data-value="${value}">${told(value, kind, beside[kind])}</dd></div>`;
   function inform() {
     const box = $("info"), picked = view.picked;
-    if (!picked) { box.textContent = "Click a block or a joint to read its numbers."; return; }
+    if (!picked) { box.textContent = say("Click a block or a joint to read its numbers."); return; }
     if (picked.body !== undefined) {
       const b = picked.body, rows = [];
       if (data.mechanism) {
@@ -275,7 +277,7 @@
         rows.push(row("moves x", step.motion[3 * b], "motion"), row("moves y", step.motion[3 * b + 1], "motion"), row("turns", step.motion[3 * b + 2], "rotation"));
       }
       if (step.s1 && Number.isFinite(step.s1[b])) rows.push(row("largest stress", step.s1[b], "stress"), row("smallest stress", step.s2[b], "stress"));
-      box.innerHTML = `<b>${escaped(bodies.name[b])}</b>${bodies.kind[b]}<dl>${rows.join("")}</dl>`;
+      box.innerHTML = `<b>${escaped(bodies.name[b])}</b>${say(bodies.kind[b])}<dl>${rows.join("")}</dl>`;
       return;
     }
     const k = picked.piece, j = pieces.face[k], rows = [];
@@ -285,9 +287,9 @@
       rows.push(row("pressure here", step.pressure[k], "stress"), row("force here", step.t_n[k], "force"), row("friction here", step.t_t[k], "force"));
       rows.push(row("gap here", step.gap[k], "motion"), row("slip here", step.slip[k], "motion"));
     }
-    const name = (b) => (b < 0 ? "a fixed point" : escaped(bodies.name[b]));
-    const state = step.state ? `here it <em>${STATES[step.state[k]].replace("open", "is open")}</em>` : "";
-    box.innerHTML = `<b>joint ${name(joints.a[j])} – ${name(joints.b[j])}</b>${state}<dl>${rows.join("")}</dl>`;
+    const name = (b) => (b < 0 ? say("a fixed point") : escaped(bodies.name[b]));
+    const state = step.state ? `${say("here it")} <em>${step.state[k] ? STATES[step.state[k]] : say("is open")}</em>` : "";
+    box.innerHTML = `<b>${say("joint")} ${name(joints.a[j])} – ${name(joints.b[j])}</b>${state}<dl>${rows.join("")}</dl>`;
   }
 
   /* picking: a joint within a few pixels wins over the block under the finger */
@@ -402,6 +404,6 @@
   resize();
   /* in the next frame: changing the height while the observer reports would make it report again at once */
   new ResizeObserver(() => requestAnimationFrame(() => { if (canvas.clientWidth !== width) resize(); })).observe(canvas);
-  if (data.left_out) complain(`${data.left_out} steps are left out of this view to keep the file small.`);
+  if (data.left_out) complain(`${say("Steps left out of this view to keep the file small")}: ${data.left_out}`);
   window.concio = { view, data, bodies, pieces, joints, stepAt, setStep, setScale, choose, pick, paint, X, Y, middle };
 })();
