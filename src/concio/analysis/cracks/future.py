@@ -17,6 +17,7 @@ from concio.analysis.cracks.forward import Forward
 from concio.analysis.cracks.measurement import Candidate
 from concio.analysis.cracks.moved import cause_model
 from concio.analysis.motion.moved_supports import begun
+from concio.analysis.motion.near_origin import Near
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import Statics
@@ -118,7 +119,7 @@ def _followed(forward: Forward, cause: Cause, candidates: Sequence[Candidate], a
     factors = {g: f for g, f in forward.moved.factors(cause.motions).items() if g in model.load_groups}
     factors = {**dict.fromkeys(model.load_groups, 0.0), **factors, GROUP: asked}
     try:
-        reference = Reference.of(model, GRAVITY)
+        reference = Reference.of(Near.of(model).model, GRAVITY)
         statics = Statics(reference, Scheme(brittle=True), factors)
         found, share, _ = begun(statics, MotionState.at_rest(reference))
     except ConcioError:

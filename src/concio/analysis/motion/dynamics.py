@@ -19,6 +19,7 @@ from concio.analysis.motion.interruption import Interruption
 from concio.analysis.motion.joints import SAG
 from concio.analysis.motion.moved_supports import begun
 from concio.analysis.motion.mover import Mover, Row, shifted
+from concio.analysis.motion.near_origin import Near
 from concio.analysis.motion.observer import Observer
 from concio.analysis.motion.pace import Pace
 from concio.analysis.motion.pairs import PairMaker
@@ -146,7 +147,8 @@ def dynamics(
     >>> round(float(motion.point()[-1]), 3)
     0.102
     """
-    reference = Reference.of(model, gravity)
+    near = Near.of(model)
+    reference = Reference.of(near.model, gravity)
     check_masses(reference)
     ground = Ground.of(motion, scale, model.dim)
     stated = None if duration is None else positive(duration, "duration")
@@ -167,13 +169,13 @@ def dynamics(
             msg = f"there is no load group '{group}'"
             raise InputError(msg, hint="groups: " + ", ".join(reference.model.load_groups))
     run = _Run(
-        reference, ground, base, chosen, scheme, tuple(points), shown + (0.0 if stated else AFTER), step, adaptive,
-        progress, stated, engine,
+        reference, ground, base, chosen, scheme, near.points(points), shown + (0.0 if stated else AFTER), step,
+        adaptive, progress, stated, engine,
     )  # fmt: skip
     run.notes += ground.attention
-    run.begin(start, velocities)
+    run.begin(near.state(start) if isinstance(start, MotionState) else start, velocities)
     every = positive(every or shown / SHOTS, "every")
-    return run.result(run.follow(every, stop_overturned, stop_at_rest))
+    return near.told(run.result(run.follow(every, stop_overturned, stop_at_rest)), points)
 
 
 def _begin(

@@ -10,6 +10,7 @@ import numpy as np
 
 from concio.analysis.entry_point import entry_point
 from concio.analysis.motion.interruption import Interruption
+from concio.analysis.motion.near_origin import Near
 from concio.analysis.motion.push_apart import NoStartError, PushAsked, followed
 from concio.analysis.motion.push_asked import (
     control_asked,
@@ -120,17 +121,19 @@ def push(
     >>> round(float(pushed.peak), 4), round(float(pushed.capacity), 4)
     (0.25, 0.25)
     """
-    reference = Reference.of(model, gravity)
+    near = Near.of(model)
+    reference = Reference.of(near.model, gravity)
     chosen = factors_asked(reference, factors)
     groups = stated = live_asked(reference, live)
     along = direction_asked(1.0 if direction is None else direction, reference.disc.dim)
     sign = side_asked(reference, groups, chosen, None if direction is None else along)
     if not stated:
         groups = (free_group(model),)
-        reference = Reference.of(pushed(model, along.tolist(), groups[0], chosen), gravity)
+        reference = Reference.of(pushed(near.model, along.tolist(), groups[0], chosen), gravity)
     point, by_load = control_asked(control)
+    there = None if point is None else near.point(point)
     asked = PushAsked(
-        reference, Scheme(brittle=brittle), chosen, groups, point, by_load, step, until, float(smallest), sign, engine,
+        reference, Scheme(brittle=brittle), chosen, groups, there, by_load, step, until, float(smallest), sign, engine,
         progress,
     )  # fmt: skip
     whole = asked.statics(reference)
@@ -138,24 +141,25 @@ def push(
     if not unit.any():
         msg = "what is to be multiplied has no force: there is nothing to push with"
         raise InputError(msg, hint="give materials a unit_weight, or name the groups to multiply (live)")
-    Followed.of(reference, *points, *([] if point is None else [point]))  # refused before anything moves
+    Followed.of(reference, *near.points(points), *([] if there is None else [there]))  # refused before anything moves
     clock_begun = clock.perf_counter()
     try:
         with Interruption() as interruption:
             run = followed(asked, interruption)
     except NoStartError as lost:
         raise _not_begun(model, lost, chosen, stated) from None
-    return PushResult(
-        model=model, gravity=gravity, ending=run.ending, displacement=np.array(run.displacement),
+    found = PushResult(
+        model=near.model, gravity=gravity, ending=run.ending, displacement=np.array(run.displacement),
         multiplier=np.array(run.multiplier), residual=np.array(run.residual),
         centre=np.array([s.centre for s in run.states]), rotation=np.array([s.rotation for s in run.states]),
         strain=np.array([s.strain for s in run.states]), reaction=np.array(run.reactions),
         reactions_of=run.reactions_of, events=tuple(run.events), live=stated, direction=along,
-        force=unit[whole.frames.places].sum(axis=0), factors=chosen, control=point, points=tuple(points),
+        force=unit[whole.frames.places].sum(axis=0), factors=chosen, control=there, points=near.points(points),
         notes=tuple(run.notes), seconds=clock.perf_counter() - clock_begun, lent_compliance=run.lent,
         end=run.states[-1], until=asked.until if np.isfinite(asked.until) else None, by_load=by_load, reversed=sign < 0,
         structures=run.structures,
     )  # fmt: skip
+    return near.told(found, points, point)
 
 
 def _not_begun(model: Model, lost: NoStartError, factors: Mapping[str, float], live: tuple[str, ...]) -> ConcioError:

@@ -133,12 +133,17 @@ class Linkage:
         """Return the turned vector (2,) from the centre of a macro-block to one of its points [m]."""
         return turned(point - self.mechanics.blocks[block].centre, q[block, 2])
 
-    def place(self, q: Array, block: int, point: Array) -> Array:
-        """Return where a point (2,) of a macro-block is [m]."""
+    def went(self, q: Array, block: int, point: Array) -> Array:
+        """Return the displacement (2,) of a point of a macro-block [m], to rounding wherever the origin is."""
         if block == GROUND:
-            return point
-        moved: Array = self.mechanics.blocks[block].centre + q[block, :2] + self.arm(q, block, point)
+            return np.zeros(2)
+        moved: Array = q[block, :2] + self.arm(q, block, point) - (point - self.mechanics.blocks[block].centre)
         return moved
+
+    def between(self, q: Array, a: int, at_a: Array, b: int, at_b: Array) -> Array:
+        """Return the vector (2,) from a point of macro-block a to one of b [m]."""
+        apart: Array = (at_b - at_a) + (self.went(q, b, at_b) - self.went(q, a, at_a))
+        return apart
 
     def row(self, q: Array, block: int, point: Array, direction: Array) -> Array:
         """Return how fast a point (2,) moves along ``direction`` (2,) with each unknown (3 G,)."""
@@ -164,8 +169,7 @@ class Linkage:
     def apart(self, q: Array, joint: MacroJoint) -> Array:
         """Return the vector (2,) from the point of a joint on a to that on b [m]."""
         end = joint.point if joint.end is None else joint.end
-        apart: Array = self.place(q, joint.b, end) - self.place(q, joint.a, joint.point)
-        return apart
+        return self.between(q, joint.a, joint.point, joint.b, end)
 
     # -- conditions ---------------------------------------------------------------------------------------------------
 
@@ -197,7 +201,7 @@ class Linkage:
     def controlled(self, q: Array) -> tuple[float, Array]:
         """Return the displacement of the control point [m], and its derivative (3 G,)."""
         block, point, direction = self.control
-        moved = float((self.place(q, block, point) - point) @ direction)
+        moved = float(self.went(q, block, point) @ direction)
         return moved, self.row(q, block, point, direction)
 
     def set_back(self) -> Linkage:
@@ -278,7 +282,7 @@ class Linkage:
         forces, longer = np.zeros(len(self.ties)), np.zeros(len(self.ties))
         for k, (tie, a, b) in enumerate(self.ties):
             at_a, at_b = np.array(tie.at_a), np.array(tie.at_b)
-            apart = self.place(q, b, at_b) - self.place(q, a, at_a)
+            apart = self.between(q, a, at_a, b, at_b)
             length, first = float(np.linalg.norm(apart)), float(np.linalg.norm(at_b - at_a))
             longer[k] = length - first
             along = apart / length

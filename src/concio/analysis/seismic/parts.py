@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -55,6 +55,8 @@ class Part:
         Its first body where the model holds several structures.
     what : str
         Which kind of place it is: "levels", "openings", "returns", "changes" or "alone".
+    digits : int
+        Of the coordinate in its name.
     """
 
     kind: str
@@ -62,6 +64,7 @@ class Part:
     bodies: tuple[int, ...]
     of: str = ""
     what: str = "levels"
+    digits: int = 4
 
     @property
     def name(self) -> str:
@@ -69,9 +72,10 @@ class Part:
         whose = f" of '{self.of}'" if self.of else ""
         if self.kind == "alone":
             return f"'{self.of}' and what it touches"
+        at = f"{self.at:.{self.digits}g} m"
         if self.kind == "above":
-            return f"above z = {self.at:.4g} m{whose}"
-        return f"{self.kind} {self.at:.4g} m {'along' if self.kind == 'beyond' else 'across'} the push{whose}"
+            return f"above z = {at}{whose}"
+        return f"{self.kind} {at} {'along' if self.kind == 'beyond' else 'across'} the push{whose}"
 
 
 @dataclass(frozen=True)
@@ -132,7 +136,16 @@ def parts_of(assembly: Assembly, along: Array) -> Parts:
             cut(group, "beyond", along, at, of, "changes")
         sought.update({"levels": len(kept), "changes": len(changes), **Counter(line.kind for line in chosen)})
         there.update({"levels": len(levels), "changes": len(changes), **Counter(line.kind for line in lines)})
-    return Parts(tuple(found.values())[1:], sought, there)
+    return Parts(_told_apart(tuple(found.values())[1:]), sought, there)
+
+
+def _told_apart(parts: tuple[Part, ...]) -> tuple[Part, ...]:
+    """Return parts with as many digits in their names as tell them apart, as far from the origin as they may be."""
+    for digits in range(Part.digits, 18):
+        parts = tuple(replace(part, digits=digits) for part in parts)
+        if len({part.name for part in parts}) == len(parts):
+            break
+    return parts
 
 
 @dataclass(frozen=True, eq=False)

@@ -121,6 +121,26 @@ class Sequence:
         """Largest distance of a contact or a force from the first centre [m]."""
         return self.mechanics.reach([*self.contacts.point, *(f.point for f in (*self.dead, *self.push))])
 
+    def near(self) -> Sequence:
+        """Return the same with all places measured from the first centre: far from the origin they lose digits."""
+        first = self.mechanics.blocks[0].centre
+        at = tuple(first.tolist())
+
+        def seen(forces: tuple[Force, ...]) -> tuple[Force, ...]:
+            return tuple(replace(f, point=f.point - first) for f in forces)
+
+        def end(point: tuple[float, ...]) -> tuple[float, ...]:
+            return tuple(v - o for v, o in zip(point, at, strict=True))
+
+        blocks = tuple(replace(b, centre=b.centre - first) for b in self.mechanics.blocks)
+        ties = tuple((replace(t, at_a=end(t.at_a), at_b=end(t.at_b)), a, b) for t, a, b in self.ties)
+        block, point, along = self.control
+        return replace(
+            self, mechanics=replace(self.mechanics, blocks=blocks), dead=seen(self.dead), push=seen(self.push),
+            contacts=replace(self.contacts, point=self.contacts.point - first), ties=ties,
+            control=(block, point - first, along),
+        )  # fmt: skip
+
     def at_rest(self) -> Standing:
         """Return the macro-blocks where they were described."""
         return Standing.at_rest(np.array([b.centre for b in self.mechanics.blocks]))
@@ -266,6 +286,7 @@ def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
     CapacityCurve
         Of kind "steps"; where it ends early, its reason says why.
     """
+    sequence = sequence.near()
     L = sequence.size
     state = sequence.state(sequence.at_rest(), sequence.contacts.force)
     if state is None:
