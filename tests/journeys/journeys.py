@@ -57,6 +57,11 @@ def test_the_audit_sees_what_is_wrong(page: Browser, client: Client) -> None:
         p.style.background = '#fff'; document.querySelector('main section').append(p, document.createElement('input'));
         const b = document.createElement('button'); b.id = 'undo'; document.querySelector('header').append(b); })()""")
     assert [line.split(":")[0].split(" ")[0] for line in page.js(AUDIT)] == ["no", "contrast", "no", "twice"]
+    page.js("""(() => { document.querySelector('main section > input').style.borderColor = '#ccc';
+        document.querySelector('#picture text').style.fill = '#bbb'; })()""")
+    found = page.js(AUDIT)
+    assert "in the picture" in found[0]
+    assert sum(line.startswith("rim") for line in found) == 1
 
 
 @pytest.fixture(scope="module")
@@ -211,21 +216,23 @@ def test_what_is_shown_while_a_load_is_dragged_is_certified_or_grey(page: Browse
     assert all("no equilibrium beyond it" in said for said in fresh)
 
 
+def tab_to(page: Browser, condition: str, *, back: bool = False) -> None:
+    """Go from control to control until a condition on the element ``e`` holds; each shows that it has the focus."""
+    for _ in range(120):
+        if page.js(f"(() => {{ const e = document.activeElement; return Boolean({condition}); }})()"):
+            return
+        page.press("Tab", shift=back)
+        ring = page.js("getComputedStyle(document.activeElement).outlineStyle")
+        assert ring != "none" or page.js("document.activeElement === document.body")
+    raise AssertionError(condition)
+
+
 def test_the_keyboard_alone_leads_from_the_first_page_to_the_verdict(page: Browser, tmp_path: Path) -> None:
     with window(tmp_path) as client:
         page.go(client.server.address)
         page.until("document.querySelector('#start').open")
 
-        def tab_to(condition: str) -> None:
-            for _ in range(80):
-                if page.js(f"(() => {{ const e = document.activeElement; return Boolean({condition}); }})()"):
-                    return
-                page.press("Tab")
-                ring = page.js("getComputedStyle(document.activeElement).outlineStyle")
-                assert ring != "none" or page.js("document.activeElement === document.body")
-            raise AssertionError(condition)
-
-        tab_to("e.textContent === 'column'")
+        tab_to(page, "e.textContent === 'column'")
         page.press("Enter")
         page.until(f"{DRAWN} && window.concio.view.shown")
         page.press("p")
@@ -236,13 +243,13 @@ def test_the_keyboard_alone_leads_from_the_first_page_to_the_verdict(page: Brows
         page.press("p")
         page.press("Enter")
         assert page.js("document.querySelector('#pane-build [name=body]').value")
-        tab_to("e.matches('#pane-build button.main')")
+        tab_to(page, "e.matches('#pane-build button.main')")
         page.press("Enter")
         page.until("window.concio.state().document.undo")
         page.press("Escape")
         page.press("1", alt=True)
         page.until(SETTLED)
-        tab_to("e.id === 'run' && !e.disabled")
+        tab_to(page, "e.id === 'run' && !e.disabled")
         page.press("Enter")
         page.until(ANSWERED)
         assert page.js("document.querySelector('#verdict-text').getAttribute('aria-live')") == "polite"
@@ -378,6 +385,49 @@ def test_a_model_in_space_is_loaded_and_held_on_faces_and_asked(page: Browser, t
         said = page.js("document.querySelector('#verdict-text .sentence').textContent")
         assert said == concio.solve(model).verdict.sentence
         assert page.js(AUDIT) == []
+
+
+def test_the_keyboard_alone_loads_and_holds_faces_in_space(page: Browser, tmp_path: Path) -> None:
+    with window(tmp_path) as client:
+        page.go(client.server.address)
+        page.until("document.querySelector('#start').open")
+        tab_to(page, "e.textContent === 'blocks in space'")
+        page.press("Enter")
+        page.until(f"{DRAWN} && window.concio.view.shown && window.concio.view.shown.dim === 3")
+        before = page.js("window.concio.view.shown.loads.length")
+        page.press("l")
+        page.press("p")
+        chosen = "window.concio.view.shown.bodies[[...window.concio.view.selected.bodies][0]]"
+        page.press("ArrowUp")
+        while page.js(f"{chosen}.kind") == "fixed":
+            page.press("ArrowUp")
+        name = page.js(f"{chosen}.name")
+        page.press("ArrowRight", shift=True)
+        page.press("f")
+        said = page.js("document.querySelector('#say').textContent")
+        assert said.startswith(f"{name}: face "), said
+        page.press("Enter")
+        assert page.js("document.querySelector('#pane-build [name=body]').value") == name
+        tab_to(page, "e.matches('#pane-build button.main')")
+        page.press("Enter")
+        page.until(f"{SETTLED} && window.concio.view.shown.loads.length === {before + 1}")
+        page.press("Escape")
+        tab_to(page, "e.dataset.look === 'plan'", back=True)
+        page.press("Enter")
+        tab_to(page, "e.id === 'cut-share'")
+        page.press("ArrowLeft")
+        page.press("1", alt=True)
+        tab_to(page, "e.id === 'run' && !e.disabled")
+        page.press("Enter")
+        page.until(ANSWERED)
+        said = page.js("document.querySelector('#verdict-text .sentence').textContent")
+        assert said == concio.solve(concio.loads(text_of(client))).verdict.sentence
+        page.press("8", alt=True)
+        page.until("document.querySelector('#running').hidden && document.querySelector('#pane-report a')")
+        tab_to(page, "e.matches('#pane-report button')")
+        page.press("Enter")
+        page.until("document.querySelector('#pane-report [role=status]')", "the project folder is written")
+        assert any(p.name.endswith("-project") for p in tmp_path.iterdir())
 
 
 def test_two_answers_stand_beside_each_other_and_a_mechanism_moves(page: Browser, client: Client) -> None:

@@ -25,6 +25,8 @@ SOON = 5.0
 """Seconds after which the time left is reported."""
 
 
+SHARES = ("dynamics", "push", "assessment", "diagnose")
+"""Methods that report what is left to do in place of a residual."""
 LISTENER: ContextVar[Callable[[str, Any], None] | None] = ContextVar("listener", default=None)
 """Receives what is known on the way: ("progress", {...}), ("found", lines), ("verdict", verdict)."""
 
@@ -42,10 +44,11 @@ def progress_bar(*, shown: bool) -> Iterator[ProgressCallback | None]:
 
         def report(state: Progress) -> None:
             nonlocal sent
-            text = share.after(state) + left.after(share.best, time.monotonic())
+            share.after(state)
+            remaining = left.seconds(share.best, time.monotonic())
             if time.monotonic() - sent >= OFTEN:
                 sent = time.monotonic()
-                listener("progress", {"share": share.best, "text": text})
+                listener("progress", told(state, share.best, remaining))
 
         yield report
         return
@@ -65,6 +68,18 @@ def progress_bar(*, shown: bool) -> Iterator[ProgressCallback | None]:
             bar.update(task, completed=share.best, description=text)
 
         yield move
+
+
+def told(state: Progress, share: float, remaining: float | None) -> dict[str, Any]:
+    """Return what a listener is told: ``share`` of the work done, ``iteration``, and in words ``residual``, ``left``.
+
+    The residual is empty where a solver reports what is left to do instead, the time left while it is not known.
+    """
+    counts = state.method in SHARES or not (math.isfinite(state.residual) and state.residual > 0)
+    return {
+        "share": share, "iteration": state.iteration, "residual": "" if counts else f"{state.residual:.1e}",
+        "left": "" if remaining is None else duration(remaining),
+    }  # fmt: skip
 
 
 def found_so_far(lines: list[str]) -> None:
@@ -90,7 +105,7 @@ class Share:
     def after(self, state: Progress) -> str:
         """Take in what a solver reports; return it in words."""
         text = f"{state.method}: iteration {state.iteration}"
-        if state.method in ("dynamics", "push", "assessment", "diagnose"):  # what is left to do, not a residual
+        if state.method in SHARES:
             self.best = max(self.best, 1.0 - state.residual)
             text = state.method
         elif math.isfinite(state.residual) and state.residual > 0:
@@ -107,17 +122,22 @@ class TimeLeft:
     def __init__(self) -> None:
         self.begun: tuple[float, float] | None = None
 
-    def after(self, share: float, now: float) -> str:
-        """Return ", about ... left" when ``share`` of the work (0 to 1) is done at the time ``now`` [s].
+    def seconds(self, share: float, now: float) -> float | None:
+        """Return the time left [s] when ``share`` of the work (0 to 1) is done at the time ``now`` [s].
 
-        Empty while nothing is known, before :data:`SOON`, and when the bar is full.
+        None while nothing is known, before :data:`SOON`, and when the bar is full.
         """
         if self.begun is None:
             self.begun = share, now
         gained, passed = share - self.begun[0], now - self.begun[1]
         if not gained > 0 or share >= 1 or passed < SOON:
-            return ""
-        return f", about {duration(passed / gained * (1 - share))} left"
+            return None
+        return passed / gained * (1 - share)
+
+    def after(self, share: float, now: float) -> str:
+        """Return the time left as ", about ... left", or nothing; see :meth:`seconds`."""
+        left = self.seconds(share, now)
+        return "" if left is None else f", about {duration(left)} left"
 
 
 def duration(seconds: float) -> str:

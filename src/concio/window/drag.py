@@ -13,6 +13,7 @@ from concio.analysis.limit import limit_stages
 from concio.errors import InputError
 from concio.model.body import Body
 from concio.model.model import Model
+from concio.verdict.italian import in_italian
 from concio.verdict.limit_words import bound_lines
 from concio.window.reading import own_loads, read
 from concio.window.worker import Tell
@@ -55,8 +56,9 @@ def dragged(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     loads = (*model.loads[:number], moved, *model.loads[number + 1 :])
     stages = limit_stages(replace(model, loads=loads), [moved.group], path=False, steps=False, search=False)
     _, found = next(iter(stages))
+    lines = [" ".join(line.split()) for line in bound_lines(found)]
     return {
-        "lines": [line.strip() for line in bound_lines(found)], "multiplier": found.associated.multiplier,
+        "lines": lines, "italian": [in_italian(line) for line in lines], "multiplier": found.associated.multiplier,
         "group": moved.group, "at": list(moved.at or ()), "seconds": time.perf_counter() - begun,
     }  # fmt: skip
 

@@ -115,14 +115,17 @@ class Session:
 
     def hello(self, told: Mapping[str, Any]) -> Answer:
         """Return what never changes: words, colours, questions, templates."""
-        words = tomllib.loads(files("concio.window").joinpath("words.toml").read_text(encoding="utf-8"))
+        words, of_files = (
+            tomllib.loads(files("concio.window").joinpath(name).read_text(encoding="utf-8"))
+            for name in ("words.toml", "italian.toml")
+        )
         questions = [
             {"name": q.name, "needs": list(q.needs), "plane": q.plane,
              "options": [{"name": o.name, "kind": o.kind, "choices": list(o.choices)} for o in q.options]}
             for q in QUESTIONS.values()
         ]  # fmt: skip
         kept = sorted(p.name[:-5] for p in files("concio.model").joinpath("templates").iterdir())
-        return {"words": words, "look": LOOK, "questions": questions, "templates": kept,
+        return {"words": words, "of_files": of_files, "look": LOOK, "questions": questions, "templates": kept,
                 "version": concio.__version__, **self.state(told)}  # fmt: skip
 
     def start(self, told: Mapping[str, Any]) -> Answer:

@@ -34,3 +34,24 @@ def test_every_word_that_the_page_names_is_there_and_none_is_left_over() -> None
     quoted = set(re.findall(r'"(\w+)"', PAGE)) | {o.name for q in QUESTIONS.values() for o in q.options}
     left = {n for n in WORDS if n not in names | quoted and not n.startswith(BUILT)}
     assert left == set()
+
+
+def test_templates_and_every_key_in_them_have_their_italian() -> None:
+    known = tomllib.loads((WINDOW / "italian.toml").read_text(encoding="utf-8"))
+    templates = sorted((Path(concio.__file__).parent / "model" / "templates").glob("*.toml"))
+    assert {p.stem for p in templates} == set(known["templates"])
+    named = set().union(*(_keys(tomllib.loads(p.read_text(encoding="utf-8")), ()) for p in templates))
+    assert named - set(known["keys"]) == set()
+
+
+FREE = {"materials", "joints", "layers", "mechanisms", "walls", "factors"}
+"""Tables whose keys are names that the user gives."""
+
+
+def _keys(value: object, path: tuple[str, ...]) -> set[str]:
+    if isinstance(value, list):
+        return set().union(*(_keys(one, path) for one in value))
+    if not isinstance(value, dict):
+        return set()
+    own = set() if path and path[-1] in FREE else set(value)
+    return own.union(*(_keys(one, (*path, key)) for key, one in value.items()))

@@ -80,6 +80,14 @@ export async function run() {
 }
 
 /* the state of the question in the verdict's place */
+function howFar(progress) {
+  if (!progress) return "";
+  const parts = [t("iteration", progress)];
+  if (progress.residual) parts.push(t("residual", progress));
+  if (progress.left) parts.push(t("time_left", progress));
+  return parts.join(", ");
+}
+
 let shownKey = "", early = "";
 export async function follow(state, after) {
   const running = document.getElementById("running"), now = state.asked;
@@ -88,7 +96,7 @@ export async function follow(state, after) {
   if (busy) {
     const bar = document.getElementById("progress"), share = now.progress?.share;
     if (share > 0) bar.value = share; else bar.removeAttribute("value");
-    document.getElementById("progress-text").textContent = `${t("working")}: ${t(`q_${now.question}`)}, ${Math.round(now.seconds || 0)} ${t("seconds")}. ${now.progress?.text || ""}`;
+    document.getElementById("progress-text").textContent = `${now.early ? t("report_follows") : `${t("working")}: ${t(`q_${now.question}`)}`} ${Math.round(now.seconds || 0)} ${t("seconds")}. ${now.early ? "" : howFar(now.progress)}`;
     document.getElementById("found").textContent = (now.found || []).join("\n");
     shownKey = "";
     if (now.early && early !== now.key + language) { early = now.key + language; answerSoon(now); }
@@ -128,7 +136,7 @@ export function answerBox(found, old) {
 function answerSoon(now) {
   const place = document.getElementById("verdict-text");
   place.dataset.note = "early";
-  place.replaceChildren(answerBox({ lines: [], ...now.early }, now.hash !== doc()?.hash), el("p", { class: "quiet" }, t("report_follows")));
+  place.replaceChildren(answerBox({ lines: [], ...now.early }, now.hash !== doc()?.hash));
 }
 
 function verdict(after, note = "") {

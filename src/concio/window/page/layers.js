@@ -2,10 +2,19 @@
 import { t, el, field, digits } from "./words.js";
 import { call } from "./net.js";
 import { boxOf, numbers } from "./geometry.js";
+import { drawings, fit, node, view } from "./picture.js";
 
 const USES = ["", "block", "rigid", "fixed", "hole", "names", "ignore", "load"], NS = "http://www.w3.org/2000/svg";
-let send = async () => false;
+let send = async () => false, lines = [];
 export function setLayers(sender) { send = sender; }
+
+/* while the drawing gives no model yet, its lines stand in the picture */
+const alone = () => (view.shown && !view.shown.bodies.length ? lines : []);
+drawings.under.push({
+  points: () => alone().flat(),
+  draw: (svg) => alone().forEach((line) => node("path", { class: "sketch", d: "M" + line.map(([x, y]) => `${x} ${-y}`).join("L") }, svg)),
+});
+export function forgetLayers() { lines = []; }
 
 function thumbnail(lines, box) {
   const svg = document.createElementNS(NS, "svg");
@@ -23,7 +32,9 @@ export async function layersPane(pane) {
   try { const answered = await call("layers"); if (answered.error) throw Object.assign(new Error(answered.error.what), {}); found = answered.done; }
   catch (error) { return pane.replaceChildren(el("p", { role: "alert" }, error.text || error.message)); }
   if (!found) return;
-  const points = found.layers.flatMap((l) => l.lines.flat()), box = points.length ? boxOf(points) : [0, 0, 1, 1];
+  lines = found.layers.flatMap((l) => l.lines);
+  if (alone().length) fit();
+  const points = lines.flat(), box = points.length ? boxOf(points) : [0, 0, 1, 1];
   const proposals = found.layers.filter((l) => l.proposed && l.proposed !== "load" && l.stated === null);
   const mend = el("input", { value: found.mend, placeholder: "0.5 mm", onchange: () => send([mend.value.trim() ? { do: "set", path: ["drawing", "mend"], value: mend.value.trim() } : { do: "remove", path: ["drawing", "mend"] }]) });
   const unit = el("select", { onchange: () => send([{ do: "set", path: ["drawing", "unit"], value: unit.value }]) }, ...["mm", "cm", "m", "in", "ft"].map((u) => el("option", { value: u }, u)));
@@ -55,8 +66,8 @@ export async function layersPane(pane) {
   pane.replaceChildren(
     field(t("layer_unit"), unit, found.known ? t("layer_known", { width: digits(found.known[0]), height: digits(found.known[1]) }) : ""),
     field(t("layer_mend"), mend),
-    el("button", { disabled: !proposals.length, onclick: () => send(proposals.map((l) => ({ do: "set", path: ["drawing", "layers", l.name], value: l.proposed }))) }, t("layer_apply")),
-    el("table", {}, el("caption", {}, t("layers")), el("thead", {}, el("tr", {}, ...["layer", "layer_count", "layer_meaning", "picture"].map((h) => el("th", { scope: "col" }, t(h))))), el("tbody", {}, ...rows)),
+    el("button", { class: proposals.length ? "main" : "", disabled: !proposals.length, onclick: () => send(proposals.map((l) => ({ do: "set", path: ["drawing", "layers", l.name], value: l.proposed }))) }, t("layer_apply")),
+    el("table", { class: "layers" }, el("caption", {}, t("layers")), el("thead", {}, el("tr", {}, ...["layer", "layer_count", "layer_meaning", "picture"].map((h) => el("th", { scope: "col" }, t(h))))), el("tbody", {}, ...rows)),
   );
   if (held) pane.querySelector(`[aria-label="${CSS.escape(held)}"]`)?.focus();
 }

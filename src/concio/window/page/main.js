@@ -1,12 +1,12 @@
 /* The page: what is open, what is shown, what each key does. All that counts is on the other side; this can be reloaded. */
 import { call, drop, goodbye, Refused } from "./net.js";
-import { t, el, label, language, say, setLanguage, setWords, spoken } from "./words.js";
+import { t, el, label, language, say, setLanguage, setWords, spoken, templateWord } from "./words.js";
 import { view, show, clear, draw, fit, zoom, mark, onSelected } from "./picture.js";
 import { listen } from "./hands.js";
 import { build, placed, setBuild } from "./build.js";
 import { data, setTables, showChosen, tables } from "./tables.js";
 import { answer, follow, programs, questionPane, reportPane, run, setAsk } from "./ask.js";
-import { layersPane, setLayers } from "./layers.js";
+import { forgetLayers, layersPane, setLayers } from "./layers.js";
 import { hasPicture, photoPane, setPhoto, underlay } from "./photo.js";
 import { answered, lookPane, modelChanged, setLook } from "./look.js";
 
@@ -42,7 +42,7 @@ function take(found) {
   doc = found.document ? { ...(before && before.name === found.document.name ? before : {}), ...found.document } : null;
   const changed = (before && before.hash) !== (doc && doc.hash) || (before && before.name) !== (doc && doc.name);
   header();
-  if (changed) { modelChanged(); if (!doc || (before && before.name !== doc.name)) { clear(); pictured = ""; } refresh(["data", "text", "python"]); picture(); }
+  if (changed) { modelChanged(); if (!doc || (before && before.name !== doc.name)) { clear(); forgetLayers(); pictured = ""; } refresh(["data", "text", "python"]); picture(); }
   tabs();
   follow(state, () => { const key = answer ? answer.key + answer.question : ""; if (key !== shownReport) { shownReport = key; refresh(["report", "python", "look"]); answered(answer); } });
   if (!doc && !$("start").open) start();
@@ -83,7 +83,7 @@ async function picture() {
       if (!doc || found.hash + doc.name !== asked) continue;
       if (found.state === "early") { show(found.early); attention(); }
       else if (found.state === "done") { pictured = asked; show(found.done); fault(null); }
-      else if (found.state === "error") { pictured = asked; if (hasPicture() && !view.shown) show(NOTHING); fault(found.error); }
+      else if (found.state === "error") { pictured = asked; if ((hasPicture() || tabNames().includes("layers")) && !view.shown) { show(NOTHING); if (!hasPicture()) go("layers"); } fault(found.error); }
       else if (found.state === "cancelled") await new Promise((then) => setTimeout(then, 100));
       if (pictured === asked) { attention(); refresh(["ask", "build", "tables", "layers", "photo"]); tabs(); underlay(() => refresh(["photo"], true)); }
     }
@@ -186,15 +186,15 @@ function pythonPane(pane) {
 /* --- open, templates, drop --- */
 async function start() {
   const found = (await tried(() => call("start"))) || { files: [], folder: "" }, dialog = $("start");
-  const chooser = el("input", { type: "file", accept: ".toml,.dxf,.obj,.ply,.stl,.off,.ifc,.3dm,.png,.jpg,.jpeg,.tif,.tiff", id: "chooser" });
+  const chooser = el("input", { type: "file", accept: ".toml,.dxf,.obj,.ply,.stl,.off,.ifc,.3dm,.png,.jpg,.jpeg,.tif,.tiff", id: "chooser", "aria-label": t("choose_file"), hidden: true });
   chooser.addEventListener("change", () => chooser.files[0] && dropped(chooser.files[0]));
   const pick = (action) => tried(async () => { take(await action()); dialog.close(); const own = ["layers", "photo"].find((n) => tabNames().includes(n)); if (own) go(own); });
   dialog.replaceChildren(
     el("h2", { id: "start-head" }, `${t("open_file")}: ${found.folder}`),
     el("div", { class: "choices" }, ...(found.files.length ? found.files.map((name) => el("button", { onclick: () => pick(() => call("open", { name })) }, name)) : [el("p", { class: "quiet" }, t("no_files"))])),
     el("h2", {}, t("start_template")),
-    el("div", { class: "choices" }, ...hello.templates.map((kind) => el("button", { onclick: () => pick(() => call("new", { kind })) }, kind.replaceAll("_", " ")))),
-    el("div", { class: "drop" }, el("label", { for: "chooser" }, t("choose_file")), " ", chooser, el("p", { class: "quiet" }, t("drop_here"))),
+    el("div", { class: "choices" }, ...hello.templates.map((kind) => el("button", { onclick: () => pick(() => call("new", { kind })) }, templateWord(kind)))),
+    el("div", { class: "drop" }, el("button", { onclick: () => chooser.click() }, t("choose_file")), chooser, el("p", { class: "quiet" }, t("drop_here"))),
     ...(doc ? [el("button", { onclick: () => dialog.close() }, t("close"))] : []),
   );
   if (!dialog.open) dialog.showModal();
@@ -217,16 +217,16 @@ async function bound() {
   const asked = dragging;
   try {
     const found = await call("drag", { table: asked.load.table, at: asked.to.at, body: asked.to.body });
-    if (found.state === "done") showBound(found.done.lines, asked !== dragging);
+    if (found.state === "done") showBound(found.done.lines, asked !== dragging, found.done.italian);
     else if (found.state === "error") showBound([found.error.what], asked !== dragging);
   } catch (error) { showBound([error.text || error.message], true); }
   flying = false;
   if (dragging && asked !== dragging) bound();
 }
-function showBound(lines, old) {
+function showBound(lines, old, italian = []) {
   $("bound").hidden = false;
   $("bound").className = old ? "old" : "";
-  $("bound").replaceChildren(el("p", { class: "quiet" }, t(old ? "drag_old" : "drag_bound")), ...lines.map((line) => el("p", { lang: "en" }, line)));
+  $("bound").replaceChildren(el("p", { class: "quiet" }, t(old ? "drag_old" : "drag_bound")), ...lines.map((line, k) => spoken("p", {}, line, italian[k])));
 }
 onSelected(() => { if (tab === "tables") showChosen(panes.tables); if (tab === "build") build(panes.build); });
 listen({
@@ -272,7 +272,7 @@ addEventListener("keydown", (event) => {
 async function begin() {
   setLanguage(language);
   hello = await call("hello");
-  setWords(hello.words);
+  setWords(hello.words, hello.of_files);
   for (const [name, colour] of Object.entries(hello.look)) document.documentElement.style.setProperty(`--look-${name}`, colour);
   for (const name of TABS) { panes[name] = el("div", { role: "tabpanel", id: `pane-${name}`, "aria-labelledby": `tab-${name}`, tabindex: -1, hidden: name !== tab }); $("panes").append(panes[name]); }
   setBuild(() => doc, send); setTables(send); setLayers(send); setLook(() => doc, () => refresh(["tables"])); setPhoto(() => doc, send); setAsk(hello.questions, ask, () => doc);

@@ -67,7 +67,7 @@ export function show(shown) {
   view.shown = shown; view.moved = null; view.face = null;
   view.selected.bodies = new Set([...view.selected.bodies].filter((k) => k < shown.bodies.length));
   view.selected.joints = new Set([...view.selected.joints].filter((k) => k < shown.joints.length));
-  if (view.names === null) { view.names = shown.bodies.length <= NAMED; document.getElementById("names").checked = view.names; }
+  if (view.names === null && shown.bodies.length) { view.names = shown.bodies.length <= NAMED; document.getElementById("names").checked = view.names; }
   canvas.hidden = document.getElementById("turning").hidden = shown.dim !== 3;
   if (shown.dim === 3) setModel(shown, canvas);
   if (first) fit(); else draw();

@@ -1,5 +1,5 @@
 /* Tables of the model, linked with the picture both ways, and the values of the text in fields. */
-import { t, el, digits } from "./words.js";
+import { t, el, digits, keyWord, terms } from "./words.js";
 import { view, select } from "./picture.js";
 import { plain } from "./build.js";
 import { resultNumbers } from "./look.js";
@@ -52,12 +52,12 @@ export function tables(pane) {
   const own = (one, list) => (one.table === null ? null : [list, one.table]);
   pane.append(
     el("datalist", { id: "known-groups" }, ...shown.groups.map((value) => el("option", { value }))),
-    table(t("loads"), [t("kind"), t("group"), t("value"), t("body"), t("where"), ""], shown.loads.map((l, k) => row("things", `load ${k}`, [l.kind, groupOf(l, k), l.words || spot(l.value), l.bodies.join(", "), spot(l.at) || (l.edge || l.polygon || []).map(spot).join(" – ")], own(l, "loads")))),
+    table(t("loads"), [t("kind"), t("group"), t("value"), t("body"), t("where"), ""], shown.loads.map((l, k) => row("things", `load ${k}`, [terms(l.kind), groupOf(l, k), l.words || spot(l.value), l.bodies.join(", "), spot(l.at) || (l.edge || l.polygon || []).map(spot).join(" – ")], own(l, "loads")))),
     table(t("supports"), [t("name"), t("body"), t("directions"), t("displacement"), ""], shown.supports.map((s, k) => row("things", `support ${k}`, [s.name, s.body, s.directions, spot(s.displacement)], own(s, "supports")))),
-    table(t("ties"), [t("name"), t("between"), t("value"), ""], shown.ties.map((s, k) => row("things", `tie ${k}`, [s.name, `${s.body_a} – ${s.body_b || spot(s.at_b)}`, s.words], own(s, "ties")))),
-    table(t("materials"), [t("name"), t("value")], Object.entries(shown.materials).map(([n, words]) => el("tr", {}, el("td", {}, n), el("td", {}, words)))),
-    table(t("laws"), [t("name"), t("value")], Object.entries(shown.laws).map(([n, words]) => el("tr", {}, el("td", {}, n), el("td", {}, words)))),
-    table(t("bodies"), [t("name"), t("kind"), t("role"), t("layer"), t("material"), t("size"), ...moves.heads], shown.bodies.map((b, k) => row("bodies", k, [b.name, b.kind, b.role, b.layer, b.material, digits(b.size), ...moves.cells(k)]))),
+    table(t("ties"), [t("name"), t("between"), t("value"), ""], shown.ties.map((s, k) => row("things", `tie ${k}`, [s.name, `${s.body_a} – ${s.body_b || spot(s.at_b)}`, terms(s.words)], own(s, "ties")))),
+    table(t("materials"), [t("name"), t("value")], Object.entries(shown.materials).map(([n, words]) => el("tr", {}, el("td", {}, n), el("td", {}, terms(words))))),
+    table(t("laws"), [t("name"), t("value")], Object.entries(shown.laws).map(([n, words]) => el("tr", {}, el("td", {}, n), el("td", {}, terms(words))))),
+    table(t("bodies"), [t("name"), t("kind"), t("role"), t("layer"), t("material"), t("size"), ...moves.heads], shown.bodies.map((b, k) => row("bodies", k, [b.name, terms(b.kind), terms(b.role), b.layer, b.material, digits(b.size), ...moves.cells(k)]))),
     table(t("joints"), [t("between"), t("law"), t(shown.dim === 2 ? "length" : "area"), t("gap"), ...forces.heads], shown.joints.map((j, k) => row("joints", k, [`${name(j.a)} – ${name(j.b)}`, j.law, digits(j.size), digits(j.gap), ...forces.cells(k)]))),
   );
 }
@@ -90,12 +90,12 @@ export function data(pane, doc) {
   if (!doc || !doc.values) return;
   const groups = new Map();
   for (const one of doc.values) {
-    const head = one.path.slice(0, -1).map((k) => (typeof k === "number" ? k + 1 : k)).join(" ");
+    const head = one.path.slice(0, -1).map((_, k) => keyWord(one.path, k)).join(" ");
     if (!groups.has(head)) groups.set(head, []);
     groups.get(head).push(one);
   }
   for (const [head, values] of groups) {
-    const box = el("details", { open: groups.size < 12 || !head.startsWith("blocks") }, el("summary", {}, head || doc.name));
+    const box = el("details", { open: groups.size < 12 || values[0].path[0] !== "blocks" }, el("summary", {}, head || doc.name));
     for (const one of values) box.append(fieldOf(one, doc.read_only));
     pane.append(box);
   }
@@ -110,5 +110,5 @@ function fieldOf(one, readOnly) {
     send([{ do: "set", path: one.path, ...command }]);
   };
   input.addEventListener("change", commit);
-  return el("div", { class: "field" }, el("label", { for: id, title: t("line", { line: one.line }) }, key), input);
+  return el("div", { class: "field" }, el("label", { for: id, title: `${key}, ${t("line", { line: one.line })}` }, keyWord(one.path)), input);
 }

@@ -1,8 +1,18 @@
 /* The words of the page in the chosen language, and small helpers that build elements without writing HTML text. */
-let table = {};
+let table = {}, ofFiles = { keys: {}, terms: {}, templates: {} };
 export let language = localStorage.getItem("language") || (navigator.language.startsWith("it") ? "it" : "en");
 
-export function setWords(words) { table = words; }
+export function setWords(words, italian) { table = words; ofFiles = italian; }
+
+/* what model files are made of, in the chosen language: a key, a template, the words of a table */
+const FREE = ["materials", "joints", "layers", "mechanisms", "walls", "factors"];   /* names in these are the user's own */
+export const keyWord = (path, k = path.length - 1) => (typeof path[k] === "number" ? path[k] + 1 : (language === "it" && !FREE.includes(path[k - 1]) && ofFiles.keys[path[k]]) || path[k]);
+export const templateWord = (kind) => (language === "it" && ofFiles.templates[kind]) || kind.replaceAll("_", " ");
+export function terms(text) {
+  if (language !== "it" || !text) return text;
+  const known = Object.keys(ofFiles.terms).sort((a, b) => b.length - a.length);
+  return text.replace(new RegExp(`\\b(${known.join("|")})\\b`, "g"), (word) => ofFiles.terms[word]);
+}
 export function setLanguage(to) { language = to; localStorage.setItem("language", to); document.documentElement.lang = to; }
 
 export function t(key, values = {}) {
