@@ -11,12 +11,13 @@ import base64
 import dataclasses
 import json
 import os
+import random
 import shutil
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pytest
@@ -24,6 +25,7 @@ from matplotlib.image import imsave
 
 import concio
 from browser import Browser, browser
+from ifc_files import IfcText
 from rendered import rendered
 from windows import LATE, Client, window
 
@@ -543,13 +545,35 @@ def test_a_picture_becomes_blocks_that_are_corrected_and_asked(page: Browser, tm
         assert "In equilibrium" in said
 
 
-@pytest.mark.parametrize("suffix", ["obj", "stl"])
+def ply_of(body: concio.Polyhedron) -> str:
+    """Return a body as PLY."""
+    head = ["ply", "format ascii 1.0", f"element vertex {len(body.vertices)}",
+            *(f"property double {axis}" for axis in "xyz"), f"element face {len(body.faces)}",
+            "property list uchar int vertex_indices", "end_header"]  # fmt: skip
+    points = [" ".join(repr(float(v)) for v in p) for p in body.vertices]
+    return "\n".join([*head, *points, *(" ".join(map(str, (len(f), *f))) for f in body.faces)]) + "\n"
+
+
+def ifc_of(bodies: Sequence[concio.Polyhedron]) -> str:
+    """Return bodies as IFC."""
+    made = IfcText()
+    for body in bodies:
+        made.product(body.name, made.brep(body.vertices, body.faces))
+    return made.text()
+
+
+@pytest.mark.parametrize("suffix", ["obj", "stl", "ply", "ifc"])
 def test_solids_are_dropped_and_asked(page: Browser, tmp_path: Path, suffix: str) -> None:
     tower = concio.drums(height=1.0, drums=2, diameter=0.5, block="rigid")
     tower = dataclasses.replace(tower, bodies=tower.free_bodies)  # the window adds the ground
-    concio.write_solids(tmp_path / f"piece.{suffix}", tower)
-    content = base64.b64encode((tmp_path / f"piece.{suffix}").read_bytes()).decode()
-    (tmp_path / f"piece.{suffix}").unlink()
+    file = tmp_path / f"piece.{suffix}"
+    if suffix in ("ply", "ifc"):
+        bodies = [body for body in tower.bodies if isinstance(body, concio.Polyhedron)]
+        file.write_text(ply_of(bodies[0]) if suffix == "ply" else ifc_of(bodies), encoding="utf-8")
+    else:
+        concio.write_solids(file, tower)
+    content = base64.b64encode(file.read_bytes()).decode()
+    file.unlink()
     with window(tmp_path) as client:
         page.go(client.server.address)
         page.until("document.querySelector('#start').open")
@@ -559,8 +583,69 @@ def test_solids_are_dropped_and_asked(page: Browser, tmp_path: Path, suffix: str
         page.until(f"{DRAWN} && window.concio.view.shown && window.concio.view.shown.dim === 3", "the solids")
         assert (tmp_path / f"piece.{suffix}").is_file()
         page.until("document.querySelector('#acts li')", "what acts")
+        assert page.js("window.concio.view.shown.bodies.length") == (2 if suffix == "ply" else 3)
         page.click("#run")
         page.until(ANSWERED)
+        said = page.js("document.querySelector('#verdict-text .sentence').textContent")
+        assert said == concio.solve(concio.loads(text_of(client), folder=tmp_path)).verdict.sentence
+
+
+def test_after_random_hands_text_picture_and_program_describe_one_model(page: Browser, client: Client) -> None:
+    """Clicks, drags, keys and texts in an order that nobody has thought of."""
+    opened(page, client)
+    rng = random.Random(7)
+    for k in range(30):
+        kind = rng.choice(["load", "drag", "undo", "undo", "redo", "data", "text", "tie", "remove"])
+        loads = page.js("window.concio.view.shown.loads.length")
+        if kind == "load":
+            page.press("Escape")
+            page.press("l")
+            page.click_at(*page.where(rng.uniform(-0.2, 0.2), rng.uniform(0.2, 1.8)))
+            page.click("#pane-build button.main")
+        elif kind == "tie":
+            page.press("Escape")
+            page.press("t")
+            for y in (0.3, 1.6):
+                page.click_at(*page.where(rng.uniform(-0.2, 0.2), y))
+            page.click("#pane-build button.main")
+        elif kind == "drag" and page.js("window.concio.view.shown.loads[0]?.table === 0"):
+            page.click("[data-tool=select]")
+            x, y = page.js("window.concio.view.shown.loads[0].at")
+            page.mouse("mousePressed", *page.where(x, y))
+            for s in (0.3, 1.0):
+                page.mouse("mouseMoved", *page.where(-0.26 - 0.02 * s, y + s * (rng.uniform(0.3, 1.7) - y)))
+            page.mouse("mouseReleased", *page.where(-0.28, rng.uniform(0.3, 1.7)))
+        elif kind in ("undo", "redo"):
+            page.js("document.activeElement.blur()")
+            page.press("z" if kind == "undo" else "y", ctrl=True)
+        elif kind == "data":
+            page.click("#tab-data")
+            value(page, "[id='value-column-width']", rng.choice(["0.5", "55 cm", "0.6"]))
+        elif kind == "text":
+            page.click("#tab-text")
+            value(page, "#pane-text textarea", text_of(client) + f"# {k}\n")
+            page.click("#pane-text button.main")
+        elif kind == "remove" and loads > 1:
+            page.click("#tab-tables")
+            page.js(f"document.querySelector(\"[data-row='things load {loads - 1}'] button\")?.click()")
+        page.until("window.concio.idle()")
+        page.until(SETTLED)
+        text = text_of(client)
+        assert page.js("window.concio.state().document.text") == text, kind
+        model = concio.loads(text)
+        assert page.js("window.concio.view.shown.bodies.map((b) => b.name)") == [b.name for b in model.bodies], kind
+        places = [one.at and list(one.at) for one in model.loads]
+        assert page.js("window.concio.view.shown.loads.map((l) => l.at)") == places, kind
+        assert page.js("window.concio.view.shown.ties.map((l) => l.name)") == [one.name for one in model.ties], kind
+    page.click("#tab-python")
+    page.until("document.querySelector('#pane-python [role=note]')", "the program reads the file, which is older")
+    page.press("s", ctrl=True)
+    page.until("!document.querySelector('#pane-python [role=note]')")
+    program = page.js("document.querySelector('#pane-python pre').textContent")
+    code = f"{program}\nprint([one.at for one in model.loads])\n"
+    folder = client.server.session.folder
+    done = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == str([one.at for one in concio.loads(text_of(client)).loads])
 
 
 def test_a_question_is_cancelled_and_the_newest_wins(page: Browser, client: Client) -> None:

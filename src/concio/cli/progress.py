@@ -48,7 +48,7 @@ def progress_bar(*, shown: bool) -> Iterator[ProgressCallback | None]:
             remaining = left.seconds(share.best, time.monotonic())
             if time.monotonic() - sent >= OFTEN:
                 sent = time.monotonic()
-                listener("progress", told(state, share.best, remaining))
+                listener("progress", progress_of(state, share.best, remaining))
 
         yield report
         return
@@ -70,8 +70,8 @@ def progress_bar(*, shown: bool) -> Iterator[ProgressCallback | None]:
         yield move
 
 
-def told(state: Progress, share: float, remaining: float | None) -> dict[str, Any]:
-    """Return what a listener is told: ``share`` of the work done, ``iteration``, and in words ``residual``, ``left``.
+def progress_of(state: Progress, share: float, remaining: float | None) -> dict[str, Any]:
+    """Return what a listener receives: ``share`` of the work done, ``iteration``, and in words ``residual``, ``left``.
 
     The residual is empty where a solver reports what is left to do instead, the time left while it is not known.
     """

@@ -38,6 +38,16 @@ def test_courses_of_a_wall_are_found_again_and_its_multiplier(wall: concio.Model
     assert sum(joint.kind == "bed" for joint in found.joints) == 4
 
 
+def test_a_head_joint_that_only_noise_has_drawn_is_the_most_doubtful() -> None:
+    """In the lowest course noise draws a joint 0.1 m from the edge; the other courses of its kind have none there."""
+    long = concio.wall(block_size=(0.40, 0.20), length=2.4, height=1.4, block="rigid", unit_weight=20.0)
+    found = trace_courses(rendered(long, contrast=0.05, seed=33, light=True), (0.44, 0.18))
+    assert len(found.outlines()) == len(long.free_bodies) + 1
+    first, second = found.joints[:2]
+    assert (first.kind, first.ends[0][0]) == ("head", pytest.approx(2.3, abs=0.01))
+    assert first.strength < 0.7 * second.strength
+
+
 def test_a_joint_that_was_painted_over_is_the_most_doubtful_or_missed_beside_it(wall: concio.Model) -> None:
     photo = rendered(wall, contrast=0.25, seed=1)
     grey = photo.grey.copy()

@@ -11,7 +11,9 @@ import subprocess
 import sys
 import threading
 import time
+import tomllib
 from collections.abc import Iterator
+from http.client import HTTPException
 from pathlib import Path
 from typing import Any
 
@@ -316,12 +318,7 @@ def test_a_killed_server_loses_nothing(file: Path) -> None:
     command = [sys.executable, "-m", "concio", "window", str(file), "--no-open"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
-        address = process.stdout.readline().split()[-1]
-        port, token = address.removeprefix("http://127.0.0.1:").rstrip("/").split("/")
-        client = Client.__new__(Client)
-        client.server = type("Known", (), {"server_port": int(port), "token": token,
-                                           "origin": f"http://127.0.0.1:{port}"})()  # fmt: skip
-        client.page = "page"
+        client = known(process.stdout.readline().split()[-1])
         for width in (0.6, 0.7):
             client.do({"do": "set", "path": ["column", "width"], "value": width})
         process.kill()
@@ -330,6 +327,54 @@ def test_a_killed_server_loses_nothing(file: Path) -> None:
     assert doc.recovered == 2
     doc.close()
     shutil.rmtree(doc.folder)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("delay", [0.05, 0.11, 0.23])
+def test_a_server_that_is_killed_in_the_middle_of_a_command_loses_no_command_it_has_answered(
+    file: Path, delay: float
+) -> None:
+    command = [sys.executable, "-m", "concio", "window", str(file), "--no-open"]
+    answered: list[float] = []
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        client = known(process.stdout.readline().split()[-1])
+        client.call("ask", question="run")
+
+        def hands() -> None:
+            for k in range(100_000):
+                try:
+                    client.do({"do": "set", "path": ["column", "width"], "value": 0.5 + 1e-5 * (k + 1)})
+                except (OSError, ValueError, HTTPException):
+                    return
+                answered.append(0.5 + 1e-5 * (k + 1))
+
+        thread = threading.Thread(target=hands)
+        thread.start()
+        while not answered:
+            time.sleep(0.001)
+        time.sleep(delay)
+        process.kill()
+        thread.join(LATE)
+    doc = Document(file)
+    width = tomllib.loads(doc.text)["column"]["width"]
+    assert width in (pytest.approx(answered[-1], abs=1e-9), pytest.approx(answered[-1] + 1e-5, abs=1e-9))
+    assert doc.recovered in (len(answered), len(answered) + 1)
+    assert file.read_text(encoding="utf-8") == PILLAR
+    while doc.done:
+        doc.undo()
+    assert doc.text == PILLAR
+    doc.close()
+
+
+def known(address: str) -> Client:
+    """Return a client of a window that another process has opened."""
+    port, token = address.removeprefix("http://127.0.0.1:").rstrip("/").split("/")
+    client = Client.__new__(Client)
+    client.server = type("Known", (), {"server_port": int(port), "token": token,
+                                       "origin": f"http://127.0.0.1:{port}"})()  # fmt: skip
+    client.page = "page"
+    return client
 
 
 def test_copies_that_a_killed_program_left_are_removed_and_nothing_else(file: Path) -> None:

@@ -53,7 +53,8 @@ def trace_courses(photo: Photo, unit: Sequence[float]) -> Tracing:
     Returns
     -------
     Tracing
-        Its joints have their strength in deviations of the noise; the weakest come first.
+        Its joints have their strength in deviations of the noise, that of a head joint with what the other courses of
+        its kind say at its place; the weakest come first.
 
     Raises
     ------
@@ -83,12 +84,13 @@ def trace_courses(photo: Photo, unit: Sequence[float]) -> Tracing:
     own = [_course(smooth, top, bottom, wide) * sign for top, bottom in pairwise(beds)]
     own = [profile / _noise(profile) for profile in own]
     for c, (score, shared) in enumerate(zip(own, _shared(own, wide), strict=True)):
-        heads = _best(score + SHARED * shared, length, ends=True)
+        said = score + SHARED * shared
+        heads = _best(said, length, ends=True)
         top, bottom = beds[c], beds[c + 1]
         labels[top:bottom] = labels.max() + np.searchsorted(heads[1:-1], np.arange(columns), side="right") + 1
         for x in heads[1:-1]:
             ends = ((float(x), float(top)), (float(x), float(bottom)))
-            joints.append(TracedJoint("head", ends, float(score[max(0, x - 2) : x + 3].max())))
+            joints.append(TracedJoint("head", ends, float(said[max(0, x - 2) : x + 3].max())))
     told = [one.in_metres(photo) for one in joints]
     return Tracing(
         labels, photo, tuple(sorted(told, key=lambda one: one.strength)), _width(smooth * sign, beds) * photo.pixel

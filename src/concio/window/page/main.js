@@ -43,6 +43,7 @@ function take(found) {
   const changed = (before && before.hash) !== (doc && doc.hash) || (before && before.name) !== (doc && doc.name);
   header();
   if (changed) { modelChanged(); if (!doc || (before && before.name !== doc.name)) { clear(); forgetLayers(); pictured = ""; } refresh(["data", "text", "python"]); picture(); }
+  else if (before && before.saved !== doc.saved) refresh(["python"]);
   tabs();
   follow(state, () => { const key = answer ? answer.key + answer.question : ""; if (key !== shownReport) { shownReport = key; refresh(["report", "python", "look"]); answered(answer); } });
   if (!doc && !$("start").open) start();
@@ -110,11 +111,12 @@ function attention() {
 /* --- commands --- */
 let queue = Promise.resolve();
 function send(commands) { /* one after the other, each on the text that the one before has left */
-  queue = queue.then(() => (doc ? tried(async () => take(await call("do", { commands, hash: doc.hash, ...seen() }))) : null));
-  return queue;
+  return next(() => (doc ? tried(async () => take(await call("do", { commands, hash: doc.hash, ...seen() }))) : null));
 }
-const undo = () => tried(async () => take(await call("undo", seen())));
-const redo = () => tried(async () => take(await call("redo", seen())));
+let open = 0;
+function next(action) { open += 1; queue = queue.then(action).finally(() => { open -= 1; }); return queue; }
+const undo = () => next(() => tried(async () => take(await call("undo", seen()))));
+const redo = () => next(() => tried(async () => take(await call("redo", seen()))));
 const save = () => tried(async () => { take(await call("save", seen())); say(t("saved")); });
 const cancel = () => tried(async () => take(await call("cancel", seen())));
 const resolve = (keep) => tried(async () => take(await call("resolve", { keep, ...seen() })));
@@ -180,7 +182,8 @@ function pythonPane(pane) {
   if (!doc) return;
   const found = programs(doc.name);
   const one = (head, text) => el("section", {}, el("h2", {}, head), el("pre", {}, text), el("button", { onclick: async () => { await navigator.clipboard.writeText(text); say(t("copied")); } }, t("copy")));
-  pane.replaceChildren(one(t("python"), found.python), one(t("command_line"), found.command));
+  const older = doc.saved ? "" : el("p", { role: "note" }, t("python_unsaved"));
+  pane.replaceChildren(older, one(t("python"), found.python), one(t("command_line"), found.command));
 }
 
 /* --- open, templates, drop --- */
@@ -284,7 +287,7 @@ async function begin() {
   take(hello);
   refresh(TABS, true);
   setTimeout(poll, 500);
-  window.concio = { view, state: () => ({ ...state, document: doc }), pictured: () => pictured };
+  window.concio = { view, state: () => ({ ...state, document: doc }), pictured: () => pictured, idle: () => !open };
 }
 addEventListener("pagehide", goodbye);
 begin().catch(fail);
