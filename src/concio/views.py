@@ -63,7 +63,7 @@ def view(shown: object, name: str, *args: Any, **options: Any) -> Any:
 
 
 class Shown:
-    """Base of what shows itself in a notebook; a result by the sentence and the question of its verdict."""
+    """Base of what a notebook displays; a result by the sentence and the question of its verdict."""
 
     def _repr_html_(self) -> str:
         return str(view(self, "notebook"))

@@ -2,8 +2,8 @@
 
 The constants and the answer depend on each other: the step is solved with the constants as they are at first, the
 constants are evaluated again at the answer, and so on until they stay. The answer then obeys the joint laws with the
-constants that belong to it, exactly and with a certificate, and no solver knows of it. Where the constants do not stay,
-or a round has no certified answer, nothing is known: constants asked of what is no answer prove nothing.
+constants that belong to it, exactly and with a certificate, and no solver depends on the law. Where the constants do
+not stay, or a round has no certified answer, the result is undecided: constants of an uncertified state prove nothing.
 """
 
 from __future__ import annotations

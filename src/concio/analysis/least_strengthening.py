@@ -121,7 +121,7 @@ def _line(found: LimitLoad, live: Array, slope: Callable[[Array], float]) -> tup
         There is no mechanism: the loads that are not multiplied are not balanced without the strengthening.
     """
     if found.mechanism is None:
-        msg = "without the strengthening the constant loads are not balanced: there is no multiplier to begin with"
+        msg = "without the strengthening the constant loads are not balanced: no multiplier exists"
         raise InputError(msg, hint="give the model a strengthening with which it stands, and search from there by hand")
     v = found.mechanism.velocity / float(live @ found.mechanism.velocity)
     return slope(v), found.upper

@@ -145,7 +145,7 @@ def limit_stages(
     name : str
         Which number was found last.
     LimitResult
-        All that is known by then.
+        All numbers found so far.
 
     Raises
     ------

@@ -50,7 +50,7 @@ def bridge(
     json: Json = False,
     quiet: Quiet = False,
 ) -> int:
-    """Find the load factor of a vehicle at every position on a bridge, the worst position, and what it rests on.
+    """Find the load factor of a vehicle at every position on a bridge, the worst position, and the assumptions.
 
     Example: concio bridge bridge.toml --out result
     """

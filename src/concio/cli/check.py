@@ -28,7 +28,7 @@ def check(
     json: Json = False,
     quiet: Quiet = False,
 ) -> int:
-    """Say what a model file holds and what is wrong with it, without solving.
+    """Check a model file: print its contents and its faults, without solving.
 
     Example: concio check wall.toml --out wall.png
     """

@@ -23,7 +23,7 @@ def compare(
     json: Json = False,
     quiet: Quiet = False,
 ) -> int:
-    """Decide one model as 'concio run' does, solve the same problem by several methods, and print one table.
+    """Solve the problem of 'concio run' by several methods, and print one table.
 
     The exit code is that of 'concio run'.
 

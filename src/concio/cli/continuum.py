@@ -36,7 +36,7 @@ def continuum(
     json: Json = False,
     quiet: Quiet = False,
 ) -> int:
-    """Solve a wall block by block and as a homogenised continuum, and put both side by side.
+    """Solve a wall block by block and as a homogenised continuum, and compare the two.
 
     The exit code is 0, or 4 where something was not solved or not proven.
 

@@ -57,7 +57,8 @@ def limit(
 ) -> int:
     """Find the load multiplier: the associated bound, what Coulomb friction is shown to carry, and the friction margin.
 
-    The answer stands first, then each number with what it is. Ctrl-C ends the search and prints what is known by then.
+    The design value is printed first, then each number with its meaning. Ctrl-C stops the search and prints the numbers
+    found so far.
 
     Example: concio limit wall.toml --group live --out limit
     """

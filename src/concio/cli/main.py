@@ -34,7 +34,7 @@ from concio.cli import (
 
 EXIT_CODES = (
     "Exit codes: 0 what was asked for is shown, 2 bad input, 3 it is shown not to hold, 4 it is left open (not "
-    "reached, not checked, undecided, still moving), 130 interrupted, 1 anything else."
+    "reached, not checked, undecided, still moving), 130 interrupted, 1 any other error."
 )
 
 app = typer.Typer(

@@ -1,4 +1,4 @@
-"""Where a command may write, found out before any work is done; nothing of the user's is ever replaced."""
+"""Where a command may write, checked before any work is done; files of the user are never replaced."""
 
 from __future__ import annotations
 

@@ -48,13 +48,14 @@ def path(
     json: Json = False,
     quiet: Quiet = False,
 ) -> int:
-    """Follow a load path from event to event: which joint opens, closes, slips or sticks at which load.
+    """Follow a load path event by event: which joint opens, closes, slips or sticks, and at which load.
 
     Without --stage, the [[stages]] of the file are followed; where there are none, each load group is a stage:
     self-weight first, then the others in the order of the file.
 
-    The exit code is 0 where every stage reached its load, 3 where the structure is shown to carry no more before that,
-    4 where something asked for was not reached, where self-weight never acts, or where the path was lost.
+    The exit code is 0 where every stage reached its load, 3 where a stage is shown not to be
+    carried, 4 where a requested load or displacement was not reached, where no stage applies the self-weight, or where
+    the path could not be continued.
 
     Example: concio path wall.toml --stage dead=1 --stage live=5 --point c10-b05,2.0,2.5 --until "20 mm"
     """

@@ -42,10 +42,10 @@ def prove(
     json: Json = False,
     quiet: Quiet = False,
 ) -> int:
-    """Prove a multiplier from both sides, or that loads are balanced or not, in fractions that anyone can recompute.
+    """Write an exact certificate in fractions: of bounds of a multiplier, of an equilibrium, or of its non-existence.
 
-    The certificate holds the numbers of the model, the forces and the motion. 'concio verify' recomputes all of it with
-    Python's own fractions.
+    The certificate contains the numbers of the model, the forces and the motion. 'concio verify' recomputes all of it
+    with Python's fractions.
 
     Example: concio prove wall.toml --group live --out wall.proof.json
     """

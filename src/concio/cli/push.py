@@ -74,13 +74,13 @@ def push(
     json: Json = False,
     quiet: Quiet = False,
 ) -> int:
-    """Push a structure over: equilibria where the bodies stand, past the peak, until nothing is carried any more.
+    """Compute the capacity curve at large displacements, past the peak, until the strength is lost.
 
-    What is multiplied is the load group "live", other groups by --group, or a horizontal share of all weights
-    that the structure carries: self-weights and loads from above, as in "concio assess".
+    The multiplied load is the group "live", the groups of --group, or a horizontal share of all weights that the
+    structure carries: self-weights and loads from above, as in "concio assess".
 
-    The exit code is 0 where the curve was followed to its end, 3 where the structure does not stand to begin with, 4
-    where the curve was lost or stopped before its end.
+    The exit code is 0 where the curve was followed to its end, 3 where the structure does not stand at the start, 4
+    where the curve could not be continued or was stopped before its end.
 
     Example: concio push pillar.toml --out pushed --film gif
     """

@@ -26,7 +26,7 @@ def run(
     units: UnitsOf = None,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw figures into --out.")] = True,
 ) -> int:
-    """Solve one load step and say what was found.
+    """Solve one load step and print the result.
 
     Example: concio run panel.toml --out result
     """

@@ -53,13 +53,13 @@ def shake(
     json: Json = False,
     quiet: Quiet = False,
 ) -> int:
-    """Shake a structure: rocking, sliding and impacts under a record or a pulse, every step certified.
+    """Compute rocking, sliding and impacts under a recorded ground motion or a pulse, with every step certified.
 
-    What the table [motion] of the file says holds where no option says otherwise. Ctrl-C stops the motion, and what was
-    computed is kept.
+    Options take precedence over the table [motion] of the file. Ctrl-C stops the analysis and keeps the steps computed
+    so far.
 
     Without a duration the motion is followed until everything rests or a block has fallen. The exit code is 0 where the
-    structure comes to rest, 3 where it falls or does not stand to begin with, 4 where it still moves or a step failed.
+    structure comes to rest, 3 where it falls or does not stand at the start, 4 where it still moves or a step failed.
 
     Example: concio shake pillar.toml --motion record.at2 --scale 0.3 --out shaken --film gif
     """

@@ -40,7 +40,7 @@ def study(
     json: Json = False,
     quiet: Quiet = False,
 ) -> int:
-    """Make the runs that a model file's [[study]] table asks for: rows are written as they end.
+    """Run the study that the table [study] of a model file defines; each row is written when its run ends.
 
     Example: concio study wall.toml --workers 2
     """

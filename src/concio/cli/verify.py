@@ -18,12 +18,12 @@ def verify(
     json: Json = False,
     quiet: Quiet = False,
 ) -> int:
-    """Recompute an exact certificate with Python's own fractions; exit code 2 where it proves nothing.
+    """Recompute an exact certificate with Python's fractions; exit code 2 where it proves nothing.
 
-    What is suspicious about the model is printed as 'concio prove' wrote it down.
+    The warnings about the model that 'concio prove' stored are printed as well.
 
-    The programs that do it are two short files without imports from concio, which run alone: verify.py in
-    src/concio/proof, and verify_equilibrium.py for the claim of an equilibrium with its displacements.
+    The check is done by two short programs in src/concio/proof that import nothing from concio and can be run alone:
+    verify.py, and verify_equilibrium.py for the claim of an equilibrium with its displacements.
 
     Example: concio verify wall.proof.json
     """

@@ -24,12 +24,12 @@ def window(
     folder: Annotated[
         Path | None, typer.Option("--folder", help="Folder in which files may be opened; by default that of the file.")
     ] = None,
-    port: Annotated[int, typer.Option("--port", help="Port of the page; 0 takes a free one.")] = 0,
+    port: Annotated[int, typer.Option("--port", help="Port of the page; 0 selects a free one.")] = 0,
     show: Annotated[bool, typer.Option("--open/--no-open", help="Open it in the browser.")] = True,
 ) -> int:
-    """Open the window: a page of this machine in the browser, to draw, load, solve and report. Ctrl-C ends it.
+    """Open the graphical interface in the browser, to draw, load, solve and report. Ctrl-C ends it.
 
-    Nothing leaves the machine. Changes are kept in a journal beside the file until they are saved.
+    The page is served on this machine, and no data leaves it. Unsaved changes are kept in a journal beside the file.
 
     Example: concio window wall.toml
     """

@@ -1,1 +1,1 @@
-"""Frames, rigid motions and exact masses, in the plane and in space; nothing here knows of bodies or joints."""
+"""Frames, rigid motions and exact masses, in the plane and in space; independent of bodies and joints."""

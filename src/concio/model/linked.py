@@ -1,4 +1,4 @@
-"""What is near to what, and what hangs together: SciPy's trees and graphs, loaded when first asked for.
+"""What is near to what, and what is connected: SciPy's trees and graphs, loaded when first asked for.
 
 A model is read and its picture drawn before any of this is needed, and SciPy takes longer to load than both.
 """

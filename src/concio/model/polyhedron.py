@@ -138,7 +138,7 @@ class Polyhedron:
 
     @property
     def topology(self) -> Topology:
-        """How the faces hang together; shared by all blocks with the same faces."""
+        """How the faces are connected; shared by all blocks with the same faces."""
         return topology(self.faces, self.holes)
 
     @cached_property

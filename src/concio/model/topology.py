@@ -1,4 +1,4 @@
-"""How the faces of polyhedra hang together, without coordinates: computed once for all blocks of one sort."""
+"""How the faces of polyhedra are connected, without coordinates: computed once for all blocks of one sort."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ class Topology:
 
 @lru_cache(maxsize=4096)
 def topology(faces: tuple[Loop, ...], holes: tuple[tuple[int, Loop], ...] = ()) -> Topology:
-    """Return how faces hang together."""
+    """Return how faces are connected."""
     loops = [*faces, *(loop for _, loop in holes)]
     count = np.array([len(loop) for loop in loops])
     first = np.concatenate([[0], np.cumsum(count)[:-1]])

@@ -126,7 +126,7 @@ def prove_balance(
 ) -> dict[str, Any]:  # fmt: skip
     """Return the exact certificate of joint forces within their strength that balance the loads.
 
-    They are necessary for equilibrium and not sufficient: forces out of nothing also balance a block that nothing
+    They are necessary for equilibrium and not sufficient: self-stress also balances a block that nothing
     squeezes between two walls.
 
     Parameters

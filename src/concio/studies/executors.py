@@ -163,7 +163,7 @@ def _run_processes(task: Task, sample: Sample, wanted: Sequence[int], emit: Emit
             lost = []
             pool = _processes(size)
             try:
-                _greet(pool)
+                _start(pool, min(size, len(queue)))
                 for index, row in _ended(pool, task, sample, queue, size):
                     if row is None:
                         lost.append(index)
@@ -237,10 +237,13 @@ def _ready() -> bool:
     return True
 
 
-def _greet(pool: Executor) -> None:
-    """Raise where the processes of a pool do not start at all."""
+def _start(pool: Executor, size: int) -> None:
+    """Start the processes of a pool together, and wait for the first; raise where they do not start at all.
+
+    A pool begins one process for each call that it is given while none is free.
+    """
     try:
-        pool.submit(_ready).result()
+        wait([pool.submit(_ready) for _ in range(size)], return_when=FIRST_COMPLETED).done.pop().result()
     except BrokenExecutor:
         msg = "worker processes do not start"
         hint = "a script that makes studies in processes does so below: if __name__ == '__main__':"

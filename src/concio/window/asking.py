@@ -142,7 +142,7 @@ class Asked:
         return self._results
 
     def cancel(self) -> None:
-        """Give up what is being computed; what was found by then stays."""
+        """Stop the computation; what was found so far is kept."""
         with self._guard:
             if self._job is not None and not self._job.over.is_set():
                 self.lane.cancel()

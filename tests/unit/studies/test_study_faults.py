@@ -17,6 +17,7 @@ import pytest
 
 import concio
 from commands import run
+from concio.studies import executors
 from concio.studies.rows import Row
 from study_functions import VARIABLES, deaf, dying, dying_once, formula, hanging, raising
 
@@ -90,6 +91,16 @@ def test_a_lost_worker_loses_no_row(executor: str, tmp_path: Path, monkeypatch: 
     assert list(tmp_path.iterdir())  # a worker was lost
     assert [row.verdict for row in found.rows] == ["done"] * 5
     assert found.values("multiplier").tolist() == [0.3, 0.3, 0.3, 0.25, 0.3]
+
+
+def test_the_processes_of_a_pool_start_together() -> None:
+    """One after the other, as many starts as there are workers passed before they all worked."""
+    pool = executors._processes(2)
+    try:
+        executors._start(pool, 2)
+        assert len(pool._processes) == 2
+    finally:
+        executors._end(pool)
 
 
 SCRIPT = """

@@ -250,7 +250,7 @@ def strength(
     InputError
         The model is not a cell, or a direction is none.
     NoEquilibriumError
-        The stress to begin with cannot be carried.
+        The initial stress cannot be carried.
 
     Examples
     --------

@@ -215,7 +215,7 @@ class Candidate:
             msg = f"the motion must be allowed to be zero and something else, not {self.low:g} to {self.high:g}"
             raise InputError(msg, where=where, hint="low is zero or negative, high zero or positive")
         if self.times < 0 or (self.times and not self.group):
-            msg = f"times = {self.times} is how often the factor of a load group came and went"
+            msg = f"times = {self.times} is the number of times that a load group was applied and removed"
             raise InputError(msg, where=where, hint="leave it out, or name a group")
         if self.base is not None and not (self.group and math.isfinite(self.base)):
             msg = "base is the finite factor of a load group"

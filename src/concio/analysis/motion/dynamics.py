@@ -190,7 +190,7 @@ def _begin(
     if 0.0 < share < 1.0:
         return last, False, supports_short(share)
     what = "the motion begins as described" if structure.alone else f"'{structure.name}' begins as described"
-    return last, False, f"no equilibrium under the loads was found to begin with: {what}"
+    return last, False, f"no equilibrium under the loads was found at the start: {what}"
 
 
 @dataclass

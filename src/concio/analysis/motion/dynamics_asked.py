@@ -1,4 +1,4 @@
-"""What a motion is asked for: duration, step, velocities to begin with; and what is refused."""
+"""What a motion is asked for: duration, step, initial velocities; and what is refused."""
 
 from __future__ import annotations
 

@@ -79,7 +79,7 @@ class DynamicsResult(Shown):
     stated : float or None
         Duration that was asked for; None where the motion was followed until rest or a fall [s].
     stands : bool or None
-        Whether an equilibrium was found to begin with; None where none was asked for.
+        Whether an equilibrium was found at the start; None where none was asked for.
     fallen : tuple of str
         Blocks that have fallen or passed their own equilibrium, a phrase each.
     rests : bool

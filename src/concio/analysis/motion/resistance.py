@@ -17,7 +17,7 @@ What hangs by a tie and turns with the load is stiffer than the rows of the firs
 iterations swing about the equilibrium and lose two to fifteen hundredths of their size each time."""
 
 USUAL = 4
-"""The resistance to begin with, in :data:`RESISTANCE`."""
+"""The initial resistance, in :data:`RESISTANCE`."""
 
 STEADY = 0.9
 """Share of the last iteration, gone once more, from which on the resistance is made smaller.

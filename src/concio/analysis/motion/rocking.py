@@ -76,7 +76,7 @@ def rock(model: Model, *, direction: float = 1.0, step: float = 0.005, smallest:
     InputError
         A body is elastic, or there is none that is rigid.
     NoEquilibriumError
-        The structure does not stand to begin with.
+        The structure does not stand at the start.
 
     Examples
     --------

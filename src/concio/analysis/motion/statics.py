@@ -268,7 +268,7 @@ class Statics(SmallDisplacements):
 
 
 def _guess(p: StepProblem, memory: Memory, last: StepSolution | None) -> tuple[PairStates, Array]:
-    """Return states and forces (pairs, d) to begin with: those of the last iteration, or the states of the memory."""
+    """Return initial states and forces (pairs, d): those of the last iteration, or the states of the memory."""
     if last is not None and len(last.t) == p.pairs:
         return last.states, last.t
     return memory.states(p.pairs), np.zeros((p.pairs, p.dim))

@@ -71,7 +71,7 @@ class TieStep:
         return cls(ties, begun, data, begun.stored(ties) - memory.stored(ties))
 
     def states(self) -> Array:
-        """Return the states (k,) in which the ties are to begin with: open where slack, closed where tight."""
+        """Return the states (k,) in which the ties are at the start: open where slack, closed where tight."""
         return np.where(self.memory.sunk < 0, Normal.CLOSED, Normal.OPEN).astype(np.int8)
 
     def remember(self, y: Array, t: Array, contact: Array, h: float) -> tuple[TieMemory, float, float]:

@@ -90,8 +90,8 @@ def assess(
         chimneys, gables, free to vibrate: :class:`~concio.analysis.seismic.free_standing.FreeStanding` or its
         arguments, ``{"kind": "cantilever", "E": 900e3}``. Their curve begins with an elastic branch.
     elsewhere : sequence of str
-        What is not checked here and need not be, for the author answers for it: "out of plane" of a facade in
-        elevation, "height" of mechanisms above the ground without a building, "ties" without yield force.
+        Checks that are made elsewhere, under the responsibility of the author: "out of plane" of a facade in elevation,
+        "height" of mechanisms above the ground without a building, "ties" without yield force.
     accept_linear : bool
         Whether a limit state counts as met where the linear check with the behaviour factor is, as the code allows; by
         default the check in displacements decides wherever there is one.
@@ -129,7 +129,7 @@ def assess(
         msg = "this is a periodic cell, which has no mechanism of a wall"
         raise InputError(msg, hint="assess the wall itself")
     if any(tie.kind == "soil" for tie in model.ties):
-        msg = "the fill of this model presses its blocks, which no mechanism of a wall knows of"
+        msg = "the fill of this model presses on its blocks, and mechanisms of walls do not include that pressure"
         raise InputError(msg, hint="assess it with passive = 0 in [fill]; 'concio bridge' is for bridges")
     rules = site.rules
     wanted = tuple(site.levels if levels is None else levels)

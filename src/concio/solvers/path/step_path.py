@@ -90,7 +90,7 @@ def follow_in_steps(
     until : float
         Load parameter to reach.
     steps : int
-        Steps of equal size to begin with.
+        Initial number of steps, of equal size.
     solver : Solver
     refine : bool
         Whether steps are halved at many changes of state (a failed step always is).

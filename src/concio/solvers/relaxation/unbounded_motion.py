@@ -80,7 +80,7 @@ def unbounded_motion(s: Scaled, now: Finished, velocity: Array, resistance: floa
     velocity : (N,) array
         e (u_k+1 - u_k) of its last step.
     resistance : float, optional
-        e of that step, to begin with where the step was a long one.
+        e of that step, at the start where the step was a long one.
     """
     if s.problem.rigid_motions == 0:
         return None

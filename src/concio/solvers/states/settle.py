@@ -74,7 +74,7 @@ class Settler:
         u, t : (N,), (m, 2) arrays
             The point, scaled.
         states : PairStates, optional
-            States to begin with; default are those the point shows.
+            Initial states; by default those that the point shows.
         undecided : (k,) integer array, optional
             Pairs whose states are in question from the start.
         springs : (N,) array or float

@@ -84,7 +84,7 @@ def maximise(
     programme : ConeProgramme
     e, g : (r,) arrays
     start : (m, d) array, optional
-        Forces strictly inside the cones to begin with.
+        Initial forces, strictly inside the cones.
     stop : callable, optional
         Looks at each iterate; true ends the iteration.
     """
