@@ -177,7 +177,7 @@ def quantity(value: float | str, kind: str, *, where: str | None = None) -> floa
         msg = f"unknown unit '{_short(unit)}' in '{_short(str(value))}'"
         if re.match(r",\d", unit):
             raise InputError(msg, where=where, hint=DECIMAL_COMMA)
-        hint = f"use {SYMBOL[kind]}, or N, kN, MN, m, cm, mm, Pa, kPa, MPa, GPa combined as in 'kN/m2'"
+        hint = f"use {SYMBOL[kind]}, or another unit made of N, kN, MN, m, cm, mm, Pa, kPa, MPa, GPa, such as 'kN/m2'"
         if SYMBOL[kind] == "-":
             hint = "leave the unit out" + (", or give the angle: '31 deg'" if kind == "friction" else "")
         raise InputError(msg, where=where, hint=hint)

@@ -72,7 +72,7 @@ def path(
     assembly = concio.assemble(loaded(file, units, engine))
     control = None if point is None else control_of(point, along, assembly.model.dim)
     if control is None and until is not None:
-        msg = "--until is the motion of a control point, and there is none"
+        msg = "it is a displacement of a control point, and no control point is given"
         raise InputError(msg, where="--until", hint="add --point BODY,X,Y")
     wanted = [factors_of(text.split(",")) for text in stage or ()] or [
         {group: 1.0} for group in usual_order(assembly.model, assembly.groups)

@@ -213,6 +213,9 @@ def study(
     """
     check_executor(executor, workers)
     source, table = _source(model)
+    if table is None and outputs is None and isinstance(model, str | os.PathLike):
+        msg = "there is no table [study]"
+        raise InputError(msg, where=str(model), hint="add [study] with outputs = ['stands'], and [[study.variables]]")
     given = table or StudyTable()
     stated = tuple(variable(**v.arguments()) for v in given.variables)
     chosen = _variables(variables) if variables is not None else stated

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import concio
+from commands import run
 from models import box, model_of, weight
 from seismic_walls import overturning, site
 
@@ -48,3 +51,26 @@ def test_the_thrust_line_of_a_wall_names_what_shows_its_forces() -> None:
     result = concio.solve(model_of(*blocks, box("c", 0, 2, 1, 2, **stone), loads=(weight(),)))
     with pytest.raises(concio.InputError, match=r"result\.plot\.forces"):
         concio.thrust_line(result)
+
+
+WALL = "[wall]\nlength = 1.0\nheight = 0.5\nblock_size = [0.5, 0.25]\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "asked", "said"),
+    [
+        (WALL + 'friction = "steel"\n', ("check",), "give a number, or define [joints.steel]"),
+        (WALL + 'block = "oak"\n', ("check",), "define [materials.oak]"),
+        (WALL, ("study",), "there is no table [study]"),
+        (WALL, ("path", "--until", "5 mm"), "--until: it is a displacement of a control point, and no control point"),
+        ('[wall]\nlength = "1 foot"\n', ("check",), "use m, or another unit made of N, kN"),
+    ],
+)
+def test_what_is_missing_is_named_with_what_to_add(
+    text: str, asked: tuple[str, ...], said: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "wall.toml"
+    path.write_text(text)
+    code, _, err = run(asked[0], path, *asked[1:])
+    assert code == 2
+    assert said in " ".join(err.split())

@@ -53,7 +53,8 @@ def findings(path: Path, text: str) -> Iterator[str]:
 
 
 def texts() -> list[Path]:
-    pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")]
+    first = ("README.md", "CONTRIBUTING.md", "SECURITY.md", "CODE_OF_CONDUCT.md")
+    pages = [*(ROOT / name for name in first), *(ROOT / "docs").rglob("*.md")]
     named = [p for p in pages if p != STYLE and not p.relative_to(ROOT).as_posix().startswith(NOTES)]
     source = [p for form in ("*.py", "*.toml", "*.html") for p in (ROOT / "src" / "concio").rglob(form)]
     examples = [p for form in ("*.py", "*.toml") for p in (ROOT / "examples").rglob(form)]

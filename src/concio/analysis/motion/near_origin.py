@@ -2,7 +2,7 @@
 
 In national grids a coordinate has seven digits before the point, and doubles then leave 1e-9 m for places. Gaps of
 hard joints at large displacements are smaller: a wall that was followed there ended in wrong curves, or found no
-equilibrium to begin with.
+equilibrium at the start.
 """
 
 from __future__ import annotations

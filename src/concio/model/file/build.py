@@ -214,7 +214,8 @@ def _argument(value: Any, table: str, key: str, materials: Materials, laws: Laws
 def _named(word: str, place: str, table: Mapping[str, Any], what: str) -> Any:
     if word not in table:
         msg = f"{what} '{word}' is not defined"
-        raise InputError(msg, where=place, hint=closest(word, list(table)) if table else None)
+        new = f"give a number, or define [joints.{word}]" if what == "joint law" else f"define [materials.{word}]"
+        raise InputError(msg, where=place, hint=closest(word, list(table)) if table else new)
     return table[word]
 
 
