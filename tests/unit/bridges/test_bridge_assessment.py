@@ -12,7 +12,7 @@ import pytest
 
 import concio
 from commands import run
-from concio.analysis.bridges.mexe import mexe
+from concio.analysis.bridges.mexe import mexe, mexe_of
 from concio.analysis.bridges.service import service_state
 from concio.analysis.bridges.sweep import Sweep, search
 from concio.analysis.bridges.two_vehicles import second_vehicle, worst_apart
@@ -176,6 +176,19 @@ def test_mexe_is_the_formula_within_its_limits_and_says_where_it_does_not_apply(
     assert mexe(6.0, 1.2, 0.9, 0.45, 0.4, span_rise=0.8).axle == pytest.approx(0.8 * found.axle)
     assert mexe(2.0, 1.0, 0.75, 1.0, 0.7).provisional == pytest.approx(70 * 9.81)
     assert np.isnan(mexe(30.0, 10.0, 7.5, 0.8, 0.4).axle)
+
+
+@pytest.mark.parametrize("at", [(0.0, 0.0), (12.0, 4.0), (5e5, 300.0)])
+@pytest.mark.parametrize("mirror", ["", "x"])
+def test_mexe_takes_rise_and_profile_from_the_bridge_where_it_stands(at: tuple[float, float], mirror: str) -> None:
+    """Of a semicircle r_q / r_c = sqrt(3) / 2. Without this the formula crashed away from x = 0."""
+    masonry = concio.bridge(span=4.0, rise=2.0, ring=0.3, voussoirs=90, width=2.0, block="rigid")
+    model = with_fill(concio.place(masonry, at, mirror=mirror), Fill(cover=0.4))
+    found = mexe_of(model)
+    assert found is not None
+    assert found.provisional == pytest.approx(740 * 0.7**2 / 4**1.3 * 9.81)
+    assert found.profile == pytest.approx(2.3 * (1 - math.sqrt(0.75)) ** 0.6, rel=1e-3)
+    assert found.axle == pytest.approx(found.provisional * found.profile)
 
 
 def written(tmp_path: Path, more: str = "") -> Path:

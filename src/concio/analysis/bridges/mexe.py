@@ -110,16 +110,24 @@ def mexe_of(model: Model, *, span_rise: float | None = None, factors: float = 1.
     crown = surface.crown
     depth = float(road.height(crown[:1])[0] - crown[1])
     ring, span = float(sum(given["ring"])), float(given["span"][0])
-    free = [b for b in model.outlines if b.kind != "fixed"]
-    points = np.vstack([b.outline for b in free])
-
-    def intrados(x: float) -> float:
-        near = points[np.abs(points[:, 0] - x) < 0.6 * span / min(given["voussoirs"])]
-        return float(near[:, 1].min())
-
-    rise = float(points[:, 1].max()) - ring
-    found = mexe(span, rise, intrados(0.25 * span), ring, depth, span_rise=span_rise, factors=factors)
+    free = [b.outline for b in model.outlines if b.kind != "fixed"]
+    points = np.vstack(free)
+    foot, middle = float(points[:, 1].min()), float(points[:, 0].min() + points[:, 0].max()) / 2
+    rise = float(points[:, 1].max()) - ring - foot
+    quarter = _underside(free, middle - 0.25 * span) - foot
+    found = mexe(span, rise, quarter, ring, depth, span_rise=span_rise, factors=factors)
     if len(given["ring"]) > 1:
         return Mexe(found.axle, found.provisional, found.profile, found.factors,
                     (*found.limits, f"{len(given['ring'])} rings are taken as one"))  # fmt: skip
     return found
+
+
+def _underside(outlines: list[np.ndarray], x: float) -> float:
+    """Return the least height at which a vertical line meets outlines [m]."""
+    heights = []
+    for p in outlines:
+        q = np.roll(p, -1, axis=0)
+        hit = (p[:, 0] != q[:, 0]) & ((p[:, 0] - x) * (q[:, 0] - x) <= 0)
+        share = (x - p[hit, 0]) / (q[hit, 0] - p[hit, 0])
+        heights += (p[hit, 1] + share * (q[hit, 1] - p[hit, 1])).tolist()
+    return min(heights)
