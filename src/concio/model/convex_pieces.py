@@ -111,7 +111,8 @@ def _cut_up(body: Polyhedron) -> tuple[ConvexPiece, ...] | None:
             normals = np.concatenate([body.normals[part.faces], *[[n] for n, _ in part.cuts]])
             offsets = np.concatenate([body.offsets[part.faces], [o for _, o in part.cuts]])
             corners = np.unique(np.round(points / (1e-9 * size)), axis=0) * (1e-9 * size)
-            done.append(ConvexPiece(corners, normals, offsets))
+            if (offsets - (points @ normals.T).min(0)).min() > FLAT * size:  # faces that miss one plane leave flat ones
+                done.append(ConvexPiece(corners, normals, offsets))
         else:
             face = part.faces[int(np.argmax(out))]
             normal, offset = body.normals[face], float(body.offsets[face])
@@ -143,7 +144,7 @@ def _clipped(
             continue
         else:
             kept = shape.intersection(_half_plane(slope, height, float(np.ptp(flat, axis=0).max()), flat.mean(0)))
-            polygons = [p for p in shapely.get_parts(kept) if p.geom_type == "Polygon" and p.area > 1e-12 * size * size]
+            polygons = [p for p in shapely.get_parts(kept) if p.area > 0]
             if not polygons:
                 continue
             kept = shapely.MultiPolygon(polygons)

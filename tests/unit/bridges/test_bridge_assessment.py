@@ -130,6 +130,17 @@ def test_an_answer_that_rests_on_the_soil_says_so() -> None:
     assert not any("depends on the pressure of the soil" in line for line in rests[1])
 
 
+def test_the_share_owed_to_the_soil_is_what_the_bound_loses_without_its_pressure(
+    assessed: concio.BridgeResult,
+) -> None:
+    x = min(assessed.standings, key=lambda s: s.multiplier).position
+    alone, pressed = Sweep(without_pressure(small())).at(x), Sweep(small()).at(x)
+    assert alone is not None
+    assert pressed is not None
+    assert assessed.owed_to_soil == pytest.approx(1 - alone.multiplier / pressed.multiplier, abs=1e-6)
+    assert 0 < assessed.owed_to_soil < 1
+
+
 def test_more_than_the_bound_fails_and_no_coulomb_states_leave_it_open() -> None:
     found = concio.assess_bridge(small(), step=0.3, fine=0.05, worst=1, checked=0, sensitivity=False)
     assert found.verdict.outcome is concio.Outcome.INCOMPLETE

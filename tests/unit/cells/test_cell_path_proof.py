@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import concio
@@ -45,3 +46,19 @@ def test_lent_compliance_is_the_same_in_every_stage():
     first, last = (path.steps[i].stored for i in ends)
     assert last == pytest.approx(first, rel=1e-9)
     assert path.energy_error <= 1e-9
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+def test_a_stress_that_did_not_come_out_stands_in_the_certificate_as_its_share(scale):
+    """100 kN/m2 were asked for and 99 came out: one per cent of the largest contact force, at any size of the cell."""
+    law = concio.JointLaw(0.6, normal_stiffness=3e5 / scale, tangential_stiffness=1e5 / scale)
+    size = (0.25 * scale, 0.06 * scale)
+    cell = concio.cell(block="rigid", bond="stack", block_size=size, friction=law, thickness=0.4 * scale)
+    path = concio.strain_path(cell, {"stress yy": -100.0})
+    last = path.steps[-1]
+    wanted = last.stress - np.array([0.0, 1.0, 0.0])
+    (again,) = paths._certified(path.cell, path.cell.assembly.laws, [last], [wanted])
+    points = (last.state.normal_force > 0).sum()
+    share = 0.25 * 0.4 * scale**2 / last.state.normal_force.max()  # force that 1 kN/m2 is, over the largest
+    assert points > 1
+    assert again.certificate.equilibrium == pytest.approx(share * 0.06 * scale / path.cell.size, rel=1e-6)

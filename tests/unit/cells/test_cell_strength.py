@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -207,3 +208,23 @@ def test_half_spaces_know_their_corners_and_sections():
     assert len(box.section((1, 0, 0), (0, 1, 0), (0, 0, 10.0), 100.0)) == 0
     half = HalfSpaces.of(np.array([[0, 0, 1.0]]), np.ones(1))
     assert half.distance((1, 0, 0)) == np.inf
+
+
+DIRECTIONS = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0)]
+
+
+def test_the_table_has_a_row_for_each_direction_with_the_strain_rate_of_its_mechanism():
+    found = concio.strength(running(0.25, 0.125, 0.6, 5.0), DIRECTIONS, coulomb=False, faces=False)
+    table = found.table()
+    assert {len(column) for column in table.values()} == {4}
+    rates = np.column_stack([v for k, v in table.items() if k.startswith("strain_rate")])
+    for ray, row in zip(found.rays, rates, strict=True):
+        np.testing.assert_array_equal(row, found.strain_rate(ray))
+
+
+def test_the_worst_residual_is_the_largest_of_all_directions():
+    found = concio.strength(running(0.25, 0.125, 0.6, 5.0), DIRECTIONS[:2], coulomb=False, faces=False)
+    first, second = found.rays
+    wrong = replace(second, associated=replace(second.associated, residual=0.25))
+    assert replace(found, rays=(first, wrong)).worst >= 0.25
+    assert not replace(found, rays=(wrong, first)).checked

@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
 from concio import InputError, Polyhedron
 from concio.model import convex_pieces
@@ -164,6 +165,19 @@ def test_a_bar_through_a_body_of_too_many_pieces_overlaps_it(monkeypatch: pytest
     assert overlap.depth == pytest.approx(0.5)
     assert not found(wheel, box("right", (0.9, -2e-3, 0.2), (1.4, 2e-3, 0.3))).overlaps
     assert not found(wheel, box("left", (-1.4, -2e-3, 0.2), (-0.9, 2e-3, 0.3))).overlaps
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-13, -1e-13, 1e-11, -1e-11, 1e-9, -1e-9, 1e-7, -1e-7])
+def test_faces_that_miss_one_plane_by_rounding_leave_no_flat_pieces(off: float) -> None:
+    """A leg as high as a step beside it, but for ``off``: what is cut along one is cut along the other."""
+    outline = [(0, 0), (5, 0), (5, 10), (4, 10), (4, 1), (3, 1), (3, 0.5), (1, 0.5), (1, 1 + off), (0, 1 + off)]
+    pieces = prism_of(np.array(outline, dtype=float), 0.0, 1.0, "stair").pieces
+    assert pieces is not None
+    assert len(pieces) == 4
+    for piece in pieces:
+        assert (piece.offsets - (piece.vertices @ piece.normals.T).min(0)).min() > 0.4
+    volume = sum(ConvexHull(piece.vertices).volume for piece in pieces)
+    assert volume == pytest.approx(5 * 0.5 + 1 * 0.5 + 2 * 0.5 + 9, abs=1e-5)
 
 
 def test_overlaps_are_found_among_bodies_of_several_shapes() -> None:
