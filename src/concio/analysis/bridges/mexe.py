@@ -130,4 +130,4 @@ def _underside(outlines: list[np.ndarray], x: float) -> float:
         hit = (p[:, 0] != q[:, 0]) & ((p[:, 0] - x) * (q[:, 0] - x) <= 0)
         share = (x - p[hit, 0]) / (q[hit, 0] - p[hit, 0])
         heights += (p[hit, 1] + share * (q[hit, 1] - p[hit, 1])).tolist()
-    return min(heights)
+    return float(min(heights))
