@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -64,7 +65,7 @@ def bridge(
     options: dict[str, Any] = {"required": required, "worst": worst, "checked": checked, "sensitivity": sensitivity}
     options |= {"step": None if step is None else quantity(step, "length", where="--step")}
     options |= {"fine": quantity(fine, "length", where="--fine"), "others": tuple(vehicle or ())}
-    distances = [text.strip() for text in (apart or "").split(",") if text.strip()]
+    distances = _distances(apart or "")
     options |= {"second": second, "apart": [quantity(text, "length", where="--apart") for text in distances]}
     options |= {"settled": dict(_settlement(text) for text in settle or ()), "span_rise": mexe_factor}
     with progress_bar(shown=not json) as progress:
@@ -85,6 +86,17 @@ def bridge(
         if written:
             say(f"  written      {out}: {', '.join(written)}")
     return found.verdict.exit_code
+
+
+def _distances(text: str) -> list[str]:
+    """Return the distances of a list; a comma between two digits may be meant as a decimal one, and is refused."""
+    from concio.errors import InputError
+    from concio.units import DECIMAL_COMMA
+
+    if re.search(r"\d,\d", text):
+        msg = f"--apart {text!r} can be read in two ways"
+        raise InputError(msg, hint=f"{DECIMAL_COMMA}; distances are separated by a comma and a space, '8 m, 12 m'")
+    return [part.strip() for part in text.split(",") if part.strip()]
 
 
 def _settlement(text: str) -> tuple[str, float]:

@@ -16,6 +16,8 @@ Side = Literal["none", "active", "at rest"]
 
 RADIANS = 1.6
 """Friction angles up to this number of degrees are taken for radians, and refused."""
+DEEPEST = 100.0
+"""No arch lies deeper under its road [m]."""
 
 
 @strict_class
@@ -149,6 +151,9 @@ class Fill:
             if not 0 < cover < math.inf:
                 msg = f"cover = {cover:g} m must be positive: the road would lie below the crown of the extrados"
                 raise InputError(msg, where=where, hint="cover is the depth from the road to the highest masonry")
+            if cover > DEEPEST:
+                msg = f"cover = {cover:g} m is deeper than fill on any bridge"
+                raise InputError(msg, where=where, hint="a bare number is in m: write '400 mm' where it is not")
             put(self, "cover", cover)
         for key in ("road", "fill_line"):
             line = tuple((float(x), float(y)) for x, y in getattr(self, key))

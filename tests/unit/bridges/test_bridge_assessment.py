@@ -22,6 +22,7 @@ from concio.analysis.motion.push_result import PushEnding
 from concio.model.crossing import Axle, Vehicle
 from concio.model.fill import Fill
 from concio.model.road.earth import ground_of, with_fill, with_vehicle, without_pressure
+from concio.model.road.vehicles import axles_of
 from concio.solvers.statics.limit import associated_limit
 from concio.verdict.bridge_verdict import bridge_verdict
 from concio.verdict.bridge_words import TEXTS
@@ -235,6 +236,12 @@ def test_the_command_prints_one_object_and_leaves_with_the_verdict(tmp_path: Pat
         ("", ("--apart", "8 m"), "no second vehicle"),
         ("", ("--second", "same"), "needs distances"),
         ("", ("--second", "same", "--apart", "8 kN"), "--apart"),
+        ("", ("--second", "same", "--apart", "8,5 m"), "two ways"),
+        ("", ("--settle", "left abutment=10"), "would settle by 10 m"),
+        ("", ("--fine", "0"), "fine = 0 must be positive"),
+        ("", ("--worst", "-1"), "worst = -1 must not be negative"),
+        ("", ("--checked", "-5"), "checked = -5 must not be negative"),
+        ("", ("--mexe-factor", "-0.7"), "must be positive"),
     ],
 )
 def test_bad_options_are_refused_in_words(text: str, options: tuple[str, ...], words: str, tmp_path: Path) -> None:
@@ -243,6 +250,15 @@ def test_bad_options_are_refused_in_words(text: str, options: tuple[str, ...], w
     assert code == 2
     assert words in err
     assert "Traceback" not in err
+
+
+def test_a_cover_in_millimetres_and_axles_with_commas_are_refused_with_what_to_write() -> None:
+    with pytest.raises(concio.InputError, match="deeper than fill") as refused:
+        Fill(cover=400.0, unit_weight=20.0)
+    assert "400 mm" in str(refused.value.hint)
+    with pytest.raises(concio.InputError, match="not a pair") as refused:
+        axles_of([[0, 65, 93, 2]])
+    assert "a point, not a comma" in str(refused.value.hint)
 
 
 def test_a_model_without_fill_or_vehicle_is_refused(tmp_path: Path) -> None:

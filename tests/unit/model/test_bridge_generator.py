@@ -130,6 +130,12 @@ def test_lines_of_a_survey_make_a_ring() -> None:
         ({"shape": "pointed", "rise": 2.0}, "rises more than"),
         ({"shape": "three-centred", "rise": 3.5}, "rises between"),
         ({"width": 2.0, "thickness": 2.0}, "they are one"),
+        ({"span": 6000.0, "rise": 1500.0, "ring": 450.0}, "longer than any of masonry"),
+        ({"ring": 450.0}, "thicker than the span"),
+        ({"ring": [3.0, 3.5]}, "thicker than the span"),
+        ({"intrados": [[0, 0], [3000, 1500], [6000, 0]], "extrados": [[-300, 300], [3000, 2000], [6300, 300]],
+          "span": None, "rise": None, "ring": None}, "longer than any of masonry"),
+        ({"voussoirs": 100_000}, "more than 1,000"),
     ],
 )
 def test_bad_bridges_are_refused(more: dict[str, object], words: str) -> None:

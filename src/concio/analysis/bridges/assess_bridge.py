@@ -109,6 +109,7 @@ def assess_bridge(
     if not 0 < required < np.inf:
         msg = f"required = {required:g} must be positive"
         raise InputError(msg, hint="the load factor that is asked for, 1 for the vehicle as it is")
+    _refuse_numbers(fine, worst, checked, span_rise)
     if model.dim != 2:
         msg = "bridges are assessed in the plane; the model is in space"
         raise InputError(msg, hint="give the plane model of a strip")
@@ -155,6 +156,19 @@ def assess_bridge(
         fine=fine,
         apart=distances,
     )  # fmt: skip
+
+
+def _refuse_numbers(fine: float, worst: int, checked: int, span_rise: float | None) -> None:
+    """Refuse numbers that cannot be meant."""
+    hints = "the distance to which the worst positions are refined", "a factor of MEXE: 1, or less of flat arches"
+    for key, number, hint in zip(("fine", "span_rise"), (fine, span_rise), hints, strict=True):
+        if number is not None and not 0 < number < np.inf:
+            msg = f"{key} = {number:g} must be positive"
+            raise InputError(msg, hint=hint)
+    for key, count in (("worst", worst), ("checked", checked)):
+        if count < 0:
+            msg = f"{key} = {count} must not be negative"
+            raise InputError(msg, hint="a number of positions")
 
 
 def _tell(progress: ProgressCallback | None, stage: str, words: str) -> None:

@@ -21,6 +21,8 @@ CLEAR = 1e-6
 """Openings and slips of rigid blocks below this are those of vanishing compliance, and are reported as none [m]."""
 
 
+SETTLED = 0.05
+"""Settlements above this share of the size of a bridge are refused: mostly millimetres."""
 EDGE = 0.01
 """A joint whose loaded part is shorter than this share of its length is pressed at its edge alone."""
 
@@ -97,13 +99,16 @@ def with_settlement(model: Model, settled: Mapping[str, float]) -> Model:
     Raises
     ------
     InputError
-        There is no fixed body of that name.
+        There is no fixed body of that name, or it would settle by a part of the size of the bridge.
     """
     fixed = {b.name for b in model.bodies if b.kind == "fixed"}
     for name in settled:
         if name not in fixed:
             msg = f"'{name}' is not a fixed body that could settle"
             raise InputError(msg, hint="one of " + ", ".join(sorted(fixed)))
+        if not abs(settled[name]) <= SETTLED * model.size:
+            msg = f"'{name}' would settle by {settled[name]:g} m, on a bridge of {model.size:.3g} m"
+            raise InputError(msg, hint="a bare number is in m: write '10 mm' where it is in millimetres")
     moved = tuple(
         Support(f"{name} settles", name, displacement=(0.0, -float(d)), group="settlement")
         for name, d in settled.items()

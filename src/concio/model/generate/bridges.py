@@ -24,7 +24,9 @@ from concio.model.model import Body, JointRule, Model
 from concio.units import quantity
 
 Array = np.ndarray
-MOST_RINGS, MOST_SPANS = 12, 40
+MOST_RINGS, MOST_SPANS, MOST_VOUSSOIRS = 12, 40, 1000
+LONGEST = 300.0
+"""No span of masonry is longer [m]; the longest reach 150 m."""
 
 
 @strict_with(Common.__annotations__)
@@ -99,7 +101,7 @@ def bridge(
     Raises
     ------
     InputError
-        An argument is missing or out of range; spans overlap; rings do not meet.
+        An argument is missing or out of range, or too large to be in metres; spans overlap; rings do not meet.
 
     Notes
     -----
@@ -131,11 +133,13 @@ def bridge(
             raise InputError(msg, where=where, hint="piers are as wide as the lines leave room: leave pier_width out")
         barrels = _drawn(where, intrados, extrados, ring_lines, voussoirs)
         spans = [float(b.right[0, 0] - b.left[0, 0]) for b in barrels]
+        _in_metres(where, spans, 0.0)
     else:
         if span is None or ring is None:
             msg = f"'{'span' if span is None else 'ring'}' is missing"
             raise InputError(msg, where=where, hint="give span, rise and ring, or intrados and extrados as lines")
         spans = _lengths(where, "span", span, most=MOST_SPANS)
+        _in_metres(where, spans, sum(_lengths(where, "ring", ring, most=MOST_RINGS)))
         several = not isinstance(ring, int | float | str) and len(ring) > 1
         sides = count(where, "chords", (1 if several else 2) if chords is None else chords, 1, 64)
         plan = _plan(where, ring, springing_ring, voussoirs, staggered, headers, sides)
@@ -207,6 +211,22 @@ def rebuilt(model: Model, factor: float) -> tuple[Body, ...]:
     return tuple(replace(b, outline=new[b.name].outline) for b in model.outlines)
 
 
+def _in_metres(where: str, spans: Sequence[float], ring: float) -> None:
+    """Refuse spans and rings that no bridge has: mostly millimetres.
+
+    Raises
+    ------
+    InputError
+    """
+    hint = "a bare number is in m: write '6000 mm' where it is in millimetres"
+    if not max(spans) <= LONGEST:
+        msg = f"a span of {max(spans):g} m is longer than any of masonry"
+        raise InputError(msg, where=where, hint=hint)
+    if not ring < min(spans):
+        msg = f"a ring of {ring:g} m is thicker than the span of {min(spans):g} m is long"
+        raise InputError(msg, where=where, hint=hint)
+
+
 def _lengths(where: str, name: str, given: Any, number: int | None = None, most: int = 100) -> list[float]:
     """Return lengths, one value standing for as many as are needed."""
     single = isinstance(given, int | float | str | np.number)
@@ -227,7 +247,7 @@ def _plan(
     if len(numbers) != len(crown):
         msg = f"voussoirs has {len(numbers)} values, but there are {len(crown)} rings: they would not meet"
         raise InputError(msg, where=where, hint="give one number, or one for each ring")
-    counts = tuple(count(where, "voussoirs", v, 3) for v in numbers)
+    counts = tuple(count(where, "voussoirs", v, 3, MOST_VOUSSOIRS) for v in numbers)
     return RingPlan(
         tuple(crown), tuple(foot), counts, staggered, count(where, "headers", headers, 0), chords, ""
     )
@@ -243,7 +263,8 @@ def _drawn(where: str, intrados: Any, extrados: Any, between: Any, voussoirs: An
     if several and any(not _nested(line) or len(line) != len(intrados) for line in rings):
         msg = f"the intrados has {len(intrados)} lines, one for each span, and another line of the barrel has not"
         raise InputError(msg, where=where, hint="give as many lines for the extrados and between the rings")
-    number = count(where, "voussoirs", voussoirs if isinstance(voussoirs, int) else next(iter(voussoirs)), 3)
+    given = voussoirs if isinstance(voussoirs, int) else next(iter(voussoirs))
+    number = count(where, "voussoirs", given, 3, MOST_VOUSSOIRS)
     found = []
     for k, lines in enumerate(zip(*rings, strict=True), 1):
         own = [[[quantity(v, "length", where=where) for v in p] for p in line] for line in lines]

@@ -13,6 +13,7 @@ from typing import Any
 from concio.arguments import closest, strict
 from concio.errors import InputError
 from concio.model.crossing import Axle, Vehicle
+from concio.units import DECIMAL_COMMA
 
 WITHOUT_SOURCE = {
     r"linee guida|guidelines|2020": "schemes of the Italian guidelines of 2020 are not in the library, for want of a "
@@ -83,7 +84,9 @@ def axles_of(axles: Sequence[Any], lanes: Sequence[Sequence[Any]] = ()) -> tuple
             found.append(Axle(given[0], given[1]))
         else:
             msg = f"axle {k} = {given!r} is not a pair"
-            raise InputError(msg, where="vehicle", hint="write [place in m, load in kN]")
+            commas = isinstance(given, Sequence) and not isinstance(given, str) and len(given) > 2
+            told = f"; {DECIMAL_COMMA}" if commas else ""
+            raise InputError(msg, where="vehicle", hint=f"write [place in m, load in kN]{told}")
     for k, lane in enumerate(lanes, 1):
         if len(lane) != 3 or not lane[1] > lane[0]:
             msg = f"stretch {k} = {list(lane)} is not [from, to, kN per m]"
