@@ -1,9 +1,10 @@
 """Measures of the window: first picture, answer, drags, memory, random commands, attacks.
 
-    python benchmarks/window.py [DRAGS]
+    python benchmarks/window.py [DRAGS [REQUESTS]] [--write]
 
-as many random commands as drags, and a hundred times as many requests. The first picture is measured in Chromium, where
-there is one, from the command to the picture in the page; the rest without a browser.
+as many random commands as drags; ``--write`` puts the measures into the page of the window in the documentation. The
+first picture is measured in Chromium, where there is one, from the command to the picture in the page; the rest without
+a browser.
 
 Times are those of this machine. Beside the seconds that were waited stand the processor seconds of the window and its
 processes: those do not depend on what else the machine does.
@@ -30,6 +31,9 @@ import concio  # noqa: E402
 from browser import Browser, browser, chromium  # noqa: E402
 from windows import Client, window  # noqa: E402
 
+PAGE = ROOT / "docs" / "howto" / "window.md"
+BEGIN, END = "<!-- measures: written by benchmarks/window.py -->", "<!-- end of measures -->"
+TOLD: list[str] = []
 LOAD = {"kind": "point", "value": [0.0, -4.0], "bodies": ["v05"], "at": [-0.95, 1.64544827], "group": "live"}
 
 
@@ -68,12 +72,18 @@ def first_picture(page: Browser, file: Path, what: str) -> None:
         ):  # fmt: skip
             page.until(f"window.concio && window.concio.{code}", pause=0.01)
             told.append(f"{name} {time.perf_counter() - begun:.2f} s ({processor(process.pid):.2f} s of processor)")
-        print(f"{what}, from the command: {', '.join(told)}")
+        tell(f"{what}, from the command: {', '.join(told)}")
         process.kill()
     page.go("about:blank")
 
 
-def main(drags: int) -> None:
+def tell(line: str) -> None:
+    """Print a measure, and keep it."""
+    print(line, flush=True)
+    TOLD.append(line)
+
+
+def main(drags: int, count: int) -> None:
     """Print the measures."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -81,7 +91,7 @@ def main(drags: int) -> None:
         shutil.copy(ROOT / "examples" / "facade.dxf", folder)
         shutil.copy(ROOT / "examples" / "facade.toml", folder)
         if chromium() is None:
-            print("There is no Chromium: the first picture is not measured.")
+            tell("There is no Chromium: the first picture is not measured.")
         else:
             with browser() as page:
                 page.go("about:blank")
@@ -95,10 +105,10 @@ def main(drags: int) -> None:
             client.call("open", name="facade.toml")
             begun = time.perf_counter()
             client.until("picture")
-            print(f"facade of 182 stones: picture                                 {time.perf_counter() - begun:.2f} s")
+            tell(f"facade of 182 stones: picture                                 {time.perf_counter() - begun:.2f} s")
             answer_of(client)
             commands(client, drags)
-            requests(client, 100 * drags)
+            requests(client, count)
             large_drop(client, 200)
 
 
@@ -116,7 +126,7 @@ def answer_of(client: Client) -> None:
         if asked["state"] == "done":
             break
         time.sleep(0.05)
-    print(f"facade of 182 stones, from the question: {', '.join(told.values())}")
+    tell(f"facade of 182 stones, from the question: {', '.join(told.values())}")
 
 
 def drag(client: Client, drags: int) -> None:
@@ -133,9 +143,9 @@ def drag(client: Client, drags: int) -> None:
         waited.append(time.perf_counter() - begun)
         own.append(found["done"]["seconds"])
     share = statistics.median(own) / statistics.median(waited)
-    print(f"drag: median {1e3 * statistics.median(waited):.0f} ms of {drags}, of which the bound {share:.0%};"
+    tell(f"drag: median {1e3 * statistics.median(waited):.0f} ms of {drags}, of which the bound {share:.0%};"
           f" {1e3 * (processor(pid) - used) / drags:.0f} ms of processor each")  # fmt: skip
-    print(f"memory of the process: {before:.0f} MB after some, {resident(pid):.0f} MB after {drags} drags")
+    tell(f"memory of the process: {before:.0f} MB after some, {resident(pid):.0f} MB after {drags} drags")
 
 
 def commands(client: Client, count: int) -> None:
@@ -163,7 +173,7 @@ def commands(client: Client, count: int) -> None:
         client.call("undo")
     same = client.call("state", version=0)["document"]["text"] == before
     text = "the same text" if same else "ANOTHER TEXT"
-    print(f"{done} random commands, some taken back at once, then all: {text} ({time.perf_counter() - begun:.0f} s)")
+    tell(f"{done} random commands, some taken back at once, then all: {text} ({time.perf_counter() - begun:.0f} s)")
 
 
 def requests(client: Client, count: int) -> None:
@@ -184,7 +194,7 @@ def requests(client: Client, count: int) -> None:
         answer.read()
         refused += answer.status == 403
     rate = count / (time.perf_counter() - begun)
-    print(f"{count} requests, one in ten with a wrong token: {rate:.0f} a second, {refused} refused,"
+    tell(f"{count} requests, one in ten with a wrong token: {rate:.0f} a second, {refused} refused,"
           f" memory {before:.0f} MB before, {resident(os.getpid()):.0f} MB after")  # fmt: skip
 
 
@@ -208,10 +218,20 @@ def large_drop(client: Client, megabytes: int) -> None:
         except OSError:
             said = "connection closed"
     there = "taken" if (client.server.session.folder / "large.dxf").exists() else "not taken"
-    print(
+    tell(
         f"drop of {megabytes} MB: {said}, {there}, {sent / 1e6:.0f} MB were sent ({time.perf_counter() - begun:.2f} s)"
     )
 
 
+def write() -> None:
+    """Put the measures into the documentation."""
+    head, rest = PAGE.read_text(encoding="utf-8").split(BEGIN)
+    lines = "\n".join(f"* {line[0].upper()}{' '.join(line.split())[1:]}" for line in TOLD)
+    PAGE.write_text(f"{head}{BEGIN}\n\n{lines}\n\n{END}{rest.split(END)[1]}", encoding="utf-8")
+
+
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 1000)
+    given = [int(word) for word in sys.argv[1:] if word != "--write"]
+    main(given[0] if given else 1000, given[1] if len(given) > 1 else 100_000)
+    if "--write" in sys.argv:
+        write()

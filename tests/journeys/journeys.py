@@ -12,6 +12,7 @@ import dataclasses
 import json
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -335,6 +336,71 @@ def test_it_is_read_in_both_languages_in_light_and_dark(page: Browser, client: C
     page.press("Escape")
     page.click("#language")
     page.send("Emulation.setEmulatedMedia", features=[])
+
+
+FOREIGN = """[...document.querySelectorAll('body *')].filter((e) => e.checkVisibility()
+        && !e.closest('[lang=en], textarea, pre, code, iframe, option, datalist, #language')
+        && [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim()))
+    .map((e) => [...e.childNodes].filter((n) => n.nodeType === 3).map((n) => n.textContent.trim()).join(' '))
+    .concat([...document.querySelectorAll('[aria-label], [placeholder]')].filter((e) => e.checkVisibility())
+        .map((e) => e.getAttribute('aria-label') || e.getAttribute('placeholder')))"""
+ENGLISH = re.compile(
+    r"\b(the|of|and|with|is|are|not|no|blocks?|joints?|loads?|weight|friction|thickness|rigid|fixed|from|to|under|"
+    r"ask|look|build|tables|text|report|layers|run|add|remove|cancel|width|height|length|force|which|one|two)\b",
+    re.I,
+)
+OWN = ("pillar.toml", "blocks_in_space.toml", "facade.toml", "dead", "live")
+"""What is the user's own."""
+
+
+def english(page: Browser) -> list[str]:
+    """Return the texts of an Italian page that are English and do not say so."""
+    found = page.js(FOREIGN)
+    bodies = page.js("(window.concio.view.shown?.bodies || [])")
+    names = {name for b in bodies for name in (b["name"], b["material"], b["layer"])}
+    names |= set(page.js("Object.keys({ ...window.concio.view.shown?.laws, ...window.concio.view.shown?.materials })"))
+    own = "|".join(map(re.escape, sorted((names | set(OWN)) - {""}, key=len, reverse=True)))
+    return [text for text in found if ENGLISH.search(re.sub(own, "", text))]
+
+
+@pytest.mark.parametrize("model", ["pillar", "facade", "blocks_in_space"])
+def test_no_page_in_italian_holds_english_that_is_not_marked(page: Browser, tmp_path: Path, model: str) -> None:
+    if model == "facade":
+        for suffix in ("dxf", "toml"):
+            shutil.copy(ROOT / "examples" / f"facade.{suffix}", tmp_path)
+    elif model == "pillar":
+        (tmp_path / "pillar.toml").write_text(PILLAR, encoding="utf-8")
+    with window(tmp_path) as client:
+        page.go(client.server.address)
+        page.until("document.querySelector('#start').open")
+        page.js("localStorage.setItem('language', 'it'); location.reload()")
+        page.until("document.documentElement.lang === 'it' && document.querySelector('#start').open")
+        assert english(page) == []
+        page.js("localStorage.removeItem('language')")
+        client.call("take")
+        client.call(*(("new",) if model == "blocks_in_space" else ("open",)), name=f"{model}.toml", kind=model)
+        client.call("bye")
+        page.until(f"{DRAWN} && {SETTLED}")
+        page.js("document.querySelector('#start').close()")
+        for tool in ("load", "support", "tie", "select"):
+            page.click(f"[data-tool={tool}]")
+            assert english(page) == [], tool
+        page.click("#tab-ask")
+        page.click("#run")
+        page.until("document.querySelector('#running').hidden && document.querySelector('#verdict-text .sentence')")
+        for tab in page.js("[...document.querySelectorAll('#tabs button')].map((b) => b.id.slice(4))"):
+            page.click(f"#tab-{tab}")
+            page.until(f"document.querySelector('#pane-{tab}').children.length")
+            assert english(page) == [], tab
+        offered = "[...document.querySelectorAll('[data-question]:not(:disabled)')].map((b) => b.dataset.question)"
+        page.js("document.querySelector('#tab-ask').click()")
+        for question in page.js(offered):
+            page.js("document.querySelector('#tab-ask').click()")
+            page.click(f"[data-question={question}]")
+            page.until("document.querySelectorAll('#acts li').length")
+            assert english(page) == [], question
+        page.click("#keys")
+        assert english(page) == []
 
 
 def on_face(page: Browser, x: float, y: float, z: float) -> tuple[float, float]:

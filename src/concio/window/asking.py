@@ -188,7 +188,8 @@ class Asked:
         found = self._results_of(doc).known()
         return [
             {"key": one["key"], "command": one["command"], "hash": one["hash"], "question": one["question"],
-             "headline": (one.get("verdict") or {}).get("headline", "")}
+             "headline": (one.get("verdict") or {}).get("headline", ""),
+             "italian": (one.get("italian") or {}).get("headline")}
             for one in found if one.get("name", doc.file.name) == doc.file.name
         ]  # fmt: skip
 

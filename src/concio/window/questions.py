@@ -58,23 +58,27 @@ class Asking:
 
 
 GROUPS = Option("groups", "--group", "groups")
+LANGUAGE = Option("language", "--language", "choice", ("en", "it"))
 QUESTIONS = {
     q.name: q
     for q in (
-        Asking("run", (), (Option("factor", "--factor"),), ("--no-figures",), "concio.solve(model)"),
-        Asking("limit", (), (GROUPS, Option("quick", "--quick", "flag")), (), "concio.limit(model, {groups})"),
-        Asking("path", (), (Option("stage", "--stage"), Option("point", "--point"), Option("until", "--until")), (),
+        Asking("run", (), (Option("factor", "--factor"), LANGUAGE), ("--no-figures",), "concio.solve(model)"),
+        Asking("limit", (), (GROUPS, Option("quick", "--quick", "flag"), LANGUAGE), (),
+               "concio.limit(model, {groups})"),
+        Asking("path", (), (Option("stage", "--stage"), Option("point", "--point"), Option("until", "--until"),
+                            LANGUAGE), (),
                "concio.run_path(model)"),
         Asking("push", (), (GROUPS, Option("weights", "--weights", "flag"),
-                            Option("direction", "--direction", "choice", ("x", "-x", "y", "-y"))), (),
+                            Option("direction", "--direction", "choice", ("x", "-x", "y", "-y")), LANGUAGE), (),
                "concio.push(model, live={groups})"),
-        Asking("shake", (), (Option("pulse", "--pulse"), Option("duration", "--duration")), (), "", plane=True),
-        Asking("assess", ("site",), (Option("language", "--language", "choice", ("en", "it")),)),
+        Asking("shake", (), (Option("pulse", "--pulse"), Option("duration", "--duration"), LANGUAGE), (), "",
+               plane=True),
+        Asking("assess", ("site",), (LANGUAGE,)),
         Asking("bridge", ("vehicle",), (Option("required", "--required"), Option("second", "--second"),
-                                        Option("language", "--language", "choice", ("en", "it"))), (),
+                                        LANGUAGE), (),
                "concio.assess_bridge(model)"),
-        Asking("diagnose", ("survey",), (Option("language", "--language", "choice", ("en", "it")),)),
-        Asking("study", ("study",)),
+        Asking("diagnose", ("survey",), (LANGUAGE,)),
+        Asking("study", ("study",), (LANGUAGE,)),
     )
 }  # fmt: skip
 """Every question, in the order of its button."""
@@ -127,7 +131,7 @@ def python_text(name: str, options: Mapping[str, Any], file: str) -> str:
     """Return the question as a short program; a question without a function of its own as the command."""
     asking = QUESTIONS[name]
     groups: Sequence[str] = options.get("groups") or ["live"]
-    if not asking.python or set(options) - {"groups"}:
+    if not asking.python or set(options) - {"groups", "language"}:
         words = [name, file, *(w for w in arguments(name, options) if w != "--no-figures"), "--out", "result"]
         return f'import subprocess\nimport sys\n\nsubprocess.run([sys.executable, "-m", "concio", *{words!r}])\n'
     call = asking.python.format(groups=repr(list(groups)))

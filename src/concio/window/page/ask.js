@@ -24,7 +24,7 @@ export function questionPane(pane) {
     el("div", { class: "choices", role: "group", "aria-label": t("ask") }, ...buttons), el("p", {}, t(`a_${now.name}`)),
     ...fields, el("section", {}, el("h2", {}, t("acts_on")), acts),
     el("div", { class: "row" }, el("button", { class: "main", id: "run", disabled: !view.shown || Boolean(view.shown.fault), onclick: run }, t("run_it"))),
-    el("p", { class: "quiet" }, t("all_options", { question: now.name })),
+    el("p", { class: "quiet" }, `${t("all_options")} `, el("code", { lang: "en" }, `concio ${now.name} --help`)),
   );
   showActs(acts, now);
 }
@@ -113,6 +113,12 @@ export async function follow(state, after) {
   verdict(after);
 }
 
+/* what was asked, in words, with the options that were given */
+export function askedOf(one) {
+  const given = one.command.replace(/ --out result$/, "").split(" ").filter((word) => word.startsWith("-") && !word.startsWith("--language")).join(" ");
+  return t(`q_${one.question}`) + (given ? ` (${given})` : "");
+}
+
 function toneOf(found) {
   if (found.code === 0) return "good";
   return found.code === 3 ? "bad" : "unsure";
@@ -147,7 +153,7 @@ function verdict(after, note = "") {
   if (answer && t("verdict_language")) parts.push(el("p", { class: "quiet" }, t("verdict_language")));
   if (answers.length && answer) {
     const before = answers.find((a) => a.key !== answer.key);
-    if (before) parts.push(el("details", {}, el("summary", {}, `${t("earlier")}: ${before.command}`), answerBox(before, now && before.hash !== now.hash)));
+    if (before) parts.push(el("details", {}, el("summary", {}, `${t("earlier")}: ${askedOf(before)}`), answerBox(before, now && before.hash !== now.hash)));
   }
   const text = parts.map((p) => p.textContent).join("");
   if (place.textContent !== text || place.dataset.note !== note) { place.replaceChildren(...parts); place.dataset.note = note; }

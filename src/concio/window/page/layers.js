@@ -60,7 +60,7 @@ export async function layersPane(pane) {
     const extra = el("div", { hidden: stated !== "load" }, el("p", { class: "quiet" }, t("layer_value")), value, el("p", { class: "quiet" }, t("group")), group);
     const note = layer.proposed && layer.stated === null ? el("p", { class: "quiet" }, `${t("layer_proposed")}: ${t(`layer_${layer.proposed}`)}`) : null;
     return el("tr", {}, el("th", { scope: "row" }, layer.name, layer.off ? el("p", { class: "quiet" }, t("layer_off")) : null),
-      el("td", {}, Object.entries(layer.count).map(([k, n]) => `${n} ${k}`).join(", ")), el("td", {}, pick, note, extra), el("td", {}, thumbnail(layer.lines, box)));
+      el("td", { lang: "en" }, Object.entries(layer.count).map(([k, n]) => `${n} ${k}`).join(", ")), el("td", {}, pick, note, extra), el("td", {}, thumbnail(layer.lines, box)));
   });
   const held = pane.querySelector(":focus")?.getAttribute("aria-label");
   pane.replaceChildren(

@@ -1,10 +1,10 @@
 /* Answers looked at: one played in the main picture, another beside it or above it, with their verdicts and numbers. */
-import { t, el, field, digits } from "./words.js";
+import { t, el, field, digits, language } from "./words.js";
 import { call } from "./net.js";
 import { boxAround, canvas, draw, inSpace, view } from "./picture.js";
 import { drawFilm, filmOf, numbersOf, ringsOf } from "./film.js";
 import { pose } from "./space.js";
-import { answerBox } from "./ask.js";
+import { answerBox, askedOf } from "./ask.js";
 
 let known = [], first = "", second = "", doc = () => null, films = new Map(), told = new Map(), numbers = null, changed = () => {};
 let step = 0, size = 50, over = false, playing = 0, phase = 1;
@@ -34,7 +34,8 @@ export async function lookPane(into) {
   if (!known.length) return into.replaceChildren(el("p", { class: "quiet" }, t("no_answers")));
   if (!known.some((a) => a.key === first)) first = known[0].key;
   if (!known.some((a) => a.key === second)) second = "";
-  const name = (a) => `${a.hash === doc().hash ? "" : `(${t("other_model")}) `}${a.command.replace(/ --out result$/, "").replace(/^concio /, "")}: ${a.headline}`;
+  const headline = (a) => (language === "it" && a.italian ? a.italian.map(([text]) => text).join(" ") : a.headline);
+  const name = (a) => `${a.hash === doc().hash ? "" : `(${t("other_model")}) `}${askedOf(a)}: ${headline(a)}`;
   const pick = (word, value, none, act) => {
     const one = el("select", { onchange: () => { act(one.value); step = Infinity; lookPane(into); } }, ...(none ? [el("option", { value: "" }, t("nothing_else"))] : []), ...known.map((a) => el("option", { value: a.key }, name(a))));
     one.value = value;
@@ -46,7 +47,7 @@ export async function lookPane(into) {
   const parts = [pick("look_at", first, false, (v) => { first = v; }), pick("beside", second, true, (v) => { second = v; })];
   if (film) parts.push(controls(film, other)); else parts.push(el("p", { class: "quiet" }, t("no_film")));
   const found = await Promise.all([first, second].filter(Boolean).map(toldOf));
-  const columns = found.map((one, k) => el("section", { class: "beside" }, el("h2", {}, one.command.replace(/ --out result$/, "")), el("div", { class: "small-picture", id: `small-${k}` }), answerBox(one, one.hash !== doc().hash)));
+  const columns = found.map((one, k) => el("section", { class: "beside" }, el("h2", {}, askedOf(one)), el("div", { class: "small-picture", id: `small-${k}` }), answerBox(one, one.hash !== doc().hash)));
   into.replaceChildren(...parts, el("div", { class: "columns" }, ...columns), ...(found.length > 1 ? [compared(found)] : []));
   render(film, other);
 }
