@@ -23,7 +23,10 @@ VIEWS: dict[str, dict[str, str]] = {
         "Diagnosis": "concio.plot.diagnosis_accessor:DiagnosisPlots",
         "BridgeResult": "concio.plot.bridge_accessor:BridgePlots",
     },
-    "tables": {"Result": "concio.post.tables_of:tables_of"},
+    "tables": {
+        "Result": "concio.post.tables_of:tables_of",
+        "PathResult": "concio.post.path_tables:PathTables",
+    },
     "notebook": {
         "Model": "concio.report.notebook:model_html",
         "Shown": "concio.report.notebook:result_html",

@@ -97,7 +97,8 @@ def _changed(assembly: Assembly, name: str, laws: Laws, pick: Array, found: Solu
     Raises
     ------
     InputError
-        A change returns a constant that is negative or not a number, or for another number of points.
+        A change returns something else than constants, a constant that is negative or not a number, or constants for
+        another number of points.
     """
     area = assembly.pairs.area[pick]
     seen = Undergone(
@@ -109,6 +110,9 @@ def _changed(assembly: Assembly, name: str, laws: Laws, pick: Array, found: Solu
     new = _times(laws[pick], 1.0 / area)
     for change in assembly.model.laws[name].changes:
         new = change(new, seen)
+        if not isinstance(new, Laws):
+            msg = f"joint law '{name}': a change returns {type(new).__name__} instead of the constants"
+            raise InputError(msg, hint="return dataclasses.replace(law, ...)")
     for f in fields(Laws):
         value = np.asarray(getattr(new, f.name), dtype=float)
         if value.shape != pick.shape or not (value >= 0).all():

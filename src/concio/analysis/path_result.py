@@ -28,6 +28,7 @@ from concio.views import Shown, view
 
 if TYPE_CHECKING:
     from concio.plot.path_accessor import PathPlots
+    from concio.post.path_tables import PathTables
 
 Array = np.ndarray
 
@@ -216,6 +217,12 @@ class PathResult(Shown):
         """Figures by name: ``path.plot.curve()``; matplotlib is loaded here."""
         plots: PathPlots = view(self, "plot")
         return plots
+
+    @property
+    def tables(self) -> PathTables:
+        """Tables by name, as dicts of arrays: ``pandas.DataFrame(path.tables.curve())``."""
+        tables: PathTables = view(self, "tables")
+        return tables
 
     @property
     def certificate(self) -> float:

@@ -106,12 +106,6 @@ def path_facts(found: PathResult, point: ControlPoint) -> dict[str, Any]:
     }
 
 
-def _tensions(found: PathResult) -> dict[str, np.ndarray]:
-    """Return the tension of each tie at every step, as columns."""
-    forces = np.array([step.state.normal_force[found.assembly.ties] for step in found.steps])
-    return {f"tension {tie.name} [kN]": forces[:, k] for k, tie in enumerate(found.assembly.model.ties)}
-
-
 def write_path(found: PathResult, point: ControlPoint, place: Path, language: Literal["en", "it"]) -> None:
     """Write summary, curve, events, figure, a report with a slider of load steps, and the last state's results."""
     from matplotlib.figure import Figure
@@ -120,27 +114,8 @@ def write_path(found: PathResult, point: ControlPoint, place: Path, language: Li
 
     text = json.dumps(path_facts(found, point), indent=2, ensure_ascii=False, allow_nan=False)
     (place / "summary.json").write_text(text + "\n", encoding="utf-8")
-    motion, parameter = found.curve(point)
-    curve = {
-        "stage [-]": np.array([step.stage + 1 for step in found.steps]),
-        "parameter [-]": parameter,
-        "displacement [m]": motion,
-        **{f"factor {g} [-]": np.array([s.factors[g] for s in found.steps]) for g in found.assembly.groups},
-        **_tensions(found),
-    }
-    write_csv(curve, place / "path.csv")
-    events = {
-        "stage [-]": np.array([e.stage + 1 for e in found.events]),
-        "parameter [-]": np.array([e.parameter for e in found.events]),
-        "kind": np.array([e.kind for e in found.events]),
-        "body_a": np.array([e.bodies[0] for e in found.events]),
-        "body_b": np.array([e.bodies[1] for e in found.events]),
-        **{
-            f"{axis} [m]": np.array([e.at[k] for e in found.events])
-            for k, axis in enumerate("xyz"[: found.assembly.model.dim])
-        },
-    }
-    write_csv(events, place / "events.csv")
+    write_csv(found.tables.curve(point), place / "path.csv")
+    write_csv(found.tables.events(), place / "events.csv")
     figure = PathPlots(found).stages(point=point)[0].figure
     assert isinstance(figure, Figure)
     for form in ("png", "svg"):

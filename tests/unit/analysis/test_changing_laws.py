@@ -126,3 +126,10 @@ def test_files_and_wrong_changes_are_refused() -> None:
     for name, change in wrong.items():
         with pytest.raises(concio.InputError, match=f"return {name} of shape"):
             concio.solve(pile(replace(SOFT, changes=(change,))))
+
+
+@pytest.mark.parametrize("returned", [None, 3.0, "cohesion"])
+def test_a_change_that_returns_no_constants_is_refused_with_what_to_return(returned: object) -> None:
+    law = replace(BONDED, changes=(lambda law, seen: law.cohesion if returned == "cohesion" else returned,))
+    with pytest.raises(concio.InputError, match=r"instead of the constants.*dataclasses\.replace"):
+        concio.solve(pile(law))

@@ -114,7 +114,7 @@ def test_path_writes_curve_events_and_the_last_state(slender: Path) -> None:
     [
         (("--stage", "snow=1"), "there is no load group 'snow'"),
         (("--stage", "dead"), "'dead' is not a factor"),
-        (("--until", "0.01"), "there is none"),
+        (("--until", "0.01"), "no control point is given"),
         (("--point", "b01,0"), "is not a point of a body"),
         (("--point", "b01,0,wide", "--until", "0.1"), "'wide' is not a number"),
         (("--point", "b77,0,0", "--until", "0.1"), "there is no body called 'b77'"),
