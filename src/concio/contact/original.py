@@ -218,7 +218,9 @@ class OriginalContacts:
         place, direction = (1 - s) * point[low] + s * point[high], (1 - s) * normal[low] + s * normal[high]
         direction = direction / np.hypot(*direction.T)[:, None]
         distance = (1 - s[:, 0]) * gap[low] + s[:, 0] * gap[high] + slots.opening
-        values, strained, imposed = self._rows(slots, n.columns, place, direction, centre, rotation, velocity, strain)
+        values, strained, imposed = self._rows(
+            slots, n.columns, place, direction, centre, rotation, velocity, spin, strain
+        )
         master = np.where(on_a, self._of_point(slots.body_a, n), self._of_point(slots.body_b, n))
         slave = np.where(on_a, self._of_point(slots.body_b, n), self._of_point(slots.body_a, n))
         extra = _turning(point, normal, np.where(on_a, 1.0, -1.0), master, slave, centre, velocity, spin)
@@ -272,7 +274,7 @@ class OriginalContacts:
 
     def _rows(
         self, slots: Slots, columns: Array, place: Array, normal: Array, centre: Array, rotation: Array,
-        velocity: Array, strain: Array,
+        velocity: Array, spin: Array, strain: Array,
     ) -> tuple[Array, Array, Array]:  # fmt: skip
         """Return rows (m, 2, w) of b minus a, what strains add to the gaps (m,) [m], and imposed velocities (m, 2)."""
         m, disc = len(slots), self.reference.disc
@@ -286,7 +288,8 @@ class OriginalContacts:
                 arm = place - centre[body]
                 moment = (arm[:, 0] * way[:, 1] - arm[:, 1] * way[:, 0]) / disc.reach[body]
                 values[:, k, first : first + 3] = sign * moving[:, None] * np.column_stack([way, moment])
-                imposed[:, k] += sign * still[body] * (velocity[body] * way).sum(axis=1)
+                v = velocity[body] + spin[body][:, None] * turned_left(arm)
+                imposed[:, k] += sign * still[body] * (v * way).sum(axis=1)
                 if side is not None:
                     local = turned(way, -rotation[body])
                     entries = sign * side.weight[:, :, None] * local[:, None, :]

@@ -198,7 +198,7 @@ class OriginalSolids:
                     (valid, where.stands[n.joints.joints.of]), (area, where.area),
                 )
             )  # fmt: skip
-        values, imposed = self._rows(n, point, frame, centre, rotation, velocity)
+        values, imposed = self._rows(n, point, frame, centre, rotation, velocity, spin)
         turning = self._turning(n, place, point, frame, centre, velocity, spin, sign)
         return n.slots, Rows(
             n.columns, values, gap + n.slots.opening, imposed, turning, valid, area, point, frame
@@ -241,7 +241,7 @@ class OriginalSolids:
         return np.asarray(chosen | missed)
 
     def _rows(
-        self, n: _Named, point: Array, frame: Array, centre: Array, rotation: Array, velocity: Array
+        self, n: _Named, point: Array, frame: Array, centre: Array, rotation: Array, velocity: Array, spin: Array
     ) -> tuple[Array, Array]:
         """Return rows (m, 3, 12) of b minus a, and imposed velocities (m, 3)."""
         disc, axes = self.reference.disc, self.reference.spin_axes.axes
@@ -251,12 +251,13 @@ class OriginalSolids:
             b = n.body[:, k]
             free = sign * (disc.shape_of[b] == RIGID)[:, None]
             arm, own = point - centre[b], np.matmul(rotation[b], axes[b])
+            moving = velocity[b] + np.cross(spin[b], arm)
             for way in range(3):
                 moment = np.cross(arm, frame[:, way]) / disc.reach[b][:, None]
                 values[:, way, 6 * k : 6 * k + 3] = free * frame[:, way]
                 values[:, way, 6 * k + 3 : 6 * k + 6] = free * np.einsum("mi,mij->mj", moment, own)
                 still = sign * (disc.shape_of[b] == FIXED)
-                imposed[:, way] += still * (velocity[b] * frame[:, way]).sum(axis=1)
+                imposed[:, way] += still * (moving * frame[:, way]).sum(axis=1)
         return values, imposed
 
     def _turning(

@@ -17,7 +17,7 @@ from concio.contact.touch import Touch, Toucher
 from concio.fem.discretisation import RIGID, Discretisation
 from concio.kinematics.frames import components, dot, frames, norm
 from concio.kinematics.placement import Placement
-from concio.kinematics.rigid import motions, write_rigid_rows
+from concio.kinematics.rigid import motions, swept, write_rigid_rows
 from concio.kinematics.spins import SpinAxes
 from concio.kinematics.turns import Turns
 
@@ -145,10 +145,10 @@ class RowMaker:
                 turns = values[:, :, at + d : at + k]
                 turns[:] = turns @ self.axes.placed(body, placement.turns)
         imposed = np.zeros((m, d))
-        if velocity[self.moved].any():
-            for body, sign in ((a, -1.0), (b, 1.0)):  # fixed bodies never turn
-                v = np.where(self.moved[body, None], velocity[body], 0.0)
-                imposed += sign * components(v, frame)
+        if velocity[self.moved].any() or spin[self.moved].any():
+            for body, sign in ((a, -1.0), (b, 1.0)):
+                v = velocity[body] + swept(spin[body], point - placement.centre[body])
+                imposed += sign * components(np.where(self.moved[body, None], v, 0.0), frame)
         if slots.side_a is not None and slots.side_b is not None:
             at, padded = 2 * k, np.concatenate([strain, np.zeros((1, d))])
             for side, body, sign in ((slots.side_a, a, -1.0), (slots.side_b, b, 1.0)):

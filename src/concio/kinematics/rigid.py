@@ -40,6 +40,12 @@ def swept(rotation: Array | float, arm: Array) -> Array:
     return cross(np.broadcast_to(np.asarray(rotation, dtype=float), arm.shape), arm)
 
 
+def rotated(arm: Array, turn: Array | float) -> Array:
+    """Return arms (k, d) after one finite rotation: an angle in the plane, a vector (3,) in space [rad]."""
+    matrix = plane_rotation(float(turn)) if arm.shape[-1] == 2 else rotation_matrix(np.asarray(turn)[None])[0]
+    return np.asarray(arm @ matrix.T)
+
+
 def rigid_row(direction: Array, arm: Array, reach: Array | float) -> Array:
     """Return (..., 3 or 6): the displacement along ``direction`` of a point at ``arm``, from the motion of its body.
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
+from concio.analysis.motion.certified_turns import angle, back, driven, forth, on
 from concio.analysis.motion.frames import Frames
 from concio.analysis.motion.joint_step import JointStep, PairData
 from concio.analysis.motion.joints import Joints
@@ -28,7 +28,7 @@ from concio.contact.points import MaterialPoints
 from concio.contact.reference import Reference
 from concio.contact.rows import Rows
 from concio.contact.slots import Slots
-from concio.kinematics.frames import turned, turned_left
+from concio.kinematics.frames import turned_left
 from concio.kinematics.rigid import motions
 from concio.kinematics.turns import Turns
 from concio.problem.cone import Cone
@@ -154,7 +154,7 @@ class Certificate:
         went = np.linalg.norm(state.centre - before.centre, axis=1)
         far = np.maximum(went[slots.body_a], went[slots.body_b])
         along = (rows.frame[:, 1:] * disp[:, None]).sum(axis=2)
-        turn = _angle(before.rotation, state.rotation)
+        turn = angle(before.rotation, state.rotation)
         most = np.maximum(turn[slots.body_a], turn[slots.body_b])
         bound = BENT * most * np.linalg.norm(disp, axis=1) + PATH * far + ROUNDING * self.maker.width
         elastic = self.reference.disc.shape_of >= 0
@@ -167,7 +167,7 @@ class Certificate:
         total = np.zeros_like(rows.point)
         moved = self._nodes(state) - self._nodes(before)
         for sign, body, side in ((-1.0, slots.body_a, slots.side_a), (1.0, slots.body_b, slots.side_b)):
-            arm = _forth(_back(rows.point - state.centre[body], state.rotation[body]), before.rotation[body])
+            arm = forth(back(rows.point - state.centre[body], state.rotation[body]), before.rotation[body])
             step = rows.point - before.centre[body] - arm
             if side is not None:
                 mean = (side.weight[:, :, None] * np.vstack([moved, np.zeros((1, 2))])[side.node]).sum(axis=1)
@@ -178,7 +178,7 @@ class Certificate:
     def _nodes(self, state: MotionState) -> Array:
         """Return where the nodes of elastic bodies are (nodes, d) [m]."""
         b = self.reference.body_of_node
-        return np.asarray(state.centre[b] + _forth(self.reference.node_arm + state.strain, state.rotation[b]))
+        return np.asarray(state.centre[b] + forth(self.reference.node_arm + state.strain, state.rotation[b]))
 
     # -- steps of a motion ---------------------------------------------------------------------------------------------
 
@@ -205,23 +205,23 @@ class Certificate:
         """
         layout, f = self.maker.search.layout, self.frames
         assert layout is not None
-        velocity = np.where((self.reference.disc.shape_of == -2)[:, None], drive.velocity, state.velocity)
-        centre, rotation = state.centre + 0.5 * h * velocity, _on(state.rotation, 0.5 * h * state.spin)
+        velocity, spin = driven(self.reference, state, h, drive)
+        centre, rotation = state.centre + 0.5 * h * velocity, on(state.rotation, 0.5 * h * spin)
         turn = Turns.of(rotation)
         strain, rate, nodal = state.strain, np.zeros_like(state.strain), state.nodal
         if f.elastic:
             rate, _, _ = f.rate(nodal, turn[f.body].apply(f.arm + strain), turn)
             strain = strain + 0.5 * h * rate
-        x0 = f.unknowns(velocity, state.spin, nodal, turn)
+        x0 = f.unknowns(velocity, spin, nodal, turn)
         x = f.unknowns(new.velocity, new.spin, new.nodal, turn if centre.shape[1] == 2 else Turns.of(new.rotation))
         acting = f.loads(drive, turn) + f.ground(drive, turn)
         b = f.mass * x0 / h + acting
         if centre.shape[1] == 3:
             b = b + f.gyroscopic(self.scheme.theta * x + (1 - self.scheme.theta) * x0)
         if f.elastic:
-            b = b + f.internal(state, h, rate, strain, state.spin, x0)
+            b = b + f.internal(state, h, rate, strain, spin, x0)
         force, speed = measures(self.reference, acting, x0, h)
-        slots, rows = self.original.at(layout, centre, rotation, velocity, state.spin, strain)
+        slots, rows = self.original.at(layout, centre, rotation, velocity, spin, strain)
         if not self.original.named(layout).sound:
             return float("inf")
         y0 = relative(rows.columns, rows.values, x0) + rows.imposed
@@ -330,7 +330,7 @@ class Certificate:
         if points.node.shape[1]:
             padded = np.vstack([strain, np.zeros((1, strain.shape[1]))])
             arm = arm + (points.weight[:, :, None] * padded[points.node]).sum(axis=1)
-        return np.where((points.body >= 0)[:, None], centre[body] + _forth(arm, rotation[body]), arm)
+        return np.where((points.body >= 0)[:, None], centre[body] + forth(arm, rotation[body]), arm)
 
 
 def measures(reference: Reference, acting: Array, x0: Array, h: float) -> tuple[float, float]:
@@ -344,7 +344,7 @@ def measures(reference: Reference, acting: Array, x0: Array, h: float) -> tuple[
 def _rows(points: MaterialPoints, way: Array, rotation: Array) -> Array:
     """Return the displacements (k, w) of points along directions (k, d) from their unknowns."""
     body, d = np.maximum(points.body, 0), way.shape[1]
-    arm, local = _forth(points.arm, rotation[body]), _back(way, rotation[body])
+    arm, local = forth(points.arm, rotation[body]), back(way, rotation[body])
     values = np.zeros(points.columns.shape)
     values[:, :d] = way
     if d == 2:
@@ -355,32 +355,6 @@ def _rows(points: MaterialPoints, way: Array, rotation: Array) -> Array:
         values[:, 3:6] = np.einsum("kij,ki->kj", own, np.cross(arm, way)) / points.reach[:, None]
     values[:, motions(d) :] = (points.weight[:, :, None] * local[:, None, :]).reshape(len(body), -1)
     return values
-
-
-def _forth(arm: Array, rotation: Array) -> Array:
-    """Return vectors (k, d) turned by angles (k,) or by matrices (k, 3, 3)."""
-    if rotation.ndim == 1:
-        return turned(arm, rotation)
-    return np.asarray(np.matmul(rotation, arm[:, :, None])[:, :, 0])
-
-
-def _back(arm: Array, rotation: Array) -> Array:
-    """Return vectors (k, d) turned back."""
-    return turned(arm, -rotation) if rotation.ndim == 1 else _forth(arm, np.swapaxes(rotation, 1, 2))
-
-
-def _on(rotation: Array, turn: Array) -> Array:
-    """Return rotations after further ones, angles (k,) or vectors (k, 3) [rad]."""
-    if rotation.ndim == 1:
-        return np.asarray(rotation + turn)
-    return np.asarray(np.matmul(Rotation.from_rotvec(turn).as_matrix(), rotation))
-
-
-def _angle(before: Array, after: Array) -> Array:
-    """Return the angles (k,) between two rotations [rad]."""
-    if before.ndim == 1:
-        return np.asarray(np.abs(after - before))
-    return np.asarray(Rotation.from_matrix(np.matmul(after, np.swapaxes(before, 1, 2))).magnitude())
 
 
 def _axes(first: Array) -> tuple[Array, ...]:

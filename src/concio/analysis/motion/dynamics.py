@@ -10,14 +10,13 @@ from typing import Literal
 import numpy as np
 
 from concio.analysis.entry_point import entry_point
-from concio.analysis.motion.dynamics_asked import check_masses, positive, step_asked, thrown
+from concio.analysis.motion.dynamics_asked import check_masses, check_turning, positive, step_asked, thrown
 from concio.analysis.motion.dynamics_result import DynamicsResult, Ending
 from concio.analysis.motion.frames import Frames
 from concio.analysis.motion.ground import Ground, Motion
 from concio.analysis.motion.history import Recorder
 from concio.analysis.motion.interruption import Interruption
-from concio.analysis.motion.joints import SAG
-from concio.analysis.motion.moved_supports import begun
+from concio.analysis.motion.moved_supports import first_state
 from concio.analysis.motion.mover import Mover, Row, shifted
 from concio.analysis.motion.near_origin import Near
 from concio.analysis.motion.observer import Observer
@@ -25,7 +24,6 @@ from concio.analysis.motion.pace import Pace
 from concio.analysis.motion.pairs import PairMaker
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import MotionState
-from concio.analysis.motion.statics import Statics
 from concio.analysis.motion.structures import Structure, near_now, structures_of, together
 from concio.arguments import strict
 from concio.contact.reference import Reference
@@ -36,7 +34,6 @@ from concio.model.stages import ControlPoint
 from concio.problem.contact_problem import Engine
 from concio.problem.solution import Progress, ProgressCallback
 from concio.units import GRAVITY
-from concio.verdict.dynamics_verdict import supports_short
 
 Array = np.ndarray
 
@@ -85,7 +82,8 @@ def dynamics(
         In the plane elastic, rigid and fixed bodies; in space rigid and fixed ones on joints that do not dilate.
     motion : Signal, path, mapping, optional
         Motion of the ground along x (a record, a pulse, the name of a file), or by component: ``{"x": ..., "y": ...}``,
-        in space also "z", which is vertical there.
+        in space also "z", which is vertical there. "rz", in space also "rx" and "ry", turn a base that moves about the
+        origin of coordinates, by the displacement of their signals in rad.
     duration : float, optional
         Time to compute [s]; by default until everything rests after the ground motion, or a block has fallen, at most
         20 s after it.
@@ -150,7 +148,7 @@ def dynamics(
     near = Near.of(model)
     reference = Reference.of(near.model, gravity)
     check_masses(reference)
-    ground = Ground.of(motion, scale, model.dim)
+    ground = Ground.of(motion, scale, model.dim, -near.origin)
     stated = None if duration is None else positive(duration, "duration")
     if stated is None and not ground.duration > 0:
         msg = "the ground does not move, and no duration is given"
@@ -162,6 +160,8 @@ def dynamics(
     if base not in ("inertia", "moving"):
         msg = f"base = '{base}' is not 'inertia' or 'moving'"
         raise InputError(msg)
+    if ground.turning:
+        check_turning(reference, base)
     scheme = Scheme(theta, restitution, mass_damping, stiffness_damping, brittle)
     chosen = dict(factors or {})
     for group in chosen:
@@ -176,21 +176,6 @@ def dynamics(
     run.begin(near.state(start) if isinstance(start, MotionState) else start, velocities)
     every = positive(every or shown / SHOTS, "every")
     return near.told(run.result(run.follow(every, stop_overturned, stop_at_rest)), points)
-
-
-def _begin(
-    structure: Structure, scheme: Scheme, factors: Mapping[str, float], engine: Engine | None
-) -> tuple[MotionState, bool, str]:
-    """Return where a structure begins, whether that is the equilibrium under its loads, and if not what there is."""
-    reference = structure.reference
-    state = MotionState.at_rest(reference)
-    balanced, share, last = begun(Statics(reference, scheme, factors, engine=engine, sag=SAG), state)
-    if balanced.found:
-        return balanced.state, True, ""
-    if 0.0 < share < 1.0:
-        return last, False, supports_short(share)
-    what = "the motion begins as described" if structure.alone else f"'{structure.name}' begins as described"
-    return last, False, f"no equilibrium under the loads was found at the start: {what}"
 
 
 @dataclass
@@ -244,7 +229,7 @@ class _Run:
             state = thrown(reference, state, velocities)
         self.falls = start != "as described"
         self.origin = reference.disc.centroids if isinstance(start, MotionState) else state.centre.copy()
-        self.started, self.place = state.time, state.centre
+        self.started, self.place = state.time, state.placement
         self.movers: list[Mover] = []
         self._move(near_now(structures, state) if len(structures) > 1 else structures, state)
 
@@ -253,7 +238,7 @@ class _Run:
     ) -> tuple[list[Structure], MotionState]:
         """Return the structures and their equilibria under the loads, as far as there are any."""
         while True:
-            found = [_begin(one, self.scheme, self.factors, self.engine) for one in structures]
+            found = [first_state(one, self.scheme, self.factors, self.engine) for one in structures]
             whole = together(structures, [one[0] for one in found], state)
             apart = near_now(structures, whole) if len(structures) > 1 else structures
             if len(apart) == len(structures):
@@ -280,18 +265,18 @@ class _Run:
         if len(self.movers) == 1 and self.movers[0].structure.alone:
             return self.movers[0].state
         if self.base == "moving":  # fixed bodies that belong to no structure
-            since, now = self.ground.displacement(np.array([self.started, time]))
-            fixed = (self.reference.disc.shape_of == FIXED)[:, None]
-            state = replace(state, centre=np.where(fixed, self.place + now - since, state.centre))
+            there = self.ground.carried(self.place, self.started, time)
+            fixed = self.reference.disc.shape_of == FIXED
+            centre, rotation = state.centre.copy(), state.rotation.copy()
+            centre[fixed], rotation[fixed] = there.centre[fixed], there.rotation[fixed]
+            state = replace(state, centre=centre, rotation=rotation)
         states = [shifted(mover.state, time) for mover in self.movers]
         return together([mover.structure for mover in self.movers], states, state)
 
     def drive(self, time: float, h: float) -> Drive:
         """Return what is imposed in a step."""
         if self.base == "moving":
-            moved = np.asarray(self.ground.displacement(np.array(time)), dtype=float).reshape(-1)
-            velocity = self.ground.mean_velocity(time, time + h)
-            return Drive(np.zeros_like(velocity), velocity, self.factors, moved)
+            return self.ground.base(time, h, self.factors)
         acceleration = self.ground.mean_acceleration(time, time + h)
         return Drive(acceleration, np.zeros_like(acceleration), self.factors)
 

@@ -45,6 +45,21 @@ def check_masses(reference: Reference) -> None:
         raise InputError(msg, hint="give its material a unit_weight: mass is weight over gravity")
 
 
+def check_turning(reference: Reference, base: str) -> None:
+    """Refuse what a base that turns does not take along yet."""
+    if base != "moving":
+        msg = "a rotation of the ground needs a base that moves"
+        raise InputError(msg, where="motion", hint='give base="moving"')
+    for support in reference.model.supports:
+        if support.body not in {b.name for b in reference.model.bodies if b.kind == "fixed"}:
+            msg = f"support '{support.name}' holds '{support.body}': it does not turn with the base"
+            raise InputError(msg, where="motion", hint="leave the rotations of the ground out, or the support")
+    for tie in reference.model.ties:
+        if not tie.body_a or not tie.body_b:
+            msg = f"tie '{tie.name}' ends at a fixed point: it does not turn with the base"
+            raise InputError(msg, where="motion", hint="tie it to a fixed body")
+
+
 def thrown(reference: Reference, state: MotionState, velocities: Mapping[str, Sequence[float]]) -> MotionState:
     """Return a state with other velocities of some bodies."""
     number = {b.name: i for i, b in enumerate(reference.model.bodies)}

@@ -3,23 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
 
+from concio.analysis.motion.scheme import Drive
 from concio.errors import InputError
+from concio.kinematics.placement import Placement
+from concio.kinematics.rigid import rotated, rotation_matrix
+from concio.kinematics.spins import rotation_vector
 from concio.model.motion.records import STANDARD_GRAVITY, attention, read_record
 from concio.model.motion.signals import Pulse, Record, Signal
 
 Array = np.ndarray
 Motion: TypeAlias = "Signal | Path | str | Mapping[str, Signal | Path | str] | None"
-"""A signal or the name of a record along x, or signals by component "x", "y", in space also "z"."""
+"""A signal or the name of a record along x, or signals by component "x", "y", in space also "z".
+
+"rz", in space also "rx" and "ry", are rotations.
+"""
 
 
 AXES = {2: "xy", 3: "xyz"}
 """Components by dimension; the last one is vertical."""
+
+TURNS: dict[int, tuple[str, ...]] = {2: ("rz",), 3: ("rx", "ry", "rz")}
+"""Rotations by dimension: anticlockwise in the plane, in space the components of a rotation vector."""
 
 WHICH = {2: "x is horizontal, y vertical", 3: "x and y are horizontal, z vertical"}
 
@@ -38,14 +48,20 @@ class Ground:
         Along x and y, in space also z.
     scale : float
         Factor of all of them.
+    turns : tuple of Signal or None
+        Rotation of the base, that of its rotation vector in space [rad].
+    pivot : (d,) array or float
+        About which it turns, before it is moved [m]: the origin of the coordinates of the user.
     """
 
     components: tuple[Signal | None, ...]
     scale: float = 1.0
+    turns: tuple[Signal | None, ...] = ()
+    pivot: Array | float = 0.0
 
     @classmethod
-    def of(cls, motion: Motion, scale: float = 1.0, dim: int = 2) -> Ground:
-        """Return the motion that a user asked for.
+    def of(cls, motion: Motion, scale: float = 1.0, dim: int = 2, pivot: Array | float = 0.0) -> Ground:
+        """Return the motion that a user asked for; rotations are about ``pivot`` (d,) [m].
 
         Raises
         ------
@@ -57,21 +73,54 @@ class Ground:
             raise InputError(msg, hint="1 takes the record as it is")
         given = dict(motion) if isinstance(motion, Mapping) else {} if motion is None else {"x": motion}
         for name in given:
-            if name not in AXES[dim]:
+            if name not in (*AXES[dim], *TURNS[dim]):
                 where = "the plane" if dim == 2 else "space"
                 msg = f"there is no component '{name}' of a ground motion in {where}"
                 raise InputError(msg, hint=WHICH[dim])
-        return cls(tuple(_signal(given.get(name)) for name in AXES[dim]), float(scale))
+        turns = tuple(_signal(given.get(name)) for name in TURNS[dim])
+        return cls(tuple(_signal(given.get(name)) for name in AXES[dim]), float(scale), turns, pivot)
+
+    @property
+    def turning(self) -> bool:
+        """Whether the base turns."""
+        return any(signal is not None for signal in self.turns)
+
+    def rotation(self, time: float) -> Array:
+        """Return the rotation of the base (1,) in the plane, its rotation vector (3,) in space [rad]."""
+        at = np.array(time)
+        return np.array([0.0 if s is None else self.scale * float(s.displacement(at)) for s in self.turns])
+
+    def base(self, time: float, h: float, factors: Mapping[str, float]) -> Drive:
+        """Return what a moving base imposes in a step."""
+        moved = np.asarray(self.displacement(np.array(time)), dtype=float).reshape(-1)
+        velocity = self.mean_velocity(time, time + h)
+        still = np.zeros_like(velocity)
+        if not self.turning:
+            return Drive(still, velocity, factors, moved)
+        turn = _from_to(self.rotation(time), self.rotation(time + h)) / h
+        return Drive(still, velocity, factors, moved, turn if len(turn) == 3 else float(turn[0]),
+                     moved + self.pivot)  # fmt: skip
+
+    def carried(self, placement: Placement, since: float, time: float) -> Placement:
+        """Return where a base that stood so at a time is at another one."""
+        first, last = self.displacement(np.array([since, time]))
+        if not self.turning:
+            return replace(placement, centre=placement.centre + last - first)
+        turn = _from_to(self.rotation(since), self.rotation(time))
+        first, last = first + self.pivot, last + self.pivot
+        arm = placement.centre - first
+        about = np.repeat(turn if len(turn) == 1 else turn[None], len(arm), axis=0)
+        return placement.moved(last + rotated(arm, turn if len(turn) == 3 else turn[0]) - placement.centre, about)
 
     @property
     def duration(self) -> float:
         """When the last component ends [s]."""
-        return max((s.duration for s in self.components if s is not None), default=0.0)
+        return max((s.duration for s in (*self.components, *self.turns) if s is not None), default=0.0)
 
     @property
     def sample(self) -> float:
         """Least time between samples of a record; infinite where there is none [s]."""
-        return min((s.step for s in self.components if isinstance(s, Record)), default=np.inf)
+        return min((s.step for s in (*self.components, *self.turns) if isinstance(s, Record)), default=np.inf)
 
     @property
     def attention(self) -> tuple[str, ...]:
@@ -100,6 +149,8 @@ class Ground:
         """What moves the ground, such as "sine pulse of 0.4 g over 0.5 s along x, times 0.1"; empty for nothing."""
         axes = AXES[len(self.components)]
         told = [f"{_words(s)} along {axis}" for s, axis in zip(self.components, axes, strict=True) if s is not None]
+        named = zip(self.turns, TURNS[len(axes)], strict=bool(self.turns))
+        told += [f"a rotation of up to {_largest(s):.4g} rad about {name[1]}" for s, name in named if s is not None]
         told = [", ".join(told[:-1]), told[-1]] if len(told) > 2 else told
         return " and ".join(told) + (f", times {self.scale:g}" if told and self.scale != 1.0 else "")
 
@@ -128,6 +179,18 @@ class Ground:
                 first, last = getattr(signal, quantity)(np.array([start, end]))
                 mean[k] = self.scale * (last - first) / (end - start)
         return mean
+
+
+def _largest(signal: Signal) -> float:
+    """Return the largest displacement of a signal."""
+    return float(np.abs(signal.displacement(np.linspace(0.0, signal.duration, 1001))).max())
+
+
+def _from_to(before: Array, after: Array) -> Array:
+    """Return the rotation from one to another: angles (1,) in the plane, rotation vectors (3,) in space [rad]."""
+    if len(before) == 1:
+        return np.asarray(after - before)
+    return np.asarray(rotation_vector(rotation_matrix(after[None]) @ rotation_matrix(-before[None]))[0])
 
 
 def _words(signal: Signal) -> str:

@@ -7,15 +7,21 @@ The motion is applied in parts, each followed to equilibrium, at factor times di
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from concio.analysis.motion.joints import SAG
+from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import Balanced, Statics
+from concio.analysis.motion.structures import Structure
 from concio.contact.factors import load_factor
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED
+from concio.problem.contact_problem import Engine
+from concio.verdict.dynamics_verdict import supports_short
 
 Array = np.ndarray
 
@@ -119,6 +125,21 @@ def begun(statics: Statics, state: MotionState) -> tuple[Balanced, float, Motion
             done = 1.0
         part = min(GROWTH * part, first)
     return found, 1.0, found.state
+
+
+def first_state(
+    structure: Structure, scheme: Scheme, factors: Mapping[str, float], engine: Engine | None
+) -> tuple[MotionState, bool, str]:
+    """Return where a structure begins, whether that is the equilibrium under its loads, and if not what there is."""
+    reference = structure.reference
+    state = MotionState.at_rest(reference)
+    balanced, share, last = begun(Statics(reference, scheme, factors, engine=engine, sag=SAG), state)
+    if balanced.found:
+        return balanced.state, True, ""
+    if 0.0 < share < 1.0:
+        return last, False, supports_short(share)
+    what = "the motion begins as described" if structure.alone else f"'{structure.name}' begins as described"
+    return last, False, f"no equilibrium under the loads was found at the start: {what}"
 
 
 def _reach(found: Balanced) -> float:

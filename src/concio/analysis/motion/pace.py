@@ -15,6 +15,7 @@ from concio.contact.reference import Reference
 from concio.display import number
 from concio.fem.discretisation import FIXED
 from concio.kinematics.frames import norm
+from concio.kinematics.rigid import swept
 from concio.verdict.dynamics_verdict import outran
 
 Array = np.ndarray
@@ -61,6 +62,10 @@ class Pace:
         for b in fast.tolist():
             apart = np.maximum(low - high[b], low[b] - high).max(axis=1)
             closing = norm(state.velocity - state.velocity[b]) + spin * self.radius + spin[b] * self.radius[b]
+            seen = state.velocity - state.velocity[b] - swept(state.spin[b], state.centre - state.centre[b])
+            other = state.spin - state.spin[b]
+            turning = np.abs(other) if other.ndim == 1 else norm(other)
+            closing = np.minimum(closing, norm(seen) + turning * self.radius)  # seen from b, which may turn with them
             near = (apart <= h * closing) & ~(self.fixed & self.fixed[b])
             near[b] = False
             free = share * np.maximum(apart[near], 0.0) + np.minimum(self.reach[near], self.reach[b])

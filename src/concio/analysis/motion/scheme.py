@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.errors import InputError
+from concio.kinematics.rigid import rotated
 
 Array = np.ndarray
 
@@ -65,9 +66,22 @@ class Drive:
         Load factors.
     moved : (d,) array
         How far the fixed bodies, and what supports hold, were moved before [m].
+    spin : float in the plane, (3,) array in space
+        Mean spin of the fixed bodies [rad/s].
+    pivot : (d,) array or None
+        About which they turn, where it is at the beginning [m]; None where they do not turn.
     """
 
     ground: Array
     velocity: Array
     factors: Mapping[str, float]
     moved: Array | float = 0.0
+    spin: Array | float = 0.0
+    pivot: Array | None = None
+
+    def speeds(self, centre: Array, h: float) -> Array:
+        """Return the mean velocities (k, d) of points of the base, now at ``centre`` (k, d), in a step [m/s]."""
+        if self.pivot is None:
+            return np.broadcast_to(self.velocity, centre.shape)
+        arm = centre - self.pivot
+        return np.asarray(self.velocity + (rotated(arm, h * np.asarray(self.spin)) - arm) / h)

@@ -140,8 +140,9 @@ class Stepper:
         f = self.frames
         velocity, spin, strain, nodal = state.velocity, state.spin, state.strain, state.nodal
         if len(self.fixed):
-            velocity = velocity.copy()
-            velocity[self.fixed] = drive.velocity
+            velocity, spin = velocity.copy(), spin.copy()
+            velocity[self.fixed] = drive.speeds(state.centre[self.fixed], h)
+            spin[self.fixed] = drive.spin
         middle = state.placement.moved(0.5 * h * velocity, 0.5 * h * spin)
         turn, rate = middle.turns, np.zeros_like(strain)
         if f.elastic:
@@ -213,7 +214,7 @@ class Stepper:
             works["input"] += float(self.reference.loads.following(drive.factors, turn) @ (h * x + apart))
         if maker.joints.any_stiffness:
             works["overlap"] += float(memory_before.stored.sum()) - float(state.memory.stored.sum())
-        new = self._moved(state, found.x, x, apart, turn, strain, h, velocity, memory, tied)
+        new = self._moved(state, found.x, x, apart, turn, strain, h, velocity, spin, memory, tied)
         found = self._certified(found, state, new, memory_before, h, drive, returned)
         hard = rows.valid & ~joint.springy
         depth = float(np.maximum(-end[hard & data.active], 0.0).max(initial=0.0))
@@ -289,12 +290,11 @@ class Stepper:
 
     def _moved(
         self, state: MotionState, x1: Array, x: Array, apart: Array, turn: Turns, strain: Array, h: float,
-        velocity: Array, memory: Memory, ties: TieMemory,
+        velocity: Array, spin: Array, memory: Memory, ties: TieMemory,
     ) -> MotionState:  # fmt: skip
         """Return the state that velocities x in the step and x1 at its end, and displacements ``apart``, lead to."""
         f = self.frames
-        v_mean, w_mean = f.rigid_part(x + apart / h, velocity, state.spin, state.placement.turns)
-        w_mean[self.fixed] = 0.0
+        v_mean, w_mean = f.rigid_part(x + apart / h, velocity, spin, state.placement.turns)
         new_strain, nodal = state.strain, state.nodal
         if f.elastic:
             place = turn[f.body].apply(f.arm + strain)
@@ -303,7 +303,7 @@ class Stepper:
             new_strain = new_strain + h * rate
             nodal = f.nodal(x1, turn)
         there = state.placement.moved(h * v_mean, h * w_mean)
-        v_end, w_end = f.rigid_part(x1, velocity, state.spin, there.turns)
+        v_end, w_end = f.rigid_part(x1, velocity, spin, there.turns)
         if f.elastic:
             v, w = f.fit(nodal, place)
             v_end[f.meshed], w_end[f.meshed] = v[f.meshed], w[f.meshed]
