@@ -130,10 +130,13 @@ class RuleBook:
         """
         if not len(body_a):
             return np.zeros(0, dtype=int), np.zeros(0)
-        sorts = np.column_stack([self.sort[body_a], self.sort[body_b]])
-        kinds, example, group = np.unique(sorts, axis=0, return_index=True, return_inverse=True)
+        count = int(self.sort.max()) + 1
+        kinds, example, group = np.unique(
+            self.sort[body_a] * count + self.sort[body_b], return_index=True, return_inverse=True
+        )
         found = []
-        for (p, q), i in zip(kinds.tolist(), example.tolist(), strict=True):
+        for kind, i in zip(kinds.tolist(), example.tolist(), strict=True):
+            p, q = divmod(kind, count)
             if (p, q) not in self._found:
                 bodies = self.model.bodies
                 rule = self.model.rule_between(bodies[int(body_a[i])], bodies[int(body_b[i])])

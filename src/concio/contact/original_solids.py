@@ -247,17 +247,16 @@ class OriginalSolids:
         disc, axes = self.reference.disc, self.reference.spin_axes.axes
         assert axes is not None, "bodies in space"
         values, imposed = np.zeros((len(point), 3, 12)), np.zeros((len(point), 3))
+        every = np.matmul(rotation, axes) / disc.reach[:, None, None]
         for k, sign in ((0, -1.0), (1, 1.0)):
             b = n.body[:, k]
-            free = sign * (disc.shape_of[b] == RIGID)[:, None]
-            arm, own = point - centre[b], np.matmul(rotation[b], axes[b])
-            moving = velocity[b] + np.cross(spin[b], arm)
-            for way in range(3):
-                moment = np.cross(arm, frame[:, way]) / disc.reach[b][:, None]
-                values[:, way, 6 * k : 6 * k + 3] = free * frame[:, way]
-                values[:, way, 6 * k + 3 : 6 * k + 6] = free * np.einsum("mi,mij->mj", moment, own)
-                still = sign * (disc.shape_of[b] == FIXED)
-                imposed[:, way] += still * (moving * frame[:, way]).sum(axis=1)
+            free = sign * (disc.shape_of[b] == RIGID)[:, None, None]
+            arm = point - centre[b]
+            values[:, :, 6 * k : 6 * k + 3] = free * frame
+            values[:, :, 6 * k + 3 : 6 * k + 6] = free * np.matmul(np.cross(arm[:, None], frame), every[b])
+            still = np.flatnonzero(disc.shape_of[b] == FIXED)
+            moving = velocity[b[still]] + np.cross(spin[b[still]], arm[still])
+            imposed[still] += sign * (frame[still] * moving[:, None]).sum(axis=2)
         return values, imposed
 
     def _turning(

@@ -141,9 +141,10 @@ class RowMaker:
         write_rigid_rows(values[:, :, :k], -frame, point - placement.centre[a], self.reach_a)
         write_rigid_rows(values[:, :, k : 2 * k], frame, point - placement.centre[b], self.reach_b)
         if d == 3:
+            axes = self.axes.placed(np.arange(len(placement.centre)), placement.turns)
             for at, body in ((0, a), (k, b)):
                 turns = values[:, :, at + d : at + k]
-                turns[:] = turns @ self.axes.placed(body, placement.turns)
+                turns[:] = turns @ axes[body]
         imposed = np.zeros((m, d))
         if velocity[self.moved].any() or spin[self.moved].any():
             for body, sign in ((a, -1.0), (b, 1.0)):

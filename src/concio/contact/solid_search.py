@@ -86,14 +86,20 @@ class SolidSearch:
         slots = self._slots(toucher)
         if old is not None:  # what stood for others goes on doing so
             toucher.chosen[:] = np.isin(slots.key, old.slots.key[old.toucher.chosen])
+            if np.array_equal(slots.key, old.slots.key):  # what names the pairs has not changed, nor what solves them
+                maker = self._rows(old.slots, toucher)
+                self.layout = SolidLayout(old.slots, toucher, maker, placed.start, old.joint)
+                return False
         joints = self.reference.joint_numbers
         pairs = zip(slots.body_a.tolist(), slots.body_b.tolist(), strict=True)
         joint = np.array([joints.get((min(p), max(p)), -1) for p in pairs], dtype=int)
-        maker = RowMaker(
-            self.reference.disc, slots, toucher, self.reference.node_column, self.reference.spin_axes
-        )
-        self.layout = SolidLayout(slots, toucher, maker, placed.start, joint)
+        self.layout = SolidLayout(slots, toucher, self._rows(slots, toucher), placed.start, joint)
         return True
+
+    def _rows(self, slots: Slots, toucher: SolidToucher) -> RowMaker:
+        """Return what writes the rows of slots."""
+        reference = self.reference
+        return RowMaker(reference.disc, slots, toucher, reference.node_column, reference.spin_axes)
 
     def _slots(self, toucher: SolidToucher) -> Slots:
         """Return the slots of contact points: one each. Corners and edges have no area, and friction alone."""

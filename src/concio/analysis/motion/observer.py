@@ -138,8 +138,12 @@ class Observer:
         if not len(self.joints) or self.maker.search.layout is None:
             return opening, slip
         own, number = self._joints_of_slots()
-        rows = self.rows(state)
-        gap = rows.gap if self.reference.disc.dim == 2 else np.where(rows.valid, rows.gap, 0.0)
+        if self.reference.disc.dim == 2:
+            gap = self.rows(state).gap
+        else:
+            search, slots = self.maker.search, self.maker.slots
+            touch = search.touch(search.edges.placed(state.placement))  # type: ignore[arg-type]  # its own surfaces
+            gap = np.where(touch.valid, touch.gap + slots.opening, 0.0)
         np.maximum.at(opening, number, np.maximum(gap[own], 0.0))
         memory = state.memory
         if memory.key is self.maker.slots.key:
