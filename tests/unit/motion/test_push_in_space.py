@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 import concio
 from commands import run
 from concio.analysis.motion.push_result import PushEnding
+from concio.analysis.motion.resistance import RESISTANCE, Resistance
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import Statics
@@ -92,18 +93,47 @@ def test_a_block_pushed_askew_turns_over_the_edge_that_gives_first(seed):
     assert found.peak == pytest.approx(min(A / way[0], B / way[1]) / H, rel=1e-4)
 
 
-def test_a_square_block_pushed_along_its_diagonal_turns_over_its_corner():
-    """Sideways it stands on a corner without stiffness: rounding may lose the last part of the curve."""
+@pytest.mark.parametrize("way", [(1, 1), (-1, 1)])
+def test_a_square_block_pushed_along_its_diagonal_turns_over_its_corner(way):
+    """Past the peak to the end: sideways it stands on a corner like a pencil on its tip."""
     square = blocks(((-A, -A, 0.0), (A, A, 2 * H)))
     reach = np.sqrt(2.0) * A
-    found = concio.push(square, direction=(1, 1), until=0.6 * reach)
-    assert found.ending is PushEnding.REACHED
+    found = concio.push(square, direction=way)
+    assert found.ending is PushEnding.LOST
     assert found.certified
     assert found.peak == pytest.approx(reach / H, rel=2e-5)
+    assert found.capacity == pytest.approx(reach, rel=1e-6)
     turned = np.linalg.norm(found.rotation_of("b0"), axis=1)
     assert found.multiplier[1:] == pytest.approx(np.tan(np.arctan(reach / H) - turned[1:]), abs=2e-5)
-    corner = found.centre[-1, 1] + found.rotation[-1, 1] @ [A, A, -H]
-    assert corner == pytest.approx([A, A, 0.0], abs=1e-4)
+    corner = found.centre[-1, 1] + found.rotation[-1, 1] @ [way[0] * A, way[1] * A, -H]
+    assert corner == pytest.approx([way[0] * A, way[1] * A, 0.0], abs=1e-4)
+    assert not any("unstable aside" in note for note in concio.push(square, until=0.1).notes)
+
+
+@pytest.mark.parametrize("stiffness", [-0.02, -1.0, -50.0])
+def test_iterations_meet_an_unstable_equilibrium(stiffness):
+    """A displacement x = (f - k y) / e with negative k: it moves away, whatever e, until it is extrapolated."""
+    resistance, y, wanted, turned_back = Resistance(1), 1e-3, 0.4, False
+    for iteration in range(1, 40):
+        x = np.array([stiffness * (wanted - y)]) / RESISTANCE[resistance.level]
+        share = resistance.back(iteration, x)
+        turned_back |= share < 0
+        y = y + share * float(x[0])
+        resistance.adapt(iteration, share * x)
+        if abs(y - wanted) < 1e-12:
+            break
+    assert turned_back
+    assert y == pytest.approx(wanted, abs=1e-12)
+
+
+@pytest.mark.parametrize("stiffness", [0.0, 1e-3, 1.0])
+def test_iterations_that_creep_or_converge_are_not_turned_back(stiffness):
+    resistance, y = Resistance(1), 0.0
+    for iteration in range(1, 12):
+        x = np.array([1e-3 - stiffness * y]) / RESISTANCE[resistance.level]
+        assert resistance.back(iteration, x) == 1.0
+        y += float(x[0])
+        resistance.adapt(iteration, x)
 
 
 def test_a_model_that_is_turned_about_the_vertical_is_pushed_the_same():

@@ -52,6 +52,12 @@ ENDS = 1e-9
 """Error of the last multiplier over the peak."""
 
 
+UNSTABLE = (
+    "equilibria of the curve are unstable aside from the displacement that grows: a disturbance leads away from them"
+)
+"""What is said of a curve with such points."""
+
+
 @dataclass
 class PushCurve:
     """A curve as it is computed.
@@ -93,7 +99,9 @@ class PushCurve:
         self.observer = Observer(self.reference, self.statics.maker, self.statics.frames, self.factors)
 
     def keep(self, found: Balanced, displacement: float) -> None:
-        """Keep a point."""
+        """Keep a point; tell where the first one is unstable."""
+        if found.unstable and UNSTABLE not in self.notes:
+            self.notes.append(UNSTABLE)
         rows = self.observer.rows(found.state)
         if self.states:
             self.events += joint_events(

@@ -87,6 +87,8 @@ class Balanced:
     pairs : int
         Contact pairs.
     iterations : int
+    unstable : bool
+        Whether what is off the equilibrium grows away from it, though its displacement is controlled.
     """
 
     state: MotionState
@@ -97,6 +99,7 @@ class Balanced:
     force: Array
     pairs: int
     iterations: int
+    unstable: bool = False
 
 
 class Statics(SmallDisplacements):
@@ -155,7 +158,7 @@ class Statics(SmallDisplacements):
         done, first, found, iteration = 0.0, self.controlled_at(state), None, 0
         resistance, self._unsolved = Resistance(self.frames.n), 0
         answer: Balanced | None = None
-        repeated = 0
+        repeated, unstable = 0, False
         for iteration in range(1, most + 1):
             look = self._looked(here, memory, slid, multiplier)
             if look.memory.key is not memory.key or iteration == 1:
@@ -166,7 +169,8 @@ class Statics(SmallDisplacements):
             found = self._solved(p, *_guess(p, memory, found))
             if target is not None:
                 multiplier, found = self._controlled(look, multiplier, found, target - done, resistance.level)
-            x = found.x
+            share = 1.0 if target is None else resistance.back(iteration, found.x)
+            x, unstable = share * found.x, unstable or share < 0
             before, here = here, self.moved(here, x, look)
             done = done + float(look.measure @ x) if self.control is None else self.controlled_at(here) - first
             slid = slid + relative(look.data.columns, look.data.values, x)[:, 1:] + self.swung(look, before, here)
@@ -183,6 +187,7 @@ class Statics(SmallDisplacements):
                 break
         assert found is not None
         answer = answer or self._judged(since or state, here, memory, slid, multiplier, found, moved, iteration)
+        answer = replace(answer, unstable=unstable)
         if target is not None and abs(target - done) > REACHED * (abs(target) + STILL * self.width):
             return replace(answer, found=False)  # an equilibrium, but at another displacement
         return answer
