@@ -146,8 +146,18 @@ def test_bad_rotations_are_refused(motion, options, words):
         concio.dynamics(turntable(0.6, 0.3), motion, 0.1, **options)
 
 
-def test_what_does_not_turn_with_the_base_is_refused():
-    rod = concio.Tie("rod", "b0", (0.4, 0.0, 0.05), "", (-1.0, 0.0, 0.05), 40.0)
+@pytest.mark.parametrize("motion", [{"rz": Spin(1.0)}, {"x": concio.Pulse("sine", 1.0, 0.1)}])
+@pytest.mark.parametrize("body", ["", "floor"])
+def test_what_a_moving_base_does_not_take_along_is_refused(motion, body):
+    """It was followed as if its end stayed where it was: with forces of inertia the same block goes the other way."""
+    rod = concio.Tie("rod", "b0", (0.8, 0.0, 0.05), body, (-1.0, 0.0, -0.1), 40.0)
     model = replace(turntable(0.6, 0.3), ties=(rod,))
-    with pytest.raises(concio.InputError, match="fixed point"):
+    with pytest.raises(concio.InputError, match="ends at what is fixed"):
+        concio.dynamics(model, motion, 0.1, base="moving")
+
+
+def test_a_support_does_not_turn_with_the_base():
+    foot = tuple((x, y, 0.0) for x, y in ((0.4, -0.15), (0.8, -0.15), (0.8, 0.15), (0.4, 0.15)))
+    model = replace(turntable(0.6, 0.3), supports=(concio.Support("hold", "b0", polygon=foot),))
+    with pytest.raises(concio.InputError, match="does not turn with the base"):
         concio.dynamics(model, {"rz": Spin(1.0)}, 0.1, base="moving")

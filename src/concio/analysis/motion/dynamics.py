@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from concio.analysis.entry_point import entry_point
-from concio.analysis.motion.dynamics_asked import check_masses, check_turning, positive, step_asked, thrown
+from concio.analysis.motion.dynamics_asked import check_base, check_masses, positive, step_asked, thrown
 from concio.analysis.motion.dynamics_result import DynamicsResult, Ending
 from concio.analysis.motion.frames import Frames
 from concio.analysis.motion.ground import Ground, Motion
@@ -157,11 +157,7 @@ def dynamics(
     shown = stated or ground.duration
     step = step_asked(step, ground, shown)
     stop_at_rest = stated is None if stop_at_rest is None else stop_at_rest
-    if base not in ("inertia", "moving"):
-        msg = f"base = '{base}' is not 'inertia' or 'moving'"
-        raise InputError(msg)
-    if ground.turning:
-        check_turning(reference, base)
+    check_base(reference, base, turning=ground.turning)
     scheme = Scheme(theta, restitution, mass_damping, stiffness_damping, brittle)
     chosen = dict(factors or {})
     for group in chosen:

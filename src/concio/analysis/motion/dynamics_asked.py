@@ -45,19 +45,25 @@ def check_masses(reference: Reference) -> None:
         raise InputError(msg, hint="give its material a unit_weight: mass is weight over gravity")
 
 
-def check_turning(reference: Reference, base: str) -> None:
-    """Refuse what a base that turns does not take along yet."""
-    if base != "moving":
-        msg = "a rotation of the ground needs a base that moves"
-        raise InputError(msg, where="motion", hint='give base="moving"')
+def check_base(reference: Reference, base: str, *, turning: bool) -> None:
+    """Refuse a base that does not take along what it should: ties to what is fixed, and supports where it turns."""
+    if base not in ("inertia", "moving"):
+        msg = f"base = '{base}' is not 'inertia' or 'moving'"
+        raise InputError(msg)
+    if base == "inertia":
+        if turning:
+            msg = "a rotation of the ground needs a base that moves"
+            raise InputError(msg, where="motion", hint='give base="moving"')
+        return
+    fixed = {b.name for b in reference.model.bodies if b.kind == "fixed"} | {""}
+    for tie in reference.model.ties:
+        if tie.body_a in fixed or tie.body_b in fixed:
+            msg = f"tie '{tie.name}' ends at what is fixed: a base that moves does not stretch it"
+            raise InputError(msg, where="base", hint='give base="inertia", without rotations, or leave the tie out')
     for support in reference.model.supports:
-        if support.body not in {b.name for b in reference.model.bodies if b.kind == "fixed"}:
+        if turning and support.body not in fixed:
             msg = f"support '{support.name}' holds '{support.body}': it does not turn with the base"
             raise InputError(msg, where="motion", hint="leave the rotations of the ground out, or the support")
-    for tie in reference.model.ties:
-        if not tie.body_a or not tie.body_b:
-            msg = f"tie '{tie.name}' ends at a fixed point: it does not turn with the base"
-            raise InputError(msg, where="motion", hint="tie it to a fixed body")
 
 
 def thrown(reference: Reference, state: MotionState, velocities: Mapping[str, Sequence[float]]) -> MotionState:
