@@ -4,7 +4,7 @@
 
 Every case draws a structure (flat arch, round arch, portal of three piers with lintels and courses), one or two of its
 candidate motions with random sizes, and up to eight measurements: openings at joints that are open, two joints that are
-closed, a level. The readings come from a path with twenty steps, the diagnosis takes its own; Gaussian errors of 0.5 mm
+closed, a level. The readings come from a path of 64 steps, the diagnosis takes its own; Gaussian errors of 0.5 mm
 are added. With ``--wrong`` one opening is made wrong (its unit or its place) or a level (its sign), and the share
 named is reported. One line a case, the table at the end, or after so many minutes; processor seconds.
 """
@@ -27,7 +27,7 @@ from concio.analysis.cracks.observed import Reading, readings
 from concio.analysis.cracks.places import all_places
 
 ERROR = 0.5e-3
-TRUE_STEPS = 20
+TRUE_STEPS = 64
 FAMILIES = ("flat arch", "round arch", "portal")
 Array = np.ndarray
 

@@ -12,6 +12,7 @@ from concio.display import number
 from concio.errors import InputError
 from concio.plot import style
 from concio.plot.diagram import diagram_axes, dress_diagram
+from concio.plot.figure_language import in_language
 from concio.post.outlines import display_scale, outlines
 
 if TYPE_CHECKING:
@@ -108,7 +109,7 @@ def plot_cracks(
     style.dress(ax, box, words["cracks"], note, units=units)
     handles = [_dot(_colour(s), words[s]) for s in ("within", "beyond", "out") if s in used]
     style.legend(ax, [*handles, style.handle(style.LOAD, words["moves"])])
-    return ax
+    return in_language(ax, language) if language != "en" else ax
 
 
 @strict
@@ -148,7 +149,7 @@ def plot_readings(found: Diagnosis, ax: Axes | None = None, *, language: str = "
     symbols = dict.fromkeys(units.factor(m.quantity, 1e-3)[1] for m in found.measurements)
     dress_diagram(ax, words["readings"], "", f"[{', '.join(symbols)}]")
     ax.legend(fontsize=7.5, frameon=False)
-    return ax
+    return in_language(ax, language) if language != "en" else ax
 
 
 @strict
@@ -187,7 +188,7 @@ def plot_causes(found: Diagnosis, ax: Axes | None = None, *, language: str = "en
     ax.set_ylim(len(names) - 0.5, -0.5)
     label = words["interval"].format(confidence=f"{100 * found.confidence:g}")
     dress_diagram(ax, words["causes"], f"{label} [{', '.join(symbols)}]" if symbols else label, "")
-    return ax
+    return in_language(ax, language) if language != "en" else ax
 
 
 def _words(language: str) -> dict[str, str]:

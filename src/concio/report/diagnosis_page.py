@@ -12,6 +12,7 @@ import concio
 from concio.display import number
 from concio.plot.diagnosis_figure import plot_causes, plot_cracks, plot_readings
 from concio.report.html_parts import figure_html, page_html
+from concio.report.italian_page import plain_italian
 from concio.report.language import words_of
 from concio.verdict.diagnosis_verdict import diagnosis_verdict
 
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 MOST_TRIALS = 60
 """Choices of motions listed."""
+TELLING = 0.01
+"""Places at which predictions differ by less than this share of an error are not listed."""
 MOST_DRAWN = 4
 """Causes drawn on the structure."""
 
@@ -82,6 +85,10 @@ class DiagnosisReport:
         factor, symbol = self.units.factor(kind, size or value)
         return f"{self.n(factor * value, 3)} {symbol}".strip()
 
+    def told(self, line: str) -> str:
+        """Return a line that every verdict has, such as what acts, in the language of the report."""
+        return line if self.language != "it" else plain_italian(line)
+
     def html(self) -> str:
         """Return the page."""
         title = self.head.get("project") or self.found.model.title or self.words["title"]
@@ -105,6 +112,7 @@ class DiagnosisReport:
             ("asked", (told.question.asked,)), ("acts", told.question.loads(self.units)), ("limits", told.limits),
             ("not_checked", told.unchecked), ("attention", told.attention), ("next_steps", told.next_steps),
         ]  # fmt: skip
+        facts = [(key, [self.told(line) for line in lines]) for key, lines in facts]
         rows = "".join(f"<tr><th>{escape(w[key])}</th><td>{'<br>'.join(escape(v) for v in lines)}</td></tr>"
                        for key, lines in facts if lines)  # fmt: skip
         return (
@@ -155,10 +163,12 @@ class DiagnosisReport:
 
     def places(self) -> str:
         """Return where to measure next."""
+        between = ", " if self.language != "it" else "; "
         rows = [
-            [self.words[p.kind], f"{p.joint[0]} | {p.joint[1]}", ", ".join(self.n(v) for v in p.at),
+            [self.words[p.kind], f"{p.joint[0]} | {p.joint[1]}", between.join(self.n(v) for v in p.at),
              "; ".join(self.quantity("motion", v, p.spread) for v in p.predicted), self.quantity("motion", p.spread)]
             for p in self.found.places
+            if p.gain > TELLING
         ]  # fmt: skip
         if not rows:
             return ""

@@ -61,6 +61,7 @@ class _Words:
 
     def __init__(self, found: Diagnosis, language: str, write: Write) -> None:
         self.found, self.words, self.write = found, WORDS[language], write
+        self.comma = write(0.5, 1) == "0,5"
         self.units = found.model.report
 
     def say(self, key: str, **values: object) -> str:
@@ -260,7 +261,7 @@ class _Words:
 
     def place(self, place: Place, several: bool) -> str:
         """Return a place with what is predicted there."""
-        at = ", ".join(self.write(v, 4) for v in place.at)
+        at = ("; " if self.comma else ", ").join(self.write(v, 4) for v in place.at)
         name = self.say(f"place_{place.kind}", joint=f"{place.joint[0]} | {place.joint[1]}", at=at)
         if not several:
             return self.say("spread", place=name, spread=self.quantity("motion", place.spread))
@@ -275,10 +276,14 @@ class _Words:
         if not shown:
             return ""
         worst = max(c.certificate for c in shown)
-        told = self.say("proof", worst=f"{worst:.1e}", allowed=f"{CERTIFIED:.0e}", tried=len(found.trials),
+        told = self.say("proof", worst=self.short(worst), allowed=f"{CERTIFIED:.0e}", tried=len(found.trials),
                         runs=found.forward.runs)  # fmt: skip
         future = found.future
-        return told + self.say("proof_large", residual=f"{future.residual:.1e}") if future and future.large else told
+        return told + self.say("proof_large", residual=self.short(future.residual)) if future and future.large else told
+
+    def short(self, value: float) -> str:
+        """Return a residual with two digits."""
+        return f"{value:.1e}".replace(".", "," if self.comma else ".")
 
     def limits(self) -> tuple[str, ...]:
         """Return what limits the answer."""
@@ -289,6 +294,8 @@ class _Words:
             told.append(self.say("sparse", size=looked))
         if found.left:
             told.append(self.say("left", count=found.left, far=f"{FAR:g}"))
+        if not found.causes:
+            told.append(self.words["local"])
         for unseen in found.unseen:
             parts = [
                 self.say("unseen_part", name=n, motion=self.quantity(self.kind(n), s))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import shutil
 import tomllib
 from importlib.resources import files
@@ -59,6 +60,13 @@ def test_the_command_writes_report_figures_and_numbers(tmp_path: Path) -> None:
     assert "Una sola causa" in out
     assert json.loads((place / "summary.json").read_text())["status"] == "one_cause"
     assert (place / "cracks.png").stat().st_size > 10_000
+    table = re.sub(r"<svg.*?</svg>|<style.*?</style>|<script.*?</script>", "", page, flags=re.DOTALL)
+    assert not re.search(r"\bconstant\b|\balong\b|self-weight", table)
+    assert not re.search(r"\d\.\d", table.split("<footer>")[0])
+    for name in ("causes", "cracks", "readings"):
+        texts = re.findall(r"<!-- (.*?) -->", (place / f"{name}.svg").read_text())
+        assert texts
+        assert not [t for t in texts if re.search(r"\d\.\d", t)]
     assert (place / "measurements.csv").read_text().startswith("name,kind,")
 
 

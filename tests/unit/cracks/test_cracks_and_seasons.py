@@ -94,5 +94,5 @@ def test_what_friction_kept_of_summers_tells_how_warm_they_were(summers) -> None
 
 
 def test_only_a_group_can_come_and_go() -> None:
-    with pytest.raises(concio.InputError, match="came and went"):
+    with pytest.raises(concio.InputError, match="applied and removed"):
         Candidate("sinks", body="ground", direction=(0, -1), times=2)

@@ -41,10 +41,12 @@ WARMER = 10.0
 """Changes of temperature are expected to be of this size [K]."""
 MOST = 3
 """Motions tried together unless stated otherwise."""
-STEPS = (4, 16)
+STEPS = (4, 16, 64)
 """Steps of a path that is followed in steps: the next number is taken where readings change too much in finer ones."""
 CHANGED = 0.3
 """Change of a reading in finer steps, in errors, up to which steps are fine enough."""
+COARSE = 1.0
+"""Change of a reading, in errors, beyond which nothing can be said: only then are the most steps taken."""
 
 
 @strict
@@ -83,8 +85,8 @@ def diagnose(
         How paths are followed; by default event by event in the plane up to 150 contact pairs, else in steps.
     steps : int, optional
         Load steps, if the path is followed in steps. By default 4, and 16 where no cause was found, or a best
-        fit, followed again in four times as many, changes a reading by more than 0.3 errors; what the change comes to
-        is reported.
+        fit, followed again in four times as many, changes a reading by more than 0.3 errors; 64 where it then still
+        changes by more than an error, or no cause was found. What the change comes to is reported.
     large : bool
         Whether the simplest cause is followed at large displacements, to its limit; in the plane.
     progress : callable, optional
@@ -127,7 +129,8 @@ def diagnose(
     )
     trials: tuple[Trial, ...] = ()
     coarse = changed = np.inf
-    for number in STEPS if steps is None else (steps,):
+    number: int | None = STEPS[0] if steps is None else steps
+    while number is not None:
         forward = Forward.of(assembly, moved, found, method, number)
         case = _Case(Fitter(forward, value, error, low, high, scale), *given, confidence)
         searched = search(
@@ -137,8 +140,7 @@ def diagnose(
         trials = searched.trials
         coarse, changed = case.refinement(searched)
         found_any = bool(searched.accepted or searched.spoiled)
-        if coarse <= CHANGED and found_any:
-            break
+        number = None if steps is not None else case.next_steps(searched, coarse, found_any=found_any)
         if not found_any:  # a true cause may be turned down on coarse paths: nothing of them is taken over
             trials, changed = (), np.inf
     fitter = case.fitter
@@ -222,9 +224,34 @@ class _Case:
         """Return how much readings change, in errors, where the paths of the best fits are followed in finer steps.
 
         The largest change of a reading, and the largest root of the sum of squares of the changes of a fit.
+        """
+        changes = [self._change(f, 1, FINER) for f in self._best(searched)]
+        largest = max((float(c.max()) for c in changes), default=0.0)
+        return largest, max((float(np.linalg.norm(c)) for c in changes), default=0.0)
 
-        Looked at are the simplest cause and the best fit of every number of motions that is not far off: one that is
-        turned down because its path was walked too coarsely is no less a fault than one that is taken.
+    def next_steps(self, searched: Found, coarse: float, *, found_any: bool) -> int | None:
+        """Return the steps with which to search again; None where these were fine enough, or no more are taken.
+
+        Steps that change the best fits by more than an error are passed over where the most steps do so again: paths
+        that come to another equilibrium of friction in some of the steps are not nearer in more of them.
+        """
+        number = self.fitter.forward.steps
+        finer = [s for s in STEPS if s > number]
+        exact = self.fitter.forward.method == "events"
+        enough = coarse <= (CHANGED if number == STEPS[0] else COARSE)
+        if exact or not finer or (found_any and enough):
+            return None
+        last = finer[-1]
+        if len(finer) > 1 and coarse > COARSE:
+            times = finer[0] // number, last // number
+            if any(float(self._change(f, *times).max()) > COARSE for f in self._best(searched)):
+                return last
+        return finer[0]
+
+    def _best(self, searched: Found) -> list[Fit]:
+        """Return the simplest cause and the best fit of every number of motions that is not far off.
+
+        One that is turned down because its path was walked too coarsely is no less a fault than one that is taken.
         """
         near = [t.fit for t in searched.trials if t.fit is not None and t.chosen and not t.coarse]
         tried = [f for f in near if f.misfit <= FAR * allowed(f.freedom, self.confidence)]
@@ -232,15 +259,13 @@ class _Case:
         sizes = {len(f.chosen) for f in tried}
         best = [min((f for f in tried if len(f.chosen) == s), key=lambda f: f.misfit) for s in sorted(sizes)]
         first = [f for f in (*searched.accepted, *searched.spoiled) if f.chosen][:1]
-        changes = [self._change(f) for f in dict.fromkeys((*first, *best))]
-        largest = max((float(c.max()) for c in changes), default=0.0)
-        return largest, max((float(np.linalg.norm(c)) for c in changes), default=0.0)
+        return list(dict.fromkeys((*first, *best)))
 
-    def _change(self, fit: Fit) -> Array:
-        """Return the changes (n,) of the readings of one fit in finer steps, in errors."""
-        fine = self.fitter.forward.refined(fit.motions, FINER)
-        change: Array = np.abs(fine.values - fit.prediction.values) / self.fitter.error
-        return change if fine.reached else np.full(len(change), np.inf)
+    def _change(self, fit: Fit, times: int, finer: int) -> Array:
+        """Return by how much the readings (n,) of a fit differ between two numbers of steps, in errors."""
+        fine, less = (self.fitter.forward.refined(fit.motions, n) for n in (finer, times))
+        change: Array = np.abs(fine.values - less.values) / self.fitter.error
+        return change if fine.reached and less.reached else np.full(len(change), np.inf)
 
 
 def _check(

@@ -28,7 +28,11 @@ FLAT = 0.02
 SLOW = 0.03
 """Relative decrease of the misfit below which a descent far from what is allowed ends."""
 TRUST = 2.0
-"""Longest step over the size of a motion."""
+"""Longest first step over the size of a motion; it doubles where steps succeed, up to :data:`REACH` in all."""
+REACH = 20.0
+"""Furthest that a descent goes, over the size of a motion."""
+TRIED = 3
+"""Predictions after which a descent is to be better than what a part of the choice alone has reached."""
 NEAR_BY = 4.0
 """Times the size of a motion within which a descent begins: the responses of rest say little of what lies further."""
 DISTANT = 4.0
@@ -148,7 +152,7 @@ class Fitter:
 
     def fit(
         self, chosen: Sequence[int], *, allowed: float, kept: Array | None = None, starts: int = 2,
-        begin: Fit | None = None,
+        begin: Fit | None = None, part: Fit | None = None,
     ) -> Fit | None:  # fmt: skip
         """Return the best fit of the candidates chosen; None where no start was reached.
 
@@ -163,13 +167,17 @@ class Fitter:
             Patterns of signs that are followed.
         begin : Fit, optional
             Begin at an earlier fit of the same candidates instead, whose paths may have been coarser.
+        part : Fit, optional
+            Best fit of some of the candidates, with all measurements: a descent begins there too, and others end that
+            do not come below it soon.
         """
         kept = np.ones(len(self.value), dtype=bool) if kept is None else kept
         own = list(chosen)
         if begin is not None:
             here = self._first(own, begin.motions[own], begin.slope, kept)
             return None if here is None else self._descend(own, here, allowed)
-        best: Fit | None = None
+        best = None if part is None else self._descend(own, self._beside(own, part), allowed)
+        beaten = best
         for expected, start, J in self.starts(own, kept)[:starts]:
             if best is not None and (best.misfit <= allowed or expected > max(DISTANT * allowed, 0.5 * best.misfit)):
                 break
@@ -180,7 +188,7 @@ class Fitter:
             if min(expected, float(without_each(here).min())) > FAR * allowed:
                 found = replace(here, left=True)
             else:
-                found = self._descend(own, here, allowed)
+                found = self._descend(own, here, allowed, beaten)
             if best is None or found.misfit < best.misfit:
                 best = found
         return best
@@ -212,14 +220,26 @@ class Fitter:
             columns.append(np.zeros(len(self.value)) if flat else (ends[0][1] - ends[1][1]) / (ends[0][0] - ends[1][0]))
         return np.column_stack(columns), states
 
-    def _descend(self, own: list[int], here: Fit, allowed: float) -> Fit:
-        """Return the end of a descent."""
+    def _beside(self, own: list[int], part: Fit) -> Fit:
+        """Return the best fit of some candidates as a fit of more, which do not move yet."""
+        slope = np.zeros((len(self.value), len(own)))
+        slope[:, [own.index(c) for c in part.chosen]] = part.slope
+        further = [c for c in own if c not in part.chosen]
+        slope[:, [own.index(c) for c in further]] = self.derivatives(part, further, central=False)[0]
+        return replace(part, chosen=tuple(own), slope=slope)
+
+    def _descend(self, own: list[int], here: Fit, allowed: float, beaten: Fit | None = None) -> Fit:
+        """Return the end of a descent, which is given up where it does not come below another fit soon."""
         kept = here.kept
         radius, steps, refreshed = TRUST, 0, False
+        reach = np.maximum(REACH * self.scale[own], np.abs(here.motions[own]))
         while steps < MOST_STEPS:
+            if beaten is not None and steps >= TRIED and not _below(here, beaten):
+                break
             s = here.motions[own]
-            size = np.minimum(radius * self.scale[own], np.inf)
-            low, high = np.maximum(self.low[own] - s, -size), np.minimum(self.high[own] - s, size)
+            size = radius * self.scale[own]
+            low = np.maximum(np.maximum(self.low[own], -reach) - s, -size)
+            high = np.minimum(np.minimum(self.high[own], reach) - s, size)
             d = self._step(here.slope[kept], here.residual[kept], low, high, self.scale[own])
             expected = (here.residual + here.slope @ d)[kept]
             gain = here.misfit - float(expected @ expected)
@@ -237,7 +257,7 @@ class Fitter:
                 continue
             if there.misfit < here.misfit - 0.1 * gain:
                 rate = there.misfit / here.misfit
-                here, refreshed = there, False
+                here, refreshed, radius = there, False, 2.0 * radius
                 if float(without_each(here).min()) * rate ** (MOST_STEPS - steps) > DISTANT * allowed:
                     break  # at this rate it comes nowhere near
                 continue
@@ -289,6 +309,11 @@ class Fitter:
             found = lsq_linear(damped, target, bounds=(low[wide] / scale[wide], high[wide] / scale[wide]))
             d[wide] = found.x * scale[wide]
         return d
+
+
+def _below(fit: Fit, other: Fit) -> bool:
+    """Return whether a fit is better than another, with all measurements or without the one that spoils it most."""
+    return fit.misfit < other.misfit or float(without_each(fit).min()) < float(without_each(other).min())
 
 
 def without_each(fit: Fit) -> Array:

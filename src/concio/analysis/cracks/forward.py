@@ -122,7 +122,7 @@ class Forward:
 
     def refined(self, motions: Array, times: int) -> Prediction:
         """Return the state in ``times`` as many steps; the same where the path is exact."""
-        if self.method == "events":
+        if self.method == "events" or times == 1:
             return self.predict(motions)
         return self._followed([np.asarray(motions, dtype=float)], times * self.steps)
 

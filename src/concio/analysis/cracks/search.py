@@ -112,7 +112,8 @@ def search(
                 if begin.left or least > min(np.sqrt(FAR * limit), np.sqrt(limit) + SURE * change):
                     trials.append(Trial(chosen, begin, coarse=True))
                     continue
-            fit = fitter.fit(chosen, allowed=limit, begin=begin) if size else _rest(fitter)
+            part = _part(turned_down, chosen)
+            fit = fitter.fit(chosen, allowed=limit, begin=begin, part=part) if size else _rest(fitter)
             trials.append(Trial(chosen, fit))
             if fit is None or fit.left:
                 continue
@@ -130,6 +131,12 @@ def search(
         return len({movers[c] for c in fit.chosen}), len(fit.chosen), fit.misfit
 
     return Found(tuple(sorted(accepted, key=rank)), tuple(sorted(spoiled, key=rank)), tuple(trials))
+
+
+def _part(known: Sequence[Fit], chosen: tuple[int, ...]) -> Fit | None:
+    """Return the best of the fits in which some of the candidates of a choice move; None where there is none."""
+    parts = [f for f in known if f.chosen and set(f.chosen) < set(chosen)]
+    return min(parts, key=lambda f: f.misfit, default=None)
 
 
 def without_one(fitter: Fitter, fit: Fit, confidence: float) -> list[Fit]:
