@@ -179,7 +179,9 @@ class Fitter:
         best = None if part is None else self._descend(own, self._beside(own, part), allowed)
         beaten = best
         for expected, start, J in self.starts(own, kept)[:starts]:
-            if best is not None and (best.misfit <= allowed or expected > max(DISTANT * allowed, 0.5 * best.misfit)):
+            if best is not None and best.misfit <= allowed:
+                break
+            if best is not beaten and best is not None and expected > max(DISTANT * allowed, 0.5 * best.misfit):
                 break
             here = self._first(own, start, J, kept)
             if here is None:
