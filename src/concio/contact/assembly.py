@@ -33,6 +33,9 @@ Array = np.ndarray
 PRESTRESS = "prestress"
 """Name of the factor of the prestress of ties, which is not a load group: 1 but where a path puts it on."""
 
+ROUNDED = 1e-12
+"""Share of the size of a model up to which an initial gap is rounding of coordinates, and none."""
+
 TIE = CONTACT_MODELS.index("tie")
 
 
@@ -191,6 +194,13 @@ class Assembly:
         return u
 
 
+def _without_rounding(model: Model, pairs: Pairs) -> Pairs:
+    """Return pairs of which none is apart by what rounding of coordinates leaves: such a pair would not be bonded."""
+    largest = max(float(np.abs(b.vertices).max()) for b in model.bodies)
+    rounding = ROUNDED * model.size + 4 * np.finfo(float).eps * largest
+    return replace(pairs, gap=np.where(np.abs(pairs.gap) <= rounding, 0.0, pairs.gap))
+
+
 def _no_pairs(disc: Discretisation) -> Pairs:
     """Return the pairs of a model in which no two bodies touch and supports or ties hold the blocks: none."""
     d = disc.dim
@@ -278,7 +288,7 @@ def assemble(model: Model) -> Assembly:
             msg = f"no joint was made at all: {first}" + (f"; {others} more such places" if others else "")
         raise InputError(msg, hint="look at the model with 'concio check'; raise gap_tolerance if the drawing has gaps")
     pairs = geometry.pairs(disc, detection) if detection.faces else _no_pairs(disc)
-    pairs = add_point_pairs(disc, pairs, detection.point_contacts, len(detection.faces))
+    pairs = _without_rounding(model, add_point_pairs(disc, pairs, detection.point_contacts, len(detection.faces)))
     laws = pair_laws(model, pairs)
     pairs, laws = add_ties(reference, pairs, laws)
     supported = apply_supports(disc)

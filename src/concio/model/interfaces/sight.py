@@ -10,6 +10,7 @@ import shapely
 from concio.model.interfaces.facing import FacingPairs
 from concio.model.interfaces.near import polygons
 from concio.model.model import Array, Body
+from concio.model.overlay import areas
 
 GRID = 1e-3
 """Spacing of the grid on which areas are cut, as a share of the tolerance.
@@ -39,7 +40,7 @@ def visible_parts(bodies: Sequence[Body], pairs: FacingPairs, tolerance: float, 
     n = some.normal
     b_lo, b_hi = some.a_lo + some.g_lo[:, None] * n, some.a_hi + some.g_hi[:, None] * n
     corners = np.stack([some.a_lo, some.a_hi, b_hi, b_lo], 1)
-    between = shapely.make_valid(shapely.polygons(corners))
+    between = areas(shapely.make_valid(shapely.polygons(corners)))
     shapes = polygons(bodies)
     k, q = shapely.STRtree(shapes).query(between)
     inside = shapely.intersection(between[k], shapes[q], grid_size=GRID * tolerance)
