@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from importlib.resources import as_file, files
 
 import numpy as np
 import pytest
@@ -67,3 +68,13 @@ def test_a_lost_path_is_no_collapse_multiplier():
     text = "\n".join(limit_lines(lost))
     assert "at least 0.4" in text
     assert "collapses at" not in text
+
+
+@pytest.mark.long
+def test_a_wall_over_an_arch_is_let_go_from_where_it_is() -> None:
+    """Its blocks have slid by decimetres on joints that give way by nanometres, and a crack closes after metres."""
+    with as_file(files("concio.model").joinpath("templates", "arch_on_piers.toml")) as template:
+        model = concio.load(template)
+    found = limit(model, search=False, friction=False)
+    assert found.collapse_shown
+    assert 2.1 < found.coulomb < found.associated.multiplier

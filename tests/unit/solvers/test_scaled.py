@@ -85,3 +85,13 @@ def test_renewed_shares_the_factor_and_takes_the_rest() -> None:
     assert new.factor is scaled.factor
     np.testing.assert_allclose(new.f, 2.0 * scaled.f)
     np.testing.assert_allclose(new.x[:, 0] - scaled.x[:, 0], 1e-3 / scaled.length)
+
+
+def test_slips_of_the_past_are_no_measure_of_the_loads() -> None:
+    """Units after a long slip are those before it, whichever way it went: a path counts its steps from where it is."""
+    problem = with_laws(wall(2, 2, alpha=0.1), 3, "springs")
+    slip = np.linspace(-0.3, 0.7, problem.pairs)[:, None]
+    before = scale(problem)
+    for sense in (1.0, -1.0):
+        after = scale(replace(problem, slip_origin=sense * slip))
+        assert (after.length, after.force) == (before.length, before.force)

@@ -282,7 +282,9 @@ def scale(problem: ContactProblem, *, loads: Array | None = None) -> Scaled:
     factor.factorise(springs[:, :, None] * np.eye(d), LOOSE)
     measured = problem.f if loads is None else loads
     gaps = np.column_stack([problem.gap, -problem.slip_origin])
-    held = springs * (gaps if not measured.any() else np.minimum(gaps, 0.0))
+    if measured.any():  # gaps stay open, and slips of the past are those of motions: they are no measure of the loads
+        gaps = np.column_stack([np.minimum(problem.gap, 0.0), np.zeros((m, d - 1))])
+    held = springs * gaps
     u = factor.solve(measured / stiffness - C.T @ held.ravel())
     t = springs * (C @ u).reshape(m, d) + held
     size = float(np.sqrt(np.mean(t**2))) if m else 0.0

@@ -81,31 +81,23 @@ def solve(
     return first_answer(Run(scale(problem), progress), STRATEGIES)
 
 
-def without_release(problem: ContactProblem, progress: ProgressCallback | None = None) -> Solution:
-    """Solve one load step by what comes before a release in the table; UNDECIDED where that does not decide.
-
-    Parameters
-    ----------
-    problem : ContactProblem
-    progress : callable, optional
-    """
-    before = tuple(s for s in STRATEGIES if not s.name.startswith("release"))
-    return first_answer(Run(scale(problem), progress), before)
-
-
-def let_go(problem: ContactProblem, u: Array, progress: ProgressCallback | None = None) -> Solution:
-    """Follow the slow motion from given displacements: the answer where it comes to rest, or COLLAPSES, or UNDECIDED.
+def let_go(
+    problem: ContactProblem, u: Array, t_n: Array, t_t: Array, progress: ProgressCallback | None = None
+) -> Solution:
+    """Follow the slow motion from a given state: the answer where it comes to rest, or COLLAPSES, or UNDECIDED.
 
     Parameters
     ----------
     problem : ContactProblem
     u : (N,) array
         Displacements from which the structure is let go [m].
+    t_n, t_t : (m,), (m,) or (m, d-1) arrays
+        Its contact forces there [kN].
     progress : callable, optional
     """
     run = Run(scale(problem), progress)
     try:
-        answer = released(run, u / run.scaled.length)
+        answer = released(run, *run.scaled.bring(u, t_n, t_t))
     except Cancelled:
         return run.solution(None, Status.CANCELLED)
     return answer or run.solution(None, Status.UNDECIDED, method="release")

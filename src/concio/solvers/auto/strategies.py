@@ -135,9 +135,9 @@ def released_jammed(run: Run) -> Solution | None:
     return released(run, run.associated_state())
 
 
-def released(run: Run, u: Array | None) -> Solution | None:
-    """Follow the slow motion from displacements (N,), scaled; return where it ends, None where no end is found."""
-    return _ended(run, relax(run, u))
+def released(run: Run, u: Array | None, t: Array | None = None) -> Solution | None:
+    """Follow the slow motion from displacements (N,) and forces (m, d), scaled; return where it ends, or None."""
+    return _ended(run, relax(run, u, t))
 
 
 def _from(run: Run, first: int, last: int | None) -> Solution | None:

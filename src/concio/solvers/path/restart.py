@@ -16,6 +16,7 @@ these is shown.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -27,7 +28,7 @@ from concio.problem.tolerances import ACCURATE, AT_BOUND
 from concio.problem.units import measure
 from concio.solvers.auto import chain as auto
 from concio.solvers.interior import engine
-from concio.solvers.path.near_forces import needed, solve_near
+from concio.solvers.path.near_forces import Nearby, needed, solve_near
 from concio.solvers.path.state import LinearPath, PathState, plastic_position, state_of, step_problem
 from concio.solvers.statics.existence import find_mechanism
 
@@ -40,14 +41,9 @@ QUICK = 1
 NEXT = 1e-4
 """Increment up to which the proof that there is no equilibrium counts for the point itself."""
 
-STARTS = (1e-5, NEXT, 1e-3, 1e-2)
-"""Increments that are solved from other starts and from neighbours in friction, before the structure is let go.
-
-A wall over an arch, stuck where no quick try answers, was let go at every ten-thousandth of its load, at twenty times
-the cost."""
-
-LET_GO = (1e-5, NEXT, 1e-6)
-"""Increments under which the structure is let go where nothing else answers.
+LET_GO = (1e-5, NEXT, 1e-3, 1e-2)
+"""Increments under which the structure is let go where nothing else answers: up to the last but one, the largest that
+restarts following one another ask for comes first, then less.
 
 Forces out of balance by a millionth of the load are lost among the errors of the steps: a wall whose limit the path had
 reached was let go in vain.
@@ -60,8 +56,8 @@ FREE = 1e-6
 """Largest relative residual of a motion that needs no change of forces."""
 
 
-How = Literal["near", "starts", "let go"]
-"""How a load step is solved: from the point it starts from, from other starts, or by letting the structure go."""
+How = Literal["near", "let go"]
+"""How a load step is solved: from the point it starts from, or by letting the structure go there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +117,7 @@ def look_beyond(
     shares = sorted(SHARES, key=lambda share: (share < min(least, SHARES[-1]), share))
     tries: list[tuple[float, How]] = [(share, "near") for share in shares]
     if not quick:
-        tries += [*((share, "starts") for share in STARTS), *((share, "let go") for share in LET_GO)]
+        tries += [(share, "let go") for share in _in_order(LET_GO, min(least, LET_GO[-2]))]
     proof: Solution | None = None
     lost, beyond = 0, np.inf
     for share, how in tries:
@@ -135,16 +131,24 @@ def look_beyond(
             if share <= NEXT:
                 proof = solution
                 break
-            beyond = share  # that says nothing of the loads between
+            beyond = min(share, beyond)  # that says nothing of the loads between
+            continue
         lost += how == "let go" and not solution.solved
+        if solution.solved and solution.certificate.worst > ACCURATE:
+            solution = settled(path, point, parameter, solution)
         if not solution.solved or solution.certificate.worst > ACCURATE:
             continue
         state = state_of(
             path, parameter, solution.displacement, solution.normal_force, solution.friction_force, before=point
         )
-        return Beyond(state, is_jump(path, point, state, progress))
+        return Beyond(state, is_jump(path, point, state, progress, how))
     motion = proof.mechanism.velocity if proof is not None and proof.mechanism is not None else None
     return Beyond(None, no_equilibrium=proof is not None, motion=motion)
+
+
+def _in_order(shares: Sequence[float], least: float) -> list[float]:
+    """Return increments as they are tried: from the least wanted downwards, then the larger ones upwards."""
+    return sorted(shares, key=lambda share: (share > least, share if share > least else -share))
 
 
 def load_unit(path: LinearPath, point: PathState) -> float:
@@ -157,26 +161,32 @@ def load_unit(path: LinearPath, point: PathState) -> float:
 def solve_step(
     path: LinearPath, point: PathState, parameter: float, progress: ProgressCallback | None, how: How = "near"
 ) -> Solution:
-    """Solve one load step: quickly from a point, from any start, or by a proof of collapse or by letting go."""
+    """Solve one load step: quickly from a point, or by a proof of collapse or by letting the structure go."""
     problem = step_problem(path, point, parameter)
-    if how == "starts":
-        return auto.without_release(problem, progress)
+    near = (point.displacement, point.normal_force, point.friction_force)
     if how == "let go":
         mechanism = find_mechanism(problem)
         if mechanism is not None:
             return failed(problem, Status.NO_EQUILIBRIUM, method="mechanism", mechanism=mechanism)
-        return auto.let_go(problem, point.displacement, progress)
-    near = (point.displacement, point.normal_force, point.friction_force)
+        return auto.let_go(problem, *near, progress)
     solution = solve_near(problem, *near, starts=QUICK, progress=progress)
     if solution.solved or solution.status is Status.CANCELLED or not needed(problem):
         return solution
     return engine.solve(problem, homotopy=False, starts=QUICK, progress=progress)
 
 
-def is_jump(path: LinearPath, point: PathState, state: PathState, progress: ProgressCallback | None) -> bool:
+def settled(path: LinearPath, point: PathState, parameter: float, solution: Solution) -> Solution:
+    """Solve one load step again from the contact states of an answer less accurate than the states of a path."""
+    begin = (solution.displacement, solution.normal_force, solution.friction_force)
+    return Nearby().solve(step_problem(path, point, parameter), begin) or solution
+
+
+def is_jump(
+    path: LinearPath, point: PathState, state: PathState, progress: ProgressCallback | None, how: How = "near"
+) -> bool:
     """Tell whether a state stays away from the point when the increment becomes ten times smaller."""
     nearer = point.parameter + 0.1 * (state.parameter - point.parameter)
-    closer = solve_step(path, point, nearer, progress)
+    closer = solve_step(path, point, nearer, progress, how)
     far = float(np.abs(state.displacement - point.displacement).max(initial=0.0))
     near = float(np.abs(closer.displacement - point.displacement).max(initial=0.0))
     return not (closer.solved and near <= SHRINKS * far)

@@ -19,10 +19,11 @@ import numpy as np
 
 from concio.problem.contact_problem import Array
 from concio.problem.solution import Departure
+from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.interior.run import Run
 from concio.solvers.relaxation.step import allowed_factorisations, pivot_to_rest, rest_near, solve_step
 from concio.solvers.relaxation.unbounded_motion import unbounded_motion
-from concio.solvers.states.reading import Finished, natural_residual
+from concio.solvers.states.reading import Finished, natural_residual, read_states
 
 FIRST = {2: 3e-2, 3: 1e-2}
 """Resistance e of the first step by dimension, scaled units."""
@@ -42,6 +43,12 @@ FAILURES = {2: 45, 3: 12}
 CHANGES = 0.1
 """Largest relative change of the motion from one step to the next at which it is asked whether it ends."""
 
+STEADY = 1e-6
+"""Relative change of the motion from one step to the next below which it goes on as it is until something meets."""
+
+NEARLY, FEW = 0.999, 10.0
+"""Share of that way that is taken at once, and the number of steps up to which it is not."""
+
 SLOW = 1e-3
 """Natural-map residual without resistance from which on plane problems try a crossover to rest by pivoting, and again
 at each hundredth."""
@@ -50,7 +57,7 @@ ENDS = {Finished: "comes to rest", Departure: "moves away", type(None): "no end 
 """Words of the trace."""
 
 
-def relax(run: Run, u: Array | None = None) -> Finished | Departure | None:
+def relax(run: Run, u: Array | None = None, t: Array | None = None) -> Finished | Departure | None:
     """Follow the slow motion from ``u`` (N,), scaled, or from rest; return where it ends, or None.
 
     Parameters
@@ -59,11 +66,13 @@ def relax(run: Run, u: Array | None = None) -> Finished | Departure | None:
         Keeps count and trace.
     u : (N,) array, optional
         Displacements at the beginning.
+    t : (m, d) array, optional
+        Contact forces at the beginning, scaled: short steps have nearly these, in nearly these states.
     """
     s = run.scaled
     u = np.zeros(len(s.f)) if u is None else u
     pace, failures, taken, close = Pace(FIRST[s.dim]), 0, 0, SLOW
-    here: Finished | None = None
+    here = None if t is None else begun(s, u, t)
     ended: Finished | Departure | None = None
     allowed = s.factor.made + allowed_factorisations(s)
     before, velocity = pace.e, np.zeros_like(u)
@@ -87,14 +96,41 @@ def relax(run: Run, u: Array | None = None) -> Finished | Departure | None:
                 close, ended = 0.01 * error, pivot_to_rest(run, new)
         if ended is not None:
             break
+        if steady(velocity, last):
+            u = u + ahead(s, u, new.t, moved.u) * moved.u
         pace.succeeded()
     run.trace.append(f"release: {taken} steps of slow motion, {failures} failed, {ENDS[type(ended)]}")
     return ended
 
 
+def begun(s: Scaled, u: Array, t: Array) -> Finished:
+    """Return the point from which the motion begins as if it were a step that led nowhere."""
+    return Finished(np.zeros_like(u), t, read_states(s, u, t), 0.0, 0, np.zeros(0, dtype=int))
+
+
 def hardly_changed(velocity: Array, last: Array) -> bool:
     """Tell whether the motion (N,) has become so steady that it is asked whether it ever ends."""
     return float(np.abs(velocity - last).max(initial=0.0)) < CHANGES * float(np.abs(velocity).max(initial=0.0))
+
+
+def steady(velocity: Array, last: Array) -> bool:
+    """Tell whether the motion (N,) goes on as it is until something meets or turns."""
+    return float(np.abs(velocity - last).max(initial=0.0)) < STEADY * float(np.abs(velocity).max(initial=0.0))
+
+
+def ahead(s: Scaled, u: Array, t: Array, step: Array) -> float:
+    """Return how many equal steps lead almost to where a pair meets or a slip has gone back to its origin; 0 if few.
+
+    Until then nothing changes but places: no force, no state. What comes after is a step like others.
+    """
+    y, rate = s.position(u, t), s.along(step)
+    top = STEADY * float(np.abs(rate).max(initial=0.0))
+    meets = (y[:, 0] > 0) & (rate[:, 0] < -top)
+    back = (t[:, 0] > 0) & s.rough & ((y[:, 1:] * rate[:, 1:]).sum(axis=1) < 0)
+    back &= np.linalg.norm(rate[:, 1:], axis=1) > top
+    slip, speed = np.linalg.norm(y[back, 1:], axis=1), np.linalg.norm(rate[back, 1:], axis=1)
+    left = float(np.concatenate([y[meets, 0] / -rate[meets, 0], slip / speed]).min(initial=np.inf))
+    return NEARLY * left if FEW < left < np.inf else 0.0
 
 
 @dataclass

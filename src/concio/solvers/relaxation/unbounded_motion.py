@@ -174,7 +174,11 @@ def _proof(s: Scaled, a: Array, u: Array, t: Array) -> Departure | None:
     opening = (rate[:, 0] > STILL_PAIR * top) & (gap < 0) & (t[:, 0] <= 0)
     behind = (speed > STILL_PAIR * top) & (slip < 0) & s.rough
     far = np.concatenate([-gap[opening] / rate[opening, 0], -slip[behind] / speed[behind]]).max(initial=0.0)
-    far = max(1.01 * far, BEYOND * float(np.abs(u).max()) / top)
+    far, further = 1.01 * far, BEYOND * float(np.abs(u).max()) / top
+    found = verify_motion(s.problem, s.acceleration(a), *s.restore(u + max(far, further) * a, t))
+    if found.certified or s.dim == 3 or far >= further:
+        return found
+    # after a long way stiff joints have lost their digits: no more of it than the pairs need
     return verify_motion(s.problem, s.acceleration(a), *s.restore(u + far * a, t))
 
 
