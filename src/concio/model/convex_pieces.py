@@ -144,7 +144,8 @@ def _clipped(
             continue
         else:
             kept = shape.intersection(_half_plane(slope, height, float(np.ptp(flat, axis=0).max()), flat.mean(0)))
-            polygons = [p for p in shapely.get_parts(kept) if p.area > 0]
+            # slivers along an edge in the plane are as wide as rounding
+            polygons = [p for p in shapely.get_parts(kept) if p.area > 0.5 * tiny * p.length]
             if not polygons:
                 continue
             kept = shapely.MultiPolygon(polygons)

@@ -180,6 +180,31 @@ def test_faces_that_miss_one_plane_by_rounding_leave_no_flat_pieces(off: float) 
     assert volume == pytest.approx(5 * 0.5 + 1 * 0.5 + 2 * 0.5 + 9, abs=1e-5)
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_the_pieces_of_a_block_have_its_volume(seed: int) -> None:
+    """Blocks of reentrant corners, and with a corner that hardly turns, as where a spandrel meets an arch."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(5, 12))
+    angle, radius = np.sort(rng.uniform(0, 2 * np.pi, count)), rng.uniform(0.3, 1, count)
+    outline = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+    at, share = int(rng.integers(0, count)), rng.uniform(0.2, 0.8)
+    edge = outline[(at + 1) % count] - outline[at]
+    turns = 10.0 ** rng.integers(-14, -2) * rng.normal(size=2)
+    outline = np.insert(outline, at + 1, outline[at] + share * edge + turns, axis=0)
+    block = prism_of(outline, 0.0, 0.7, "block")
+    assert block.pieces is not None
+    volume = sum(ConvexHull(piece.vertices, qhull_options="QJ").volume for piece in block.pieces)
+    assert volume == pytest.approx(block.volume, rel=2e-5)
+
+
+def test_the_pieces_of_a_spandrel_have_its_volume() -> None:
+    outline = [(0, 0.35), (0, 0), (0.57, 0), (0.575, 0.017), (0.805, 0.268), (0.807, 0.27), (0.9, 0.35)]
+    block = prism_of(np.array(outline), 0.0, 0.8, "spandrel")
+    assert block.pieces is not None
+    volume = sum(ConvexHull(piece.vertices).volume for piece in block.pieces)
+    assert volume == pytest.approx(block.volume, rel=1e-9)
+
+
 def test_overlaps_are_found_among_bodies_of_several_shapes() -> None:
     """Two of each shape, turned about: a pair is reported whichever of them comes first."""
     post = tetrahedron("post", np.array([[0.2, 0.2, 0.5], [0.6, 0.2, 0.5], [0.2, 0.5, 0.5], [0.3, 0.3, 1.5]]))

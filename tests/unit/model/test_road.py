@@ -185,8 +185,8 @@ def test_width_by_rule_is_reported_and_at_most_that_of_the_bridge() -> None:
         (("unit_weight = 19.0", "unit_weight = 1900"), "'1900 kg/m3'"),
         (("unit_weight = 19.0", "unit_weight = 1.9"), "'1.9 t/m3'"),
         (("unit_weight = 23.0", "unit_weight = 2300"), "layer 'surfacing' weighs 2300"),
-        (("cover = 0.3", "cover = 300"), "a cover of 300 m"),
-        (("ring = 0.215", "ring = 21.5"), "a ring of 21.5 m in a span of 3 m"),
+        (("cover = 0.3", "cover = 30"), "a cover of 30 m"),
+        (("ring = 0.215", "ring = 2.15"), "a ring of 2.15 m in a span of 3 m"),
     ],
 )
 def test_numbers_in_other_units_are_told(change: tuple[str, str], words: str) -> None:
