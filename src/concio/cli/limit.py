@@ -58,7 +58,7 @@ def limit(
     """Find the load multiplier: the associated bound, what Coulomb friction is shown to carry, and the friction margin.
 
     The design value is printed first, then each number with its meaning. Ctrl-C stops the search and prints the numbers
-    found so far.
+    found so far. Where standard error is not a terminal, each number is printed there as soon as it is found.
 
     Example: concio limit wall.toml --group live --out limit
     """
@@ -90,8 +90,9 @@ def limit(
             on_the_way: list[str] = []
             for name, known in stages:
                 found = known
-                on_the_way += stage_lines(name, known)
-                found_so_far(on_the_way)
+                latest = stage_lines(name, known)
+                on_the_way += latest
+                found_so_far(on_the_way, latest, shown=not json)
     except KeyboardInterrupt:
         if found is not None:
             tell(limit_lines(found))

@@ -82,11 +82,17 @@ def progress_of(state: Progress, share: float, remaining: float | None) -> dict[
     }  # fmt: skip
 
 
-def found_so_far(lines: list[str]) -> None:
-    """Send lines that are known already to the listener, where there is one."""
+def found_so_far(lines: list[str], latest: list[str], *, shown: bool) -> None:
+    """Send all lines that are known already to the listener, where there is one.
+
+    Without a listener and without a terminal, which has a bar, print the latest ones on standard error.
+    """
     listener = LISTENER.get()
     if listener is not None:
         listener("found", lines)
+    elif shown and not QUIET.get() and not sys.stderr.isatty():
+        sys.stderr.write("".join(f"so far: {line.strip()}\n" for line in latest))
+        sys.stderr.flush()
 
 
 def verdict_so_far(verdict: Verdict) -> None:

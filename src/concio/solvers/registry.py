@@ -66,11 +66,17 @@ class Method:
             if problem.pairs and not part.problem.pairs:  # K u = f, or a body that nothing holds
                 linear = METHODS["sparse-lemke" if problem.dim == 2 else "auto"].solver(problem.dim)
                 return linear(part.problem, progress=progress)
-            return solver(part.problem, progress=progress, **options)
+            return self._checked(solver(part.problem, progress=progress, **options))
 
         if any(options.get(name) is not None for name in GIVEN):
-            return solver(problem, progress=progress, **options)
+            return self._checked(solver(problem, progress=progress, **options))
         return solve_apart(problem, solve)
+
+    def _checked(self, found: object) -> Solution:
+        if not isinstance(found, Solution):
+            msg = f"method '{self.name}' returned {type(found).__name__} instead of a Solution"
+            raise MethodError(msg, hint="return what judge(...) or failed(...) gives")
+        return found
 
     @property
     def dimensions(self) -> tuple[int, ...]:

@@ -147,3 +147,13 @@ def test_the_table_says_which_joint_laws_a_method_refuses(name: str, law: str) -
 def test_calls_that_cannot_be_meant(call: object, said: str) -> None:
     with pytest.raises(MethodError, match=said):
         call()  # type: ignore[operator]
+
+
+def test_a_method_of_ones_own_that_returns_no_solution_is_refused_with_what_to_return() -> None:
+    wall = concio.column(width=0.5, height=1.0, blocks=2, block="rigid", friction=0.6)
+    register("returns nothing", lambda problem, *, progress=None: None, laws=["friction", "stiffness"])
+    try:
+        with pytest.raises(concio.MethodError, match="returned NoneType instead of a Solution"):
+            concio.solve(wall, method="returns nothing")
+    finally:
+        del METHODS["returns nothing"]
