@@ -107,6 +107,7 @@ def main(drags: int, count: int) -> None:
             client.until("picture")
             tell(f"facade of 182 stones: picture                                 {time.perf_counter() - begun:.2f} s")
             answer_of(client)
+            drag_on_facade(client)
             commands(client, drags)
             requests(client, count)
             large_drop(client, 200)
@@ -146,6 +147,25 @@ def drag(client: Client, drags: int) -> None:
     tell(f"drag: median {1e3 * statistics.median(waited):.0f} ms of {drags}, of which the bound {share:.0%};"
           f" {1e3 * (processor(pid) - used) / drags:.0f} ms of processor each")  # fmt: skip
     tell(f"memory of the process: {before:.0f} MB after some, {resident(pid):.0f} MB after {drags} drags")
+
+
+def drag_on_facade(client: Client) -> None:
+    """Print how long a bound takes while a load is dragged along the top of the facade: until then it is grey."""
+    bodies = [b for b in client.until("picture")["done"]["bodies"] if b["kind"] != "fixed"]
+    highest = max(y for b in bodies for _, y in b["rings"][0])
+    tops = [b for b in bodies if max(y for _, y in b["rings"][0]) > highest - 1e-3]
+    places = [(b["name"], max(b["rings"][0], key=lambda p: (round(p[1], 3), -p[0]))) for b in tops]
+    load = {"kind": "point", "value": [0.0, -10.0], "bodies": [places[0][0]], "at": places[0][1], "group": "drag"}
+    client.do({"do": "add", "to": "loads", "table": load})
+    client.until("picture")
+    waited, last = [], client.call("state", version=-1)["document"]["lists"]["loads"] - 1
+    for body, at in places:
+        begun = time.perf_counter()
+        found = client.call("drag", table=last, body=body, at=at)
+        waited.append(time.perf_counter() - begun)
+        assert found["state"] == "done", found
+    tell(f"facade of 182 stones, a load dragged along its top: median {1e3 * statistics.median(waited):.0f} ms")
+    client.call("undo")
 
 
 def commands(client: Client, count: int) -> None:

@@ -294,6 +294,17 @@ def test_text_and_picture_follow_each_other_and_mistakes_are_told(page: Browser,
     assert "equilibrium" in done.stdout
 
 
+def test_a_load_on_a_fixed_body_is_refused_where_it_is_clicked(page: Browser, client: Client) -> None:
+    opened(page, client)
+    page.click("[data-tool=load]")
+    page.click_at(*page.where(*page.js("window.concio.view.shown.bodies.find((b) => b.kind === 'fixed').centre")))
+    assert "is fixed" in page.js("document.querySelector('#pane-build [role=alert]').textContent")
+    assert page.js("document.querySelector('#pane-build [name=body]').value") == ""
+    page.click_at(*page.where(0.0, 1.8))
+    assert page.js("document.querySelector('#pane-build [role=alert]').textContent") == ""
+    assert page.js("document.querySelector('#pane-build [name=body]').value") == "b04"
+
+
 def test_two_pages_and_a_file_that_changes_underneath(page: Browser, client: Client) -> None:
     opened(page, client)
     other = Client(client.server, "another page")

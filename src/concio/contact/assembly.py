@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -24,7 +24,7 @@ from concio.contact.ties import add_ties
 from concio.errors import InputError
 from concio.fem.discretisation import Discretisation
 from concio.model.interfaces.detect import Detection
-from concio.model.model import Model, require_model
+from concio.model.model import Load, Model, require_model
 from concio.problem.contact_problem import ContactProblem, Laws
 from concio.representation import short_repr
 
@@ -80,6 +80,35 @@ class Assembly:
     lent_compliance: float = 0.0
     expands: Mapping[str, Array] = field(default_factory=dict)
     first_laws: Laws | None = None
+
+    def with_loads(self, loads: Sequence[Load]) -> Assembly:
+        """Return the same structure under other loads; meshes, joints and stiffness, which no load changes, are shared.
+
+        Parameters
+        ----------
+        loads : sequence of Load
+            In place of those of the model.
+
+        Raises
+        ------
+        InputError
+            A load names a body that does not exist, or loads nothing; or a compliance was given to hard joints, which
+            depends on the loads.
+
+        Examples
+        --------
+        >>> import concio
+        >>> pillar = concio.assemble(concio.column(width=0.5, height=2.0, blocks=4, block="rigid", horizontal=1.0))
+        >>> twice = pillar.with_loads([*pillar.model.loads, *pillar.model.loads])
+        >>> twice.K is pillar.K, float(twice.load().max() / pillar.load().max())
+        (True, 2.0)
+        """
+        if self.lent_compliance:
+            msg = "this assembly has a compliance that was chosen for its loads"
+            raise InputError(msg, hint="take the assembly that concio.assemble returns")
+        model = replace(self.model, loads=tuple(loads))
+        disc = replace(self.disc, model=model)
+        return replace(self, model=model, disc=disc, loads=load_vectors(disc))
 
     @property
     def groups(self) -> tuple[str, ...]:

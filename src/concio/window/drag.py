@@ -10,6 +10,7 @@ from typing import Any
 import shapely
 
 from concio.analysis.limit import limit_stages
+from concio.contact.assembly import Assembly, assemble
 from concio.errors import InputError
 from concio.model.body import Body
 from concio.model.model import Model
@@ -18,6 +19,7 @@ from concio.verdict.limit_words import bound_lines
 from concio.window.reading import own_loads, read
 from concio.window.worker import Tell
 
+_LAST: list[tuple[Model, Assembly]] = []
 NEAR = 1e-6
 """A point as near to a block as this share of the size of the model is on it."""
 
@@ -54,13 +56,21 @@ def dragged(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     _check_on(model, name, at)
     moved = replace(model.loads[number], at=at, bodies=(name,))
     loads = (*model.loads[:number], moved, *model.loads[number + 1 :])
-    stages = limit_stages(replace(model, loads=loads), [moved.group], path=False, steps=False, search=False)
+    assembly = _assembled(model).with_loads(loads)
+    stages = limit_stages(assembly, [moved.group], path=False, steps=False, search=False)
     _, found = next(iter(stages))
     lines = [" ".join(line.split()) for line in bound_lines(found)]
     return {
         "lines": lines, "italian": [in_italian(line) for line in lines], "multiplier": found.associated.multiplier,
         "group": moved.group, "at": list(moved.at or ()), "seconds": time.perf_counter() - begun,
     }  # fmt: skip
+
+
+def _assembled(model: Model) -> Assembly:
+    """Return the assembly of a model; that of the last one is kept, for the next step of a drag."""
+    if not _LAST or _LAST[0][0] is not model:
+        _LAST[:] = [(model, assemble(model))]
+    return _LAST[0][1]
 
 
 def _check_on(model: Model, name: str, at: tuple[float, ...]) -> None:

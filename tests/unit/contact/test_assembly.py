@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import concio
+from concio.analysis.lent_compliance import lent_assembly
 from concio.contact.assembly import assemble
 from concio.contact.detection import default_tolerance
 from concio.contact.factors import load_factor
@@ -114,3 +117,28 @@ def test_a_group_that_is_not_named_acts_as_described_and_a_strain_not_at_all() -
     assert load_factor(None, "live") == load_factor({"dead": 3.0}, "live") == 1.0
     assert load_factor({"live": 0.5}, "live") == 0.5
     assert load_factor(None, "strain xy") == load_factor({"strain xx": 1e-3}, "strain xy") == 0.0
+
+
+@pytest.mark.parametrize("name", ["arch", "blocks", "blocks_in_space", "arcade"])
+def test_other_loads_on_the_same_structure_are_those_of_a_fresh_assembly(name: str) -> None:
+    model = concio.load(Path(concio.__file__).parent / "model" / "templates" / f"{name}.toml")
+    body = model.free_bodies[len(model.free_bodies) // 2]
+    down = (0.0,) * (model.dim - 1) + (-3.0,)
+    at = tuple(float(v) for v in body.centroid)
+    loads = [*model.loads[:1], Load("point", down, bodies=(body.name,), at=at, group="moved")]
+    shared = assemble(model).with_loads(loads)
+    fresh = assemble(replace(model, loads=tuple(loads)))
+    assert shared.model.loads == fresh.model.loads
+    assert shared.groups == fresh.groups
+    one, other = shared.problem({"moved": 0.5}), fresh.problem({"moved": 0.5})
+    for key in ("f", "load", "gap", "slip_origin", "area"):
+        assert np.array_equal(getattr(one, key), getattr(other, key)), key
+    for key in ("K", "C_n", "C_t", "inertia"):
+        assert abs(getattr(one, key) - getattr(other, key)).max() == 0.0, key
+
+
+def test_a_compliance_that_was_chosen_for_loads_does_not_serve_for_others() -> None:
+    lent = lent_assembly(concio.column(width=0.5, height=2.0, blocks=4, block="rigid", horizontal=0.1))
+    assert lent.lent_compliance
+    with pytest.raises(InputError, match="chosen for its loads"):
+        lent.with_loads(lent.model.loads)

@@ -129,6 +129,10 @@ function free(list, word) {
 
 /* what was clicked in the picture */
 export function placed(found) {
+  const fixed = view.tool === "load" && view.shown.bodies.find((b) => b.name === found.body)?.kind === "fixed";
+  const wrong = document.querySelector("#pane-build [role=alert]");
+  if (wrong) wrong.textContent = fixed ? t("fixed_no_load", { name: found.body }) : "";
+  if (fixed) return;
   const put = (name, text) => { if (form[name]) form[name].value = text; };
   const edge = (found.edge || found.polygon || []).map((p) => p.map((v) => Number(v.toPrecision(9))).join(", ")).join(inSpace() ? "; " : ", ");
   if (view.tool === "tie") {
