@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from concio.analysis.seismic.assessment import Assessment
     from concio.analysis.seismic.site import Site
     from concio.analysis.settlement import settle
+    from concio.analysis.state_sensitivity import StateSensitivity, state_sensitivity
     from concio.analysis.step import solve
     from concio.analysis.thrust import thrust_line
     from concio.analysis.thrust_surface import thrust_surface
@@ -82,6 +83,7 @@ if TYPE_CHECKING:
     from concio.model.road.vehicles import find_vehicle
     from concio.model.solids.importing import model_from_solids
     from concio.problem.solution import Status
+    from concio.studies.reliability import Reliability, multiplier_over, reliability
     from concio.studies.study import Stop, study
     from concio.studies.study_result import StudyResult, load_study
     from concio.studies.variables import Variable, variable
@@ -116,6 +118,7 @@ _HOMES = {
     "concio.model.motion.records": ("read_record",),
     "concio.model.motion.signals": ("Pulse", "Record"),
     "concio.analysis.settlement": ("settle",),
+    "concio.analysis.state_sensitivity": ("StateSensitivity", "state_sensitivity"),
     "concio.analysis.step": ("solve",),
     "concio.analysis.thrust": ("thrust_line",),
     "concio.analysis.thrust_surface": ("thrust_surface",),
@@ -130,6 +133,7 @@ _HOMES = {
         "SolverError",
     ),
     "concio.problem.solution": ("Status",),
+    "concio.studies.reliability": ("Reliability", "multiplier_over", "reliability"),
     "concio.studies.study": ("Stop", "study"),
     "concio.studies.study_result": ("StudyResult", "load_study"),
     "concio.studies.variables": ("Variable", "variable"),
@@ -197,11 +201,13 @@ __all__ = [
     "Pulse",
     "PushResult",
     "Record",
+    "Reliability",
     "Result",
     "Rigid",
     "Site",
     "SolverError",
     "Stage",
+    "StateSensitivity",
     "Status",
     "Stop",
     "StudyResult",
@@ -247,9 +253,11 @@ __all__ = [
     "merge",
     "model_from_dxf",
     "model_from_solids",
+    "multiplier_over",
     "place",
     "push",
     "read_record",
+    "reliability",
     "rock",
     "rubble",
     "run_path",
@@ -258,6 +266,7 @@ __all__ = [
     "save_motion",
     "settle",
     "solve",
+    "state_sensitivity",
     "strain_path",
     "strength",
     "study",

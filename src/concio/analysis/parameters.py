@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from concio.model.materials import Elastic
 from concio.model.model import Model
 from concio.model.stretch import stretched, thicker
 
@@ -73,6 +74,18 @@ def parameters_of(model: Model, live: Sequence[str] = ()) -> tuple[Parameter, ..
     return tuple(found)
 
 
+def stiffnesses_of(model: Model) -> tuple[Parameter, ...]:
+    """Return Young's moduli in use and stiffnesses of joints: a state depends on them, no multiplier does."""
+    used = dict.fromkeys(b.material for b in model.bodies if b.kind == "elastic")
+    found = [Parameter("stiffness", name, material.E, "kN/m2", _modulus(model, name, material))
+             for name in used if isinstance(material := model.materials[name], Elastic)]  # fmt: skip
+    for law in dict.fromkeys(rule.law for rule in model.rules):
+        for key in ("normal_stiffness", "tangential_stiffness"):
+            if value := getattr(model.laws[law], key):
+                found.append(Parameter(key.replace("_", " "), law, float(value), "kN/m3", _law(model, law, key)))
+    return tuple(found)
+
+
 def own_parameters(changes: Mapping[str, Callable[[float], Model]]) -> tuple[Parameter, ...]:
     """Return parameters of the user's own: for each name the model that a change of it by so much makes."""
     return tuple(Parameter("own", name, 0.0, "", change) for name, change in changes.items())
@@ -94,6 +107,10 @@ def _weight(model: Model, name: str) -> Callable[[float], Model]:
         return replace(model, materials={**model.materials, name: replace(model.materials[name], unit_weight=value)})
 
     return change
+
+
+def _modulus(model: Model, name: str, material: Elastic) -> Callable[[float], Model]:
+    return lambda value: replace(model, materials={**model.materials, name: replace(material, E=value)})
 
 
 def _load(model: Model, group: str) -> Callable[[float], Model]:

@@ -183,6 +183,15 @@ class Distribution:
         values: Array = np.clip(self._frozen.ppf(first + np.asarray(u) * (last - first)), *self.bounds)
         return values
 
+    def standard(self, u: float) -> tuple[float, float]:
+        """Return the value that a standard normal number stands for, and its derivative; exact in both tails."""
+        first, last = self._share
+        density = math.exp(-0.5 * u * u) / math.sqrt(2.0 * math.pi) * (last - first)
+        tail = 0.5 * math.erfc(abs(u) / math.sqrt(2.0)) * (last - first)
+        value = float(self._frozen.ppf(first + tail) if u <= 0 else self._frozen.isf((1.0 - last) + tail))
+        there = float(self._frozen.pdf(value))
+        return value, density / there if there > 0 else 0.0
+
     def describe(self) -> str:
         """Return the distribution in words, such as ``normal(mean 0.6, sd 0.06)``."""
         return f"{self.kind}({', '.join(f'{k} {v:g}' for k, v in self.parameters.items())})"

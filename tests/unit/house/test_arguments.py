@@ -21,7 +21,7 @@ PASSES_ON = {"variable"}
 """Further keywords are the parameters of a distribution, which knows its own."""
 BUILT_BY_CONCIO = {
     "Assembly", "Assessment", "BridgeResult", "Diagnosis", "DynamicsResult", "Outcome", "PathResult", "PushResult",
-    "Result", "Status", "StudyResult", "Verdict",
+    "Reliability", "Result", "StateSensitivity", "Status", "StudyResult", "Verdict",
 }  # fmt: skip
 CALLED = sorted(
     name

@@ -20,8 +20,8 @@ RETURNED = {
     "Assembly", "Assessment", "BlockHalving", "Bracket", "BridgeResult", "Cause", "CellPath", "Change", "Check",
     "ContinuumComparison", "Coulomb", "Diagnosis", "DynamicsResult", "EnergyBalance", "Future", "LocalMechanism",
     "Mexe", "Moduli", "MotionState", "NoMechanism", "PathResult", "PeriodicCell", "Place", "PushResult",
-    "Result", "RockingResult", "ServiceState", "Standing", "StrengthDomain", "StudyResult", "TieForce", "Unseen",
-    "Verdict",
+    "Reliability", "Result", "RockingResult", "ServiceState", "Standing", "StateSensitivity", "StrengthDomain",
+    "StudyResult", "TieForce", "Unseen", "Verdict",
 }  # fmt: skip
 """Public classes that functions return: the examples of these functions show them."""
 SPACES = [concio, *(getattr(concio, space) for space in concio._NAMESPACES)]

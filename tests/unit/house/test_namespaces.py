@@ -14,12 +14,13 @@ import concio
 
 CORE = {
     "Assembly", "Body", "ConcioError", "ControlPoint", "Elastic", "GeometryError", "InputError", "JointLaw",
-    "JointRule", "Load", "MethodError", "Model", "NoEquilibriumError", "Outcome", "PathResult", "Polyhedron", "Result",
-    "Rigid", "SolverError", "Stage", "Status", "Stop", "StudyResult", "Support", "Temperature", "Tie", "Units",
-    "Variable", "Verdict",
-    "__version__", "assemble", "cycles", "dumps", "extrude", "friction_by_solving", "friction_margin", "limit", "load",
-    "load_margin", "load_study", "loads", "merge", "model_from_dxf", "model_from_solids", "place", "run_path", "save",
-    "settle", "solve", "study", "thrust_line", "thrust_surface", "variable", "write_solids",
+    "JointRule", "Load", "MethodError", "Model", "NoEquilibriumError", "Outcome", "PathResult", "Polyhedron",
+    "Reliability", "Result", "Rigid", "SolverError", "Stage", "StateSensitivity", "Status", "Stop", "StudyResult",
+    "Support", "Temperature", "Tie", "Units", "Variable", "Verdict",
+    "__version__", "assemble", "cycles", "dumps", "extrude", "friction_by_solving", "friction_margin", "limit",
+    "load", "load_margin", "load_study", "loads", "merge", "model_from_dxf", "model_from_solids", "multiplier_over",
+    "place", "reliability", "run_path", "save", "settle", "solve", "state_sensitivity", "study", "thrust_line",
+    "thrust_surface", "variable", "write_solids",
 }  # fmt: skip
 """Flat names that are of no single subject: models, files, one step, paths, limits, studies, results."""
 
