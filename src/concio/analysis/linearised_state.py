@@ -7,10 +7,10 @@ Balance, and of every pair whether it is closed, open or crushed, sticks or slip
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy.linalg
 import scipy.sparse as sp
 import scipy.sparse.linalg as spl
 
@@ -29,10 +29,10 @@ ABOUT = 1e-8
 """A pair is about to change where what keeps it in its state is below this share of the largest of its kind."""
 SOLVED = 1e-9
 """Largest relative error of the linear equations of a derivative."""
-LARGEST_DENSE = 3000
-"""Unknowns up to which equations without a unique answer are looked into by a dense factor."""
-HUGE, SINGULAR, OPEN = 1e10, 1e-12, 1e-8
-"""Answers this much larger than what they answer, singular values this small, and parts of null vectors this large."""
+SOFT, ROUNDS = 1e-8, 20
+"""Compliance added to closed joints of the scaled equations, which corrections remove, and these at most."""
+HUGE, OPEN = 1e12, 1e-6
+"""Motions this large say that a structure moves; forces of this share in a null vector are not determined."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,18 +146,13 @@ class LinearisedState:
             The equations have no answer: the structure can move with these states.
         """
         n, m = self.problem.unknowns, self.problem.pairs
-        J = self._jacobian()
-        columns = np.repeat([self.far, self.force], [n, J.shape[1] - n])
-        scaled = sp.csc_array(J @ sp.diags_array(columns))
-        rows = 1.0 / np.maximum(np.asarray(abs(scaled).max(axis=1).todense()).ravel(), 1e-300)
-        scaled = sp.csc_array(sp.diags_array(rows) @ scaled)
-        wanted = -rows * slope
-        found, open_ = _solved(scaled, wanted)
-        if open_[:n].any():
-            msg = "the structure can move with the states that its joints have"
-            raise InputError(msg)
-        z = np.where(open_, np.nan, columns * found)
+        z = self._equations.solve(-slope)
         return Rates(z[:n], z[n : n + m], z[n + m :].reshape(m, -1))
+
+    @cached_property
+    def _equations(self) -> _Equations:
+        columns = np.repeat([self.far, self.force], [self.problem.unknowns, self.problem.pairs * self.problem.dim])
+        return _Equations(self._jacobian(), columns, self.problem.unknowns)
 
     def _jacobian(self) -> sp.csr_array:
         """Return dr/dz."""
@@ -209,30 +204,60 @@ def _slip(problem: ContactProblem, u: Array, t_t: Array) -> Array:
     return found
 
 
-def _solved(J: sp.csc_array, wanted: Array) -> tuple[Array, Array]:
-    """Return x with J x = wanted, and which of its entries these equations leave open.
+class _Equations:
+    """The equations dr/dz x = wanted, scaled, with a factor that forces which nothing determines do not stop.
+
+    Parameters
+    ----------
+    J : (n + m d, n + m d) sparse array
+    columns : (n + m d,) array
+        Size of each unknown.
+    n : int
+        Unknowns that are displacements.
 
     Raises
     ------
     InputError
-        There is none.
+        The structure can move.
     """
-    size = float(np.abs(wanted).max(initial=0.0)) or 1.0
-    x, open_ = np.full(len(wanted), np.nan), np.zeros(len(wanted), dtype=bool)
-    try:
-        factor = spl.splu(J)
-        x = factor.solve(wanted)
-        x = x + factor.solve(wanted - J @ x)
-    except RuntimeError:  # singular: forces are not determined, or the structure moves
-        pass
-    huge = not np.isfinite(x).all() or float(np.abs(x).max(initial=0.0)) > HUGE * size
-    if huge and len(wanted) <= LARGEST_DENSE:
-        U, values, V = scipy.linalg.svd(J.toarray())
-        kept = values > SINGULAR * values[0]
-        x = V[kept].T @ ((U[:, kept].T @ wanted) / values[kept])
-        open_ = np.linalg.norm(V[~kept], axis=0) > OPEN
-    if not np.isfinite(x).all() or float(np.abs(J @ x - wanted).max(initial=0.0)) > SOLVED * size:
-        msg = "the states of the joints do not determine how the answer changes"
-        raise InputError(msg)
-    return x, open_
 
+    def __init__(self, J: sp.csr_array, columns: Array, n: int) -> None:
+        scaled = sp.csc_array(J @ sp.diags_array(columns))
+        self.columns, self.rows = columns, 1.0 / np.maximum(abs(scaled).max(axis=1).toarray().ravel(), 1e-300)
+        self.J = sp.csc_array(sp.diags_array(self.rows) @ scaled)
+        soft = SOFT * (np.arange(len(columns)) >= n)
+        msg = "the structure can move with the states that its joints have"
+        try:
+            self.factor = spl.splu(sp.csc_array(self.J + sp.diags_array(soft)))
+        except RuntimeError:
+            raise InputError(msg) from None
+        null = self.factor.solve(np.random.default_rng(0).standard_normal(len(columns)))
+        if not np.isfinite(null).all() or np.abs(null[:n]).max(initial=0.0) > HUGE:
+            raise InputError(msg)
+        null /= np.abs(null).max(initial=1e-300)
+        for _ in range(6):  # what is determined fades, what is not stays
+            null = self.factor.solve(soft * null)
+        self.open = (np.abs(null) > OPEN) & (soft > 0)
+
+    def solve(self, wanted: Array) -> Array:
+        """Return x, ``nan`` where it is not determined.
+
+        Raises
+        ------
+        InputError
+            There is none.
+        """
+        right = self.rows * wanted
+        size, x = float(np.abs(right).max(initial=0.0)) or 1.0, np.zeros(len(right))
+        left = right
+        for _ in range(ROUNDS):
+            x = x + self.factor.solve(left)
+            new = right - self.J @ x
+            done, left = not np.abs(new).max(initial=0.0) < 0.5 * np.abs(left).max(initial=0.0), new
+            if done:
+                break
+        if not np.isfinite(x).all() or float(np.abs(left).max(initial=0.0)) > SOLVED * size:
+            msg = "the states of the joints do not determine how the answer changes"
+            raise InputError(msg)
+        found: Array = np.where(self.open, np.nan, self.columns * x)
+        return found

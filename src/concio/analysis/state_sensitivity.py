@@ -78,6 +78,8 @@ class StateSensitivity:
     rows : tuple of StateRow
     about_to_change : (k,) integer array
         Numbers of the pairs that are about to change their state.
+    normal_force : (m,) array
+        Of the state whose derivatives these are [kN]: that of the result, or with a compliance added to hard joints.
 
     Examples
     --------
@@ -92,6 +94,7 @@ class StateSensitivity:
 
     rows: tuple[StateRow, ...]
     about_to_change: Array
+    normal_force: Array
 
     def __getitem__(self, name: str) -> StateRow:
         """Return the row of a name.
@@ -153,7 +156,7 @@ def state_sensitivity(
     model = result.model
     numbers = (*parameters_of(model), *stiffnesses_of(model)) if changes is None else own_parameters(changes)
     here = LinearisedState.of(result)
-    return StateSensitivity(tuple(_row(p, result, here) for p in numbers), np.flatnonzero(here.about))
+    return StateSensitivity(tuple(_row(p, result, here) for p in numbers), np.flatnonzero(here.about), here.t_n)
 
 
 def _row(p: Parameter, result: Result, here: LinearisedState) -> StateRow:

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 MOST_FRAMES, MOST_PRINTED = 16, 8
 """Positions in the film, and how many of them are printed."""
+MOST_TOLD = 2
+"""Data in the sentence on what matters most."""
 SCRIPT = (
     "document.querySelectorAll('.film').forEach(f=>{const s=f.querySelector('input'),i=f.querySelectorAll('img');"
     "const d=()=>i.forEach((e,k)=>e.hidden=k!=s.value);s.addEventListener('input',d);d()})"
@@ -196,6 +198,9 @@ class BridgeReport:
              self.n(c.at_high)) for c in self.found.changes
         ]  # fmt: skip
         bars = self.figure(plot_changes(self.found, words=self.drawn), "changes", "sensitivity_figure")
+        keys = ("name", "low", "at_low", "high", "at_high")
+        most = [self.say("sensitivity_part", **dict(zip(keys, row, strict=True))) for row in rows[:MOST_TOLD]]
+        bars += f"<p>{escape(self.say('sensitivity_sentence', parts='; '.join(most)))}</p>"
         return self.section("sensitivity", bars + self.table(("datum", "less", "factor", "more", "factor"), rows))
 
     def others(self) -> str:

@@ -20,6 +20,7 @@ from concio.report.html_parts import figure_html, resource, table_html, verdict_
 from concio.report.italian_page import Language, figure_in, page_in, script_words, text_in
 from concio.report.space_data import space_view_data
 from concio.report.space_tables import space_tables_html, ties_html
+from concio.report.state_part import state_depends_html
 from concio.report.view_data import view_data
 from concio.verdict.proof_verdict import proved_line
 from concio.verdict.step_verdict import checks
@@ -91,13 +92,16 @@ def report_html(
         raise InputError(msg, hint="write one report for each model")
     labels = [_label(s, i) for i, s in enumerate(steps)] if labels is None else list(labels)
     drawn = _figures(steps[-1], language) if figures else ""
-    return page(steps, labels, verdict=_verdict(steps[-1]), figures=drawn, language=language)
+    more = state_depends_html(steps[-1], language) if figures and len(steps) == 1 else ""
+    return page(steps, labels, verdict=_verdict(steps[-1]), figures=drawn, more=more, language=language)
 
 
 def report_of(result: Result, drawn: Sequence[str] | None = None, language: Language = "en") -> str:
     """Return the report of one result with figures that are drawn already, as :func:`captioned` gives them."""
     figures = _figures(result, language) if drawn is None else "".join(drawn)
-    return page([result], [_label(result, 0)], verdict=_verdict(result), figures=figures, language=language)
+    more = state_depends_html(result, language) if figures else ""
+    verdict = _verdict(result)
+    return page([result], [_label(result, 0)], verdict=verdict, figures=figures, more=more, language=language)
 
 
 def captioned(name: str, axes: Axes, language: Language = "en", *, dots: bool = False) -> str:

@@ -1,4 +1,4 @@
-"""What a multiplier depends on, in reports: a sentence and a chart of bars."""
+"""What a multiplier or a number of a state depends on, in reports: a sentence and a chart of bars."""
 
 from __future__ import annotations
 
@@ -11,22 +11,26 @@ if TYPE_CHECKING:
     from concio.analysis.sensitivity import Sensitivity, SensitivityRow
     from concio.report.assessment_texts import Texts
 
-Of = Literal["sens", "limit"]
+Of = Literal["sens", "limit", "settlement", "force"]
 
 TOLD, SHOWS = 3, 5e-4
 """Numbers in the sentence at most, and the least change in per cent that is stated."""
 
 
-def sensitivity_html(t: Texts, found: Sensitivity, *, strip: bool = False, of: Of = "sens") -> str:
-    """Return the part of a report on what a multiplier depends on; of a ``strip`` the plane thickness is its width.
+def sensitivity_html(
+    t: Texts, found: Sensitivity, *, strip: bool = False, of: Of = "sens", named: str = "", value: str = ""
+) -> str:
+    """Return the part of a report on what a number depends on; of a ``strip`` the plane thickness is its width.
 
     Parameters
     ----------
     t : Texts
     found : Sensitivity
     strip : bool
-    of : {"sens", "limit"}
-        Whether it is alpha_0 of an assessment, or the associated bound of a limit load.
+    of : {"sens", "limit", "settlement", "force"}
+        Whether it is alpha_0 of an assessment, the associated bound of a limit load, or a number of a certified state.
+    named, value : str
+        Block or joint of a number of a state, and the number with its unit.
     """
 
     def name(row: SensitivityRow) -> str:
@@ -42,4 +46,4 @@ def sensitivity_html(t: Texts, found: Sensitivity, *, strip: bool = False, of: O
     sides = " " + t.say(f"{of}_sides") if any(row.one_sided for row in found.rows) else ""
     text = t.say("sens_sentence", parts="; ".join(told) or t.words["sens_none"])
     drawn = t.figure(sensitivity_figure(found, t.words[f"{of}_axis"], name), f"figure_{of}", "bars")
-    return f"<p>{t.say(f'{of}_text')}{sides}</p>{drawn}<p>{text}</p>"
+    return f"<p>{t.say(f'{of}_text', of=named, value=value)}{sides}</p>{drawn}<p>{text}</p>"

@@ -52,6 +52,17 @@ class Balanced(HTMLParser):
         assert self.open.pop() == tag
 
 
+@pytest.mark.parametrize(("language", "words"), [("en", "What matters most"), ("it", "Conta di più")])
+def test_the_datum_that_matters_most_is_told_in_a_sentence(
+    language: str, words: str, found: concio.BridgeResult, page_in: Callable[[str], str]
+) -> None:
+    sentence = re.search(rf"<p>({words}[^<]*)</p>", page_in(language))
+    assert sentence is not None
+    most = max(found.changes, key=lambda c: abs(c.at_high - c.at_low))
+    numbers = [float(n.replace(",", ".")) for n in re.findall(r" (\d+(?:[.,]\d+)?)(?=[ :;.])", sentence[1])]
+    assert numbers[:4] == pytest.approx([most.low, most.high, most.at_low, most.at_high], rel=1e-3)
+
+
 @pytest.mark.parametrize("language", ["en", "it"])
 def test_the_report_holds_the_verdict_and_every_section(language: str, page_in: Callable[[str], str]) -> None:
     page = page_in(language)

@@ -41,7 +41,7 @@ def visible(page: str) -> str:
     page = re.sub(r"<(script|style|ol lang)\b.*?</(script|style|ol)>", " ", page, flags=re.DOTALL)
     page = re.sub(r"<(\w+)\b[^>]*translate=no[^>]*>[^<]*</\1>", " ", page)
     marks = " ".join(re.findall(r'(?:alt|aria-label)="([^"]*)"', page))
-    bare = re.sub(r"(?<!\w)'[^']*'(?!\w)", " ", unescape(re.sub(r"<[^>]*>", " ", page) + " " + marks))
+    bare = re.sub(r"«[^»]*»|(?<!\w)'[^']*'(?!\w)", " ", unescape(re.sub(r"<[^>]*>", " ", page) + " " + marks))
     return re.sub(r"\b(Play|concio (run|path|limit|check|push|shake))\b", " ", bare)
 
 
