@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable, Iterable, Sequence
 
 import typer
 
@@ -37,19 +38,16 @@ EXIT_CODES = (
     "reached, not checked, undecided, still moving), 130 interrupted, 1 any other error."
 )
 
-app = typer.Typer(
-    name="concio",
-    no_args_is_help=True,
-    add_completion=True,
-    rich_markup_mode="markdown",
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-    help=(
-        "Masonry of blocks held together by contact and friction: results with an independent certificate.\n\n"
-        "Start:  concio new panel  |  concio check panel.toml  |  concio run panel.toml --out result"
-    ),
-    epilog=EXIT_CODES,
+HELP = (
+    "Masonry of blocks held together by contact and friction: results with an independent certificate.\n\n"
+    "Start:  concio new panel  |  concio check panel.toml  |  concio run panel.toml --out result"
 )
+
+COMMANDS = (
+    new.new, check.check, run.run, path.path, limit.limit, push.push, shake.shake, cell.cell, continuum.continuum,
+    assess.assess, diagnose.diagnose, bridge.bridge, prove.prove, verify.verify, compare.compare, study.study,
+    view.view, window.window, export.export, schema.schema,
+)  # fmt: skip
 
 
 def _version(value: bool) -> None:
@@ -60,20 +58,40 @@ def _version(value: bool) -> None:
         raise typer.Exit
 
 
-@app.callback()
 def _common(
     version: bool = typer.Option(False, "--version", callback=_version, is_eager=True, help="Print the version."),
 ) -> None:
     pass
 
 
-COMMANDS = (
-    new.new, check.check, run.run, path.path, limit.limit, push.push, shake.shake, cell.cell, continuum.continuum,
-    assess.assess, diagnose.diagnose, bridge.bridge, prove.prove, verify.verify, compare.compare, study.study,
-    view.view, window.window, export.export, schema.schema,
-)  # fmt: skip
-for command in COMMANDS:
-    app.command(command.__name__, epilog=EXIT_CODES)(command)
+def command_line(commands: Iterable[Callable[..., object]]) -> typer.Typer:
+    """Return the command line with these commands."""
+    line = typer.Typer(
+        name="concio",
+        no_args_is_help=True,
+        add_completion=True,
+        rich_markup_mode="markdown",
+        pretty_exceptions_enable=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
+        help=HELP,
+        epilog=EXIT_CODES,
+    )
+    line.callback()(_common)
+    for command in commands:
+        line.command(command.__name__, epilog=EXIT_CODES)(command)
+    return line
+
+
+app = command_line(COMMANDS)
+
+
+def asked_of(arguments: Sequence[str]) -> typer.Typer:
+    """Return the command line with the command that is asked for alone, or all of it where none is.
+
+    The options of every command take longer to build than some models to solve.
+    """
+    named = [command for command in COMMANDS if command.__name__ in arguments[:1]]
+    return command_line(named) if named else app
 
 
 def main() -> None:
@@ -83,7 +101,7 @@ def main() -> None:
         sys.exit(2)
     memory.keep_memory()
     try:
-        app()
+        asked_of(sys.argv[1:])()
     except KeyboardInterrupt:
         sys.stderr.write("Stopped.\n")
         sys.exit(130)

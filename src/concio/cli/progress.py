@@ -91,7 +91,7 @@ def found_so_far(lines: list[str], latest: list[str], *, shown: bool) -> None:
     if listener is not None:
         listener("found", lines)
     elif shown and not QUIET.get() and not sys.stderr.isatty():
-        sys.stderr.write("".join(f"so far: {line.strip()}\n" for line in latest))
+        sys.stderr.write("".join(f"so far:{line}\n" for line in latest))
         sys.stderr.flush()
 
 

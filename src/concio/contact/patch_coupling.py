@@ -20,8 +20,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # its parts are loaded when they are used: scipy.spatial takes long
 import shapely
-from scipy.spatial import cKDTree
 
 from concio.contact.coupling import Side
 from concio.fem.facets import FacetMesh, functions, local_coordinates, quadrature
@@ -138,7 +138,7 @@ def _matching(a: FaceSide, b: FaceSide, patch: shapely.Polygon) -> PatchCoupling
     if len(chosen[0]) != len(chosen[1]) or len(nodes_a) != len(nodes_b):
         return None
     size = float(np.ptp(a.flat[nodes_a], axis=0).max())
-    distance, partner = (np.asarray(v) for v in cKDTree(b.flat[nodes_b]).query(a.flat[nodes_a]))
+    distance, partner = (np.asarray(v) for v in scipy.spatial.cKDTree(b.flat[nodes_b]).query(a.flat[nodes_a]))
     if distance.max() > 1e-7 * size or len(np.unique(partner)) < len(partner):
         return None
     weights = np.zeros(len(a.flat))

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from concio.contact.candidates import THROUGH
 from concio.contact.face_joints import FaceJoints
@@ -23,6 +22,7 @@ from concio.contact.solid_touch import SAME, Crossing, SolidTouch, SolidToucher
 from concio.kinematics.boxes import meeting_boxes
 from concio.kinematics.frames import cross, dot, norm
 from concio.kinematics.placement import Placement
+from concio.model.linked import pairs_within
 
 if TYPE_CHECKING:
     from concio.contact.reference import Reference
@@ -189,7 +189,7 @@ def find_solid_candidates(
         np.zeros(len(body_a), dtype=bool), None, joint,
     )  # fmt: skip
     found = toucher.touch(placed)
-    near = cKDTree(found.point).query_pairs(2.0 * skin, output_type="ndarray") if len(found.point) else toucher.near
+    near = pairs_within(found.point, 2.0 * skin) if len(found.point) else toucher.near
     i, j = near.T
     pair = np.sort(np.column_stack([body_a, body_b]), axis=1)
     turn = np.where(body_a < body_b, 1.0, -1.0)

@@ -15,8 +15,8 @@ from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
+import scipy  # its parts are loaded when they are used: scipy.spatial takes long
 import shapely
-from scipy.spatial import Delaunay, QhullError, cKDTree
 
 from concio.errors import GeometryError
 from concio.kinematics.frames import cross, tangents
@@ -127,8 +127,8 @@ def _delaunay(body: Polyhedron, size: float, marks: Sequence[Array], closer: flo
 def _joined(body: Polyhedron, points: Array, size: float) -> Mesh | None:
     """Return the Delaunay tetrahedra of points that lie in a body, flat ones on its faces left out."""
     try:
-        cells = Delaunay(points).simplices.astype(np.int64)
-    except QhullError:
+        cells = scipy.spatial.Delaunay(points).simplices.astype(np.int64)
+    except scipy.spatial.QhullError:
         return None
     x = points[cells]
     volume = (cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]) * (x[:, 3] - x[:, 0])).sum(1) / 6
@@ -161,7 +161,7 @@ def _surface_points(body: Polyhedron, size: float, marks: Sequence[Array]) -> Ar
         flat = _lattice(shape, size)
         if len(flat):
             new = origin + flat @ axes
-            distance, _ = cKDTree(points).query(new)
+            distance, _ = scipy.spatial.cKDTree(points).query(new)
             points = np.vstack([points, new[distance > 0.6 * size]])
     return points
 
@@ -191,7 +191,7 @@ def _inner_points(body: Polyhedron, size: float, surface: Array) -> Array:
     points = points[winding(body, points) > 0.5]
     points = points[distance_to_surface(body, points) > 0.5 * size] if len(points) else points
     if len(points):
-        distance, _ = cKDTree(surface).query(points)
+        distance, _ = scipy.spatial.cKDTree(surface).query(points)
         points = points[distance > 0.6 * size]
     if not len(points) and winding(body, body.centroid[None])[0] > 0.5:
         points = body.centroid[None] + 1e-3 * size * np.array([[0.3, -0.2, 0.1]])
@@ -201,7 +201,7 @@ def _inner_points(body: Polyhedron, size: float, surface: Array) -> Array:
 def _distinct(points: Array, tolerance: float, keep: int) -> Array:
     """Return points without those closer than a tolerance to one before; the first ``keep`` stay."""
     drop = np.zeros(len(points), dtype=bool)
-    for i, j in sorted(cKDTree(points).query_pairs(tolerance)):
+    for i, j in sorted(scipy.spatial.cKDTree(points).query_pairs(tolerance)):
         if not drop[i] and j >= keep:
             drop[j] = True
     return points[~drop]

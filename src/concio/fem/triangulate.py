@@ -17,9 +17,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import scipy  # its parts are loaded when they are used: scipy.spatial takes long
 import scipy.sparse as sp
 import shapely
-from scipy.spatial import Delaunay, cKDTree
 
 from concio.errors import GeometryError
 from concio.kinematics.frames import cross
@@ -90,7 +90,7 @@ class _Area:
         shapely.prepare(self.shape)
         ends = self.boundary[self.sides]
         self.middle, self.radius = ends.mean(1), 0.5 * np.hypot(*(ends[:, 1] - ends[:, 0]).T)
-        self.near = cKDTree(self.middle)
+        self.near = scipy.spatial.cKDTree(self.middle)
 
     def may_stand(self, points: Array) -> Array:
         """Tell which points lie inside, in no side's diametral circle (a little enlarged)."""
@@ -104,7 +104,7 @@ class _Area:
     def triangulated(self, points: Array) -> Array:
         """Return the triangles (k, 3) of the polygon on points (n, 2), those of the boundary first."""
         with_frame = np.concatenate([points, FRAME])
-        cells = Delaunay(with_frame).simplices.astype(np.int64)
+        cells = scipy.spatial.Delaunay(with_frame).simplices.astype(np.int64)
         a, b, c = (with_frame[cells[:, k]] for k in range(3))
         cells = np.where((cross(b - a, c - a) < 0)[:, None], cells[:, [0, 2, 1]], cells)
         cells = _with_sides(with_frame, cells, self.sides)
@@ -246,7 +246,7 @@ def _refined(area: _Area, points: Array, h: float) -> Array:
         pp, qq = (p * p).sum(1), (q * q).sum(1)
         turned = np.stack([q[:, 1] * pp - p[:, 1] * qq, p[:, 0] * qq - q[:, 0] * pp], 1)
         centre = a[bad] + turned / (2 * double[bad, None])
-        clear = cKDTree(points).query(centre)[0] > 0.35 * shortest[bad]
+        clear = scipy.spatial.cKDTree(points).query(centre)[0] > 0.35 * shortest[bad]
         centre, size = centre[clear], radius[bad][clear]
         keep = area.may_stand(centre)
         centre, size = centre[keep], size[keep]
@@ -259,7 +259,7 @@ def _refined(area: _Area, points: Array, h: float) -> Array:
 def _apart(centre: Array, radius: Array) -> Array:
     """Return the first of the points and every later one that lies in no circle of one returned before."""
     taken = np.ones(len(centre), dtype=bool)
-    tree = cKDTree(centre)
+    tree = scipy.spatial.cKDTree(centre)
     for k in range(len(centre)):
         if taken[k]:
             others = np.array(tree.query_ball_point(centre[k], float(radius[k])))

@@ -420,6 +420,17 @@ def test_the_bar_tells_the_time_left_of_long_runs() -> None:
     assert left.after(1.0, 9000.0) == ""
 
 
+@pytest.mark.parametrize("words", [["run", "--help"], ["limit", "--help"], ["run"], ["rum"], ["--help"], []])
+def test_the_command_that_is_asked_for_alone_says_what_it_says_among_all(words: list[str]) -> None:
+    from typer.testing import CliRunner
+
+    from concio.cli.main import app, asked_of
+
+    alone, among = (CliRunner().invoke(line, words) for line in (asked_of(words), app))
+    assert (alone.exit_code, alone.output) == (among.exit_code, among.output)
+    assert len(asked_of(words).registered_commands) == (1 if words[:1] in (["run"], ["limit"]) else 20)
+
+
 WAITING = """
 import signal, time
 import concio.analysis.step

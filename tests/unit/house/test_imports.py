@@ -148,7 +148,9 @@ def test_the_command_line_starts_without_the_numerics() -> None:
 
 def test_solving_loads_neither_figures_nor_the_command_line() -> None:
     code = "import concio\nconcio.solve(concio.running_bond_panel(courses=1, blocks=1, top_pressure=1.0)).summary()"
-    assert not loaded_after(code) & {"matplotlib", "vtk", "vtkmodules", "typer", "ezdxf"}
+    loaded = loaded_after(code)
+    assert not loaded & {"matplotlib", "vtk", "vtkmodules", "typer", "ezdxf"}
+    assert not loaded & {"scipy.optimize", "scipy.spatial"}, "they take as long to load as a small model to solve"
 
 
 def test_every_public_name_has_a_home() -> None:

@@ -182,7 +182,7 @@ def test_the_answer_stands_before_the_numbers(wall: concio.Model, tmp_path: Path
     file = tmp_path / "wall.toml"
     concio.save(wall, file)
     done = CliRunner().invoke(app, ["limit", str(file), "--no-path", "--no-search"])
-    lines = done.output.splitlines()
+    lines = done.stdout.splitlines()
     assert lines[1] == concio.limit(wall, path=False, search=False, friction=True).verdict.sentence
     assert sum(lines[1] in line for line in lines) == 1
     assert any("associated bound" in line for line in lines[2:])

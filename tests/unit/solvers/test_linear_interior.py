@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from scipy.optimize import OptimizeResult, linprog
+from scipy.optimize import linprog
 
 from concio.solvers.algebra.normal_equations import NormalEquations, rebalance
 from concio.solvers.statics import linear_interior
+from concio.solvers.statics.highs import minimise
 from concio.solvers.statics.linear_interior import solve_interior
 from concio.solvers.statics.programme import optimise
 from rigid_walls import running_bond
@@ -132,15 +133,46 @@ def test_normal_equations_are_those_of_the_weights():
 def test_where_highs_ends_with_an_error_both_its_methods_are_asked_again_for_a_digit_less(monkeypatch):
     asked = []
 
-    def fails_at_ten_digits(*arguments, method, options, **others):
-        asked.append((method, options["primal_feasibility_tolerance"]))
-        if options["primal_feasibility_tolerance"] < 1e-9:
-            return OptimizeResult(status=4, x=None, message="Solve error")
-        return linprog(*arguments, method=method, options=options, **others)
+    def fails_at_ten_digits(*arguments):
+        *_, algorithm, tolerance = arguments
+        asked.append((algorithm, tolerance))
+        return (4, np.zeros(0), np.zeros(0), "Solve error") if tolerance < 1e-9 else minimise(*arguments)
 
-    monkeypatch.setattr("scipy.optimize.linprog", fails_at_ten_digits)
+    monkeypatch.setattr("concio.solvers.statics.programme.minimise", fails_at_ten_digits)
     cost, equations, bounds, x = programme(0)
     found = optimise(cost, equations, bounds, method="highs")
     assert found.status == 0
     assert cost @ found.x == pytest.approx(cost @ x, rel=1e-7)
-    assert asked == [("highs-ds", 1e-10), ("highs-ipm", 1e-10), ("highs-ds", 1e-9)]
+    assert asked == [("simplex", 1e-10), ("ipm", 1e-10), ("simplex", 1e-9)]
+
+
+@pytest.mark.parametrize("algorithm", ["simplex", "ipm"])
+@pytest.mark.parametrize("seed", range(30))
+def test_highs_says_what_scipy_says_of_it(seed: int, algorithm: str) -> None:
+    """Random programmes with bounds and rows on both sides, some infeasible and some unbounded."""
+    rng = np.random.default_rng(seed)
+    m, n = int(rng.integers(1, 6)), int(rng.integers(1, 9))
+    matrix = sp.csc_array(sp.random_array((m, n), density=0.6, rng=rng))
+    b = matrix @ rng.random(n) if seed % 3 else rng.normal(size=m)
+    rows = np.column_stack([np.where(rng.random(m) < 0.5, b, -np.inf), b])
+    bounds = np.column_stack([np.where(rng.random(n) < 0.8, 0.0, -np.inf), np.where(rng.random(n) < 0.5, 1.0, np.inf)])
+    cost = rng.normal(size=n)
+    status, x, y, said = minimise(cost, matrix, rows, bounds, algorithm, 1e-10)
+    equal, dense = rows[:, 0] == rows[:, 1], matrix.toarray()
+    other = linprog(cost, dense[~equal], b[~equal], dense[equal], b[equal], bounds, method="highs-ds")
+    assert said
+    assert status == other.status
+    if status:
+        assert not x.size
+        assert not y.size
+        return
+    assert cost @ x == pytest.approx(other.fun, abs=1e-8)
+    reduced = cost - matrix.T @ y
+    assert np.all(reduced[~np.isfinite(bounds[:, 1])] > -1e-8)
+    assert np.all(y[~equal] < 1e-8)
+
+
+def test_what_highs_does_not_take_has_no_answer() -> None:
+    one = sp.csc_array(np.ones((1, 1)))
+    status, x, y, _ = minimise(np.ones(1), one, np.array([[np.nan, np.nan]]), np.array([[0.0, 1.0]]), "simplex", 1e-9)
+    assert (status, x.size, y.size) == (4, 0, 0)

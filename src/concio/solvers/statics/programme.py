@@ -15,13 +15,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.solvers.algebra.normal_equations import rebalance
+from concio.solvers.statics.highs import Algorithm, minimise
 from concio.solvers.statics.linear_interior import solve_interior
 
 LARGE = 1_000
@@ -225,19 +226,16 @@ def _highs(
 
     Where the first does not finish, the other is tried, and both again with the second of ``TOLERANCES``.
     """
-    from scipy.optimize import linprog  # loaded where it is needed: it takes long
-
-    unit = float(np.abs(equations[1]).max(initial=0.0)) or 1.0
-    arguments: dict[str, Any] = {"A_eq": equations[0], "b_eq": equations[1] / unit, "bounds": bounds / unit}
+    A, b = equations
+    unit = float(np.abs(b).max(initial=0.0)) or 1.0
+    rows, others = np.column_stack([b, b]) / unit, 0
     if inequalities is not None:
-        arguments |= {"A_ub": inequalities[0], "b_ub": inequalities[1] / unit}
-    highs: Any = linprog
-    methods = ("highs-ipm", "highs-ds") if cost.size > HUGE else ("highs-ds", "highs-ipm")
-    for tolerance, method in product(TOLERANCES, methods):
-        options = {f"{side}_feasibility_tolerance": tolerance for side in ("primal", "dual")}
-        result = highs(cost, method=method, options=options, **arguments)
-        if result.status not in (1, 4):  # iteration limit, numerical trouble
+        G, h = inequalities
+        A, others = sp.csc_array(sp.vstack([G, A])), h.size
+        rows = np.vstack([np.column_stack([np.full(others, -np.inf), h / unit]), rows])
+    algorithms: tuple[Algorithm, Algorithm] = ("ipm", "simplex") if cost.size > HUGE else ("simplex", "ipm")
+    for tolerance, algorithm in product(TOLERANCES, algorithms):
+        status, x, y, message = minimise(cost, sp.csc_array(A), rows, bounds / unit, algorithm, tolerance)
+        if status not in (1, 4):  # iteration limit, numerical trouble
             break
-    if result.x is None:
-        return Optimum(result.status, np.zeros(0), np.zeros(0), result.message)
-    return Optimum(result.status, result.x * unit, result.eqlin.marginals, result.message)
+    return Optimum(status, x * unit, y[others:], message)
