@@ -114,8 +114,8 @@ class LinearisedState:
         return float(np.abs(self.u).max(initial=0.0)) or 1.0
 
     @property
-    def _way(self) -> tuple[Array, Array]:
-        """Return directions (m, d-1) and sizes (m,) of slips; the direction of none opposes its friction."""
+    def way(self) -> tuple[Array, Array]:
+        """Directions (m, d-1) and sizes (m,) of slips; the direction of none opposes its friction."""
         slip = _slip(self.problem, self.u, self.t_t)
         size = np.linalg.norm(slip, axis=1)
         pull = np.linalg.norm(self.t_t, axis=1)
@@ -124,7 +124,7 @@ class LinearisedState:
 
     def residual(self, problem: ContactProblem) -> Array:
         """Return r of this answer in the equations of a model near its own, in the order of the unknowns."""
-        law, way = problem.laws, self._way[0]
+        law, way = problem.laws, self.way[0]
         balance = problem.K @ self.u - problem.f - problem.C_n.T @ self.t_n - problem.C_t.T @ self.t_t.ravel()
         slip = _slip(problem, self.u, self.t_t)
         moved = np.where(self.sticks, 0.0, (way * slip).sum(axis=1))
@@ -152,13 +152,13 @@ class LinearisedState:
     @cached_property
     def _equations(self) -> _Equations:
         columns = np.repeat([self.far, self.force], [self.problem.unknowns, self.problem.pairs * self.problem.dim])
-        return _Equations(self._jacobian(), columns, self.problem.unknowns)
+        return _Equations(self.jacobian(), columns, self.problem.unknowns)
 
-    def _jacobian(self) -> sp.csr_array:
+    def jacobian(self) -> sp.csr_array:
         """Return dr/dz."""
         p, law = self.problem, self.problem.laws
         m, s = p.pairs, p.dim - 1
-        way, size = self._way
+        way, size = self.way
         spread = sp.csr_array((way.ravel(), (np.repeat(np.arange(m), s), np.arange(m * s))), shape=(m, m * s))
         sticks, slips = self.sticks.astype(float), 1.0 - self.sticks
         gaps = (self.closed & ~self.crushed).astype(float)

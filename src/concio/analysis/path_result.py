@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from concio.analysis.collapse_sensitivity import collapse_sensitivity
 from concio.analysis.path_loads import GroupLoad, loads_of_stage
 from concio.analysis.result import Result
 from concio.arguments import closest
@@ -27,6 +28,7 @@ from concio.verdict.verdict import Verdict
 from concio.views import Shown, view
 
 if TYPE_CHECKING:
+    from concio.analysis.sensitivity import Sensitivity
     from concio.plot.path_accessor import PathPlots
     from concio.post.path_tables import PathTables
 
@@ -155,6 +157,13 @@ class PathResult(Shown):
     def verdict(self) -> Verdict:
         """The answer with its question: the stages asked for, what was reached of them, what proves and limits it."""
         return path_verdict(self)
+
+    def sensitivity(self) -> Sensitivity | None:
+        """Return what the load factor at collapse depends on; None where it has no derivatives.
+
+        See :func:`concio.analysis.collapse_sensitivity.collapse_sensitivity`.
+        """
+        return collapse_sensitivity(self)
 
     @property
     def sentence(self) -> str:

@@ -13,9 +13,12 @@ from concio.arguments import strict
 from concio.display import number
 from concio.plot.path_accessor import PathPlots
 from concio.post.path_curve import most_moving
+from concio.report.assessment_texts import Texts
 from concio.report.html_parts import figure_html, verdict_html
 from concio.report.italian_page import Language, figure_in
 from concio.report.page import page
+from concio.report.sensitivity_part import sensitivity_html
+from concio.report.state_part import MOST_PAIRS
 from concio.verdict.path_verdict import stage_loads, stage_sentence
 
 if TYPE_CHECKING:
@@ -63,9 +66,19 @@ def path_html(found: PathResult, *, point: ControlPoint | None = None, language:
         [step_words(found, i, language) for i in chosen],
         verdict=verdict_html(found.verdict, found.verdict.proof, units=found.assembly.model.report),
         figures=figure_html(figure_in(curves[-1], language), "path", "Load against motion, stage by stage"),
-        more=_stages(found) + _events(found),
+        more=_depends(found, language) + _stages(found) + _events(found),
         language=language,
     )
+
+
+def _depends(found: PathResult, language: Language) -> str:
+    """Return what the load factor at collapse depends on, where it has derivatives and the model is not large."""
+    rows = found.sensitivity() if len(found.assembly.pairs) <= MOST_PAIRS else None
+    if rows is None:
+        return ""
+    t = Texts(language)
+    told = sensitivity_html(t, rows, of="collapse", value=t.n(rows.multiplier))
+    return f"<h2>What the collapse depends on</h2><section translate=no>{told}</section>"
 
 
 def report_steps(found: PathResult) -> list[int]:

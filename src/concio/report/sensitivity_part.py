@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from concio.analysis.sensitivity import Sensitivity, SensitivityRow
     from concio.report.assessment_texts import Texts
 
-Of = Literal["sens", "limit", "settlement", "force"]
+Of = Literal["sens", "limit", "settlement", "force", "collapse"]
 
 TOLD, SHOWS = 3, 5e-4
 """Numbers in the sentence at most, and the least change in per cent that is stated."""
@@ -27,8 +27,9 @@ def sensitivity_html(
     t : Texts
     found : Sensitivity
     strip : bool
-    of : {"sens", "limit", "settlement", "force"}
-        Whether it is alpha_0 of an assessment, the associated bound of a limit load, or a number of a certified state.
+    of : {"sens", "limit", "settlement", "force", "collapse"}
+        Whether it is alpha_0 of an assessment, the associated bound of a limit load, a number of a certified
+        state, or the load factor at which a path collapses.
     named, value : str
         Block or joint of a number of a state, and the number with its unit.
     """
