@@ -162,7 +162,7 @@ def _edge_loads(model: Model, *, every: bool) -> list[str]:
         except InputError:  # told by the assembly
             continue
         head = load_words(load)
-        tolerance = line_tolerance(model)
+        tolerance = line_tolerance(model, load)
         in_joint = sum(face.in_joint for face in faces)
         if in_joint > tolerance and load.face == "both":
             lines.append(f"load         {head}: in a joint, on both of its faces, as asked")

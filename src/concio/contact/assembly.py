@@ -19,6 +19,7 @@ from concio.contact.pairs import CONTACT_MODELS, Pairs, pair_laws
 from concio.contact.periodic import strain_groups
 from concio.contact.point_pairs import add_point_pairs
 from concio.contact.reference import Reference
+from concio.contact.separate import surroundings
 from concio.contact.supports import Supported, apply_supports, moved_obstacles
 from concio.contact.ties import add_ties
 from concio.errors import InputError
@@ -225,8 +226,10 @@ class Assembly:
 
 def _without_rounding(model: Model, pairs: Pairs) -> Pairs:
     """Return pairs of which none is apart by what rounding of coordinates leaves: such a pair would not be bonded."""
-    largest = max(float(np.abs(b.vertices).max()) for b in model.bodies)
-    rounding = ROUNDED * model.size + 4 * np.finfo(float).eps * largest
+    around = surroundings(model)
+    largest = np.maximum(np.abs(around.low), np.abs(around.high)).max(axis=1)
+    bodies = np.column_stack([pairs.body_a, pairs.body_b])
+    rounding = ROUNDED * around.size[bodies].min(axis=1) + 4 * np.finfo(float).eps * largest[bodies].max(axis=1)
     return replace(pairs, gap=np.where(np.abs(pairs.gap) <= rounding, 0.0, pairs.gap))
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.arguments import closest
+from concio.contact.separate import surroundings
 from concio.errors import InputError
 from concio.kinematics.frames import turned_left, turned_right
 from concio.model.model import Load, Model, called
@@ -108,7 +109,7 @@ def loaded_faces(model: Model, load: Load) -> list[LoadedFace]:
     if length == 0:
         msg = f"the edge of a {load.kind} load has no length"
         raise InputError(msg, where=where, hint="use a point load")
-    tolerance = line_tolerance(model)
+    tolerance = line_tolerance(model, load)
     found = _on_line(model, loaded_bodies(model, load), p, (q - p) / length, length, tolerance)
     line = f"from ({p[0]:g}, {p[1]:g}) to ({q[0]:g}, {q[1]:g}) m"
     if not found:
@@ -138,9 +139,17 @@ def loaded_faces(model: Model, load: Load) -> list[LoadedFace]:
     return result
 
 
-def line_tolerance(model: Model) -> float:
-    """Return how far an edge may lie from the line of a load [m]: twice the gap tolerance, for joints wobble by it."""
-    return max(1e-6 * model.size, 2 * (model.gap_tolerance or 0.0))
+def line_tolerance(model: Model, load: Load) -> float:
+    """Return how far an edge may lie from the line or polygon of a load [m].
+
+    1e-6 of the size of the structure that it lies on, and at least twice the gap tolerance, for joints wobble by it.
+    """
+    around, bodies = surroundings(model), loaded_bodies(model, load)
+    points = np.array(load.edge if load.polygon is None else load.polygon, dtype=float)
+    slack = 1e-6 * around.size[bodies, None]
+    apart = (around.low[bodies] - slack > points.max(axis=0)) | (around.high[bodies] + slack < points.min(axis=0))
+    near = around.size[bodies][~apart.any(axis=1)]
+    return max(1e-6 * float(near.max(initial=0.0)), 2 * (model.gap_tolerance or 0.0))
 
 
 def _on_line(model: Model, chosen: list[int], p: Array, along: Array, length: float, tolerance: float) -> list[_Found]:

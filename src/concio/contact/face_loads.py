@@ -99,7 +99,7 @@ def loaded_parts(model: Model, load: Load) -> list[LoadedPart]:
         raise InputError(msg, where=where, hint="give the vertices of the loaded area, in order")
     corners = np.array(load.polygon, dtype=float)
     middle, normal, axes = plane_of(corners)
-    tolerance = line_tolerance(model)
+    tolerance = line_tolerance(model, load)
     off = float(np.abs((corners - middle) @ normal).max())
     area = shapely.Polygon((corners - middle) @ axes.T)
     if off > tolerance:
@@ -169,7 +169,7 @@ def _along_line(disc: Discretisation, load: Load, f: Array) -> None:
     b = bodies[0]
     body = disc.model.polyhedra[b]
     heights = np.column_stack([body.normals @ p - body.offsets, body.normals @ q - body.offsets])
-    tolerance = line_tolerance(disc.model)
+    tolerance = line_tolerance(disc.model, load)
     if body.convex and heights.max() > tolerance:
         msg = f"the line from {_text(p)} to {_text(q)} leaves '{body.name}' by {1e3 * heights.max():.4g} mm"
         raise InputError(msg, where=where, hint="give a line on the block")

@@ -7,7 +7,7 @@ of its own, so that nothing far away changes an answer.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,8 @@ from concio.model.interfaces.detect import Detection
 from concio.model.interfaces.point_contact import PointContact
 from concio.model.model import Model
 from concio.model.rules import JointRule
+from concio.problem.once import once
+from concio.representation import short_repr
 
 Array = np.ndarray
 
@@ -40,6 +42,49 @@ def separate_groups(model: Model) -> list[Array]:
     """
     low, high = (np.array([f(body.vertices, axis=0) for body in model.bodies]) for f in (np.min, np.max))
     return grouped(low, high, free_of(model), model.gap_reach or 0.0)
+
+
+@short_repr
+@dataclass(frozen=True, eq=False)
+class Surroundings:
+    """The box around each body, and how large the structure is that it belongs to.
+
+    Parameters
+    ----------
+    low, high : (B, d) arrays
+        Corners of the boxes [m].
+    size : (B,) array
+        Longest side of the box around the structure that stands apart, fixed bodies near it included; of a fixed body
+        the largest of its structures, of one that no free body comes near its own [m].
+    """
+
+    low: Array
+    high: Array
+    size: Array
+
+    def of(self, bodies: Sequence[int]) -> float:
+        """Return the size of the largest structure that some bodies belong to [m]."""
+        return float(self.size[list(bodies)].max())
+
+
+@once
+def surroundings(model: Model) -> Surroundings:
+    """Return the boxes of the bodies of a model and the sizes of their structures.
+
+    What is measured by the size of a structure is measured by that of its own: another one, of whatever size and
+    however far away, changes no digit.
+
+    Parameters
+    ----------
+    model : Model
+    """
+    low, high = (np.array([f(body.vertices, axis=0) for body in model.bodies]) for f in (np.min, np.max))
+    size = (high - low).max(axis=1)
+    groups = [np.arange(len(size))] if model.periods is not None else separate_groups(model)
+    for group in groups:
+        own = float((high[group].max(axis=0) - low[group].min(axis=0)).max())
+        size[group] = np.maximum(size[group], own)
+    return Surroundings(low, high, size)
 
 
 def free_of(model: Model) -> Array:

@@ -31,6 +31,9 @@ PART = {
 """Names of parts of a structure, as :class:`concio.analysis.seismic.parts.Part` gives them."""
 
 
+STRIP = r"(facade|pier with openings|pier|over opening)(?: of ('.*'))?(?:, x = (\S+) to (\S+) m)?"
+"""Names of strips of a facade, as :class:`concio.analysis.seismic.sections.Strip` gives them."""
+
 ASIDE = "out of plane: "
 """How names of mechanisms of strips begin, as :mod:`concio.analysis.seismic.out_of_plane` gives them."""
 
@@ -86,11 +89,15 @@ class Texts:
 
     def strip(self, name: str) -> str:
         """Return the name of a strip of a facade in the language."""
-        kind, _, sides = name.partition(", x = ")
+        found = re.fullmatch(STRIP, name)
+        if found is None:
+            return name
+        kind, of, *sides = found.groups()
         word = self.words["strip_" + kind.replace(" ", "_")]
-        if not sides:
+        word = f"{word} {of}" if of else word
+        if sides[0] is None:
             return word
-        a, b = (self.n(float(v)) for v in sides.removesuffix(" m").split(" to "))
+        a, b = (self.n(float(v)) for v in sides)
         return self.words["strip_sides"].format(what=word, a=a, b=b)
 
     def way(self, direction: str) -> str:

@@ -47,7 +47,7 @@ def _on_line(model: Model, load: Load) -> str:
         return ""
     ends = np.array(load.edge, dtype=float)
     length, loaded = float(np.hypot(*(ends[1] - ends[0]))), covered(loaded_faces(model, load))
-    if length - loaded <= max(2 * line_tolerance(model), LOST * length):
+    if length - loaded <= max(2 * line_tolerance(model, load), LOST * length):
         return ""
     return (
         f"{load_words(load)}: only {loaded:.4g} m of its {length:.4g} m lie on edges of its blocks, and only these are "

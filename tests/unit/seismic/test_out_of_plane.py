@@ -14,8 +14,9 @@ from hypothesis import strategies as st
 
 import concio
 from concio import Assessment, Body, JointLaw, Load, Model, Rigid
+from concio.analysis.seismic.open_items import facades_of
 from concio.analysis.seismic.out_of_plane import EITHER
-from concio.analysis.seismic.sections import OutOfPlane, strips_of
+from concio.analysis.seismic.sections import OutOfPlane, Strip, strips_of
 from concio.errors import InputError
 from concio.report.assessment_page import AssessmentReport
 from samples import sample
@@ -49,6 +50,11 @@ def facade(thickness: float = 0.5, *, window: bool = True, rows: int = 0, fricti
                  loads=tuple(loads), **more)  # fmt: skip
 
 
+def drawn(model: Model, held: OutOfPlane | None = None) -> tuple[Strip, ...]:
+    """Return the strips of the facades of a model."""
+    return strips_of(model, held or OutOfPlane(), facades_of(concio.assemble(model)))
+
+
 def assessed(model: Model, **more: Any) -> Assessment:
     return concio.assess(model, **{"site": site(), **ONE, **more})
 
@@ -57,8 +63,8 @@ def assessed(model: Model, **more: Any) -> Assessment:
 
 
 def test_strips_of_a_facade_with_a_window() -> None:
-    found = strips_of(facade(rows=8), OutOfPlane())
-    assert [s.name for s in found] == [s.name for s in strips_of(facade(), OutOfPlane())]
+    found = drawn(facade(rows=8))
+    assert [s.name for s in found] == [s.name for s in drawn(facade())]
     told = {s.name: (s.sides, s.base) for s in found}
     assert told == {
         "facade": ((0.0, 6.0), 0.0),
@@ -84,7 +90,7 @@ def test_weights_and_loads_of_strips_are_those_of_the_drawing(
         return own - sum(q.value[1] for q in section.loads if q.at is not None)
 
     area = 24.0 - (1.0 if window else 0.0)
-    strips = {s.name: total(s.section) for s in strips_of(model, OutOfPlane())}
+    strips = {s.name: total(s.section) for s in drawn(model)}
     assert strips["facade"] == pytest.approx(19.0 * gravity * area * thickness + 6.0 * roof, rel=1e-12)
     if window:
         halves = strips["pier with openings, x = 0 to 2.5 m"] + strips["pier with openings, x = 2.5 to 6 m"]
@@ -95,12 +101,12 @@ def test_weights_and_loads_of_strips_are_those_of_the_drawing(
 def test_stones_that_reach_across_a_cut_are_cut_and_thin_ones_set_the_thickness() -> None:
     model = facade(window=False, rows=8)
     thin = tuple(replace(b, thickness=0.3) if b.name == "s4" else b for b in model.bodies)
-    (whole,) = strips_of(replace(model, bodies=thin), OutOfPlane(flush="outer"))
+    (whole,) = drawn(replace(model, bodies=thin), OutOfPlane(flush="outer"))
     widths = [float(np.ptp(b.vertices[:, 0])) for b in whole.section.free_bodies]
     assert widths == pytest.approx([0.5] * 4 + [0.3] + [0.5] * 3)
     assert len({round(float(b.vertices[:, 0].min()), 12) for b in whole.section.free_bodies}) == 1
     assert not whole.symmetric
-    assert strips_of(model, OutOfPlane())[0].symmetric
+    assert drawn(model)[0].symmetric
 
 
 # -- mechanisms -------------------------------------------------------------------------------------------------------

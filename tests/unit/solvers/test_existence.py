@@ -7,7 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 
+from concio.contact.assembly import assemble
+from concio.model.materials import JointLaw, Rigid
+from concio.model.model import Body, Load, Model
 from concio.problem.contact_problem import ContactProblem, Laws
 from concio.solvers.statics.existence import find_mechanism, statically_admissible
 from concio.solvers.statics.mechanism import (
@@ -21,6 +26,7 @@ from concio.solvers.statics.mechanism import (
 from concio.solvers.statics.programme import StaticProgramme
 from concio.solvers.statics.sufficient import sufficient_condition
 from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, running_bond, wall
+from samples import sample
 
 
 def single(f, n=((0.0, 1.0),), mu=0.5, **changes):
@@ -164,6 +170,46 @@ def test_walls_either_side_of_their_limit(name, limit):
     again = verify_mechanism(above, 17.0 * found.velocity)
     assert again.violation <= 1e-9
     assert again.power == pytest.approx(found.power, rel=1e-9)
+
+
+def stack(x, size=1.0, weight=20.0, lean=0.0):
+    """Two blocks on ground of their own at a place, the upper one narrower; ``lean`` is a share of the weight."""
+
+    def block(name, a, b, low, high, kind="rigid"):
+        return Body(name, size * np.array([[a, low], [b, low], [b, high], [a, high]]) + [x, 0.0], kind=kind)
+
+    bodies = block("g", -1, 2, -1, 0, "fixed"), block("p", 0, 0.8, 0, 1), block("q", 0.1, 0.7, 1, 1.5)
+    return tuple(replace(b, name=f"{b.name} at {x:g}") for b in bodies), (Load("weight", (lean, -1.0)),), weight
+
+
+def standing(*stacks):
+    """The problem of stacks that touch nothing of each other."""
+    bodies, loads, materials = [], [], {}
+    for k, (own, acting, weight) in enumerate(stacks):
+        materials[f"m{k}"] = Rigid(weight)
+        bodies += [replace(b, material=f"m{k}") for b in own]
+        loads += [replace(q, bodies=tuple(b.name for b in own[1:])) for q in acting]
+    return assemble(Model(tuple(bodies), materials, {"joint": JointLaw(0.6)}, loads=tuple(loads))).problem()
+
+
+@settings(max_examples=sample(8, 60), deadline=None)
+@given(st.floats(3.5, 7.0), st.sampled_from([-1.0, 1.0]), st.floats(-0.5, 1.5))
+@example(5.0, 1.0, 0.0)
+@example(6.0, 1.0, 0.0)
+def test_what_stands_at_the_origin_stands_far_from_it(power, sign, size):
+    """A vertex of the programme that rounding of coordinates moved leaves too few forces to balance it."""
+    assert statically_admissible(standing(stack(sign * 10.0**power, 10.0**size))).exists
+
+
+@settings(max_examples=sample(4, 40), deadline=None)
+@given(st.floats(-7.0, 7.0), st.booleans(), st.sampled_from([0.0, 0.1, 0.9]), st.sampled_from([0.0, 0.9]))
+@example(7.0, True, 0.9, 0.0)
+def test_what_a_light_structure_lacks_is_no_rounding_of_a_heavy_one(power, first, lean, other):
+    """Without its part, an imbalance of 1e-14 of the total load would be called equilibrium."""
+    here, there = stack(0.0, lean=lean), stack(20.0, weight=20.0 * 10.0 ** (2 * power), lean=other)
+    state = statically_admissible(standing(*((there, here) if first else (here, there))))
+    assert state.exists is (lean < 0.3 and other < 0.3)
+    assert (state.mechanism is not None) is not state.exists
 
 
 def test_a_false_mechanism_is_refused():

@@ -16,7 +16,7 @@ from concio.analysis.seismic.directions import Direction, pushes
 from concio.analysis.seismic.examine import Control, Terms
 from concio.analysis.seismic.free_standing import FreeStanding, elements_of
 from concio.analysis.seismic.mechanism import chosen_bodies
-from concio.analysis.seismic.open_items import ELSEWHERE, in_elevation
+from concio.analysis.seismic.open_items import ELSEWHERE, facades_of
 from concio.analysis.seismic.out_of_plane import covered_by, of_strips, strips_assessed
 from concio.analysis.seismic.searching import EVERY, Search, search_all
 from concio.analysis.seismic.sections import OutOfPlane, strips_of
@@ -165,9 +165,10 @@ def assess(
     chosen = {name: chosen_bodies(model, name, words) for name, words in sought.items() if name != EVERY}
     terms = Terms(site, wanted, factor, control, limits or {}, curve, accept_linear)
     acting = acting_in(model, ways)
-    held_out = _held_out(model, out_of_plane)
-    aside = in_elevation(model) and "out of plane" not in elsewhere and not groups
-    drawn = strips_of(model, held_out) if aside else ()  # before the search: what they refuse is refused at once
+    facades = facades_of(searches[0].assembly)
+    held_out = _held_out(out_of_plane, facades)
+    aside = facades if "out of plane" not in elsewhere and not groups else []
+    drawn = strips_of(model, held_out, aside)  # before the search: what they refuse is refused at once
     try:
         found = search_all(searches, chosen, terms, elements, progress)
     except NoEquilibriumError as error:
@@ -206,7 +207,7 @@ def _notes(site: Site, wanted: tuple[str, ...], knowledge: str, factor: float, r
     return tuple(found)
 
 
-def _held_out(model: Model, given: OutOfPlane | Mapping[str, Any] | None) -> OutOfPlane:
+def _held_out(given: OutOfPlane | Mapping[str, Any] | None, facades: Several[tuple[int, ...]]) -> OutOfPlane:
     """Return how a facade is held out of its plane.
 
     Raises
@@ -220,7 +221,7 @@ def _held_out(model: Model, given: OutOfPlane | Mapping[str, Any] | None) -> Out
         for key in given:
             _one_of("key of out_of_plane", key, tuple(OutOfPlane.__dataclass_fields__))
         made = OutOfPlane(**given)
-    if given is not None and not in_elevation(model):
+    if given is not None and not facades:
         msg = "out_of_plane is for a facade drawn in elevation, wider than it is thick"
         raise InputError(msg, hint="in space and in sections walls leave their plane by themselves")
     return made
@@ -263,7 +264,7 @@ def _check_control(model: Model, control: Control) -> None:
         msg = f"'{body.name}' is fixed and moves in no mechanism"
         raise InputError(msg, where=where, hint="choose a point of the part that falls")
     low, high = body.vertices.min(0), body.vertices.max(0)
-    slack = 1e-6 * model.size
+    slack = 1e-6 * float(np.ptp(body.vertices, axis=0).max())
     if point.shape != (model.dim,) or (point < low - slack).any() or (point > high + slack).any():
         place = ", ".join(f"{v:g}" for v in point)
         msg = f"({place}) lies outside '{body.name}'"

@@ -23,6 +23,7 @@ from concio.analysis.seismic.sequence import Sequence, follow_in_steps
 from concio.analysis.seismic.site import Site
 from concio.analysis.seismic.tie_history import together
 from concio.contact.assembly import Assembly
+from concio.contact.separate import surroundings
 from concio.model.model import Tie
 
 Array = np.ndarray
@@ -32,7 +33,7 @@ SAME = 1e-6
 """Relative difference below which the multipliers of the limit programme and of its linkage are the same."""
 
 BARELY = 1e-3
-"""Curves that end before this share of the size of the mechanism are not curves: other joints take over at once."""
+"""Curves that end before this share of the size of the structure are not curves: other joints take over at once."""
 
 REACHED = 0.9
 """A curve that is cut before it comes to this share of alpha_0 is none."""
@@ -196,15 +197,15 @@ def examined(ready: Prepared, terms: Terms, element: FreeStanding | None = None)
     """Return a mechanism with its curves and checks."""
     model, site, levels = ready.assembly.model, terms.site, terms.levels
     alpha, chain, factor, z = ready.multiplier, ready.chain, ready.factor(terms), ready.level(site)
-    followed = ready.unfollowed
+    followed, size = ready.unfollowed, surroundings(model).of(list(ready.sequence.mechanics.of_body))
     if followed is None:
         assert isinstance(ready.linkage, Linkage)
         followed = follow(ready.linkage)
     if all(site.rules.tables["levels"][level]["kind"] == "onset" for level in levels):
         followed = followed if followed.points else not_followed("not asked")
-    elif not followed.points or followed.end < BARELY * model.size:
+    elif not followed.points or followed.end < BARELY * size:
         steps = follow_in_steps(ready.sequence, alpha)
-        followed = steps if steps.end >= BARELY * model.size else not_followed(steps.reason)
+        followed = steps if steps.end >= BARELY * size else not_followed(steps.reason)
     if ready.stretched and followed.reason != "falls" and float(followed.multiplier.max()) < REACHED * alpha:
         followed = not_followed(followed.reason)  # cut before its ties pull: it tells nothing
     line = straight(alpha, followed.end) if followed.ends else None

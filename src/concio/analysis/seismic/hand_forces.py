@@ -16,12 +16,13 @@ from typing import Any
 import numpy as np
 
 from concio.contact.applied import applied_forces
+from concio.contact.separate import surroundings
 from concio.model.model import Load, Model
 
 Array = np.ndarray
 
 ON_LINE = 1e-6
-"""Sides of blocks nearer than this to the line of a load, over the size of the model, lie on it."""
+"""Sides of blocks nearer than this to the line of a load, over the size of the structure, lie on it."""
 
 FACING = {"lower": (-1, 1.0), "upper": (-1, -1.0), "left": (0, 1.0), "right": (0, -1.0)}
 """Of two faces that meet under a line load: component and sign of the outward normal of the one that is loaded."""
@@ -107,10 +108,10 @@ def _on_sides(model: Model, k: int, load: Load, chosen: Sequence[int]) -> list[H
     length = float(np.hypot(*(q - p)))
     along = (q - p) / length
     normal = np.array([-along[1], along[0]])
-    near = ON_LINE * model.size
+    around = surroundings(model)
     sides: list[tuple[int, float, float, Array]] = []
     for b in chosen:
-        ring = model.outlines[b].outline
+        ring, near = model.outlines[b].outline, ON_LINE * float(around.size[b])
         for a, c in zip(ring, np.roll(ring, -1, axis=0), strict=True):
             s, t = float((a - p) @ along), float((c - p) @ along)
             low, high = max(min(s, t), 0.0), min(max(s, t), length)

@@ -16,6 +16,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from concio.contact.separate import surroundings
 from concio.model.model import Model
 
 Array = np.ndarray
@@ -90,8 +91,9 @@ def leaves_of(model: Model, bodies: Sequence[int], along: Array, across: Array) 
     middle = place.mean(axis=1)
     own = ~np.array([any(a <= m <= b for a, b in cross) for m in middle], dtype=bool)
     ranges: list[list[float]] = []
+    near = 1e-6 * surroundings(model).of(bodies)
     for low, high in sorted(map(tuple, depth[own])):
-        if ranges and low < ranges[-1][1] - 1e-6 * model.size:
+        if ranges and low < ranges[-1][1] - near:
             ranges[-1][1] = max(ranges[-1][1], high)
         else:
             ranges.append([low, high])

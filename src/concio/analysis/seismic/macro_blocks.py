@@ -196,7 +196,8 @@ def mechanics_of(assembly: Assembly, velocity: Array, normal_force: Array) -> Me
         blocks.append(MacroBlock(bodies, names, centre, np.concatenate([shifted, motion[first, d:]])))
     across = np.array([of_body.get(int(b), GROUND) for b in pairs.body_a])
     beyond = np.array([of_body.get(int(b), GROUND) for b in pairs.body_b])
-    loaded = normal_force > AT_BOUND * float(np.abs(normal_force).max(initial=0.0))
+    touches = np.maximum(across, beyond) != GROUND  # forces of what stands apart, however large, say nothing of these
+    loaded = normal_force > AT_BOUND * float(np.abs(normal_force[touches]).max(initial=0.0))
     active = np.flatnonzero(loaded & (across != beyond))
     speed = np.linalg.norm((pairs.C_t @ velocity).reshape(len(pairs), d - 1), axis=1)
     joints: list[MacroJoint] = []

@@ -11,6 +11,7 @@ from concio.analysis.seismic.linkage import Force
 from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, face_of
 from concio.contact.assembly import Assembly
 from concio.contact.face_points import FacePoints, Standing, Stated
+from concio.contact.separate import surroundings
 from concio.kinematics.frames import tangents
 from concio.kinematics.rigid import motions, rigid_row
 from concio.problem.contact_problem import ContactProblem, Laws
@@ -29,7 +30,7 @@ def contacts_of(assembly: Assembly, mechanics: Mechanics, normal_force: Array) -
         Of the pairs of the assembly, at the onset [kN].
     """
     pairs, bodies, d = assembly.pairs, assembly.model.bodies, assembly.model.dim
-    size = assembly.model.size
+    size = surroundings(assembly.model).of(list(mechanics.of_body))
     a = np.array([mechanics.of_body.get(int(i), GROUND) for i in pairs.body_a])
     b = np.array([mechanics.of_body.get(int(i), GROUND) for i in pairs.body_b])
     own = np.flatnonzero((a != b) & (pairs.interface >= 0) & (pairs.gap <= 1e-6 * size))

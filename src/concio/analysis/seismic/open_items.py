@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from concio.model.model import Model
+from concio.analysis.seismic.parts import structures_of
+from concio.contact.assembly import Assembly
 from concio.verdict.unseen import SEEN, listed, unseen_bodies
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ def open_items(found: Assessment) -> tuple[OpenItem, ...]:
         high = [m for m in (*found.mechanisms, *found.others) if m.level > ABOVE]
         names = tuple(dict.fromkeys((m.name, m.level) for m in high))
         items += [OpenItem("height", {"names": names})] if high else []
-    if "out of plane" not in excused and in_elevation(found.model) and not found.strips:
+    if "out of plane" not in excused and not found.strips and facades_of(found.assembly):
         items.append(OpenItem("out of plane"))
     for m in found.mechanisms:
         where = {"name": m.name, "way": m.direction}
@@ -96,10 +97,17 @@ def _of_strips(found: Assessment) -> list[OpenItem]:
     return items
 
 
-def in_elevation(model: Model) -> bool:
-    """Return whether a plane model is wider than it is thick: a facade, which can also leave its plane."""
-    if model.dim == 3:
-        return False
-    outlines = [b for b in model.outlines if b.kind != "fixed"]
-    width = float(np.ptp(np.vstack([b.outline for b in outlines])[:, 0]))
-    return width > max(b.thickness for b in outlines)
+def facades_of(assembly: Assembly) -> list[tuple[int, ...]]:
+    """Return the structures of a plane model that are wider than they are thick: facades can also leave their plane.
+
+    Structures that touch only what is fixed are judged one by one: what stands apart makes no section a facade.
+    """
+    if assembly.model.dim == 3:
+        return []
+    outlines = assembly.model.outlines
+    return [
+        group
+        for group in structures_of(assembly)
+        if float(np.ptp(np.vstack([outlines[b].outline for b in group])[:, 0]))
+        > max(outlines[b].thickness for b in group)
+    ]

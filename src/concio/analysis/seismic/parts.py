@@ -23,6 +23,7 @@ from scipy.sparse.csgraph import connected_components
 
 from concio.analysis.seismic.layout import leaves_of, openings_of, returns_of, spans_along
 from concio.contact.assembly import Assembly
+from concio.contact.separate import surroundings
 from concio.kinematics.frames import turned_left
 from concio.model.model import Model
 
@@ -103,13 +104,12 @@ def parts_of(assembly: Assembly, along: Array) -> Parts:
     along : (d,) array
         Horizontal unit vector of the push.
     """
-    model, pairs = assembly.model, assembly.pairs
+    model = assembly.model
     free = np.array([i for i, b in enumerate(model.bodies) if b.kind != "fixed"])
     up = np.zeros(model.dim)
     up[-1] = 1.0
-    groups = _structures(assembly, free)
-    most = max(min(MOST_LEVELS, PAIRS[model.dim] // max(len(pairs), 1)), LEAST)
-    each = max(most // len(groups), 1)
+    groups = structures_of(assembly)
+    own_pairs = _pairs_of(assembly, groups)
     found: dict[tuple[int, ...], Part] = {tuple(free.tolist()): Part("above", -np.inf, tuple(free.tolist()))}
     sought, there = Counter[str](), Counter[str]()
 
@@ -119,11 +119,12 @@ def parts_of(assembly: Assembly, along: Array) -> Parts:
         if bodies:
             found.setdefault(bodies, Part(kind, at, bodies, of, what))
 
-    for group in groups[:most]:
+    for group, many in zip(groups, own_pairs, strict=True):
         of = model.bodies[group[0]].name if len(groups) > 1 else ""
         found.setdefault(group, Part("alone", np.nan, group, of, "alone"))
-        levels = _lines(model, list(group), up, len(pairs) + MOST_LEVELS, changes_only=False)
-        kept = _lines(model, list(group), up, each, changes_only=False)
+        most = max(min(MOST_LEVELS, PAIRS[model.dim] // max(many, 1)), LEAST)
+        levels = _lines(model, list(group), up, many + MOST_LEVELS, changes_only=False)
+        kept = _lines(model, list(group), up, most, changes_only=False)
         lines = _lines_of(model, group, along)
         chosen = [lines[k] for k in _spread(list(range(len(lines))), MOST_LINES)]
         changes = _lines(model, list(group), along, MOST_CHANGES, changes_only=True)
@@ -174,7 +175,7 @@ def _lines_of(model: Model, group: tuple[int, ...], along: Array) -> list[_Line]
         lines += [_Line("openings", along, at, False) for o in openings_of(model, wall, along) for at in o.sides]
     ends = spans_along(model, group, across)
     first, last = float(ends.min()), float(ends.max())
-    near = 1e-4 * model.size
+    near = 1e-4 * surroundings(model).of(group)
     return _once([x for x in lines if not x.across or first + near < x.at < last - near])
 
 
@@ -186,8 +187,9 @@ def _once(lines: list[_Line]) -> list[_Line]:
     return list(found.values())
 
 
-def _structures(assembly: Assembly, free: Array) -> list[tuple[int, ...]]:
-    """Return the bodies that can move in groups that touch, or are tied to, each other."""
+def structures_of(assembly: Assembly) -> list[tuple[int, ...]]:
+    """Return the bodies that can move in groups that touch, or are tied to, each other, in the order of their first."""
+    free = np.array([i for i, b in enumerate(assembly.model.bodies) if b.kind != "fixed"])
     count, moves = len(assembly.model.bodies), np.zeros(len(assembly.model.bodies) + 1, dtype=bool)
     moves[free] = True
     a, b = np.asarray(assembly.pairs.body_a), np.asarray(assembly.pairs.body_b)
@@ -195,6 +197,15 @@ def _structures(assembly: Assembly, free: Array) -> list[tuple[int, ...]]:
     graph = sp.coo_array((np.ones(int(both.sum())), (a[both], b[both])), shape=(count, count))
     label = connected_components(graph, directed=False)[1]
     return [tuple(free[label[free] == k].tolist()) for k in dict.fromkeys(label[free].tolist())]
+
+
+def _pairs_of(assembly: Assembly, groups: list[tuple[int, ...]]) -> list[int]:
+    """Return how many contact pairs each structure has."""
+    number = np.full(len(assembly.model.bodies) + 1, -1)
+    for k, group in enumerate(groups):
+        number[list(group)] = k
+    of_pair = np.maximum(number[np.asarray(assembly.pairs.body_a)], number[np.asarray(assembly.pairs.body_b)])
+    return [int(many) for many in np.bincount(of_pair[of_pair >= 0], minlength=len(groups))]
 
 
 def _lines(model: Model, free: list[int], axis: Array, most: int, *, changes_only: bool) -> list[float]:

@@ -174,7 +174,7 @@ def _of_push(
     met: dict[str, Found] = {}
     for part in parts:
         teller.tell(f"{part.name}, push {way}: sought")
-        met[part.name] = seek.find(part.bodies, quick=True)
+        met[part.name] = seek.find(part.bodies, quick=part.kind != "alone")  # a structure is a model of its own
     records += [Sought("whole" if n == EVERY else "named", n, way, f.multiplier, motion_of(f, search.along))
                 for n, f in every.items()]  # fmt: skip
     records += [Sought(p.what, p.name, way, met[p.name].multiplier, motion_of(met[p.name], search.along))

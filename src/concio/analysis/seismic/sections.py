@@ -21,6 +21,7 @@ import shapely
 
 from concio.analysis.seismic.layout import Opening, openings_of
 from concio.contact.edge_loads import loaded_bodies, loaded_faces
+from concio.contact.separate import surroundings
 from concio.errors import InputError
 from concio.model.actions import Load, Support
 from concio.model.body import Body
@@ -101,17 +102,22 @@ class Strip:
     base : float
         Height from which on it is free [m].
     section : Model
+    of : str
+        First body of its facade, where the drawing has several.
     """
 
     kind: str
     sides: tuple[float, float]
     base: float
     section: Model
+    of: str = ""
 
     @property
     def name(self) -> str:
         """What it is called."""
-        return "facade" if self.kind == "facade" else f"{self.kind}, x = {self.sides[0]:.4g} to {self.sides[1]:.4g} m"
+        whose = f" of '{self.of}'" if self.of else ""
+        sides = "" if self.kind == "facade" else f", x = {self.sides[0]:.4g} to {self.sides[1]:.4g} m"
+        return f"{self.kind}{whose}{sides}"
 
     @property
     def symmetric(self) -> bool:
@@ -134,27 +140,47 @@ class Strip:
         return tuple(float(f"{v:.9g}") for v in (*shape, *(w / total for w in weight), *depth, *loads))
 
 
-def strips_of(model: Model, held: OutOfPlane) -> tuple[Strip, ...]:
-    """Return the strips of a facade drawn in elevation.
+def strips_of(model: Model, held: OutOfPlane, facades: Sequence[Sequence[int]]) -> tuple[Strip, ...]:
+    """Return the strips of facades drawn in elevation.
 
     Parameters
     ----------
     model : Model
         In the plane; x along the facade, y up.
     held : OutOfPlane
+    facades : sequence of sequences of int
+        The bodies of each, from :func:`~concio.analysis.seismic.open_items.facades_of`: one that stands apart from
+        another has strips, openings and measures of its own.
 
     Raises
     ------
     InputError
-        The facade is held at a height that it does not reach, or loads bear outside it.
+        No facade reaches a height at which they are held, or loads bear outside one.
     """
-    facade = _Facade(model, held)
+    drawn = [_Facade(model, held, bodies) for bodies in facades]
+    _check_held(held, drawn)
     made: list[Strip] = []
-    for kind, a, b, base in _ranges(facade):
-        section = facade.section(a, b, base)
-        if section is not None:
-            made.append(Strip(kind, (a, b), base, section))
+    for facade in drawn:
+        of = model.bodies[facade.free[0]].name if len(drawn) > 1 else ""
+        for kind, a, b, base in _ranges(facade):
+            section = facade.section(a, b, base)
+            if section is not None:
+                made.append(Strip(kind, (a, b), base, section, of))
     return tuple(made)
+
+
+def _check_held(held: OutOfPlane, facades: Sequence[_Facade]) -> None:
+    """Refuse a height at which no facade can be held.
+
+    Raises
+    ------
+    InputError
+    """
+    for z in held.held if facades else ():
+        if not any(facade.reaches(z) for facade in facades):
+            low, high = min(f.low[1] for f in facades), max(f.high[1] for f in facades)
+            msg = f"the facade is held at {z:g} m, but it reaches from {low:g} to {high:g} m"
+            raise InputError(msg, where="out_of_plane", hint="heights are those of the drawing")
 
 
 def _ranges(facade: _Facade) -> list[tuple[str, float, float, float]]:
@@ -199,21 +225,20 @@ def _half(bands: Sequence[tuple[float, float, float | None]], k: int, step: int)
 class _Facade:
     """The stones of a facade, its openings and what acts downwards on it."""
 
-    def __init__(self, model: Model, held: OutOfPlane) -> None:
-        self.model, self.held = model, held
-        self.free = [i for i, b in enumerate(model.bodies) if b.kind != "fixed"]
+    def __init__(self, model: Model, held: OutOfPlane, bodies: Sequence[int]) -> None:
+        self.model, self.held, self.free = model, held, list(bodies)
         outlines = model.outlines
         self.shapes = {i: shapely.Polygon(outlines[i].outline, outlines[i].holes) for i in self.free}
         points = np.vstack([outlines[i].outline for i in self.free])
         self.low, self.high = points.min(0).tolist(), points.max(0).tolist()
-        self.size = model.size
+        self.size = surroundings(model).of(self.free)
         self.openings = openings_of(model, self.free, np.array([1.0, 0.0]))
         self.weights = self._weights()
         self.loads = self._loads()
-        for z in held.held:
-            if not self.low[1] < z <= self.high[1] + APART * self.size:
-                msg = f"the facade is held at {z:g} m, but it reaches from {self.low[1]:g} to {self.high[1]:g} m"
-                raise InputError(msg, where="out_of_plane", hint="heights are those of the drawing")
+
+    def reaches(self, z: float) -> bool:
+        """Return whether it can be held at a height."""
+        return bool(self.low[1] < z <= self.high[1] + APART * self.size)
 
     def _weights(self) -> dict[int, float]:
         """Return the force downwards on each unit of volume of each stone [kN/m3]."""
@@ -221,7 +246,7 @@ class _Facade:
         for load in self.model.loads:
             if load.kind not in ("weight", "body"):
                 continue
-            for b in loaded_bodies(self.model, load):
+            for b in set(loaded_bodies(self.model, load)) & found.keys():
                 per = self.model.materials[self.model.bodies[b].material].unit_weight if load.kind == "weight" else 1.0
                 found[b] -= per * float(load.value[1])
         return found
@@ -233,9 +258,9 @@ class _Facade:
             if load.kind == "point":
                 assert load.at is not None
                 found += [(b, load.at[0], load.at[0], load.at[1], -float(load.value[1]))
-                          for b in loaded_bodies(model, load)]  # fmt: skip
+                          for b in loaded_bodies(model, load) if b in self.shapes]  # fmt: skip
             elif load.kind in ("pressure", "traction"):
-                for face in loaded_faces(model, load):
+                for face in (face for face in loaded_faces(model, load) if face.body in self.shapes):
                     outline, thick = model.outlines[face.body].outline, model.outlines[face.body].thickness
                     p, q = outline[face.edge], outline[(face.edge + 1) % len(outline)]
                     along = (q - p) / float(np.linalg.norm(q - p))

@@ -22,6 +22,7 @@ from concio.analysis.seismic.assess import assess
 from concio.analysis.seismic.assessment import Assessment
 from concio.analysis.seismic.mechanism import chosen_bodies
 from concio.arguments import closest, strict
+from concio.contact.separate import surroundings
 from concio.display import number
 from concio.errors import InputError, NoEquilibriumError
 from concio.model.body import Body
@@ -315,7 +316,7 @@ def _buttress(measure: Measure, model: Model, amount: float) -> Model:
     if amount <= 0:
         return model
     a, b = sorted((low[0], low[0] + (amount if measure.side == "right" else -amount)))
-    near = 1e-6 * model.size
+    near = 1e-6 * surroundings(model).of(chosen_bodies(model, "buttress", measure.of))
     under = [g for g in model.outlines if g.kind == "fixed" and abs(g.vertices[:, 1].max() - low[1]) <= near
              and g.vertices[:, 0].min() <= a + near and g.vertices[:, 0].max() >= b - near]  # fmt: skip
     if not under:

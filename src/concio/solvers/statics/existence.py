@@ -12,12 +12,14 @@ That the forces exist does not say that a *Coulomb* state does: friction is not 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.parts import Part, parts_of
 from concio.problem.solution import Mechanism
 from concio.problem.tolerances import BALANCED, NEARLY_BALANCED
 from concio.representation import short_repr
@@ -73,8 +75,33 @@ def statically_admissible(problem: ContactProblem, *, thorough: bool = True) -> 
     Returns
     -------
     StaticState
-        With forces, or with a mechanism, or (rarely, within rounding of the limit) with neither.
+        With forces, or with a mechanism, or (rarely, within rounding of the limit) with neither. Parts that touch only
+        what is fixed are asked one by one: what one of them lacks is not a rounding error of another.
     """
+    parts = [part for part in parts_of(problem) if part.unknowns.size]
+    if len(parts) <= 1:
+        return _of_one(problem, thorough=thorough)
+    return _of_all(problem, parts, [_of_one(part.problem, thorough=thorough) for part in parts])
+
+
+def _of_all(problem: ContactProblem, parts: Sequence[Part], found: Sequence[StaticState]) -> StaticState:
+    """Return the state of the whole, of those of its parts; its motion is that of one part that has no forces."""
+    t_n, t_t = np.zeros(problem.pairs), np.zeros((problem.pairs, problem.dim - 1))
+    for part, one in zip(parts, found, strict=True):
+        t_n[part.pairs], t_t[part.pairs] = one.normal_force, one.friction_force
+    residual, exists = max(one.residual for one in found), all(one.exists for one in found)
+    moving = max(range(len(found)), key=lambda k: (found[k].mechanism is not None, not found[k].exists))
+    velocity, mechanism = np.zeros(problem.unknowns), found[moving].mechanism
+    velocity[parts[moving].unknowns] = found[moving].velocity
+    if mechanism is not None:
+        whole = np.zeros(problem.unknowns)
+        whole[parts[moving].unknowns] = mechanism.velocity
+        mechanism = replace(mechanism, velocity=whole)
+    return StaticState(exists, t_n, t_t, residual, velocity, mechanism)
+
+
+def _of_one(problem: ContactProblem, *, thorough: bool) -> StaticState:
+    """Search forces of a connected part."""
     m, r, s = problem.pairs, problem.rigid_motions, problem.dim - 1
     if r == 0:
         return StaticState(True, np.zeros(m), np.zeros((m, s)), 0.0, np.zeros(problem.unknowns))
@@ -87,11 +114,13 @@ def statically_admissible(problem: ContactProblem, *, thorough: bool = True) -> 
         return StaticState(exists, np.zeros(0), np.zeros((0, s)), residual, velocity, proof)
     if problem.dim == 3:
         return _by_cones(problem, thorough)
-    state = _least_imbalance(problem, programme, None)
-    if state.decided:
-        return state
-    other = _least_imbalance(problem, programme, "highs")
-    return other if other.decided or other.residual < state.residual else state
+    methods: tuple[Method | None, ...] = (None, "interior", "highs")
+    found = []
+    for method in methods:  # a vertex that rounding moved has no forces left to balance with, an inner point has
+        found.append(_least_imbalance(problem, programme, method))
+        if found[-1].decided:
+            return found[-1]
+    return min(found, key=lambda state: state.residual)
 
 
 def _by_cones(problem: ContactProblem, thorough: bool) -> StaticState:
