@@ -243,6 +243,13 @@ def test_cross_vaults(groin: str) -> None:
     assert len(springers) == 4
 
 
+@pytest.mark.parametrize("ring", [0.07, 0.08, 0.0850, 0.0855])
+def test_springers_of_a_cross_vault_have_room_down_to_the_least_angle(ring: float) -> None:
+    model = concio.cross_vault(span=1.0, ring=ring, courses=5, block_length=0.15, springing=40, **RIGID)
+    assert min(b.volume for b in model.bodies if b.kind == "fixed") > 0
+    sound(model)
+
+
 def test_drums_and_their_taper() -> None:
     model = concio.drums(diameter=1.0, height=6, drums=5, sides=12, top_diameter=0.8, top_force=3.0,
                          eccentricity=(0.1, 0.2), **RIGID)  # fmt: skip

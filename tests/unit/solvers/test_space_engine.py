@@ -177,6 +177,25 @@ def test_stiff_joints_start_from_nearby_and_hard_ones_from_far() -> None:
     assert (soft[0].length, hard[0].length) == (10.0, 100.0)
 
 
+def test_a_run_from_nearby_begins_inside_the_cones_and_ends_sooner() -> None:
+    structure = wall(4, 5, leaves=2, direction=(0.6, 0.8, 0.0), **STIFF)
+    here, there = structure.at(0.10), structure.at(0.14)
+    state = find("auto")(here)
+    s = scale(there)
+    u, t = s.bring(state.displacement, state.normal_force, state.friction_force)
+    z = InteriorPoint(s).near(u, t)
+    assert z.t[:, 0].min() > 0
+    assert z.y_n.min() > 0
+    assert (s.cone.strength(z.t[:, 0]) > np.linalg.norm(z.t[:, 1:], axis=1)).all()
+    assert (z.eta[:, 0] > np.linalg.norm(z.eta[:, 1:], axis=1)).all()
+    near, far = Run(s), Run(s)
+    found, other = near.from_near(u, t), far.from_start(STARTS[0])
+    assert found is not None
+    assert other is not None
+    assert relative(found.u, other.u) < 1e-9
+    assert near.iterations < far.iterations
+
+
 def test_newton_direction_solves_the_linearised_equations() -> None:
     """What the elimination returns is checked against the equations before any is eliminated."""
     s = scale(dome(3, 8, **STIFF).at(0.1))

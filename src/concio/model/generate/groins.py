@@ -246,7 +246,7 @@ def cross_vault(
         raise InputError(msg, where=where, hint="lower down the webs have no width left beside the springers")
     step = (np.pi / 2 - low) / (n + 0.5)
     angles = low + step * np.arange(n + 1)
-    foot = max(low - step, least + 0.02)
+    foot = max(low - step, least + min(0.02, 0.5 * (low - least)))
     rows: dict[tuple[int, int], list[SolidPiece]] = {}
     total = 2 * n + 1
     crown = 0.5 * step

@@ -30,7 +30,8 @@ def solve(
     homotopy : bool
         Walk from associated flow where the plain iteration fails, in the plane.
     near : arrays, optional
-        Displacements [m], t_n and t_t [kN] of a state from which Newton's method is tried first, in space.
+        Displacements [m], t_n and t_t [kN] of a state from which Newton's method is tried first, then the interior
+        point, in space.
 
     Returns
     -------
@@ -43,7 +44,10 @@ def solve(
     scaled = scale(problem.by(engine))
     run = Run(scaled, progress)
     try:
-        found = None if near is None or scaled.dim == 2 else run.newton(*scaled.bring(*near), WEIGHTS[:1])
+        found = None
+        if near is not None and scaled.dim == 3:
+            state = scaled.bring(*near)
+            found = run.newton(*state, WEIGHTS[:1]) or run.from_near(*state)
         for start in starts_for(scaled)[:starts]:
             found = found or run.from_start(start)
         if found is None and homotopy and scaled.dim == 2 and scaled.rough.any():

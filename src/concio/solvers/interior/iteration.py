@@ -45,6 +45,9 @@ from concio.solvers.interior.point import CONE, Point, Residuals
 START = 10.0
 """Size of forces, gaps and slips at the start, in scaled units."""
 
+NEAR = 1.0
+"""How far inside the cones a run begins near a known state, in scaled units."""
+
 SHARE = 0.99
 """Share of the step to the boundary that is taken."""
 
@@ -159,6 +162,26 @@ class InteriorPoint:
         eta = CONE[s.dim].coordinates(eta)
         one = np.full(s.pairs, length)
         return Point(np.zeros(len(s.f)), t, one, eta, one.copy())
+
+    def near(self, u: Array, t: Array, size: float = NEAR) -> Point:
+        """Return a point inside the cones around displacements (N,) and forces (m, d) that obey the joint laws nearly.
+
+        Normal forces, gaps and slip bounds are larger by ``size``; friction is no larger than its strength was.
+        """
+        s = self.problem
+        y, t_n, slip = s.position(u, t), np.clip(t[:, 0], 0.0, s.cone.cap), np.linalg.norm(t[:, 1:], axis=1)
+        strength = s.cone.linear_strength(t_n)
+        kept = np.minimum(1.0, strength / np.where(slip > 0, slip, 1.0))
+        t_n = np.where(s.cone.capped, np.minimum(t_n + size, 0.5 * (t_n + s.cone.cap)), t_n + size)
+        eta = y.copy()
+        eta[:, 0] = np.linalg.norm(y[:, 1:], axis=1) + size
+        return Point(
+            u,
+            np.column_stack([t_n, kept[:, None] * t[:, 1:]]),
+            np.maximum(y[:, 0], 0.0) + size,
+            CONE[s.dim].coordinates(eta),
+            np.full(s.pairs, size),
+        )
 
     def dilatancy(self, theta: float) -> Array:
         """Return the dilatancy (m,) of the homotopy at ``theta``."""

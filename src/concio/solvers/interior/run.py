@@ -176,6 +176,10 @@ class Run:
         z = self.engine.start(start.force, start.length)
         return self.close_in(z, f"interior point from {start}", start.share)
 
+    def from_near(self, u: Array, t: Array) -> Finished | None:
+        """Iterate from a state nearby, displacements (N,) and forces (m, d) scaled; return the exact answer or None."""
+        return self.close_in(self.engine.near(u, t), "interior point from nearby")
+
     def attempts(self, further: Iterable[Start] = ()) -> Iterator[Finished | None]:
         """Return what the interior point finds from each start in turn, and from further ones."""
         return (self.from_start(start) for start in (*starts_for(self.scaled), *further))
