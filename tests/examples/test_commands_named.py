@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import runpy
 import shlex
@@ -17,7 +18,7 @@ from commands import run
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 TEMPLATES = Path(concio.__file__).parent / "model" / "templates"
 COMMAND = re.compile(r"^#\s+concio (?P<words>[a-z]+ \S+\.toml(?: \S+)*?)(?:\s{2,}.*)?$", re.MULTILINE)
-DRAWN = {"facade.toml", "gate_from_a_drawing.toml", "draw_facade.py"}
+DRAWN = {"facade.toml", "gate_from_a_drawing.toml"}
 """Files that need ezdxf."""
 CODES = {"pushed_too_hard.toml": 3}
 """Exit codes that the files themselves announce; of all others 0."""
@@ -77,12 +78,22 @@ def test_a_template_does_what_its_first_lines_name(kind: str, tmp_path: Path, mo
         follow(command)
 
 
-@pytest.mark.long  # test_gallery runs what they hold, smaller where that says the same
-@pytest.mark.parametrize("name", sorted(p.name for p in EXAMPLES.glob("*.py")))
-def test_a_script_runs_by_its_name(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    if name in DRAWN and not find_spec("ezdxf"):
-        pytest.skip("drawings need ezdxf")
+@pytest.mark.parametrize("name", sorted(p.name for p in EXAMPLES.glob("[0-9]*.py")))
+def test_a_script_of_the_gallery_does_by_its_name_what_its_test_runs(name: str) -> None:
+    """Each is run once, by test_gallery: ``main`` with its defaults, or a smaller study where that says the same."""
+    text = (EXAMPLES / name).read_text(encoding="utf-8")
+    assert text.endswith('\n\n\nif __name__ == "__main__":\n    main()\n')
+    (main,) = (node for node in ast.parse(text).body if isinstance(node, ast.FunctionDef) and node.name == "main")
+    assert len(main.args.defaults) == len(main.args.args), "called without arguments"
+    assert not main.args.kwonlyargs
+
+
+@pytest.mark.skipif(not find_spec("ezdxf"), reason="drawings need ezdxf")
+def test_the_script_that_draws_the_facade_runs_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shutil.copytree(EXAMPLES, tmp_path / "examples")
+    drawing = tmp_path / "examples" / "facade.dxf"
+    drawing.unlink()
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("sys.argv", [name])
-    runpy.run_path(str(tmp_path / "examples" / name), run_name="__main__")
+    runpy.run_path(str(tmp_path / "examples" / "draw_facade.py"), run_name="__main__")
+    assert drawing.stat().st_size > 0
+    assert [p.stem for p in EXAMPLES.glob("[!0-9]*.py")] == ["draw_facade"], "another script would not be run"

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import typer
 
-from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, loaded
+from concio.cli.options import EngineOf, File, Json, Language, Quiet, UnitsOf, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar, verdict_so_far
@@ -44,7 +44,7 @@ def bridge(
     mexe_factor: Annotated[
         float | None, typer.Option("--mexe-factor", help="Span/rise factor of MEXE for flat arches.")
     ] = None,
-    language: Annotated[Literal["en", "it"], typer.Option("--language", help="Language of the report.")] = "en",
+    language: Language = "en",
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Directory for report, curve and figures.")] = None,
     engine: EngineOf = None,
     units: UnitsOf = None,

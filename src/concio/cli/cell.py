@@ -32,7 +32,7 @@ def cell(
     ] = None,
     stage: Annotated[
         list[str] | None,
-        typer.Option("--stage", help="Stage of a path: 'stress yy=-100,strain xy=1e-3' (repeatable, in order)."),
+        typer.Option("--stage", "-s", help="Stage of a path: 'stress yy=-100,strain xy=1e-3' (repeatable, in order)."),
     ] = None,
     strength: Annotated[bool, typer.Option("--strength/--no-strength", help="Compute the strength domain.")] = True,
     coulomb: Annotated[

@@ -301,8 +301,7 @@ def homogenise(
     certificate = _certify(own, problem, matrix, u, t_n, t_t, contact, sliding)
     if not certificate.certified:
         msg = f"the moduli do not stand up to their check: {certificate}"
-        raise SolverError(msg, hint="this is a bug in concio, or a matter or a matter or a matter of the scale of the "
-        "model")
+        raise SolverError(msg, hint="change the units or the scale of the cell; otherwise this is a bug in concio")
     return Moduli(own, matrix, contact, sliding, t_n, t_t, u, certificate)
 
 
