@@ -41,6 +41,7 @@ SCRIPT = (
 )
 STYLE = (
     ".film img,.film input{width:100%}#summary .facts th{width:26em}"
+    "@media screen and (max-width:700px){#summary .facts th{width:50%}}"
     "#signed td{height:3.2rem}"
     "@media print{.film input{display:none}.film img{display:none!important}"
     ".film img.printed{display:inline-block!important;width:49%;break-inside:avoid}}"

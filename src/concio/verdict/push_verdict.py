@@ -67,7 +67,7 @@ def push_verdict(found: PushResult) -> Verdict:
         attention=attention_of(found.model, seen),
         next_steps=(
             "Look at the events: where joints open, slip or close, and where ties yield or break.",
-            "'concio shake' tells what a motion of the ground does; a push is not a motion in time.",
+            "'concio shake' computes the response to a ground motion; a push is not a motion in time.",
         ),
     )
 
