@@ -225,14 +225,17 @@ def path_lines(found: LimitResult) -> list[str]:
     if path is None:
         ask = " (--path follows it)" if "by default" in found.path_note else ""
         return [] if found.path_note == NOT_ASKED else [f"{head}{found.path_note}{ask}"]
+    most = "no certified state carries more, and the structure can move at that load or provably not carry it"
     end = {
         "REACHED": "continued under constant load until it had moved far" if found.collapse_shown
         else "followed no further",
         "MECHANISM": "a mechanism has formed that moves without change of load",
-        "LIMIT": "no certified state carries more, and the structure can move at that load or provably not carry it",
+        "LIMIT": most,
         "CANCELLED": "stopped on request",
         "TOO_MANY": "stopped after more events than allowed",
     }.get(path.outcome.name, "could not be continued: no certified state was found further on")
+    if found.collapse_shown and path.outcome.name in ("LOST", "UNDECIDED"):
+        end = f"{most}; how it moves on was not followed to an end"
     if found.collapse_shown:
         lines = [f"{head}collapses at {found.coulomb:.6g}, {len(path.events):,} events"]
     else:

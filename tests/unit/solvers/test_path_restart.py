@@ -61,6 +61,9 @@ def test_a_lost_path_is_no_collapse_multiplier():
     assert found.coulomb == pytest.approx(0.4, rel=1e-9)
     assert "collapses at 0.4" in "\n".join(limit_lines(found))
     assert "asked for" not in "\n".join(limit_lines(found))
+    moves_on = "\n".join(limit_lines(replace(found, path=replace(found.path, outcome=Outcome.LOST))))
+    assert "no certified state carries more" in moves_on, "its peak is shown, whatever comes after"
+    assert "could not be continued" not in moves_on
     lost = replace(found, collapse_shown=False, path=replace(found.path, outcome=Outcome.LOST))
     assert np.isnan(lost.coulomb)
     assert lost.carried == found.coulomb
