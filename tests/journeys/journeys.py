@@ -305,6 +305,65 @@ def test_a_load_on_a_fixed_body_is_refused_where_it_is_clicked(page: Browser, cl
     assert page.js("document.querySelector('#pane-build [name=body]').value") == "b04"
 
 
+PLACES = """(() => { const names = ['#tab-tables', '#run', '#picture', '#attention', '#verdict-head'];
+    window.places = Object.fromEntries(names.map((name) => [name, []]));
+    const note = () => {
+        for (const name of window.concio ? names : []) {
+            const r = document.querySelector(name)?.getBoundingClientRect(), at = [r?.x, r?.y].map(Math.round).join();
+            if (r?.width && !window.places[name].includes(at)) window.places[name].push(at);
+        }
+        requestAnimationFrame(note);
+    };
+    note(); })()"""
+
+
+def test_nothing_moves_away_from_the_pointer_while_a_question_is_answered(page: Browser, client: Client) -> None:
+    script = page.send("Page.addScriptToEvaluateOnNewDocument", source=PLACES)["identifier"]
+    opened(page, client)
+    page.until("document.querySelector('#run') && !document.querySelector('#run').disabled")
+    aim = page.js("(() => { const r = document.querySelector('#tab-tables').getBoundingClientRect(); "
+                  "return [r.x + r.width / 2, r.y + r.height / 2]; })()")  # fmt: skip
+    for question in ("run", "limit", "run"):
+        page.click("#tab-ask")
+        page.click(f"[data-question={question}]")
+        page.click("#run")
+        assert page.js("!document.querySelector('#running').hidden"), "the page is busy as soon as it is asked"
+        page.click_at(*aim)
+        assert page.js("!document.querySelector('#pane-tables').hidden")
+        page.until(ANSWERED)
+        asked = page.js("window.concio.state().asked")
+        assert (asked["question"], asked["state"]) == (question, "done")
+    page.click("#tab-ask")
+    assert page.js("document.querySelector('#say').textContent") == ""
+    places = page.js("window.places")
+    assert {name: len(found) for name, found in places.items()} == dict.fromkeys(places, 1), places
+    page.send("Page.removeScriptToEvaluateOnNewDocument", identifier=script)
+
+
+def test_an_answer_that_is_computed_again_replaces_the_one_before(page: Browser, client: Client) -> None:
+    opened(page, client)
+    page.until("document.querySelector('#run') && !document.querySelector('#run').disabled")
+    lane = client.server.session.asked.lane
+    page.click("#run")
+    end = time.monotonic() + LATE
+    while lane.job is None or lane.job.request["kind"] != "ask" or lane.job.state != "working":
+        assert time.monotonic() < end
+        time.sleep(0.002)
+    os.kill(lane.pid or 0, signal.SIGKILL)
+    page.until("/ended from outside/.test(document.querySelector('#verdict-text').textContent)")
+    page.click("#run")
+    page.until(ANSWERED)
+    assert "In equilibrium" in page.js("document.querySelector('#verdict-text .sentence').textContent")
+    page.click("#tab-tables")
+    heads = "[...document.querySelectorAll('#pane-tables th')].some((e) => e.textContent === 'N [kN]')"
+    page.until(heads)
+    client.page = page.js("sessionStorage.getItem('page')")
+    client.do({"do": "set", "path": ["column", "width"], "value": 0.6})
+    page.until(f"{SETTLED} && !({heads})")
+    client.call("undo")
+    page.until(f"{SETTLED} && {heads}", "numbers of the model that was asked, which is here again")
+
+
 def test_two_pages_and_a_file_that_changes_underneath(page: Browser, client: Client) -> None:
     opened(page, client)
     other = Client(client.server, "another page")

@@ -38,11 +38,17 @@ class Asked:
         The folder of the window.
     worker : sequence of str
         Starts the process that computes.
+
+    Attributes
+    ----------
+    number : int
+        How many questions were asked: a page recognises by it what was sent before the last one.
     """
 
     def __init__(self, folder: Path, worker: Sequence[str]) -> None:
         self.folder = folder
         self.lane = Lane(worker)
+        self.number = 0
         self._warm = False
         self._guard = threading.RLock()
         self._now: Answer | None = None
@@ -65,8 +71,10 @@ class Asked:
 
     def forget(self) -> None:
         """Give up the question: another document is opened."""
-        self.cancel()
-        self._now, self._job, self._results, self._answers = None, None, None, {}
+        with self._guard:
+            self.cancel()
+            self.number += 1
+            self._now, self._job, self._results, self._answers = None, None, None, {}
 
     def ask(self, doc: Document, told: Mapping[str, Any]) -> None:
         """Ask a question of a document; what is being computed is given up.
@@ -92,14 +100,15 @@ class Asked:
         with self._guard:
             self.cancel()
             self._warm = True
-            self._now, self._job = now, None
-            self._answers.pop(key, None)
             kept = results.kept(key)
+            job = None if kept is not None else self._sent(doc, name, words, results, key)
+            self.number += 1
+            self._now, self._job = now, job
+            self._answers.pop(key, None)
             if kept is not None:
                 self._answers[key] = {**kept, "kept": True}
-                return
-            self._job = self._sent(doc, name, words, results.place(key))
-            threading.Thread(target=self._wait, args=(self._job, now, results), daemon=True).start()
+        if job is not None:
+            threading.Thread(target=self._wait, args=(job, now, results), daemon=True).start()
 
     def tidy(self, doc: Document) -> None:
         """Remove copies of the text that a killed program has left beside the file."""
@@ -109,14 +118,18 @@ class Asked:
                     with suppress(OSError):
                         left.unlink()
 
-    def _sent(self, doc: Document, name: str, words: list[str], out: Path) -> Job:
+    def _sent(self, doc: Document, name: str, words: list[str], results: Results, key: str) -> Job:
         """Send a question with a copy of the text beside the file: what it names is relative to that."""
         copy = doc.file.with_name(f".{doc.file.stem[:60]}.{secrets.token_hex(6)}.toml")
         try:
+            out = results.place(key)
             copy.write_text(doc.text, encoding="utf-8")
         except OSError as error:
+            with suppress(OSError):
+                copy.unlink()
             msg = f"cannot write there: {error.strerror or error}"
-            raise InputError(msg, where=str(doc.file.parent), hint="questions need a copy there") from None
+            hint = "questions need a copy of the text there, and their answers a folder"
+            raise InputError(msg, where=str(doc.file.parent), hint=hint) from None
         argv = [name, str(copy), *words, "--out", str(out)]
         return self.lane.ask(
             {"kind": "ask", "argv": argv, "out": str(out), "file": str(copy), "name": doc.file.name}
@@ -126,15 +139,19 @@ class Asked:
         job.over.wait()
         with suppress(OSError):
             Path(job.request["file"]).unlink()
-        if job.state == "done":
-            answer = {**job.answer, **now}
-            if answer["code"] in (0, 3, 4):
-                with suppress(OSError):
-                    results.keep(now["key"], answer)
+        with self._guard:
+            again = self._now is not now and self._now is not None and self._now["key"] == now["key"]
+            if again or job.state == "cancelled":  # what is asked again is computed into the same directory
+                return
+            if job.state == "done":
+                answer = {**job.answer, **now}
+                if answer["code"] in (0, 3, 4):
+                    with suppress(OSError):
+                        results.keep(now["key"], answer)
+            else:
+                message = "\n".join(filter(None, map(job.answer.get, ("what", "hint"))))
+                answer = {**now, "code": 1, "lines": [], "verdict": None, "message": message}
             self._answers[now["key"]] = answer
-        elif job.state == "error":
-            message = "\n".join(filter(None, map(job.answer.get, ("what", "hint"))))
-            self._answers[now["key"]] = {**now, "code": 1, "lines": [], "verdict": None, "message": message}
 
     def _results_of(self, doc: Document) -> Results:
         if self._results is None:

@@ -52,13 +52,23 @@ class Job:
     over: threading.Event = field(default_factory=threading.Event)
     shown: threading.Event = field(default_factory=threading.Event)
     """Set as soon as there is anything to show: an early answer, or the end."""
+    _guard: threading.Lock = field(default_factory=threading.Lock)
+
+    def start(self) -> bool:
+        """Put down that the request is being computed; return False where it was given up before."""
+        with self._guard:
+            if self.over.is_set():
+                return False
+            self.state = "working"
+            return True
 
     def end(self, state: State, answer: Any = None) -> None:
         """Put down how the request ended, once."""
-        if not self.over.is_set():
-            self.state, self.answer, self.ended = state, answer, time.monotonic()
-            self.over.set()
-            self.shown.set()
+        with self._guard:
+            if not self.over.is_set():
+                self.state, self.answer, self.ended = state, answer, time.monotonic()
+                self.over.set()
+                self.shown.set()
 
     def show(self, early: Any) -> None:
         """Put down what can be shown before the answer is there."""
@@ -156,8 +166,7 @@ class Lane:
                 process, lives = self._started(), True
             if process is None:
                 job.end("error", {"what": "no process could be started to compute", "where": "", "hint": "try again"})
-            else:
-                job.state = "working"
+            elif job.start():
                 lives = _exchange(process, job)
             with self._guard:
                 self.job = None

@@ -190,6 +190,8 @@ class Handler(BaseHTTPRequestHandler):
             found = {"what": error.what, "where": error.where or "", "hint": error.hint or ""}
             self._send(HTTPStatus.CONFLICT, "application/json", _json({"error": found}))
             return
+        except OSError as error:
+            raise Refused(HTTPStatus.CONFLICT, f"a file cannot be read or written: {error.strerror or error}") from None
         except (KeyError, TypeError, ValueError) as error:
             raise Refused(HTTPStatus.BAD_REQUEST, f"this request cannot be read: {error}") from None
         self._send(HTTPStatus.OK, "application/json", _json(answer))

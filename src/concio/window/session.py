@@ -137,7 +137,8 @@ class Session:
         """Return what may have changed: the document, the picture, the question that is being answered."""
         page = str(told.get("page", ""))
         holds = self._holds(page)
-        found: Answer = {"asked": self.asked.state(), "mine": holds, "folder": self.folder.name}
+        number = self.asked.number  # read before the state: the state is never older than its number
+        found: Answer = {"asking": number, "asked": self.asked.state(), "mine": holds, "folder": self.folder.name}
         doc = self.document
         if doc is None:
             return {**found, "document": None}

@@ -25,6 +25,7 @@ from concio.cli.main import COMMANDS
 from concio.window.document import Document
 from concio.window.lane import Lane
 from concio.window.questions import QUESTIONS, arguments, python_text
+from concio.window.results import Results
 from concio.window.server import LARGEST_DROP, LARGEST_REQUEST
 from samples import sample
 from windows import LATE, WORKER, Client, window
@@ -233,6 +234,72 @@ def test_a_lane_answers_the_newest_and_ends_what_is_cancelled() -> None:
         assert last.state == "done"
     finally:
         lane.close()
+
+
+class GivenUpWhileItStarts(Lane):
+    """A lane whose first request is given up in the moment in which its process starts."""
+
+    given_up = False
+
+    def _started(self) -> Any:
+        process = super()._started()
+        if not self.given_up:
+            self.given_up = True
+            self.cancel()
+        return process
+
+
+def test_a_request_that_is_given_up_while_its_process_starts_stays_given_up() -> None:
+    code = ("import sys, json\nfor line in sys.stdin:\n r = json.loads(line)\n"
+            " print(json.dumps({'id': r['id'], 'done': 1}), flush=True)\n")  # fmt: skip
+    lane = GivenUpWhileItStarts([sys.executable, "-c", code])
+    try:
+        first = lane.ask({"kind": "x"})
+        assert first.over.wait(LATE)
+        last = lane.ask({"kind": "x"})
+        assert last.over.wait(LATE)
+        assert (first.state, last.state) == ("cancelled", "done")
+    finally:
+        lane.close()
+
+
+def test_a_question_that_cannot_be_asked_is_refused_and_not_waited_for(
+    client: Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    document = client.server.session.document
+    assert document is not None
+    results = document.folder / "results"
+    results.write_text("in the way\n", encoding="utf-8")
+    refused = client.call("ask", question="run")
+    assert "cannot write there" in refused["error"]["what"]
+    assert client.call("state")["asked"] is None
+    assert [p.name for p in document.file.parent.glob(".*.toml")] == []
+    results.unlink()
+    client.call("ask", question="run")
+    number = client.call("state")["asking"]
+    monkeypatch.setattr(Results, "place", lambda *_: (results / "missing" / "place").mkdir())
+    assert "error" in client.call("ask", question="limit")
+    state = client.call("state")
+    assert state["asking"] == number
+    assert state["asked"]["question"] == "run"
+    assert state["asked"]["state"] == "cancelled"
+
+
+def test_a_question_has_a_number_and_so_has_what_is_told_of_it(client: Client) -> None:
+    before = client.call("state")["asking"]
+    asked = client.call("ask", question="run")
+    assert asked["asking"] == before + 1
+    assert client.call("cancel")["asking"] == before + 1
+    assert client.call("ask", question="run")["asking"] == before + 2
+    assert client.call("new", kind="column")["asking"] > before + 2
+
+
+def test_a_file_that_cannot_be_written_is_told(client: Client, file: Path) -> None:
+    path = f"/{client.server.token}/drop"
+    (file.parent / "wall.toml").mkdir()
+    status, _, body = client.raw("POST", path, b"x = 1\n", X_Name="wall.toml", X_Page=client.page)
+    assert status == 409
+    assert "cannot be read or written" in json.loads(body)["error"]["what"]
 
 
 @pytest.mark.long

@@ -3,11 +3,12 @@ import { t, el, field, say, language, spoken } from "./words.js";
 import { call } from "./net.js";
 import { view } from "./picture.js";
 
-let questions = [], chosen = "run", controls = {}, asked = () => {}, doc = () => null;
+let questions = [], chosen = "run", controls = {}, asked = () => {}, doc = () => null, pending = 0;
 const answers = [];
 export let answer = null;
 
 export function setAsk(list, sender, document_) { questions = list; asked = sender; doc = document_; }
+const $ = (id) => document.getElementById(id);
 
 function fits(q) { return !q.needs.length || (view.shown && q.needs.some((n) => view.shown.tables.includes(n) || (n === "vehicle" && view.shown.tables.includes("bridge") && view.shown.tables.includes("vehicle")))); }
 
@@ -23,8 +24,8 @@ export function questionPane(pane) {
   pane.replaceChildren(
     el("div", { class: "choices", role: "group", "aria-label": t("ask") }, ...buttons), el("p", {}, t(`a_${now.name}`)),
     ...fields, el("section", {}, el("h2", {}, t("acts_on")), acts),
-    el("div", { class: "row" }, el("button", { class: "main", id: "run", disabled: !view.shown || Boolean(view.shown.fault), onclick: run }, t("run_it"))),
     el("p", { class: "quiet" }, `${t("all_options")} `, el("code", { lang: "en" }, `concio ${now.name} --help`)),
+    el("div", { class: "foot" }, el("button", { class: "main", id: "run", disabled: !view.shown || Boolean(view.shown.fault), onclick: run }, t("run_it"))),
   );
   showActs(acts, now);
 }
@@ -74,14 +75,17 @@ async function showActs(place, question) {
   } catch (error) { place.replaceChildren(el("p", {}, error.text || error.message)); }
 }
 
+/* the page is busy at once, not only when the program has said so: the answer that is shown is then an earlier one */
 export async function run() {
-  const found = await asked(chosen, options());
-  if (found) say(t("working"));
+  pending += 1;
+  busy({ question: chosen });
+  say(t("working"));
+  await asked(chosen, options(), () => { pending -= 1; });
 }
 
 /* the state of the question in the verdict's place */
 function howFar(progress) {
-  if (!progress) return "";
+  if (progress?.iteration === undefined) return "";
   const parts = [t("iteration", progress)];
   if (progress.residual) parts.push(t("residual", progress));
   if (progress.left) parts.push(t("time_left", progress));
@@ -89,27 +93,45 @@ function howFar(progress) {
 }
 
 let shownKey = "", early = "";
+function busy(now) {
+  const bar = $("progress"), share = now.progress?.share, lines = (now.found || []).join("\n");
+  if (share > 0) bar.value = share; else bar.removeAttribute("value");
+  $("progress-text").textContent = `${now.early ? t("report_follows") : `${t("working")}: ${t(`q_${now.question}`)}`} ${Math.round(now.seconds || 0)} ${t("seconds")}. ${now.early ? "" : howFar(now.progress)}`;
+  $("found").textContent = lines; $("found").hidden = !lines;
+  $("running").hidden = false;
+  $("verdict-text").classList.toggle("before", !now.early);
+  shownKey = "";
+}
+function rests() {
+  $("running").hidden = $("found").hidden = true;
+  $("verdict-text").classList.remove("before");
+  if ($("say").textContent === t("working")) say("");
+}
+
 export async function follow(state, after) {
-  const running = document.getElementById("running"), now = state.asked;
-  const busy = Boolean(now) && (now.state === "working" || now.state === "waiting");
-  running.hidden = !busy;
-  if (busy) {
-    const bar = document.getElementById("progress"), share = now.progress?.share;
-    if (share > 0) bar.value = share; else bar.removeAttribute("value");
-    document.getElementById("progress-text").textContent = `${now.early ? t("report_follows") : `${t("working")}: ${t(`q_${now.question}`)}`} ${Math.round(now.seconds || 0)} ${t("seconds")}. ${now.early ? "" : howFar(now.progress)}`;
-    document.getElementById("found").textContent = (now.found || []).join("\n");
-    shownKey = "";
-    if (now.early && early !== now.key + language) { early = now.key + language; answerSoon(now); }
+  if (pending) return;
+  const now = state.asked;
+  if (now && ["working", "waiting"].includes(now.state)) {
+    busy(now);
+    const key = `${state.asking} ${language}`;
+    if (now.early && early !== key) { early = key; answerSoon(now); }
     return;
   }
-  if (!now) { if (answer) { answer = null; shownKey = ""; } return verdict(after); }
-  if (now.state === "cancelled") { if (shownKey !== "cancelled") { shownKey = "cancelled"; say(t("cancelled")); verdict(after, t("cancelled")); } return; }
-  const key = `${now.key} ${state.document?.hash} ${language}`;
+  if (!now) { rests(); if (answer) { answer = null; shownKey = ""; } return verdict(after); }
+  if (now.state === "cancelled") { rests(); if (shownKey !== "cancelled") { shownKey = "cancelled"; say(t("cancelled")); verdict(after, t("cancelled")); } return; }
+  const key = `${state.asking} ${state.document?.hash} ${language}`;
   if (key === shownKey) return;
   shownKey = key;
-  if (!answer || answer.key !== now.key || answer.question !== now.question) {
-    try { if (answer) answers.unshift(answer); answer = await call("result", { key: now.key }); } catch { shownKey = ""; return; }
+  if (answer?.asking !== state.asking) {
+    const number = state.asking;
+    try {
+      const found = await call("result", { key: now.key });
+      if (key !== shownKey) return; /* something else was asked meanwhile */
+      if (answer && answer.key !== found.key) answers.unshift(answer);
+      answer = { ...found, asking: number };
+    } catch { if (key === shownKey) shownKey = ""; return; }
   }
+  rests();
   verdict(after);
 }
 
@@ -140,13 +162,13 @@ export function answerBox(found, old) {
 
 /* the verdict is known, its report is still being written */
 function answerSoon(now) {
-  const place = document.getElementById("verdict-text");
+  const place = $("verdict-text");
   place.dataset.note = "early";
   place.replaceChildren(answerBox({ lines: [], ...now.early }, now.hash !== doc()?.hash));
 }
 
 function verdict(after, note = "") {
-  const place = document.getElementById("verdict-text"), now = doc();
+  const place = $("verdict-text"), now = doc();
   const parts = note ? [el("p", {}, note)] : [];
   if (answer) parts.push(answerBox(answer, now && answer.hash !== now.hash));
   else if (!note) parts.push(el("p", { class: "quiet" }, t("no_verdict")));

@@ -6,13 +6,15 @@ import { drawFilm, filmOf, numbersOf, ringsOf } from "./film.js";
 import { pose } from "./space.js";
 import { answerBox, askedOf } from "./ask.js";
 
-let known = [], first = "", second = "", doc = () => null, films = new Map(), told = new Map(), numbers = null, changed = () => {};
+let known = [], first = "", second = "", doc = () => null, films = new Map(), told = new Map(), numbers = null, numbered = "", changed = () => {};
 let step = 0, size = 50, over = false, playing = 0, phase = 1;
 export function setLook(document_, tables) { doc = document_; changed = tables; }
 
 async function filmFor(key) {
-  if (!films.has(key)) films.set(key, filmOf((await call("film", { key })).film));
-  return films.get(key);
+  if (films.has(key)) return films.get(key);
+  const found = filmOf((await call("film", { key })).film);
+  if (found) films.set(key, found);
+  return found;
 }
 async function toldOf(key) {
   if (!told.has(key)) told.set(key, await call("result", { key }));
@@ -20,14 +22,19 @@ async function toldOf(key) {
 }
 
 /* a new answer: it is the one that is looked at; its numbers go into the tables while the model is the one that was asked */
+let newest = 0;
 export async function answered(found) {
+  const mine = (newest += 1);
   stop();
   first = found ? found.key : ""; numbers = null; step = Infinity;
-  if (found && found.hash === doc()?.hash) numbers = numbersOf(await filmFor(found.key).catch(() => null));
+  films.delete(first); told.delete(first);
+  const film = found ? await filmFor(found.key).catch(() => null) : null;
+  if (mine !== newest) return;
+  numbers = numbersOf(film); numbered = found?.hash || "";
   changed();
 }
-export const resultNumbers = () => (numbers && view.shown ? numbers : null);
-export function modelChanged() { numbers = null; stop(); rest(); }
+export const resultNumbers = () => (view.shown && numbered === doc()?.hash ? numbers : null);
+export function modelChanged() { stop(); rest(); }
 
 export async function lookPane(into) {
   try { known = doc() ? (await call("answers")).answers : []; } catch { known = []; }

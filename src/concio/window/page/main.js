@@ -37,6 +37,7 @@ const NOTHING = { dim: 2, title: "", tables: [], bodies: [], joints: [], loads: 
 /* --- the state --- */
 function take(found) {
   if (doc && found.document && found.document.name === doc.name && found.document.version < doc.version) return true; /* overtaken */
+  if (found.asking < state.asking) found = { ...found, asking: state.asking, asked: state.asked }; /* told before the last question */
   state = { ...state, ...found };
   const before = doc;
   doc = found.document ? { ...(before && before.name === found.document.name ? before : {}), ...found.document } : null;
@@ -45,9 +46,13 @@ function take(found) {
   if (changed) { modelChanged(); if (!doc || (before && before.name !== doc.name)) { clear(); forgetLayers(); pictured = ""; } refresh(["data", "text", "python"]); picture(); }
   else if (before && before.saved !== doc.saved) refresh(["python"]);
   tabs();
-  follow(state, () => { const key = answer ? answer.key + answer.question : ""; if (key !== shownReport) { shownReport = key; refresh(["report", "python", "look"]); answered(answer); } });
+  followed();
   if (!doc && !$("start").open) start();
   return true;
+}
+
+function followed() {
+  follow(state, () => { const key = answer ? `${answer.asking} ${answer.key}` : ""; if (key !== shownReport) { shownReport = key; answered(answer); refresh(["report", "python", "look"]); } });
 }
 
 function header() {
@@ -64,13 +69,15 @@ function header() {
 }
 
 const seen = () => (doc ? { version: doc.version, name: doc.name } : {});
+let timer = 0;
+function pollIn(milliseconds) { clearTimeout(timer); timer = setTimeout(poll, milliseconds); }
 async function poll() {
   try {
     take(await call("state", seen()));
     gone = 0; banner("gone");
   } catch { if ((gone += 1) > 1) banner("gone", t("server_gone")); }
   const busy = state.asked && ["working", "waiting"].includes(state.asked.state);
-  setTimeout(poll, gone ? 2000 : busy ? 250 : document.hidden ? 5000 : 1000);
+  pollIn(gone ? 2000 : busy ? 250 : document.hidden ? 5000 : 1000);
 }
 
 let again = false;
@@ -120,7 +127,10 @@ const redo = () => next(() => tried(async () => take(await call("redo", seen()))
 const save = () => tried(async () => { take(await call("save", seen())); say(t("saved")); });
 const cancel = () => tried(async () => take(await call("cancel", seen())));
 const resolve = (keep) => tried(async () => take(await call("resolve", { keep, ...seen() })));
-const ask = (question, options) => tried(async () => take(await call("ask", { question, options, ...seen() })));
+async function ask(question, options, told) {
+  if (!await tried(async () => take(await call("ask", { question, options, ...seen() }).finally(told)))) followed();
+  pollIn(100);
+}
 
 /* --- tabs --- */
 function tabs() {
@@ -286,7 +296,7 @@ async function begin() {
   label();
   take(hello);
   refresh(TABS, true);
-  setTimeout(poll, 500);
+  pollIn(500);
   window.concio = { view, state: () => ({ ...state, document: doc }), pictured: () => pictured, idle: () => !open };
 }
 addEventListener("pagehide", goodbye);
