@@ -10,6 +10,7 @@ import typer
 
 from concio.cli.outcome import guarded, say
 from concio.cli.output import check_directory, check_file, replaced_directory, replaced_file
+from concio.errors import InputError
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
@@ -31,11 +32,15 @@ def export(
         Path | None, typer.Option("--out", "-o", help="Directory (vtu, csv) or file (all others) to write.")
     ] = None,
     scale: Annotated[
-        float, typer.Option("--scale", help="Scale of the displacements of a drawing; 0 draws the model as it was.")
-    ] = 1.0,
+        float | None,
+        typer.Option("--scale", help="Scale of displacements, default 1; 0 draws the model as it was."),
+    ] = None,
     unit: Annotated[
         str | None, typer.Option("--unit", help="Unit of a drawing; default that of the drawing read, else m.")
     ] = None,
+    results: Annotated[
+        bool, typer.Option("--results", help="In a DXF drawing: the model as it was, and what was found on own layers.")
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> int:
     """Write a result for ParaView (vtu), spreadsheets (csv), drawing programs (dxf), or its model (toml).
@@ -48,8 +53,9 @@ def export(
     from concio.io.owned_dir import add_own
     from concio.io.result_file import load_result
 
-    target = out if out is not None else directory / NAMES.get(to, f"deformed.{to}")
+    target = out if out is not None else directory / NAMES.get(to, "results.dxf" if results else f"deformed.{to}")
     result = load_result(directory)
+    _check_results(result, to, results=results)
     if to in ("vtu", "csv"):
         check_directory(target)
         with replaced_directory(target) as fresh:
@@ -58,12 +64,25 @@ def export(
     else:
         check_file(target, force=force)
         with replaced_file(target) as fresh:
-            _write_file(result, to, fresh, scale, unit)
+            if results:
+                from concio.io.dxf_results import write_results_dxf
+
+                write_results_dxf(fresh, result, scale=scale, unit=unit)
+            else:
+                _write_file(result, to, fresh, 1.0 if scale is None else scale, unit)
         written = [target]
         add_own(directory, written)
     for path in written:
         say(str(path))
     return 0
+
+
+def _check_results(result: Result, to: str, *, results: bool) -> None:
+    """Raise where layers of results are asked for and cannot be drawn."""
+    if results and (to != "dxf" or result.model.dim == 3):
+        msg = "--results draws layers into a DXF drawing of a plane model"
+        hint = "write --to dxf" if to != "dxf" else "in space, --to vtu has joints with their forces and states"
+        raise InputError(msg, where=f"--to {to}", hint=hint)
 
 
 def _write_tables(result: Result, to: str, place: Path) -> list[Path]:

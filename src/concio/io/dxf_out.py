@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -24,6 +26,28 @@ UNITS = {
 """Code of ``$INSUNITS`` and length [m] of each unit."""
 FORBIDDEN = re.compile(r"[<>/\\\":;?*|=`,\x00-\x1f]")
 """Characters that names of layers must not hold."""
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A line, a circle or a text on a layer.
+
+    Parameters
+    ----------
+    layer : str
+    points : (n, 2) array
+        Of a line; one point is the centre of a circle, or where a text begins [m].
+    closed : bool
+    text : str
+    size : float
+        Radius of a circle, height of a text [m].
+    """
+
+    layer: str
+    points: Array
+    closed: bool = False
+    text: str = ""
+    size: float = 0.0
 
 
 def unit_of(model: Model) -> str:
@@ -56,6 +80,7 @@ def write_dxf(
     unit: str = "m",
     texts: bool = True,
     holes: Sequence[Sequence[Array]] = (),
+    more: Sequence[Drawn] = (),
 ) -> None:
     """Write outlines to a DXF drawing.
 
@@ -76,6 +101,8 @@ def write_dxf(
         Write the names.
     holes : sequence of sequences of (n, 2) arrays, optional
         Holes of each outline [m]; they go on the layer ``CONCIO_HOLES``.
+    more : sequence of Drawn
+        What else is drawn.
 
     Raises
     ------
@@ -99,7 +126,7 @@ def write_dxf(
     document = ezdxf.new("R2010")
     document.header["$INSUNITS"] = code
     rings = [ring for own in holes for ring in own]
-    extra = ["CONCIO_NAMES"] * texts + ["CONCIO_HOLES"] * bool(rings)
+    extra = ["CONCIO_NAMES"] * texts + ["CONCIO_HOLES"] * bool(rings) + [one.layer for one in more]
     for layer in dict.fromkeys([*layers, *extra]):
         if layer and layer not in document.layers:
             document.layers.add(layer, color=(colours or {}).get(layer, 7))
@@ -115,8 +142,22 @@ def write_dxf(
             text = space.add_text(name, height=max(height, 1e-6), dxfattribs={"layer": "CONCIO_NAMES"})
             inner = [np.asarray(hole, dtype=float) / metres for hole in (holes[k] if holes else ())]
             text.set_placement(_inside(points, inner), align=TextEntityAlignment.LEFT)
+    for one in more:
+        _draw(space, one, metres)
     with whole_file(Path(path)) as fresh:
         document.saveas(fresh)
+
+
+def _draw(space: Any, one: Drawn, metres: float) -> None:
+    """Draw a line, a circle or a text; ``metres`` is the length of the unit of the drawing [m]."""
+    points = (np.asarray(one.points, dtype=float) / metres).tolist()
+    own, size = {"layer": one.layer}, one.size / metres
+    if one.text:
+        space.add_text(one.text, height=max(size, 1e-6), dxfattribs=own).set_placement(points[0])
+    elif len(points) == 1:
+        space.add_circle(points[0], size, dxfattribs=own)
+    else:
+        space.add_lwpolyline(points, close=one.closed, dxfattribs=own)
 
 
 def _inside(points: Array, holes: Sequence[Array]) -> tuple[float, float]:

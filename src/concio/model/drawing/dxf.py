@@ -27,7 +27,7 @@ What a layer means is said in a table (:mod:`concio.model.drawing.layers`), or b
     The same for a traction along x or y [kN/m2].
 ``CONCIO_LOAD_FX_<value>_<group>``, ``..._FY_...``
     A POINT on a block on which a force acts [kN]; ``CONCIO_LOAD_FY_-5_LIVE`` is 5 kN downwards.
-``CONCIO_IGNORE...``, ``DEFPOINTS``, and layers that are off or frozen
+``CONCIO_IGNORE...``, ``CONCIO_RESULT...``, ``DEFPOINTS``, and layers that are off or frozen
     Left out, and counted.
 Any other layer
     Blocks; the layer's name is kept, and is the key that gives them a material.

@@ -148,7 +148,7 @@ class Layers:
 
 def named_use(word: str) -> LayerUse | str:
     """Return what the name of a layer says, in upper case: a block where it says nothing, a sentence where it errs."""
-    if word == "DEFPOINTS" or word.startswith("CONCIO_IGNORE"):
+    if word == "DEFPOINTS" or word.startswith(("CONCIO_IGNORE", "CONCIO_RESULT")):
         return LayerUse("ignore")
     if word == "CONCIO_FIXED":
         return LayerUse("fixed")
