@@ -127,7 +127,7 @@ def page(
         "TITLE": escape(last.model.title or "Result"),
         "NAME": _title(last),
         "STYLE": resource("report.css") + (resource("space_view.css") if space else ""),
-        "SCRIPT": resource("space_view.js" if space else "view.js") + resource("print.js"),
+        "SCRIPT": resource("space_view.js" if space else "view.js") + resource("names.js") + resource("print.js"),
         "VIEW": resource("space_view.html" if space else "view.html"),
         "VERDICT": verdict,
         "MODEL": _model(last),

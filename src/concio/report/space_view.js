@@ -437,9 +437,15 @@
     fingers.set(e.pointerId, [e.offsetX, e.offsetY, was[2]]);
     draw();
   });
+  function choose(picked) {
+    view.picked = picked; recolour(); describe(); draw();
+    const j = picked && picked.body === undefined ? pieces.face[picked.cell] : -1;
+    const of = !picked ? [] : j < 0 ? [picked.body] : [joints.a[j], joints.b[j]];
+    document.dispatchEvent(new CustomEvent("concio-picked", { detail: of }));
+  }
   const lift = (e) => {
     const was = fingers.get(e.pointerId); fingers.delete(e.pointerId);
-    if (was && moved < 5 && was[2] !== 2 && e.type === "pointerup") { view.picked = pick(e.offsetX, e.offsetY); recolour(); describe(); draw(); }
+    if (was && moved < 5 && was[2] !== 2 && e.type === "pointerup") choose(pick(e.offsetX, e.offsetY));
   };
   canvas.addEventListener("pointerup", lift); canvas.addEventListener("pointercancel", lift);
   canvas.addEventListener("wheel", (e) => { if (!e.ctrlKey && !e.metaKey) return; e.preventDefault(); view.distance *= Math.exp(0.0012 * e.deltaY); draw(); }, { passive: false });
@@ -493,5 +499,6 @@
   $("forces-label").hidden = !stepAt(view.step).force; $("crosses-label").hidden = !(mostStress > 0);
   setStep(); resize(); fit(); draw();
   new ResizeObserver(() => requestAnimationFrame(resize)).observe(canvas);
+  window.concioNames = { names: bodies.name, choose: (body) => choose({ body }), node: canvas };
   window.concioView = { view, draw, pick, render, fit, setStep };
 })();

@@ -315,7 +315,12 @@
     }
     return null;
   }
-  function choose(picked) { view.picked = picked; inform(); draw(); }
+  function choose(picked) {
+    view.picked = picked; inform(); draw();
+    const j = picked && picked.body === undefined ? pieces.face[picked.piece] : -1;
+    const of = !picked ? [] : j < 0 ? [picked.body] : [joints.a[j], joints.b[j]];
+    document.dispatchEvent(new CustomEvent("concio-picked", { detail: of }));
+  }
 
   /* controls */
   const scaleOf = (at) => (at / 100) ** 2 * data.scale;
@@ -405,5 +410,6 @@
   /* in the next frame: changing the height while the observer reports would make it report again at once */
   new ResizeObserver(() => requestAnimationFrame(() => { if (canvas.clientWidth !== width) resize(); })).observe(canvas);
   if (data.left_out) complain(`${say("Steps left out of this view to keep the file small")}: ${data.left_out}`);
+  window.concioNames = { names: bodies.name, choose: (body) => choose({ body }), node: canvas };
   window.concio = { view, data, bodies, pieces, joints, stepAt, setStep, setScale, choose, pick, paint, X, Y, middle };
 })();

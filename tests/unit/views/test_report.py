@@ -8,6 +8,7 @@ import shutil
 import subprocess
 from dataclasses import replace
 from html.parser import HTMLParser
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -225,6 +226,14 @@ try {
     const last = picture(); fire("step", "0", "input"); report.first = document.getElementById("step-text").textContent;
     report.stepChanges = picture() !== last;
   }
+  const own = concio.bodies.name[body];
+  const found = [...document.querySelectorAll("button.found")].filter((b) => b.textContent === own);
+  document.getElementById("fit").click(); concio.choose(null); report.before = words();
+  found[0].click(); report.byName = words(); report.marked = found.every((b) => b.classList.contains("picked"));
+  report.others = [...document.querySelectorAll("button.found.picked")].every((b) => b.textContent === own);
+  concio.choose(null); report.none = document.querySelectorAll("button.found.picked").length;
+  press(concio.X(c[2 * body]), concio.Y(c[2 * body + 1]));
+  report.reverse = found.every((b) => b.classList.contains("picked"));
   report.overflow = document.documentElement.scrollWidth - document.documentElement.clientWidth;
 } catch (error) { report.failure = String(error.stack || error); }
 report.errors = document.getElementById("errors").textContent;
@@ -283,7 +292,37 @@ def test_report_works_in_a_browser(arched: Result, tmp_path: Path, size: str) ->
     assert report["joint"]["normal force N"] == arched.joints.N[joint]
     assert report["joint"]["force here"] == arched.contacts.normal_force[k]
     assert report["first"] == "half"
+    assert arched.model.bodies[body].name not in report["before"]
+    assert arched.model.bodies[body].name in report["byName"]
+    assert report["marked"]
+    assert report["others"]
+    assert report["none"] == 0
+    assert report["reverse"]
     assert report["stepChanges"]
+
+
+FIND = """<script>
+const found = [...document.querySelectorAll("button.found")], out = document.createElement("pre"); out.id = "outcome";
+found[found.length - 1].click();
+out.textContent = JSON.stringify([found[found.length - 1].textContent, document.getElementById("info").textContent,
+  [...new Set([...document.querySelectorAll("button.found.picked")].map((b) => b.textContent))]]);
+document.body.append(out);
+</script></body>"""
+
+
+@pytest.mark.long
+@pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
+def test_a_name_in_a_table_finds_its_block_in_space(tmp_path: Path) -> None:
+    stones = concio.load(Path(str(files("concio.model") / "templates" / "drums.toml")))
+    file = tmp_path / "report.html"
+    page = report_html(concio.solve(stones), figures=False)
+    file.write_text(page.replace("</body>", FIND), encoding="utf-8")
+    found = re.search(r'<pre id="outcome">(.*?)</pre>', browse(file, tmp_path / "profile"), re.DOTALL)
+    assert found
+    name, words, marked = json.loads(found[1])
+    assert name in {b.name for b in stones.bodies}
+    assert words.startswith(name)
+    assert marked == [name]
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
