@@ -49,6 +49,10 @@ FURTHER = (1.0, 1e3, 1e6)
 STARTS = {2: 1, 3: 0}
 """Starts of the interior point from far, by dimension: a step that needs more is halved instead (decision 0337)."""
 
+LAST_STARTS = 4
+"""Starts in the plane for a step that cannot be halved any more: what is carried must not end where rounding, the order
+of the joints or a mirror image makes one start fail."""
+
 
 @short_repr
 @dataclass(frozen=True, eq=False)
@@ -131,8 +135,11 @@ def load_steps(
             failed = float(np.nanmin([failed, bound]))
             size *= 0.5
             continue
-        solution = _step(step_problem(path, state, trial), state, progress)
+        problem = step_problem(path, state, trial)
+        solution = _step(problem, state, progress)
         solves += 1
+        if dead.dim == 2 and 0.5 * size <= smallest and solution.status is Status.GAVE_UP:
+            solution, solves = _step(problem, state, progress, starts=LAST_STARTS), solves + 1
         if solution.status is Status.CANCELLED:
             break
         if not solution.solved:
@@ -231,16 +238,17 @@ def in_one_step(
     return replace(steps, outcome=answer.status, solves=steps.solves + 1)
 
 
-def _step(problem: ContactProblem, state: PathState, progress: ProgressCallback | None) -> Solution:
+def _step(
+    problem: ContactProblem, state: PathState, progress: ProgressCallback | None, starts: int | None = None
+) -> Solution:
     """Return a load step from a state nearby, each connected part by itself."""
-    return solve_apart(problem, lambda part: _part_step(part, state, progress))
+    return solve_apart(problem, lambda part: _part_step(part, state, progress, starts or STARTS[problem.dim]))
 
 
-def _part_step(part: Part, state: PathState, progress: ProgressCallback | None) -> Solution:
+def _part_step(part: Part, state: PathState, progress: ProgressCallback | None, starts: int) -> Solution:
     problem = part.problem
     u, t_n, t_t = own(part, state.displacement, state.normal_force, state.friction_force)
     near = u, t_n, t_t
-    starts = STARTS[problem.dim]
     if problem.dim == 2 or needed(problem):
         solution = solve_near(problem, *near, starts=starts, progress=progress)
         if solution.solved or solution.status is Status.CANCELLED or not needed(problem):
