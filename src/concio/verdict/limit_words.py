@@ -234,7 +234,7 @@ def path_lines(found: LimitResult) -> list[str]:
         "CANCELLED": "stopped on request",
         "TOO_MANY": "stopped after more events than allowed",
     }.get(path.outcome.name, "could not be continued: no certified state was found further on")
-    if found.collapse_shown and path.outcome.name in ("LOST", "UNDECIDED"):
+    if found.collapse_shown and path.outcome.name in ("LOST", "BROKEN"):
         end = f"{most}; how it moves on was not followed to an end"
     if found.collapse_shown:
         lines = [f"{head}collapses at {found.coulomb:.6g}, {len(path.events):,} events"]
