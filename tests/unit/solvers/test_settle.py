@@ -20,7 +20,7 @@ from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled, scale
 from concio.solvers.algebra.updated_blocks import UpdatedBlocks
 from concio.solvers.methods import find
-from concio.solvers.states.equations import StateEquations
+from concio.solvers.states.equations import laws_of
 from concio.solvers.states.given import GivenStates
 from concio.solvers.states.reading import Finished
 from concio.solvers.states.settle import Settler
@@ -91,9 +91,9 @@ def test_given_states_hold_what_they_say(laws: tuple[str, ...]) -> None:
     rng = np.random.default_rng(2)
     normal, sign = rng.choice([0, *9 * [1]], s.pairs), rng.choice([-1, *8 * [0], 1], s.pairs)
     normal = np.where(s.cone.capped & (rng.random(s.pairs) < 0.1), Normal.CRUSHED, normal)
-    equations = StateEquations(s, PairStates.plane(normal, sign))
+    laws_held = laws_of(s, PairStates.plane(normal, sign))
     solver = GivenStates(s)
-    u, t, residual = solver.solve(equations, np.zeros(len(s.f)), np.zeros_like(s.x))
+    u, t, residual = solver.solve(s, laws_held, np.zeros(len(s.f)), np.zeros_like(s.x))
     size = np.abs(u).max() + np.abs(t).max()
     assert residual <= 1e-9
     assert (sign != 0).any()

@@ -47,7 +47,7 @@ from concio.problem.units import measure
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.interior.newton_finish import finish
-from concio.solvers.states.equations import StateEquations
+from concio.solvers.states.equations import laws_of
 from concio.solvers.states.given import GivenStates
 from concio.solvers.states.reading import Finished
 
@@ -134,18 +134,18 @@ def _of_states(s: Scaled, now: Finished) -> Departure | None:
 def _states_moved(s: Scaled, now: Finished, e: float) -> Departure | None:
     """Let the states move by steps (K + e M)(u' - u) = f - K u + C't, the last of them equal; prove their motion."""
     u, t, step = now.u, now.t, now.u
-    given, held, springs = GivenStates(s), StateEquations(s, now.states), e * s.inertia
+    given, laws, springs = GivenStates(s), laws_of(s, now.states), e * s.inertia
     for _ in range(STATE_STEPS):
-        new, t, _ = given.solve(held, u, t, springs=springs)
+        new, t, _ = given.solve(s, laws, u, t, springs=springs)
         step, u = new - u, new
         if not 1.0 <= float(np.abs(step).max()) < np.inf:
             return None  # it comes to rest
     R = s.problem.R
     a = e * (R @ (R.T @ step))
-    held = StateEquations(replace(s, f=s.f - s.inertia @ a), now.states)
+    held = replace(s, f=s.f - s.inertia @ a)
     u = u - step * (float(step @ u) / float(step @ step))
     for _ in range(2):
-        u, t, _ = given.solve(held, u, t)
+        u, t, _ = given.solve(held, laws, u, t)
     return _proof(s, a, u, t)
 
 

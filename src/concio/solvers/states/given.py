@@ -15,7 +15,7 @@ from concio.solvers.algebra.block_factor import times_springs
 from concio.solvers.algebra.factor import Springs
 from concio.solvers.algebra.scaled import LOOSE, Scaled
 from concio.solvers.algebra.updated_blocks import UpdatedBlocks
-from concio.solvers.states.equations import StateEquations
+from concio.solvers.states.pair_laws import PairLaws, side_by_side
 from concio.solvers.states.reading import sizes
 
 REFINED = 1e-14
@@ -48,7 +48,8 @@ class GivenStates:
 
     def solve(
         self,
-        equations: StateEquations,
+        s: Scaled,
+        laws: PairLaws,
         u: Array,
         t: Array,
         anchor: Array | None = None,
@@ -62,7 +63,10 @@ class GivenStates:
 
         Parameters
         ----------
-        equations : StateEquations
+        s : Scaled
+            The structure under the loads, gaps and slip origins of this step.
+        laws : PairLaws
+            Of its pairs in their states.
         u, t : (N,), (m, 2) arrays
         anchor : (N,) array, optional
             Where the springs are relaxed; default u.
@@ -91,21 +95,20 @@ class GivenStates:
         self.solves += 1
         anchor = u if anchor is None else anchor
         columns = np.zeros(0, dtype=int) if columns is None else columns
-        fresh = self._prepare(equations, springs, columns, OTHER if not own else 0.0)
-        best = self._refine(equations, u, t, anchor, springs, accuracy)
+        D = laws.blocks()
+        fresh = self._prepare(D, springs, columns, OTHER if not own else 0.0)
+        best = self._refine(s, laws, u, t, anchor, springs, accuracy)
         if not fresh and best[2] > STUCK:
-            self._prepare(equations, springs, columns, None)
-            best = self._refine(equations, *best[:2], anchor, springs, accuracy)
+            self._prepare(D, springs, columns, None)
+            best = self._refine(s, laws, *best[:2], anchor, springs, accuracy)
         return best
 
-    def _prepare(
-        self, equations: StateEquations, springs: Springs, columns: Array, least: float | None
-    ) -> bool:
+    def _prepare(self, D: Array, springs: Springs, columns: Array, least: float | None) -> bool:
         """Bring the factor near to the states; return whether it is that of these very states, and not updated.
 
         Pairs whose blocks differ by more than ``least`` are updated where there is room for them; None: factorise.
         """
-        D, blocks = equations.blocks, self.blocks
+        blocks = self.blocks
         held = blocks.factor.D
         if held is not None and least is not None and blocks.has(springs):
             same = np.array_equal(held, D)
@@ -118,15 +121,16 @@ class GivenStates:
         return True
 
     def _refine(
-        self, equations: StateEquations, u: Array, t: Array, anchor: Array, springs: Springs, accuracy: float
+        self, s: Scaled, laws: PairLaws, u: Array, t: Array, anchor: Array, springs: Springs, accuracy: float
     ) -> tuple[Array, Array, float]:
-        s, D = equations.s, self.blocks.D
+        D = self.blocks.D
         assert D is not None
-        t = equations.impose(t)
+        t = laws.imposed(t)
         best, late = (u, t, np.inf), 0
         for _ in range(ROUNDS):
             missing = -s.imbalance(u, t) - times_springs(springs, u - anchor)
-            misfit = equations.misfit(u, t)
+            y = s.position(u, t)
+            misfit = side_by_side(*laws.misfit(y[:, 0], y[:, 1:], t[:, 1:]))
             force, length = sizes(u, t)
             residual = max(
                 float(np.abs(missing).max(initial=0.0)) / force, float(np.abs(misfit).max(initial=0.0)) / length
@@ -138,7 +142,7 @@ class GivenStates:
                 break
             push = times(D, misfit)
             du = self.blocks.solve(missing - s.pull(push))
-            u, t = u + du, equations.impose(t - push - times(D, s.along(du)))
+            u, t = u + du, laws.imposed(t - push - times(D, s.along(du)))
         return best
 
 

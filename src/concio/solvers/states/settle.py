@@ -23,7 +23,7 @@ from concio.problem.pair_state import PairStates
 from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import LOOSE, Scaled
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
-from concio.solvers.states.equations import StateEquations
+from concio.solvers.states.equations import laws_of
 from concio.solvers.states.given import REFINED, TRIED, GivenStates
 from concio.solvers.states.reading import Finished, natural_residual, read_states
 from concio.solvers.states.small_problem import decide
@@ -147,8 +147,8 @@ class _Run:
 
     def solved(self, states: PairStates, u: Array, t: Array) -> tuple[Array, Array, Array, PairStates]:
         """Solve for given states; return u, t, which pairs (m,) contradict them, and the states they show instead."""
-        equations = StateEquations(self.s, states)
-        u, t, _ = self.given.solve(equations, u, t, self.anchor, springs=self.springs, accuracy=TRIED)
+        laws_here = laws_of(self.s, states)
+        u, t, _ = self.given.solve(self.s, laws_here, u, t, self.anchor, springs=self.springs, accuracy=TRIED)
         error, laws = natural_residual(self.s, u, t)
         shown = read_states(self.s, u, t)
         wrong = (laws > EXACT) & shown.differ(states)
@@ -156,7 +156,7 @@ class _Run:
             if error < EXACT or wrong.any():
                 break
             self.anchor = u
-            v, p, _ = self.given.solve(equations, u, t, self.anchor, springs=self.springs, own=True)
+            v, p, _ = self.given.solve(self.s, laws_here, u, t, self.anchor, springs=self.springs, own=True)
             new, laws = natural_residual(self.s, v, p)
             if not new < error:
                 break
@@ -191,8 +191,8 @@ class _Run:
 
     def _from(self, found: Finished, start: Array, *, own: bool) -> Finished | None:
         """Return the answer refined from other forces, None where these do not obey the joint laws."""
-        equations = StateEquations(self.s, found.states)
-        u, t, _ = self.given.solve(equations, found.u, start, found.u, springs=self.springs, own=own)
+        laws = laws_of(self.s, found.states)
+        u, t, _ = self.given.solve(self.s, laws, found.u, start, found.u, springs=self.springs, own=own)
         error, _ = natural_residual(self.s, u, t)
         return replace(found, u=u, t=t, error=error) if error <= max(found.error, EXACT) else None
 

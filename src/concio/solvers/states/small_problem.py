@@ -28,7 +28,7 @@ from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.updated_blocks import block_diagonal
 from concio.solvers.lcp.lemke_method import Outcome, lemke
 from concio.solvers.lcp.linear_problem import LinearComplementarity
-from concio.solvers.states.equations import StateEquations
+from concio.solvers.states.equations import laws_of
 from concio.solvers.states.given import GivenStates
 
 SOFT = 1e-4
@@ -89,11 +89,10 @@ def decide(
     normal[pick], sign[pick] = Normal.CLOSED, 0
     soft = np.zeros((s.pairs, 1))
     soft[pick, 0] = SOFT / s.share[pick]
-    held = StateEquations(
-        replace(s, compliance=s.compliance + soft, x=s.x - soft * t), PairStates.plane(normal, sign)
-    )
-    u, t, _ = given.solve(held, u, t, anchor, springs=springs, columns=pick)
-    D = block_diagonal(held.blocks[pick])
+    held = replace(s, compliance=s.compliance + soft, x=s.x - soft * t)
+    laws = laws_of(held, PairStates.plane(normal, sign))
+    u, t, _ = given.solve(held, laws, u, t, anchor, springs=springs, columns=pick)
+    D = block_diagonal(laws.blocks()[pick])
     S = D - D @ given.blocks.flexibility(pick) @ D
     answer = _lemke(s.cone[pick], s.dilatancy[pick], t[pick], S)
     if answer is None:

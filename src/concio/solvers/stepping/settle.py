@@ -19,9 +19,10 @@ from concio.problem.tolerances import STEP_SETTLED
 from concio.solvers.algebra.factor import Factor, Solves
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.algebra.updated_blocks import UpdatedBlocks
+from concio.solvers.states.pair_laws import PairLaws, dot
 from concio.solvers.stepping.problem import StepProblem
 from concio.solvers.stepping.small import solve_small
-from concio.solvers.stepping.states import Linear, across_slip, dot, read_states, solve_states
+from concio.solvers.stepping.states import across_slip, laws_of_step, read_states, solve_states
 
 
 class PairsAsked:
@@ -44,12 +45,12 @@ class PairsAsked:
         """Take further pairs in."""
         self.number = np.concatenate([self.number, added])
 
-    def decided(self, linear: Linear, x0: Array, t0: Array) -> tuple[Array, Array] | None:
+    def decided(self, laws: PairLaws, x0: Array, t0: Array) -> tuple[Array, Array] | None:
         """Return x (N,) and t (m, d) with these pairs decided by the small problem, all others in their states.
 
         Parameters
         ----------
-        linear : Linear
+        laws : PairLaws
             The states that gave (x0, t0).
         x0, t0 : (N,), (m, d) arrays
         """
@@ -68,8 +69,8 @@ class PairsAsked:
         tau = forces.ravel() * p.force
         dx = self.blocks.moved(V, tau - tau0)
         moved = p.opening(dx)
-        dt_n = -self.D[:, 0, 0] * (moved[:, 0] - dot(linear.open_wide, moved[:, 1:]))
-        dt_t = linear.drag * dt_n[:, None] - linear.across(moved[:, 1:]) / linear.soft_t[:, None]
+        dt_n = -self.D[:, 0, 0] * (moved[:, 0] - dot(laws.wide, moved[:, 1:]))
+        dt_t = laws.drag * dt_n[:, None] - laws.across(moved[:, 1:]) / laws.soft_t[:, None]
         t = t0 + np.column_stack([dt_n, dt_t])
         t[V] = tau.reshape(-1, d)
         return x0 + dx, t
@@ -92,7 +93,7 @@ def settle(
     states : PairStates
     residual : float
     """
-    x0, t0, linear = x, t, Linear.of(p, states, across_slip(p, x, t))
+    x0, t0, linear = x, t, laws_of_step(p, states, across_slip(p, x, t))
     best, laws = p.residual(x, t)
     found = (x, t, states, best)
     asked = PairsAsked(p, factor)
@@ -115,8 +116,8 @@ def settle(
         normal, direction = states.normal.copy(), states.direction.copy()
         normal[V], direction[V] = small.normal[V], small.direction[V]
         now = PairStates(normal, direction)
-        settled = Linear.of(p, now, across_slip(p, x, t))
-        D_now = settled.blocks(p)
+        settled = laws_of_step(p, now, across_slip(p, x, t))
+        D_now = settled.blocks()
         try:
             updated = asked.updated(D_now)
         except SingularMatrixError:

@@ -13,10 +13,11 @@ from concio.problem.tolerances import STEP_GOOD, STEP_SETTLED
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.interior import engine as interior
 from concio.solvers.pivoting import sparse_lemke
+from concio.solvers.states.pair_laws import PairLaws
 from concio.solvers.stepping.factor import StepFactor
 from concio.solvers.stepping.problem import StepProblem, StepSolution
 from concio.solvers.stepping.settle import settle
-from concio.solvers.stepping.states import Linear, across_slip, halting, read_states, solve_states
+from concio.solvers.stepping.states import across_slip, halting, laws_of_step, read_states, solve_states
 
 FEW = 25
 """Changed pairs up to which one small problem is cheaper than another factorisation."""
@@ -36,19 +37,19 @@ class StepSolver:
     def __init__(self, engine: Engine = "superlu") -> None:
         self.engine = engine
         self.factor: StepFactor | None = None
-        self._linear: Linear | None = None
+        self._laws: PairLaws | None = None
         self.counts: dict[str, int] = {}
 
     def new_layout(self) -> None:
         """Forget the pattern: the rows meet other unknowns from now on."""
-        self.factor = self._linear = None
+        self.factor = self._laws = None
 
     def solve_again(self, p: StepProblem, found: StepSolution) -> StepSolution:
         """Solve a step of which only the forces have changed a little since :meth:`solve`, with the factors of then.
 
         Where the states or the slips have become others, the step is solved again.
         """
-        linear, factor = self._linear, self.factor
+        linear, factor = self._laws, self.factor
         if linear is not None and factor is not None and factor.D is not None:
             x, t, errors = solve_states(p, factor, linear, found.x, found.t, factor.D)
             residual, _ = p.violation(t, errors)
@@ -78,14 +79,14 @@ class StepSolver:
         seen: list[PairStates] = []
         turn = across_slip(p, x, t)
         for round_ in range(STEP_FACTORISATIONS):
-            linear = Linear.of(p, states, turn)
-            D = linear.blocks(p)
+            linear = laws_of_step(p, states, turn)
+            D = linear.blocks()
             try:
                 factor.factorise(D)
                 x1, t1, errors = solve_states(p, factor, linear, x, t, D)
             except SingularMatrixError:
                 break
-            self._linear = linear
+            self._laws = linear
             residual, laws = p.violation(t1, errors)
             found = keep(x1, t1, states, residual, "same states" if not round_ else "active set")
             if residual < STEP_GOOD:
@@ -115,7 +116,7 @@ class StepSolver:
             self.factor = StepFactor(p.matrix.sparse, p.columns, self.engine)
         self.factor.take(p.matrix.sparse, p.values)
         turn = across_slip(p, np.zeros(len(f)), np.zeros((p.pairs, p.dim)))
-        self.factor.factorise(Linear.of(p, states, turn).blocks(p))
+        self.factor.factorise(laws_of_step(p, states, turn).blocks())
         return self.factor.solve(f)
 
     def _count(self, found: StepSolution) -> StepSolution:
