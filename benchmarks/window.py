@@ -17,11 +17,13 @@ import os
 import random
 import resource
 import shutil
+import socket
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -29,7 +31,7 @@ sys.path.insert(0, str(ROOT / "tests"))
 
 import concio  # noqa: E402
 from browser import Browser, browser, chromium  # noqa: E402
-from windows import Client, window  # noqa: E402
+from windows import Client, known, window  # noqa: E402
 
 PAGE = ROOT / "docs" / "howto" / "window.md"
 BEGIN, END = "<!-- measures: written by benchmarks/window.py -->", "<!-- end of measures -->"
@@ -109,8 +111,8 @@ def main(drags: int, count: int) -> None:
             answer_of(client)
             drag_on_facade(client)
             commands(client, drags)
-            requests(client, count)
             large_drop(client, 200)
+        attack(folder, count)
 
 
 def answer_of(client: Client) -> None:
@@ -196,32 +198,75 @@ def commands(client: Client, count: int) -> None:
     tell(f"{done} random commands, some taken back at once, then all: {text} ({time.perf_counter() - begun:.0f} s)")
 
 
-def requests(client: Client, count: int) -> None:
-    """Print how many requests a second are answered on one connection, and the memory before and after."""
+def held(pid: int) -> str:
+    """Return memory, open files and threads of a process, where the system tells them."""
+    try:
+        there = Path(f"/proc/{pid}")
+        files, threads = len(list((there / "fd").iterdir())), len(list((there / "task").iterdir()))
+    except OSError:
+        return "unknown"
+    return f"{resident(pid):.0f} MB, {files} open files, {threads} threads"
+
+
+def attack(folder: Path, count: int) -> None:
+    """Print what many requests, most of them hostile, leave in a window of its own process, and whether it answers."""
+    command = [sys.executable, "-m", "concio", "window", str(folder / "arch.toml"), "--no-open"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        client = known(process.stdout.readline().split()[-1])
+        client.until("picture")
+        text = client.call("state", version=-1)["document"]["text"]
+        statuses: Counter[str] = Counter()
+        shoot(client, 500, statuses)
+        before, begun = held(process.pid), time.perf_counter()
+        statuses.clear()
+        shoot(client, count, statuses)
+        rate = count / (time.perf_counter() - begun)
+        time.sleep(1.0)
+        after, begun = held(process.pid), time.perf_counter()
+        same = client.call("state", version=-1)["document"]["text"] == text
+        waited = 1e3 * (time.perf_counter() - begun)
+        answered = ", ".join(f"{name} {n}" for name, n in sorted(statuses.items()))
+        tell(f"{count} requests, eight of ten hostile: {rate:.0f} a second ({answered}); before {before},"
+             f" after {after}; {'the same text' if same else 'ANOTHER TEXT'}, answered in {waited:.0f} ms")  # fmt: skip
+        process.kill()
+
+
+def shoot(client: Client, count: int, statuses: Counter[str]) -> None:
+    """Send requests of ten kinds by turns, and count how they are answered."""
     import http.client
 
-    connection = http.client.HTTPConnection("127.0.0.1", client.server.server_port, timeout=60)
-    path, own = (
-        f"/{client.server.token}/api/state",
-        {"Origin": client.server.origin, "Content-Type": "application/json"},
-    )
-    body = json.dumps({"page": client.page, "version": 10**9}).encode()
-    wrong = f"/{'x' * len(client.server.token)}/api/state"
-    before, begun, refused = resident(os.getpid()), time.perf_counter(), 0
+    token, port, origin = client.server.token, client.server.server_port, client.server.origin
+    state = json.dumps({"page": client.page, "version": 10**9}).encode()
+    own = {"Origin": origin, "Content-Type": "application/json"}
+    kinds: list[tuple[str, str, bytes | None, dict[str, str]]] = [
+        ("POST", f"/{token}/api/state", state, own),
+        ("POST", f"/{token}/api/picture", state, own),
+        ("POST", f"/{'x' * len(token)}/api/state", state, own),
+        ("POST", f"/{token}/api/state", state, {"Origin": "http://evil.example"}),
+        ("GET", f"/{token}/", None, {"Host": "evil.example"}),
+        ("GET", f"/{token}/..%2f..%2fsession.py", None, {}),
+        ("POST", f"/{token}/api/do", b'{"commands": [{"do": "set", "path": ["arch", 7], "value": []}]}', own),
+        ("POST", f"/{token}/api/ask", b'{"question": "rm", "options": {"out": "/"}}', own),
+        ("POST", f"/{token}/drop", b"x", {**own, "X-Name": "../arch.toml"}),
+    ]
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
     for k in range(count):
-        connection.request("POST", wrong if k % 10 == 0 else path, body, own)
+        if k % 10 == 9:  # a request that breaks off
+            with socket.create_connection(("127.0.0.1", port), timeout=60) as broken:
+                broken.sendall(b"POST /" + token.encode() + b"/api/do HTTP/1.1\r\nContent-Length: 900\r\n")
+            statuses["broken off"] += 1
+            continue
+        method, path, body, headers = kinds[k % 10]
+        connection.request(method, path, body, headers)
         answer = connection.getresponse()
         answer.read()
-        refused += answer.status == 403
-    rate = count / (time.perf_counter() - begun)
-    tell(f"{count} requests, one in ten with a wrong token: {rate:.0f} a second, {refused} refused,"
-          f" memory {before:.0f} MB before, {resident(os.getpid()):.0f} MB after")  # fmt: skip
+        statuses[str(answer.status)] += 1
+    connection.close()
 
 
 def large_drop(client: Client, megabytes: int) -> None:
     """Print what becomes of a file that is too large."""
-    import socket
-
     begun, size = time.perf_counter(), megabytes * 1_000_000
     head = (f"POST /{client.server.token}/drop HTTP/1.1\r\nHost: 127.0.0.1:{client.server.server_port}\r\n"
             f"Origin: {client.server.origin}\r\nX-Name: large.dxf\r\nContent-Length: {size}\r\n\r\n")  # fmt: skip

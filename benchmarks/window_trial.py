@@ -3,8 +3,11 @@
     python benchmarks/window_trial.py [PICTURES] [--language it] [--dark] [--width 390]
 
 Real mouse and keyboard events in Chromium, from the empty window in the folder of the drawing to the report and the
-project folder. A picture of each step is written into the folder PICTURES. Seconds are those the machine needs; a
-person needs longer to read. ``--write`` puts the counts into the page of the window in the documentation.
+project folder. A picture of each step is written into the folder PICTURES. Seconds are those the machine needs. The
+minutes of a person add to them the keystroke-level model of Card, Moran and Newell (Communications of the ACM 23, 1980,
+396-410): 1.1 s to point, 0.28 s for a key or a button, 0.4 s from the mouse to the keys or back, and 1.35 s to think
+before each; that is a person who knows the way, without the time to read. ``--write`` puts the counts into the page of
+the window in the documentation.
 """
 
 from __future__ import annotations
@@ -26,6 +29,8 @@ from windows import window  # noqa: E402
 PAGE = ROOT / "docs" / "howto" / "window.md"
 BEGIN, END = "<!-- counts: written by benchmarks/window_trial.py -->", "<!-- end of counts -->"
 SETTLED = "window.concio.pictured().startsWith(window.concio.state().document.hash)"
+POINT, KEY, HAND, THINK = 1.1, 0.28, 0.4, 1.35
+"""Seconds of the keystroke-level model."""
 MEANT = "window.concio.state().document.text"
 
 
@@ -35,6 +40,7 @@ class Hand:
     def __init__(self, page: Browser, pictures: Path | None) -> None:
         self.page, self.pictures = page, pictures
         self.clicks = self.texts = self.keys = 0
+        self.seconds = 0.0
         self.begun = self.last = time.perf_counter()
         self.steps: list[tuple[str, int, int, int, float]] = []
         self._before = (0, 0, 0)
@@ -42,7 +48,11 @@ class Hand:
     def click(self, selector: str) -> None:
         """Click what a selector finds, scrolled into view as a person would scroll."""
         self.page.click(selector)
-        self.clicks += 1
+        self._clicked()
+
+    def _clicked(self, count: int = 1) -> None:
+        self.clicks += count
+        self.seconds += count * (THINK + POINT + KEY)
 
     def click_text(self, within: str, text: str) -> None:
         """Click the button with a text."""
@@ -60,6 +70,7 @@ class Hand:
         self.page.type(text)
         self.page.press("Tab")
         self.texts += 1
+        self.seconds += THINK + 2 * HAND + (len(text) + 3) * KEY
 
     def choose(self, selector: str, value: str) -> None:
         """Choose from a list: a click, and the first letters or arrows on the keyboard count as one key."""
@@ -68,13 +79,13 @@ class Hand:
         self.page.js(f"(() => {{ const e = document.querySelector({name}); e.value = {json.dumps(value)};"
                      " e.dispatchEvent(new Event('input', {bubbles: true}));"
                      " e.dispatchEvent(new Event('change', {bubbles: true})); })()")  # fmt: skip
-        self.clicks += 2
+        self._clicked(2)
 
     def click_model(self, x: float, y: float) -> None:
         """Click a point of the model [m]."""
         self.page.js("document.getElementById('picture').scrollIntoView({block: 'nearest'})")
         self.page.click_at(*self.page.where(x, y))
-        self.clicks += 1
+        self._clicked()
 
     def until(self, code: str, why: str = "") -> None:
         """Wait."""
@@ -117,6 +128,11 @@ def trial(hand: Hand, words: dict[str, list[str]], italian: bool) -> None:
     hand.click("#tab-data")
     hand.write("[id='value-analysis-thickness']", "0.5")
     hand.until(f"/thickness = 0.5/.test({MEANT})")
+    hand.write("[id='value-materials-block-unit_weight']", "19 kN/m3")
+    hand.until(f'/unit_weight = "19 kN.m3"/.test({MEANT})')
+    hand.until(f"{SETTLED} && /0\\.6/.test(document.querySelector('#begun')?.textContent)")
+    hand.click_text("#begun", word("begun_meant"))
+    hand.until(f"{SETTLED} && !document.querySelector('#begun')")
     hand.step("data")
     hand.click("[data-tool=load]")
     hand.choose("#pane-build [name=kind]", "weight")
@@ -176,6 +192,10 @@ def main(arguments: list[str]) -> None:
     total = time.perf_counter() - hand.begun
     print(f"{'in all':16s} {hand.clicks:3d} clicks {hand.texts:3d} texts {total:6.1f} s")
     lines.append(f"| in all | {hand.clicks} | {hand.texts} |")
+    minutes = (total + hand.seconds) / 60
+    print(f"{minutes:.1f} minutes of a person who knows the way")
+    lines += ["", f"By the keystroke-level model, with the seconds of the machine: {minutes:.1f} minutes of a person",
+              "who knows the way; reading and thinking about the structure come on top."]  # fmt: skip
     if given.write:
         head, rest = PAGE.read_text(encoding="utf-8").split(BEGIN)
         PAGE.write_text(f"{head}{BEGIN}\n\n" + "\n".join(lines) + f"\n\n{END}{rest.split(END)[1]}", encoding="utf-8")

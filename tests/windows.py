@@ -69,6 +69,16 @@ class Client:
         return self.call("result", key=key)
 
 
+def known(address: str) -> Client:
+    """Return a client of a window that another process has opened."""
+    port, token = address.removeprefix("http://127.0.0.1:").rstrip("/").split("/")
+    client = Client.__new__(Client)
+    client.server = type("Known", (), {"server_port": int(port), "token": token,
+                                       "origin": f"http://127.0.0.1:{port}"})()  # fmt: skip
+    client.page = "page"
+    return client
+
+
 @contextmanager
 def window(folder: Path, file: Path | None = None) -> Iterator[Client]:
     """Give a client of a window that is open."""

@@ -174,6 +174,15 @@ def test_from_a_drawing_to_a_limit_load(page: Browser, tmp_path: Path) -> None:
         page.until(
             f"{SETTLED} && window.concio.view.shown && window.concio.view.shown.loads.length === 3", "the facade"
         )
+        begun = "document.querySelector('#begun')?.textContent || ''"
+        assert all(one in page.js(begun) for one in ("thickness 1.0", "unit_weight 20 kN/m3", "friction 0.6"))
+        page.click("#tab-data")
+        value(page, "[id='value-analysis-thickness']", "0.5")
+        page.until(f"{SETTLED} && /thickness = 0.5/.test(window.concio.state().document.text)")
+        page.until(f"!/thickness/.test({begun}) && /friction/.test({begun})")
+        page.js("document.querySelectorAll('#begun button')[1].click()")
+        page.until(f"{SETTLED} && {begun} === ''")
+        assert "state yours" not in text_of(client)
         page.click("[data-tool=load]")
         page.js("(() => { const k = document.querySelector('#pane-build [name=kind]'); k.value = 'weight'; "
                 "k.dispatchEvent(new Event('change')); })()")  # fmt: skip
@@ -250,7 +259,7 @@ def test_the_keyboard_alone_leads_from_the_first_page_to_the_verdict(page: Brows
         page.press("Enter")
         page.until("window.concio.state().document.undo")
         page.press("Escape")
-        page.press("1", alt=True)
+        page.press("3", alt=True)
         page.until(SETTLED)
         tab_to(page, "e.id === 'run' && !e.disabled")
         page.press("Enter")
@@ -554,13 +563,13 @@ def test_the_keyboard_alone_loads_and_holds_faces_in_space(page: Browser, tmp_pa
         page.press("Enter")
         tab_to(page, "e.id === 'cut-share'")
         page.press("ArrowLeft")
-        page.press("1", alt=True)
+        page.press("3", alt=True)
         tab_to(page, "e.id === 'run' && !e.disabled")
         page.press("Enter")
         page.until(ANSWERED)
         said = page.js("document.querySelector('#verdict-text .sentence').textContent")
         assert said == concio.solve(concio.loads(text_of(client))).verdict.sentence
-        page.press("8", alt=True)
+        page.press("6", alt=True)
         page.until("document.querySelector('#running').hidden && document.querySelector('#pane-report a')")
         tab_to(page, "e.matches('#pane-report button')")
         page.press("Enter")

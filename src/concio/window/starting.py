@@ -1,4 +1,8 @@
-"""Model texts for files that are opened: a drawing, solids, or a picture of a wall."""
+"""Model texts for files that are opened: a drawing, solids, or a picture of a wall.
+
+A value that no drawing has is marked by a comment, ``# begun with 0.6: state yours``. The page lists values that are
+still those of their comments; a button there removes the comments.
+"""
 
 from __future__ import annotations
 
@@ -25,14 +29,14 @@ title = {literal(drawing.stem)}
 blocks_file = {literal(drawing.name)}
 
 [analysis]
-thickness = 1.0                   # out of plane
+thickness = 1.0                   # out of plane; begun with 1.0: state yours
 
 [materials.block]
 kind = "rigid"
-unit_weight = "20 kN/m3"
+unit_weight = "20 kN/m3"          # begun with 20 kN/m3: state yours
 
 [joints.joint]
-friction = 0.6
+friction = 0.6                    # begun with 0.6: state yours
 
 [drawing.layers]
 """
@@ -49,10 +53,10 @@ mend = "1 mm"                     # faces that nearly touch are moved together w
 
 [materials.block]
 kind = "rigid"
-unit_weight = "20 kN/m3"
+unit_weight = "20 kN/m3"          # begun with 20 kN/m3: state yours
 
 [joints.joint]
-friction = 0.6
+friction = 0.6                    # begun with 0.6: state yours
 # The self-weight acts in the load group "dead".
 """
 
@@ -65,14 +69,14 @@ title = {literal(file.stem)}
 file = {literal(file.name)}
 
 [analysis]
-thickness = 1.0                   # out of plane
+thickness = 1.0                   # out of plane; begun with 1.0: state yours
 
 [materials.block]
 kind = "rigid"
-unit_weight = "20 kN/m3"
+unit_weight = "20 kN/m3"          # begun with 20 kN/m3: state yours
 
 [joints.joint]
-friction = 0.6
+friction = 0.6                    # begun with 0.6: state yours
 
 [[loads]]
 kind = "weight"

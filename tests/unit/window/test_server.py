@@ -28,7 +28,7 @@ from concio.window.questions import QUESTIONS, arguments, python_text
 from concio.window.results import Results
 from concio.window.server import LARGEST_DROP, LARGEST_REQUEST
 from samples import sample
-from windows import LATE, WORKER, Client, window
+from windows import LATE, WORKER, Client, known, window
 
 TEMPLATES = Path(concio.__file__).parent / "model" / "templates"
 PILLAR = "[column]\nwidth = 0.5\nheight = 2.0\nblocks = 4\nblock = 'rigid'\nunit_weight = 20.0\nhorizontal = 0.1\n"
@@ -432,16 +432,6 @@ def test_a_server_that_is_killed_in_the_middle_of_a_command_loses_no_command_it_
         doc.undo()
     assert doc.text == PILLAR
     doc.close()
-
-
-def known(address: str) -> Client:
-    """Return a client of a window that another process has opened."""
-    port, token = address.removeprefix("http://127.0.0.1:").rstrip("/").split("/")
-    client = Client.__new__(Client)
-    client.server = type("Known", (), {"server_port": int(port), "token": token,
-                                       "origin": f"http://127.0.0.1:{port}"})()  # fmt: skip
-    client.page = "page"
-    return client
 
 
 def test_copies_that_a_killed_program_left_are_removed_and_nothing_else(file: Path) -> None:

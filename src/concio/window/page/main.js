@@ -4,14 +4,14 @@ import { t, el, label, language, say, setLanguage, setWords, spoken, templateWor
 import { view, show, clear, draw, fit, zoom, mark, onSelected } from "./picture.js";
 import { listen } from "./hands.js";
 import { build, placed, setBuild } from "./build.js";
-import { data, setTables, showChosen, tables } from "./tables.js";
+import { begunWith, data, meant, setTables, showChosen, tables } from "./tables.js";
 import { answer, follow, programs, questionPane, reportPane, run, setAsk } from "./ask.js";
 import { forgetLayers, layersPane, setLayers } from "./layers.js";
 import { hasPicture, photoPane, setPhoto, underlay } from "./photo.js";
 import { answered, lookPane, modelChanged, setLook } from "./look.js";
 
 const $ = (id) => document.getElementById(id);
-const TABS = ["ask", "build", "tables", "look", "data", "text", "python", "report", "layers", "photo"];
+const TABS = ["layers", "photo", "data", "build", "ask", "look", "tables", "report", "text", "python"]; /* in the order of the work */
 let hello = null, state = {}, doc = null, tab = "ask", pictured = "", gone = 0, shownReport = "";
 const panes = {};
 
@@ -106,13 +106,14 @@ function fault(error) {
 }
 
 function attention() {
-  const shown = view.shown, lines = shown ? shown.attention : [];
+  const shown = view.shown, lines = shown ? shown.attention : [], own = begunWith(doc);
   $("attention-list").replaceChildren(
+    ...(own.length ? [el("li", { id: "begun" }, `${t("begun_with")} ${own.join(", ")}.`, el("button", { onclick: () => go("data") }, t("data")), el("button", { onclick: () => send([{ do: "text", text: meant(doc.text) }]) }, t("begun_meant")))] : []),
     ...lines.map((line, k) => spoken("li", {}, line, shown.attention_italian[k])),
     ...(shown ? shown.findings : []).slice(0, 20).map((found) => el("li", { lang: "en" }, found.sentence, el("button", { onclick: () => { mark(found.at); } }, t("where")))),
     ...(shown && shown.notes.length ? [el("li", {}, el("details", {}, el("summary", {}, `${t("left_out")} (${shown.notes.length})`), ...shown.notes.map((line) => el("p", { lang: "en" }, line))))] : []),
   );
-  if (shown && shown !== NOTHING && !shown.early && !lines.length && !shown.findings.length && !shown.notes.length) $("attention-list").append(el("li", { class: "quiet" }, t("no_attention")));
+  if (shown && shown !== NOTHING && !shown.early && !lines.length && !shown.findings.length && !shown.notes.length && !own.length) $("attention-list").append(el("li", { class: "quiet" }, t("no_attention")));
 }
 
 /* --- commands --- */

@@ -84,6 +84,15 @@ export function showChosen(pane) {
   if (first && !pane.contains(document.activeElement)) first.scrollIntoView({ block: "nearest" });
 }
 
+/* values with which the window has begun the model, and which nobody has stated since: they are marked in the text */
+export function begunWith(doc) {
+  const lines = doc?.values ? doc.text.split("\n") : [];
+  return (doc?.values || []).filter((one) => /#.*begun with (.+): state yours/.exec(lines[one.line - 1])?.[1] === plain(one.written))
+    .map((one) => `${keyWord(one.path)} ${plain(one.written)}`);
+}
+
+export const meant = (text) => text.replace(/; begun with .+: state yours/g, "").replace(/[ \t]*# begun with .+: state yours/g, "");
+
 /* every value of the text in a field of its own */
 export function data(pane, doc) {
   pane.replaceChildren();
