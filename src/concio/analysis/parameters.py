@@ -4,11 +4,35 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
+from concio.errors import InputError
 from concio.model.materials import Elastic
 from concio.model.model import Model
 from concio.model.stretch import stretched, thicker
+
+
+class _Named(Protocol):
+    @property
+    def name(self) -> str: ...
+
+
+Row = TypeVar("Row", bound=_Named)
+
+
+def row_named(rows: Sequence[Row], name: str) -> Row:
+    """Return the row of a table of sensitivities with a name.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    for row in rows:
+        if row.name == name:
+            return row
+    msg = f"there is no sensitivity to '{name}'"
+    raise InputError(msg, hint="known: " + ", ".join(row.name for row in rows))
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,7 +28,7 @@ import numpy as np
 import scipy.linalg
 import scipy.sparse as sp
 
-from concio.analysis.parameters import Parameter
+from concio.analysis.parameters import Parameter, row_named
 from concio.errors import ConcioError, InputError
 from concio.problem.contact_problem import ContactProblem
 from concio.solvers.statics.limit import LimitLoad, associated_limit
@@ -117,11 +117,7 @@ class Sensitivity:
         InputError
             There is none.
         """
-        for row in self.rows:
-            if row.name == name:
-                return row
-        msg = f"there is no sensitivity to '{name}'"
-        raise InputError(msg, hint="known: " + ", ".join(row.name for row in self.rows))
+        return row_named(self.rows, name)
 
     @property
     def sentence(self) -> str:

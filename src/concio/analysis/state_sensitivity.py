@@ -27,7 +27,7 @@ import numpy as np
 
 from concio.analysis.lent_compliance import lent_assembly
 from concio.analysis.linearised_state import LinearisedState, Rates
-from concio.analysis.parameters import Parameter, own_parameters, parameters_of, stiffnesses_of
+from concio.analysis.parameters import Parameter, own_parameters, parameters_of, row_named, stiffnesses_of
 from concio.analysis.sensitivity import BESIDE, STEP
 from concio.analysis.step import solve
 from concio.arguments import strict
@@ -104,11 +104,7 @@ class StateSensitivity:
         InputError
             There is none.
         """
-        for row in self.rows:
-            if row.name == name:
-                return row
-        msg = f"there is no sensitivity to '{name}'"
-        raise InputError(msg, hint="known: " + ", ".join(row.name for row in self.rows))
+        return row_named(self.rows, name)
 
 
 @strict

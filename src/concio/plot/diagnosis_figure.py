@@ -128,7 +128,7 @@ def plot_readings(found: Diagnosis, ax: Axes | None = None, *, language: str = "
     Axes
     """
     words = _words(language)
-    shown = [*found.causes, *(d.cause for d in found.doubts)][:MOST_CAUSES] or [_cause(found, 0)]
+    shown = _causes(found)
     ax = diagram_axes(ax, SIZE)
     n = len(found.measurements)
     value, error = (np.array([getattr(m, key) for m in found.measurements]) for key in ("value", "error"))
@@ -168,7 +168,7 @@ def plot_causes(found: Diagnosis, ax: Axes | None = None, *, language: str = "en
     Axes
     """
     words = _words(language)
-    shown = [*found.causes, *(d.cause for d in found.doubts)][:MOST_CAUSES] or [_cause(found, 0)]
+    shown = _causes(found)
     ax = diagram_axes(ax, SIZE)
     units = found.model.report
     names = [c.name for c in found.candidates]
@@ -196,6 +196,11 @@ def _words(language: str) -> dict[str, str]:
         msg = f"there are no figures in the language '{language}'"
         raise InputError(msg, hint=closest(language, WORDS))
     return WORDS[language]
+
+
+def _causes(found: Diagnosis) -> list[Cause]:
+    """Return the causes that are drawn beside each other, those in doubt after the others."""
+    return [*found.causes, *(d.cause for d in found.doubts)][:MOST_CAUSES] or [_cause(found, 0)]
 
 
 def _cause(found: Diagnosis, number: int) -> Cause:
