@@ -188,6 +188,7 @@ def _of_one(problem: ContactProblem, live: Array, bound: LimitLoad | None, asked
     average, seed, progress = asked.average, asked.seed, asked.progress
     top = associated_limit(problem, live) if bound is None else bound
     search = _Search(problem, live, average, progress)
+    search.most = max(top.multiplier, top.upper)
     if np.isnan(top.multiplier):
         return search.outcome(0)
     share = WORK if work >= COLLAPSE_WORK else work
@@ -210,6 +211,7 @@ class _Search:
         self.states: list[CollapseState] = []
         self.asked: set[bytes] = set()
         self.programmes = 0
+        self.most = np.inf
 
     def outcome(self, starts: int, *, cancelled: bool = False) -> CollapseSearch:
         """Return what was found so far."""
@@ -258,7 +260,7 @@ class _Search:
             return
         self.asked.add(motion.key)
         self.programmes += 1
-        state = certify_collapse(self.problem, self.live, velocity, self.programmes)
+        state = certify_collapse(self.problem, self.live, velocity, self.programmes, self.most)
         if state is not None and state.multiplier >= 0.0:  # the other way round is another load
             self.states.append(state)
 

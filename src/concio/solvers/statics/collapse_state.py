@@ -129,10 +129,15 @@ class Motion:
         return float(np.where(self.crushes, 0.0, np.maximum(-self.w_n, 0.0)).max(initial=0.0))
 
 
-def certify_collapse(problem: ContactProblem, live: Array, velocity: Array, iterations: int) -> CollapseState | None:
-    """Find forces of the true cones that go with a motion (N,), and return the certified state or None."""
+def certify_collapse(
+    problem: ContactProblem, live: Array, velocity: Array, iterations: int, most: float = np.inf
+) -> CollapseState | None:
+    """Find forces of the true cones that go with a motion (N,), and return the certified state or None.
+
+    No collapse state has a multiplier above an associated bound, ``most``: where it is known, none is sought there.
+    """
     motion = Motion.of(problem, velocity)
-    found = _programmed(problem, motion, live) if problem.dim == 2 else forces_in_space(problem, motion, live)
+    found = _programmed(problem, motion, live, most) if problem.dim == 2 else forces_in_space(problem, motion, live)
     if found is None:
         return None
     multiplier, t_n, t_t = found
@@ -146,12 +151,14 @@ def certify_collapse(problem: ContactProblem, live: Array, velocity: Array, iter
     return state if state.certified and float(live @ motion.velocity) > 0 else None
 
 
-def _programmed(problem: ContactProblem, motion: Motion, live: Array) -> tuple[float, Array, Array] | None:
+def _programmed(
+    problem: ContactProblem, motion: Motion, live: Array, most: float
+) -> tuple[float, Array, Array] | None:
     """Return least multiplier and forces that go with a motion, by a linear programme; None where there are none."""
     programme = StaticProgramme(problem)
     equations, bounds, caps, force = forces_asked_for(programme, motion, live)
     alone: Method | None = "interior" if len(bounds) >= LARGE else None  # "there are none" is not worth minutes
-    result = optimise(np.r_[np.zeros(len(bounds) - 1), 1.0], equations, bounds, caps, method=alone)
+    result = optimise(np.r_[np.zeros(len(bounds) - 1), 1.0], equations, bounds, caps, method=alone, ceiling=most)
     if result.status != 0:
         return None
     return float(result.x[-1]), *programme.forces(result.x[:-1] * force)

@@ -41,6 +41,9 @@ PATIENCE = 25
 SHORT_OF_ONE = 0.995
 """Share of the step to the boundary that is taken."""
 
+LARGEST, CLEARLY_ABOVE = 1e6, 1e-2
+"""Largest sum of the variables, in largest loads, and by how much a bound passes a ceiling where a search ends."""
+
 OBJECTIVE = 0.1
 """Objectives smaller than this, the programme scaled, are measured absolutely."""
 
@@ -135,6 +138,16 @@ class _Programme:
         """Sum of the complementarity products."""
         return float(p.x @ p.z + p.s[self.capped] @ p.w[self.capped])
 
+    def objective(self, value: float, cost: Array) -> float:
+        """Return the objective of the scaled programme where that of the programme as it was given is ``value``."""
+        return (value - float(cost[self.held] @ self.lower)) / (self.load * self.price)
+
+    def least(self, y: Array) -> float:
+        """Return what the objective is not below, by weak duality, where variables sum to less than ``LARGEST``."""
+        below, capped = np.minimum(self.c - self.normal.At @ y, 0.0), self.capped
+        wrong = max(float(-below[~capped].min(initial=0.0)), float(np.abs(self.c_free - self.F.T @ y).max(initial=0.0)))
+        return float(self.b @ y + below[capped] @ self.upper[capped]) - LARGEST * wrong
+
     def steps(self, p: _Point, d: _Point) -> tuple[float, float]:
         """Longest steps <= 1 of the primal and of the dual part."""
         c = self.capped
@@ -171,7 +184,9 @@ def _direction(
     return _Point(dx, ds, (x_z - p.z * dx) / p.x, np.where(q.capped, (s_w - p.w * ds) / p.s, 0.0), dy, free)
 
 
-def solve_interior(cost: Array, equations: tuple[sp.csc_array, Array], bounds: Array) -> LinearAnswer | None:
+def solve_interior(
+    cost: Array, equations: tuple[sp.csc_array, Array], bounds: Array, ceiling: float = np.inf
+) -> LinearAnswer | None:
     """Minimise cost'x subject to A x = b and bounds.
 
     Parameters
@@ -181,14 +196,17 @@ def solve_interior(cost: Array, equations: tuple[sp.csc_array, Array], bounds: A
         (M, n) CSC array and (M,) array; rows in groups of three coupled alike for the best ordering.
     bounds : (n, 2) array
         Columns with two infinite bounds are free; all others need a finite lower bound.
+    ceiling : float
+        Answers above it are not asked for: the search ends as soon as multipliers show that there is none below.
 
     Returns
     -------
     LinearAnswer or None
-        The best point met; None where the numbers broke down at once.
+        The best point met; None where the numbers broke down at once, or where no answer is at or below ``ceiling``.
     """
     q = _Programme(cost, sp.csc_array(equations[0]), equations[1], bounds)
-    p = q.start()
+    p, top = q.start(), q.objective(ceiling, cost)
+    top += CLEARLY_ABOVE * (1.0 + abs(top))
     best, kept, since, narrow, iteration = (np.inf, np.inf, np.inf), None, 0, np.inf, 0
     with np.errstate(all="ignore"):
         for iteration in range(PROGRAMME_ITERATIONS + 1):
@@ -205,6 +223,8 @@ def solve_interior(cost: Array, equations: tuple[sp.csc_array, Array], bounds: A
             balanced = max(primal, dual) <= PROGRAMME_ENOUGH
             if max(primal, dual, relative) < max(best) or (balanced and relative < best[2]):
                 best, kept = (primal, dual, relative), p
+            if np.isfinite(top) and q.least(p.y) > top:
+                return None
             if max(dual, relative) < PROGRAMME_TARGET and primal < PROGRAMME_ENOUGH:
                 break
             if since > PATIENCE or iteration == PROGRAMME_ITERATIONS:

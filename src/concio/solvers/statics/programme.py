@@ -171,6 +171,7 @@ def optimise(
     inequalities: tuple[sp.csc_array, Array] | None = None,
     *,
     method: Method | None = None,
+    ceiling: float = np.inf,
 ) -> Optimum:
     """Minimise cost'x subject to A x = b, bounds and G x <= h.
 
@@ -182,10 +183,12 @@ def optimise(
     method : {"interior", "highs"}, optional
         :func:`concio.solvers.statics.linear_interior.solve_interior` or HiGHS, alone; by default the first from
         ``LARGE`` columns on, and the other where it finds no answer.
+    ceiling : float
+        Answers above it are not asked for; the interior point ends as soon as it shows that there is none below.
     """
     reducible = not (~np.isfinite(bounds[:, 0]) & np.isfinite(bounds[:, 1])).any()
     if method == "interior" or (method is None and cost.size >= LARGE and reducible):
-        found = _interior(cost, equations, bounds, inequalities)
+        found = _interior(cost, equations, bounds, inequalities, ceiling)
         if found is not None:
             return found
         if method is not None:
@@ -198,6 +201,7 @@ def _interior(
     equations: tuple[sp.csc_array, Array],
     bounds: Array,
     inequalities: tuple[sp.csc_array, Array] | None,
+    ceiling: float,
 ) -> Optimum | None:
     """Interior point, its equations made exact to rounding; None where it does not converge."""
     n, rows = cost.size, equations[1].size
@@ -207,9 +211,10 @@ def _interior(
     A, b = sp.csc_array(equations[0]), equations[1]
     x, moves = bounds[:, 0].copy(), bounds[:, 0] < bounds[:, 1]
     if not moves.all():
+        ceiling -= float(cost[~moves] @ x[~moves])
         A, b = sp.csc_array(A[:, moves]), b - A[:, ~moves] @ x[~moves]
         cost, bounds = cost[moves], bounds[moves]
-    found = solve_interior(cost, (A, b), bounds)
+    found = solve_interior(cost, (A, b), bounds, ceiling)
     if found is None or not found.close:
         return None
     x[moves] = rebalance(A, found.x, -b, bounds)
