@@ -19,6 +19,8 @@ from concio.analysis.bridges.two_vehicles import second_vehicle, worst_apart
 from concio.analysis.bridges.variants import parts
 from concio.analysis.limit import dead_and_live
 from concio.analysis.motion.push_result import PushEnding
+from concio.errors import InputError
+from concio.model.body import Body
 from concio.model.crossing import Axle, Vehicle
 from concio.model.fill import Fill
 from concio.model.road.earth import ground_of, with_fill, with_vehicle, without_pressure
@@ -36,6 +38,11 @@ def small(fill: Fill = FILL, load: float = 10.0, **more: object) -> concio.Model
     options |= {"block": "rigid", "unit_weight": 22.0, "friction": 0.6}
     model = with_fill(concio.bridge(**(options | more)), fill)  # type: ignore[arg-type]
     return with_vehicle(model, Vehicle("one axle", (Axle(0.0, load),)))
+
+
+def without_fill(model: concio.Model) -> concio.Model:
+    """Return its masonry alone."""
+    return replace(model, fill=None, vehicle=None, loads=model.loads[:1], ties=())
 
 
 def placed(model: concio.Model, x: float) -> concio.Model:
@@ -63,6 +70,21 @@ def test_the_search_finds_the_least_of_a_fine_grid_and_is_symmetrical() -> None:
     assert left is not None
     assert right is not None
     assert left.multiplier == pytest.approx(right.multiplier, rel=1e-6)
+
+
+@pytest.mark.parametrize(("x", "size"), [(10.0, 1e-3), (20.0, 1.0), (1000.0, 100.0), (-8.0, 1e-3)])
+@pytest.mark.parametrize("first", [True, False])
+def test_a_structure_beside_a_bridge_is_refused_where_the_road_would_hang_in_the_air(
+    x: float, size: float, first: bool
+) -> None:
+    """An axle in the gap would press on the near end of the bridge with all its weight, or on nothing."""
+    bare = without_fill(small())
+    block = Body("other", x + size * np.array([[0, 0], [1, 0], [1, 1], [0, 1]]), material="block", kind="rigid")
+    ground = Body("other ground", x + size * np.array([[0, -1], [1, -1], [1, 0], [0, 0]]) , kind="fixed")
+    beside = tuple(replace(b, outline=b.outline - [0.0, x], thickness=2.0) for b in (ground, block))
+    bodies = (*beside, *bare.bodies) if first else (*bare.bodies, *beside)
+    with pytest.raises(InputError, match="nothing lies below the road from x"):
+        with_fill(replace(bare, bodies=bodies), FILL)
 
 
 def test_what_does_not_reach_the_masonry_is_told() -> None:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from concio.contact.edge_loads import loaded_faces
 from concio.contact.loads import load_vectors
 from concio.errors import InputError
 from concio.fem.discretisation import RIGID, discretise
 from concio.fem.elements import FAMILIES
 from concio.model.materials import Elastic, Rigid
 from concio.model.model import Load
-from models import box, on_ground, turned
+from models import box, model_of, on_ground, turned
 
 ELASTIC, STONE = {"mesh_size": 0.3, "thickness": 0.5}, {"kind": "rigid", "material": "stone", "thickness": 0.5}
 
@@ -33,6 +34,24 @@ def resultant(disc, f, about=(0.0, 0.0)):
 
 def wrench(force, at):
     return np.array([force[0], force[1], at[0] * force[1] - at[1] * force[0]])
+
+
+@pytest.mark.parametrize("apart", [0.0, 1e-3, 1e3])
+@pytest.mark.parametrize("first", [True, False])
+def test_a_line_lies_on_an_edge_by_the_size_of_its_structure(apart, first):
+    """A millionth of it: a structure far away, of whatever size, changes nothing."""
+    here = (box("g", -1, 3, -1, 0, kind="fixed"), box("a", 0, 2, 0, 1, **STONE))
+    at, size = 4.0 + 2 * apart, apart or 1.0
+    far = (box("h", at, at + size, -size, 0, kind="fixed"), box("b", at, at + size, 0, size, **STONE))
+    bodies = here if not apart else (*far, *here) if first else (*here, *far)
+    for off, wanted in ((2e-6, 1), (6e-6, 0), (1e-4, 0)):
+        line = ((0.0, 1.0 + off), (2.0, 1.0 + off))
+        model = model_of(*bodies, materials={"stone": Rigid(20.0)}, loads=(Load("pressure", (1.0,), edge=line),))
+        if wanted:
+            assert [model.bodies[f.body].name for f in loaded_faces(model, model.loads[0])] == ["a"]
+        else:
+            with pytest.raises(InputError, match="lies on no edge"):
+                loaded_faces(model, model.loads[0])
 
 
 def loaded(load, kind, element="Q4", **options):

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
 
 import concio
 from commands import run
@@ -278,6 +279,23 @@ def test_an_arch_on_piers_in_plane_and_space(options: dict[str, object]) -> None
     pairs = {(i.a, i.b) for i in flat.segments} | {(i.b, i.a) for i in flat.segments}
     assert (names["v01"], names["left-p08"]) in pairs
     assert (names["v13"], names["right-p08"]) in pairs
+
+
+@pytest.mark.parametrize("options", [{}, {"shape": "pointed", "fill": 0.3}, {"fill": 0.5, "block_length": 0.4}])
+def test_spandrels_are_cut_into_blocks_of_the_length_asked_for(options: dict[str, object]) -> None:
+    """From the outer face: none is longer, at its narrower edge, than by what is too short for a block of its own."""
+    make: Callable[..., Model] = concio.arch_on_piers
+    model = make(
+        span=3, ring=0.35, voussoirs=13, block="rigid", pier_width=1, pier_height=2.4, pier_courses=8, **options
+    )
+    long = float(str(options.get("block_length", 0.6)))
+    shapes = [shapely.Polygon(b.vertices) for b in model.free_bodies if b.layer == "spandrel"]
+    assert len(shapes) > 8
+    for shape in shapes:
+        _, low, _, high = shape.bounds
+        levels = low + np.array([0.02, 0.98]) * (high - low)
+        edges = [shape.intersection(shapely.LineString([(-9, y), (9, y)])).length for y in levels]
+        assert min(edges) <= 1.4 * long * (1 + 1e-9)
 
 
 def test_horizontal_shares_have_a_direction() -> None:

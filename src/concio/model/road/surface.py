@@ -107,7 +107,8 @@ class Road:
         Raises
         ------
         InputError
-            It ends before the masonry does, or lies below it; or layers are thicker than the cover.
+            It ends before the masonry does, or lies below it; the masonry has a gap under it that is wider than the
+            fill there is deep; or layers are thicker than the cover.
         """
         left, right = surface.reach
         if fill.road:
@@ -130,6 +131,7 @@ class Road:
         if not depth[k] > 0:
             msg = f"the road lies {-depth[k]:.3g} m below the masonry at x = {where[k]:.3g} m"
             raise InputError(msg, where="fill", hint="raise the road line, or the cover where there is a gradient")
+        _refuse_gaps(surface, road)
         layers = sum(layer.depth for layer in fill.layers)
         if layers > depth[k] + 1e-9:
             msg = f"the layers are {layers:.3g} m deep, the cover at x = {where[k]:.3g} m is {depth[k]:.3g} m"
@@ -147,6 +149,19 @@ class Road:
         """Return the height of the road [m] at places x."""
         found: Array = np.interp(x, self.line[:, 0], self.line[:, 1])
         return found
+
+
+def _refuse_gaps(surface: Surface, road: Road) -> None:
+    """Refuse masonry of which nothing carries the road between two places: a structure beside the bridge, say."""
+    ends, starts = surface.end[:-1], surface.start[1:]
+    gap = starts[:, 0] - ends[:, 0]
+    deep = [road.height(p[:, 0]) - p[:, 1] for p in (ends, starts)]
+    wide = np.flatnonzero(gap > np.maximum(np.minimum(*deep), 0.0))
+    if len(wide):
+        k = int(wide[np.argmax(gap[wide])])
+        msg = f"nothing lies below the road from x = {ends[k, 0]:.4g} to {starts[k, 0]:.4g} m"
+        hint = "draw the ground between, or leave out what does not belong to the bridge"
+        raise InputError(msg, where="fill", hint=hint)
 
 
 def _checked_line(fill: Fill, surface: Surface, road: Road) -> Array:
