@@ -13,6 +13,11 @@ if TYPE_CHECKING:
 
 Of = Literal["sens", "limit", "settlement", "force", "collapse"]
 
+OF_STRIPS = {
+    ("thickness", ""): "width", ("length", "x"): "through", ("length", "y"): "up", ("load", "loads"): "loads",
+}  # fmt: skip
+"""Words for numbers of the section of a strip: its x runs through the wall, its thickness along the facade."""
+
 TOLD, SHOWS = 3, 5e-4
 """Numbers in the sentence at most, and the least change in per cent that is stated."""
 
@@ -35,7 +40,8 @@ def sensitivity_html(
     """
 
     def name(row: SensitivityRow) -> str:
-        kind = "width" if strip and row.kind == "thickness" else row.kind.replace(" ", "_")
+        own = OF_STRIPS.get((row.kind, row.of)) if strip else None
+        kind = own or row.kind.replace(" ", "_")
         return t.words[f"par_{kind}"].format(of=row.of)
 
     told = []
