@@ -394,6 +394,31 @@ def test_two_pages_and_a_file_that_changes_underneath(page: Browser, client: Cli
     page.until("/width = 0.7/.test(window.concio.state().document.text)")
 
 
+def test_what_a_question_needs_is_said_and_written_down_to_be_filled_in(page: Browser, client: Client) -> None:
+    opened(page, client)
+    page.until("document.querySelector('#run') && !document.querySelector('#run').disabled")
+    page.click("[data-question=bridge]")
+    assert "[vehicle]" in page.js("document.querySelector('#missing').textContent")
+    assert page.js("document.querySelector('#run')") is None
+    page.click("[data-question=assess]")
+    assert "[site]" in page.js("document.querySelector('#missing').textContent")
+    assert page.js(AUDIT) == []
+    page.click("#missing button")
+    page.until("/F0/.test(document.querySelector('#fault').textContent)", "the first value that nobody has stated")
+    assert text_of(client).startswith(PILLAR)
+    for path, text in (("hazard-SLV-a_g", "0.2"), ("hazard-SLV-F0", "2.45"), ("hazard-SLV-Tc", "0.32"),
+                       ("nominal_life", "50"), ("soil", "B"), ("topography", "T1"), ("use_class", "II")):  # fmt: skip
+        value(page, f"[id='value-site-{path}']", text)
+        page.until("window.concio.idle()")
+    value(page, "[id='value-assessment-knowledge']", "LC1")
+    page.until(f"{SETTLED} && document.querySelector('#fault').textContent === ''")
+    page.click("#tab-ask")
+    page.until("document.querySelectorAll('#acts li').length")
+    page.click("#run")
+    page.until(ANSWERED)
+    assert "zeta_E" in page.js("document.querySelector('#verdict-text').textContent")
+
+
 def test_it_is_read_in_both_languages_in_light_and_dark(page: Browser, client: Client) -> None:
     opened(page, client)
     page.js("document.querySelector('#run').click()")
@@ -471,7 +496,8 @@ def test_no_page_in_italian_holds_english_that_is_not_marked(page: Browser, tmp_
             page.click(f"#tab-{tab}")
             page.until(f"document.querySelector('#pane-{tab}').children.length")
             assert english(page) == [], tab
-        offered = "[...document.querySelectorAll('[data-question]:not(:disabled)')].map((b) => b.dataset.question)"
+        asked = "[data-question]:not([aria-disabled=true])"
+        offered = f"[...document.querySelectorAll('{asked}')].map((b) => b.dataset.question)"
         page.js("document.querySelector('#tab-ask').click()")
         for question in page.js(offered):
             page.js("document.querySelector('#tab-ask').click()")

@@ -20,7 +20,7 @@ from concio.window.document import Document
 from concio.window.folder import SUFFIXES, named
 from concio.window.lane import PATIENCE, Job, Lane
 from concio.window.questions import QUESTIONS
-from concio.window.starting import model_text
+from concio.window.starting import TO_FILL, model_text
 from concio.window.toml_places import places
 
 HOLDS = 12.0
@@ -126,7 +126,7 @@ class Session:
         ]  # fmt: skip
         kept = sorted(p.name[:-5] for p in files("concio.model").joinpath("templates").iterdir())
         return {"words": words, "of_files": of_files, "look": LOOK, "questions": questions, "templates": kept,
-                "version": concio.__version__, **self.state(told)}  # fmt: skip
+                "to_fill": TO_FILL, "version": concio.__version__, **self.state(told)}  # fmt: skip
 
     def start(self, told: Mapping[str, Any]) -> Answer:
         """Return the files of the folder that can be opened."""

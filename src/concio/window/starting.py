@@ -11,6 +11,31 @@ from pathlib import Path
 from concio.window.folder import PICTURES, SOLIDS
 from concio.window.toml_edits import literal
 
+TO_FILL = {
+    "site": """
+[site]                            # of concio assess; every value is to be stated
+soil = ""                         # A to E
+topography = ""                   # T1 to T4
+nominal_life = ""                 # years
+use_class = ""                    # I to IV
+
+[site.hazard.SLV]
+a_g = ""                          # in g, or with a unit: 1.96 m/s2
+F0 = ""
+Tc = ""                           # s
+
+[assessment]
+knowledge = ""                    # LC1, LC2 or LC3
+
+[assessment.report]
+project = ""
+place = ""
+author = ""
+date = ""
+""",
+}
+"""Tables that a question needs, with their values to be stated."""
+
 
 def model_text(file: Path) -> str | None:
     """Return the text of a model that names a file; None for a model file itself."""

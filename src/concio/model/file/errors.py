@@ -97,8 +97,8 @@ def first_fault(error: ValidationError, data: Any, root: type[BaseModel], where:
 
 
 def is_tag(part: int | str) -> bool:
-    """Return whether a part of a location is the name of a branch of a union, such as ``<table>``."""
-    return isinstance(part, str) and part.startswith("<")
+    """Return whether a part of a location is the name of a branch of a union, ``<table>`` or ``dict[str,T]``."""
+    return isinstance(part, str) and part.startswith(("<", "dict[", "list["))
 
 
 def _expected(context: dict[str, Any]) -> str:

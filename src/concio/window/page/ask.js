@@ -3,31 +3,40 @@ import { t, el, field, say, language, spoken } from "./words.js";
 import { call } from "./net.js";
 import { view } from "./picture.js";
 
-let questions = [], chosen = "run", controls = {}, asked = () => {}, doc = () => null, pending = 0;
+let questions = [], toFill = {}, chosen = "run", controls = {}, asked = () => {}, doc = () => null, rewrite = () => {}, pending = 0;
 const answers = [];
 export let answer = null;
 
-export function setAsk(list, sender, document_) { questions = list; asked = sender; doc = document_; }
+export function setAsk(hello, sender, document_, writer) { questions = hello.questions; toFill = hello.to_fill; asked = sender; doc = document_; rewrite = writer; }
 const $ = (id) => document.getElementById(id);
 
 function fits(q) { return !q.needs.length || (view.shown && q.needs.some((n) => view.shown.tables.includes(n) || (n === "vehicle" && view.shown.tables.includes("bridge") && view.shown.tables.includes("vehicle")))); }
 
 export function questionPane(pane) {
   const buttons = questions.map((q) => el("button", {
-    "aria-pressed": String(q.name === chosen), "data-question": q.name, disabled: !fits(q), title: fits(q) ? t(`a_${q.name}`) : t("needs", { table: q.needs[0] }),
+    "aria-pressed": String(q.name === chosen), "data-question": q.name, "aria-disabled": fits(q) ? false : "true", title: fits(q) ? t(`a_${q.name}`) : t("needs", { table: q.needs[0] }),
     onclick: () => { chosen = q.name; questionPane(pane); pane.querySelector(`[data-question="${q.name}"]`).focus(); },
   }, t(`q_${q.name}`)));
-  const now = questions.find((q) => q.name === chosen);
+  const now = questions.find((q) => q.name === chosen), there = !view.shown || fits(now);
   controls = {};
   const acts = el("div", { id: "acts" });
   const fields = now.options.map((o) => optionField(o, () => showActs(acts, now)));
+  const choices = [el("div", { class: "choices", role: "group", "aria-label": t("ask") }, ...buttons), el("p", {}, t(`a_${now.name}`))];
+  if (!there) return pane.replaceChildren(...choices, missing(now.needs[0]));
   pane.replaceChildren(
-    el("div", { class: "choices", role: "group", "aria-label": t("ask") }, ...buttons), el("p", {}, t(`a_${now.name}`)),
+    ...choices,
     ...fields, el("section", {}, el("h2", {}, t("acts_on")), acts),
     el("p", { class: "quiet" }, `${t("all_options")} `, el("code", { lang: "en" }, `concio ${now.name} --help`)),
     el("div", { class: "foot" }, el("button", { class: "main", id: "run", disabled: !view.shown || Boolean(view.shown.fault), onclick: run }, t("run_it"))),
   );
   showActs(acts, now);
+}
+
+/* a question whose table is not in the text: which one, and where it can be written down at once */
+function missing(table) {
+  const told = el("section", { id: "missing" }, el("p", {}, `${t("needs", { table })[0].toUpperCase()}${t("needs", { table }).slice(1)}.`));
+  if (toFill[table] && doc()) told.append(el("button", { onclick: () => rewrite(doc().text.replace(/\s*$/, "\n") + toFill[table]) }, t("add_table")));
+  return told;
 }
 
 function optionField(option, changed) {

@@ -289,7 +289,7 @@ async function begin() {
   setWords(hello.words, hello.of_files);
   for (const [name, colour] of Object.entries(hello.look)) document.documentElement.style.setProperty(`--look-${name}`, colour);
   for (const name of TABS) { panes[name] = el("div", { role: "tabpanel", id: `pane-${name}`, "aria-labelledby": `tab-${name}`, tabindex: -1, hidden: name !== tab }); $("panes").append(panes[name]); }
-  setBuild(() => doc, send); setTables(send); setLayers(send); setLook(() => doc, () => refresh(["tables"])); setPhoto(() => doc, send); setAsk(hello.questions, ask, () => doc);
+  setBuild(() => doc, send); setTables(send); setLayers(send); setLook(() => doc, () => refresh(["tables"])); setPhoto(() => doc, send); setAsk(hello, ask, () => doc, async (text) => { if (await send([{ do: "text", text }])) go("data", true); });
   for (const [id, act] of [["save", save], ["undo", undo], ["redo", redo], ["open", start], ["keys", help], ["cancel", cancel], ["fit", fit], ["zoom-in", () => zoom(1.4)], ["zoom-out", () => zoom(1 / 1.4)]]) $(id).addEventListener("click", act);
   $("names").addEventListener("change", () => { view.names = $("names").checked; draw(); });
   $("language").addEventListener("click", () => { setLanguage(language === "it" ? "en" : "it"); label(); header(); attention(); fault(null); tabs(); refresh(TABS, true); follow(state, () => {}); });
