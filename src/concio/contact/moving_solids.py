@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from concio.contact.face_joints import FaceJoints
+from concio.contact.solid_sides import SurfaceNodes
 from concio.kinematics.frames import cross, dot, norm, tangents
 from concio.kinematics.placement import Placement
 from concio.model.polyhedron import Polyhedron
@@ -24,6 +25,11 @@ FLAT = 1e-6
 
 POINTS = 65536
 """Points of the joints of two faces that names can tell apart."""
+
+BESIDE = 0.02
+"""Distance over the spacing of nodes by which one within a face or an edge may stand beside the face that it meets.
+
+Where two faces have a side in common, the nodes on it would else come and go by rounding, with nothing instead."""
 
 ON_FACE, ON_EDGES, IN_JOINT = 0, 1, 2
 """Sorts of pairs: a corner on a face, two edges, a point of a joint of two faces."""
@@ -45,11 +51,12 @@ class MovingSolids:
     Parameters
     ----------
     body : (v,) integer array
-        Body of each vertex.
+        Body of each vertex. Nodes on the surface of elastic bodies are vertices, behind those of the polyhedron.
     start : (v, 3) array
         Vertices [m].
     around : (v, k) integer array
-        Vertices at the other ends of the edges of each vertex; itself where there are fewer than k.
+        Vertices at the other ends of the edges of each vertex, of a node those of its faces; itself where there are
+        fewer than k.
     face_body, face_start : (f,) integer arrays
         Body of each face, and one of its vertices.
     normal, tangent : (f, 3) arrays
@@ -66,6 +73,12 @@ class MovingSolids:
         Mean width of each body, three times its volume over its surface [m].
     rings : sequence of f integer arrays
         Vertices of each face.
+    node : (v,) integer array
+        Node of an elastic body at a vertex, counted in the body; -1 where there is none.
+    beside : (v,) array
+        How far beside a face a vertex still stands over it [m].
+    spacing : (B,) array
+        Between nodes on the surface of elastic bodies, infinite for others [m].
     joints : FaceJoints or None
         Joints of faces as described whose laws need areas.
     """
@@ -84,16 +97,24 @@ class MovingSolids:
     fixed: Array
     width: Array
     rings: Sequence[Array]
+    node: Array
+    beside: Array
+    spacing: Array
     joints: FaceJoints | None = None
 
     @classmethod
-    def of(cls, bodies: Sequence[Polyhedron]) -> MovingSolids:
-        """Return the surfaces of bodies."""
+    def of(cls, bodies: Sequence[Polyhedron], meshes: Sequence[SurfaceNodes | None] = ()) -> MovingSolids:
+        """Return the surfaces of bodies, with the nodes on those of elastic ones."""
         tops = [b.topology for b in bodies]
-        vertices = np.array([len(b.vertices) for b in bodies])
+        meshes = meshes or [None] * len(bodies)
+        corners = np.array([len(b.vertices) for b in bodies])
+        vertices = corners + [0 if mesh is None else len(mesh.node) for mesh in meshes]
         faces = np.array([len(b.faces) for b in bodies])
         first_v, first_f = np.cumsum(vertices) - vertices, np.cumsum(faces) - faces
-        start = np.concatenate([b.vertices - b.centroid for b in bodies])
+        start = np.concatenate(
+            [part for b, mesh in zip(bodies, meshes, strict=True)
+             for part in (b.vertices - b.centroid, np.zeros((0, 3)) if mesh is None else mesh.place)]
+        )  # fmt: skip
         normal = np.concatenate([b.normals for b in bodies])
         face_body = np.repeat(np.arange(len(bodies)), faces)
         edge = np.concatenate([top.edges + first_v[i] for i, top in enumerate(tops)])
@@ -109,15 +130,23 @@ class MovingSolids:
                          ways[side[:, 0]])[:, 0]  # fmt: skip
         out = cross(normal[edge_faces[:, 0]], normal[edge_faces[:, 1]])
         stands = dot(out, start[edge[:, 1]] - start[edge[:, 0]]) > FLAT * norm(start[edge[:, 1]] - start[edge[:, 0]])
-        around = _padded(np.concatenate([edge[:, 0], edge[:, 1]]), np.concatenate([edge[:, 1], edge[:, 0]]), len(start))
+        rings = np.split(side[:, 1], np.searchsorted(side[:, 0], np.arange(1, len(normal))))
+        own, near = _ring_vertices(meshes, rings, first_v + corners, first_f)
+        around = _padded(
+            np.concatenate([edge[:, 0], edge[:, 1], own]), np.concatenate([edge[:, 1], edge[:, 0], near]), len(start)
+        )
         body = np.repeat(np.arange(len(bodies)), vertices)
         area = np.array([b.face_areas.sum() for b in bodies])
+        spacing = np.array([np.inf if mesh is None else mesh.spacing for mesh in meshes])
+        inner = np.arange(len(start)) - first_v[body] >= corners[body]
+        node = [np.full(len(b.vertices), -1) if mesh is None else np.concatenate([mesh.corner, mesh.node])
+                for b, mesh in zip(bodies, meshes, strict=True)]  # fmt: skip
         return cls(
             body, start, around, face_body, face_start, normal, ways[:, 0], _gathered(side[:, 0], flat, len(normal)),
             body[edge[stands, 0]], edge[stands], edge_faces[stands],
             np.array([bodies[b].kind == "fixed" for b in body.tolist()]),
-            3.0 * np.array([b.volume for b in bodies]) / area,
-            np.split(side[:, 1], np.searchsorted(side[:, 0], np.arange(1, len(normal)))),
+            3.0 * np.array([b.volume for b in bodies]) / area, rings, np.concatenate(node),
+            np.where(inner, BESIDE, 0.0) * np.where(inner, spacing[body], 0.0), spacing,
         )  # fmt: skip
 
     def placed(self, placement: Placement) -> PlacedSolids:
@@ -206,6 +235,19 @@ def renamed(key: Array, old: MovingSolids, new: MovingSolids, numbers: Sequence[
             found[own] = new.joint_key(pair, old.point_number(key[own]))
         kept[own] = True
     return found, kept
+
+
+def _ring_vertices(
+    meshes: Sequence[SurfaceNodes | None], rings: Sequence[Array], first: Array, first_face: Array
+) -> tuple[Array, Array]:
+    """Return nodes that are no corners, numbered from ``first`` (B,), and the vertices of their faces, pair by pair."""
+    own, near = [np.zeros(0, dtype=int)], [np.zeros(0, dtype=int)]
+    for mesh, at, face in zip(meshes, first.tolist(), first_face.tolist(), strict=True):
+        for k, faces in enumerate(() if mesh is None else mesh.faces):
+            ring = np.unique(np.concatenate([rings[face + f] for f in faces.tolist()]))
+            own.append(np.full(len(ring), at + k))
+            near.append(ring)
+    return np.concatenate(own), np.concatenate(near)
 
 
 def _padded(of: Array, value: Array, count: int) -> Array:

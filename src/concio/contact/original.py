@@ -169,7 +169,7 @@ class OriginalContacts:
             parts.append(np.where(free[:, None], disc.offsets[body][:, None] + np.arange(3), n))
         for side in (slots.side_a, slots.side_b):
             if side is not None:
-                parts.append(self.reference.node_column[side.node].reshape(len(slots), -1))
+                parts.append(self.reference.node_column[side.node].reshape(len(slots), 2 * side.node.shape[1]))
         return np.concatenate(parts, axis=1)
 
     def _weighted(self, slots: Slots) -> bool:

@@ -17,6 +17,7 @@ from concio.contact.convex_bodies import ConvexBodies, pairs_of
 from concio.contact.laws import RuleBook
 from concio.contact.moving_solids import IN_JOINT, ON_FACE
 from concio.contact.original_joints import OriginalJoints
+from concio.contact.original_nodes import node_arms, node_columns, node_rows, nodes_belong
 from concio.contact.reference import Reference
 from concio.contact.rows import Rows
 from concio.contact.separating_axes import Sides, every_axis
@@ -61,7 +62,8 @@ class _Named:
     corner : (faces,) integer array
     edges : (m - faces, 2, 2) integer array
         Vertices at both ends of the edges of either body.
-    columns : (m, 12) integer array
+    columns : (m, 12 + k) integer array
+        Of rigid bodies, then of nodes.
     joints : OriginalJoints or None
     joint : (lone,) integer array
         Joint that stands for a pair, -1 for none.
@@ -95,8 +97,10 @@ class OriginalSolids:
         self.reference = reference
         disc, bodies = reference.disc, reference.model.polyhedra
         self.bodies = bodies
-        self.arms = np.concatenate([b.vertices - disc.centroids[i] for i, b in enumerate(bodies)])
-        count = [len(b.vertices) for b in bodies]
+        own = [b.vertices - disc.centroids[i] for i, b in enumerate(bodies)]
+        own = [np.vstack(both) for both in zip(own, node_arms(reference), strict=True)]
+        self.arms = np.concatenate(own)
+        count = [len(arms) for arms in own]
         self.owner = np.repeat(np.arange(len(bodies)), count)
         self.first = np.cumsum(count, dtype=np.intp) - count
         self._named: tuple[SolidLayout, _Named] | None = None
@@ -147,9 +151,10 @@ class OriginalSolids:
         slots = replace(
             layout.slots, body_a=body[:, 0], body_b=body[:, 1], law=law, opening=opening, share=share, bonded=bonded
         )
+        columns = np.concatenate([columns.reshape(len(body), 12), *node_columns(self.reference, slots)], axis=1)
         return _Named(
             slots, faces, lone, body, self.rings[face], self.level[face], corner, solids.edge[edges],
-            columns.reshape(len(body), 12), joints, joint, joints is None or joints.sound,
+            columns, joints, joint, joints is None or joints.sound,
         )  # fmt: skip
 
     def _joint_of(self, joints: OriginalJoints, corner: Array, face: Array, edges: Array) -> Array:
@@ -178,8 +183,8 @@ class OriginalSolids:
             Of the centroids [m/s].
         spin : (B, 3) array
             [rad/s].
-        strain : (0, 3) array
-            There are no elastic bodies.
+        strain : (nodes, 3) array
+            Of elastic bodies [m].
         """
         n, sign = self.named(layout), layout.toucher.sign
         place = self._placed(centre, rotation)
@@ -199,9 +204,13 @@ class OriginalSolids:
                 )
             )  # fmt: skip
         values, imposed = self._rows(n, point, frame, centre, rotation, velocity, spin)
+        of_nodes, strained = node_rows(n.slots, frame, rotation, strain)
+        values = np.concatenate([values, *of_nodes], axis=2)
+        if of_nodes:
+            valid = valid & nodes_belong(self.reference, n.slots, point, frame[:, 0], gap, centre, rotation)
         turning = self._turning(n, place, point, frame, centre, velocity, spin, sign)
         return n.slots, Rows(
-            n.columns, values, gap + n.slots.opening, imposed, turning, valid, area, point, frame
+            n.columns, values, gap + strained + n.slots.opening, imposed, turning, valid, area, point, frame
         )
 
     def _placed(self, centre: Array, rotation: Array) -> Array:
@@ -209,7 +218,7 @@ class OriginalSolids:
         return np.asarray(centre[self.owner] + np.matmul(rotation[self.owner], self.arms[:, :, None])[:, :, 0])
 
     def _corners(self, n: _Named, place: Array, rotation: Array) -> tuple[Array, Array, Array, Array]:
-        """Return points, frames and gaps of corners over faces, and how far they lie beyond these."""
+        """Return points, frames and gaps of corners over faces, and how far they lie beyond these and beside."""
         sides, at = place[n.rings], place[n.corner]
         from_first = sides - sides[:, :1, :1]
         area = np.cross(from_first[:, :, 0], from_first[:, :, 1]).sum(axis=1)
@@ -218,7 +227,7 @@ class OriginalSolids:
         frame = np.stack([normal, along, np.cross(normal, along)], axis=1)
         gap = ((at - sides[:, 0, 0]) * normal).sum(axis=1)
         flat = np.einsum("fsec,fdc->fsed", sides - at[:, None, None], frame[:, 1:])
-        return at, frame, gap, _beyond(flat)
+        return at, frame, gap, _beyond(flat) - self.reference.solids.beside[n.corner]
 
     def _standing(
         self, layout: SolidLayout, n: _Named, point: Array, normal: Array, beyond: Array, stands: Array
@@ -291,7 +300,7 @@ class OriginalSolids:
 
         Parameters
         ----------
-        centre, rotation, strain : (B, 3), (B, 3, 3) and (0, 3) arrays
+        centre, rotation, strain : (B, 3), (B, 3, 3) and (nodes, 3) arrays
         share : float
             What it may over the narrower body's width, beside what the model was drawn with.
         more : float
@@ -306,6 +315,7 @@ class OriginalSolids:
         hard = ~((laws.normal[law] > 0) | np.isfinite(laws.cap[law]))
         i, j, a, b, opening = i[hard], j[hard], a[hard], b[hard], opening[hard]
         allowed = share * np.minimum(width[a], width[b]) + 2 * self.reference.tolerance + np.abs(opening) + more
+        allowed += self._strained(strain)[a] + self._strained(strain)[b]
         low, high = pieces.boxes
         depth = np.minimum(high[i] - low[j], high[j] - low[i]).min(axis=1, initial=np.inf)
         for k in np.array_split(doubt := np.flatnonzero(depth > allowed), 1 + len(doubt) // CHUNK):
@@ -313,6 +323,12 @@ class OriginalSolids:
                 one, other = Sides.of(pieces, i[k]), Sides.of(pieces, j[k])
                 depth[k] = np.minimum(depth[k], -every_axis(one, other)[1].max(axis=1))
         return float((np.maximum(depth, 0.0) / allowed).max(initial=0.0))
+
+    def _strained(self, strain: Array) -> Array:
+        """Return the largest displacement of a node of each body (B,) in its frame [m]."""
+        found = np.zeros(len(self.bodies))
+        np.maximum.at(found, self.reference.body_of_node, np.linalg.norm(strain, axis=1))
+        return found
 
     @cached_property
     def pieces(self) -> ConvexBodies:

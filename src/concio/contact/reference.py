@@ -17,13 +17,14 @@ import numpy as np
 from concio.contact.detection import default_tolerance, detect_without_overlap
 from concio.contact.edges import MovingEdges
 from concio.contact.expansion import refuse_temperatures
-from concio.contact.face_joints import face_joints
+from concio.contact.face_joints import face_joints, needs_area
 from concio.contact.geometry import GEOMETRIES
 from concio.contact.laws import LawTable, RuleBook
 from concio.contact.matrices import BodyMatrices
 from concio.contact.moving_loads import MovingLoads
 from concio.contact.moving_solids import MovingSolids
 from concio.contact.periodic import held_at_a_point
+from concio.contact.solid_sides import surface_nodes
 from concio.contact.supports import apply_supports
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID, Discretisation, discretise
@@ -79,6 +80,7 @@ class Reference:
             raise InputError(msg, hint="take a wall of several blocks")
         refuse_temperatures(model, "a motion, or a push at large displacements,")
         reference = cls.described(model, gravity)
+        refuse_elastic_joints(reference)
         apply_supports(reference.disc)  # what cannot be used is said before anything moves
         return reference
 
@@ -229,7 +231,7 @@ class Reference:
     @cached_property
     def solids(self) -> MovingSolids:
         """The surfaces of polyhedra, with the joints of faces whose laws need areas."""
-        solids = MovingSolids.of(self.model.polyhedra)
+        solids = MovingSolids.of(self.model.polyhedra, surface_nodes(self.disc))
         return replace(
             solids, joints=face_joints(self.model, self.rules, self.detection.patches, solids, self.tolerance)
         )
@@ -290,17 +292,29 @@ class Reference:
 
 
 def refuse_in_space(model: Model) -> None:
-    """Refuse what motion in space does not compute: elastic blocks, and joints that dilate."""
+    """Refuse what motion in space does not compute: joints that dilate."""
     if model.dim == 2:
         return
-    for body in model.bodies:
-        if body.kind == "elastic":
-            msg = f"block '{body.name}' is elastic; in space only rigid blocks move"
-            raise InputError(msg, hint='give it kind = "rigid"')
     for name, law in model.laws.items():
         if law.dilatancy:
             msg = f"joint '{name}' dilates; in space joints of blocks that move do not"
             raise InputError(msg, hint="leave out dilatancy")
+
+
+def refuse_elastic_joints(reference: Reference) -> None:
+    """Refuse joints of elastic blocks that move in space whose laws need areas: nodes have none."""
+    model, patches = reference.model, reference.detection.patches
+    if model.dim == 2 or not len(reference.meshed) or not patches:
+        return
+    a, b = np.array([(p.a, p.b) for p in patches]).T
+    law, laws = reference.rules.find(a, b)[0], list(model.laws.items())
+    needs = np.array([needs_area(own) for _, own in laws])[law]
+    elastic = reference.disc.shape_of >= 0
+    for k in np.flatnonzero(needs & (elastic[a] | elastic[b])).tolist():
+        block, name = model.bodies[a[k] if elastic[a[k]] else b[k]].name, laws[law[k]][0]
+        msg = f"joint '{name}' of the elastic block '{block}' has stiffness, cohesion or strength; in space joints of "
+        hint = 'give the joint a law with friction alone, or the block kind = "rigid"'
+        raise InputError(msg + "elastic blocks that move have friction alone", hint=hint)
 
 
 @dataclass(frozen=True, eq=False)

@@ -91,13 +91,14 @@ class RowMaker:
         a, b = slots.body_a, slots.body_b
         self.reach_a, self.reach_b = disc.reach[a], disc.reach[b]
         self.moved = ~rigid & (disc.shape_of < 0)  # bodies that are moved, not free
-        self.plain = not ((slots.fraction > 0) & (slots.fraction < 1)).any() and slots.side_a is None
+        between = ((slots.fraction > 0) & (slots.fraction < 1)).any()
+        self.plain = not between and (slots.side_a is None or bool((slots.low == slots.high).all()))
         self.end = np.where(slots.fraction >= 1, slots.high, slots.low)
         parts = [columns[a], columns[b]]
         self.node_column = node_column
         for side in (slots.side_a, slots.side_b):
             if side is not None:
-                parts.append(node_column[side.node].reshape(len(slots), -1))
+                parts.append(node_column[side.node].reshape(len(slots), self.dim * side.node.shape[1]))
         self.columns = np.concatenate(parts, axis=1)
         if slots.side_a is not None and slots.side_b is not None:
             k = self.rigid_motions
@@ -179,6 +180,5 @@ class RowMaker:
     ) -> Array:
         """Write the entries of meshed sides into ``values`` (m, d, d k); return the gap that strains add (m,)."""
         local, weight = turn.undo(frame), sign * side.weight
-        m, d = frame.shape[:2]
-        values[:] = (weight[:, None, :, None] * local[:, :, None]).reshape(m, d, -1)
+        values[:] = (weight[:, None, :, None] * local[:, :, None]).reshape(values.shape)
         return np.asarray((weight * dot(local[:, :1], strain[side.node])).sum(1))

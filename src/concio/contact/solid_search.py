@@ -18,6 +18,7 @@ from concio.contact.moving_solids import MovingSolids, PlacedSolids
 from concio.contact.polygon_points import outside
 from concio.contact.rows import RowMaker, Rows
 from concio.contact.slots import Slots
+from concio.contact.solid_sides import FacetSides
 from concio.contact.solid_touch import SAME, Crossing, SolidTouch, SolidToucher
 from concio.kinematics.boxes import meeting_boxes
 from concio.kinematics.frames import cross, dot, norm
@@ -32,8 +33,14 @@ Array = np.ndarray
 SKIN = 0.1
 """Skin over the median width of the bodies."""
 
+SHIFT = 2e-3
+"""Share of the spacing of nodes by which a point may slide over an elastic face before its weights are looked up."""
+
 AWAY = 0.1
 """Sine of the angle by which what surrounds a corner or an edge may turn towards the other body."""
+
+EQUAL = 1e-6
+"""Relative difference up to which two bodies have nodes equally close."""
 
 ALIKE = 0.9
 """Cosine of the angle between the normals of two points that may stand for each other."""
@@ -52,6 +59,8 @@ class SolidLayout:
         Where the vertices were when the layout was made.
     joint : (m,) integer array
         Number of the joint as described that a slot belongs to; -1 where there was none.
+    faces, feet : (m, 2) integer array, (m, 2, 2) array
+        Faces of elastic bodies on either side, and where on them slots stood when the layout was made [m].
     """
 
     slots: Slots
@@ -59,6 +68,8 @@ class SolidLayout:
     maker: RowMaker
     start: Array
     joint: Array
+    faces: Array
+    feet: Array
 
 
 class SolidSearch:
@@ -76,25 +87,50 @@ class SolidSearch:
         self.slack, self.same = 1e-9 * size, SAME * size
         self.fixed = np.array([b.kind == "fixed" for b in reference.model.bodies])
         self.layout: SolidLayout | None = None
+        self.facets = None
+        if len(reference.meshed):
+            nodes = len(reference.body_of_node)
+            self.facets = FacetSides(reference.disc, self.edges, reference.first_node, nodes)
 
     def update(self, placed: PlacedSolids) -> bool:
         """Look for candidates again where that is due; return whether the layout has changed."""
         old = self.layout
-        if old is not None and norm(placed.start - old.start).max(initial=0.0) <= 0.5 * self.skin:
+        if old is not None and not self._due(old, placed):
             return False
         toucher = find_solid_candidates(self.edges, placed, self.fixed, self.skin, self.slack, self.same)
         slots = self._slots(toucher)
         if old is not None:  # what stood for others goes on doing so
             toucher.chosen[:] = np.isin(slots.key, old.slots.key[old.toucher.chosen])
             if np.array_equal(slots.key, old.slots.key):  # what names the pairs has not changed, nor what solves them
-                maker = self._rows(old.slots, toucher)
-                self.layout = SolidLayout(old.slots, toucher, maker, placed.start, old.joint)
-                return False
+                self._laid(replace(slots, key=old.slots.key), toucher, placed, old.joint)
+                return self.facets is not None
         joints = self.reference.joint_numbers
         pairs = zip(slots.body_a.tolist(), slots.body_b.tolist(), strict=True)
         joint = np.array([joints.get((min(p), max(p)), -1) for p in pairs], dtype=int)
-        self.layout = SolidLayout(slots, toucher, self._rows(slots, toucher), placed.start, joint)
+        self._laid(slots, toucher, placed, joint)
         return True
+
+    def _due(self, layout: SolidLayout, placed: PlacedSolids) -> bool:
+        if norm(placed.start - layout.start).max(initial=0.0) > 0.5 * self.skin:
+            return True
+        if self.facets is None:
+            return False
+        touch = layout.toucher.touch(placed)
+        moved = norm(self.facets.feet(layout.faces, touch, placed) - layout.feet)
+        bodies = np.column_stack([layout.slots.body_a, layout.slots.body_b])
+        far = moved > SHIFT * self.edges.spacing[bodies]
+        return bool((far & (layout.faces >= 0) & touch.valid[:, None]).any())
+
+    def _laid(self, slots: Slots, toucher: SolidToucher, placed: PlacedSolids, joint: Array) -> None:
+        """Keep slots as the layout, with the nodes of elastic bodies that enter them."""
+        m = len(slots)
+        faces, feet = np.full((m, 2), -1), np.zeros((m, 2, 2))
+        if self.facets is not None:
+            faces = self.facets.faces(toucher)
+            feet = self.facets.feet(faces, toucher.touch(placed), placed)
+            side_a, side_b = self.facets.sides(toucher, faces, feet)
+            slots = replace(slots, side_a=side_a, side_b=side_b)
+        self.layout = SolidLayout(slots, toucher, self._rows(slots, toucher), placed.start, joint, faces, feet)
 
     def _rows(self, slots: Slots, toucher: SolidToucher) -> RowMaker:
         """Return what writes the rows of slots."""
@@ -176,7 +212,7 @@ def find_solid_candidates(
     a, b = near_bodies(solids, placed, fixed, skin)
     one, other = np.concatenate([a, b]), np.concatenate([b, a])
     corner, face = _products(solids.body, other, solids.face_body, one)
-    corner, face = _on_faces(solids, placed, corner, face, skin)
+    corner, face = _on_faces(solids, placed, *_of_finer(solids, corner, face), skin)
     first, second = _products(solids.edge_body, a, solids.edge_body, b)
     edges, sign = _across(solids, placed, np.column_stack([first, second]), skin)
     body_a = np.concatenate([solids.face_body[face], solids.edge_body[edges[:, 0]]])
@@ -230,6 +266,15 @@ def _products(of: Array, body: Array, of_other: Array, other: Array) -> tuple[Ar
     pair = np.repeat(np.arange(len(body)), size)
     place = np.arange(len(pair)) - np.repeat(np.cumsum(size) - size, size)
     return start[pair] + place // wide[pair], begin[pair] + place % wide[pair]
+
+
+def _of_finer(solids: MovingSolids, corner: Array, face: Array) -> tuple[Array, Array]:
+    """Return pairs (n,) without those of nodes on elastic faces whose own nodes are closer: one side's are enough."""
+    inner, own, other = solids.beside[corner] > 0, solids.body[corner], solids.face_body[face]
+    here, there = solids.spacing[own], solids.spacing[other]
+    alike = (here <= (1 + EQUAL) * there) & (there <= (1 + EQUAL) * here) & np.isfinite(there)
+    keep = ~inner | np.where(alike, own < other, here < there)
+    return corner[keep], face[keep]
 
 
 def _on_faces(

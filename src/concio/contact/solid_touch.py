@@ -74,7 +74,8 @@ class SolidToucher:
     body_a, body_b : (q + r,) integer arrays
         Of corners on faces, a is the body of the face.
     slack : float
-        How far beyond the boundary of a face, or the end of an edge, a point still stands over it [m].
+        How far beyond the boundary of a face, or the end of an edge, a point still stands over it, beside what its
+        vertex has [m].
     same : float
         Distance along the joint below which points are one [m].
     near : (n, 2) integer array
@@ -109,7 +110,8 @@ class SolidToucher:
         away = point - placed.start[solids.face_start[self.face]]
         gap = dot(normal, away)
         frame = np.stack([normal, tangent, cross(normal, tangent)], axis=1)
-        over = outside(solids.sides[self.face], dot(away, frame[:, 1]), dot(away, frame[:, 2])) <= self.slack
+        over = outside(solids.sides[self.face], dot(away, frame[:, 1]), dot(away, frame[:, 2]))
+        over = over <= self.slack + solids.beside[self.corner]
         crossing = Crossing.of(placed.start[solids.edge[self.edges]], self.sign)
         touch = SolidTouch(
             np.concatenate([point, crossing.point]), np.concatenate([frame, crossing.frame]),

@@ -170,7 +170,8 @@ class Certificate:
             arm = forth(back(rows.point - state.centre[body], state.rotation[body]), before.rotation[body])
             step = rows.point - before.centre[body] - arm
             if side is not None:
-                mean = (side.weight[:, :, None] * np.vstack([moved, np.zeros((1, 2))])[side.node]).sum(axis=1)
+                padded = np.vstack([moved, np.zeros((1, moved.shape[1]))])
+                mean = (side.weight[:, :, None] * padded[side.node]).sum(axis=1)
                 step = np.where(side.meshed[:, None], mean, step)
             total += sign * step
         return total
@@ -208,18 +209,19 @@ class Certificate:
         velocity, spin = driven(self.reference, state, h, drive)
         centre, rotation = state.centre + 0.5 * h * velocity, on(state.rotation, 0.5 * h * spin)
         turn = Turns.of(rotation)
-        strain, rate, nodal = state.strain, np.zeros_like(state.strain), state.nodal
+        strain, nodal = state.strain, state.nodal
         if f.elastic:
             rate, _, _ = f.rate(nodal, turn[f.body].apply(f.arm + strain), turn)
             strain = strain + 0.5 * h * rate
         x0 = f.unknowns(velocity, spin, nodal, turn)
-        x = f.unknowns(new.velocity, new.spin, new.nodal, turn if centre.shape[1] == 2 else Turns.of(new.rotation))
+        after = turn if centre.shape[1] == 2 else Turns.of(new.rotation)
+        x = f.unknowns(new.velocity, new.spin, new.nodal, after, turn)
         acting = f.loads(drive, turn) + f.ground(drive, turn)
         b = f.mass * x0 / h + acting
         if centre.shape[1] == 3:
             b = b + f.gyroscopic(self.scheme.theta * x + (1 - self.scheme.theta) * x0)
         if f.elastic:
-            b = b + f.internal(state, h, rate, strain, spin, x0)
+            b = b + f.internal(state, h, strain, x0, x, turn)
         force, speed = measures(self.reference, acting, x0, h)
         slots, rows = self.original.at(layout, centre, rotation, velocity, spin, strain)
         if not self.original.named(layout).sound:

@@ -79,7 +79,8 @@ def dynamics(
     Parameters
     ----------
     model : Model
-        In the plane elastic, rigid and fixed bodies; in space rigid and fixed ones on joints that do not dilate.
+        Elastic, rigid and fixed bodies; in space on joints that do not dilate, those of elastic bodies with friction
+        alone.
     motion : Signal, path, mapping, optional
         Motion of the ground along x (a record, a pulse, the name of a file), or by component: ``{"x": ..., "y": ...}``,
         in space also "z", which is vertical there. "rz", in space also "rx" and "ry", turn a base that moves about the

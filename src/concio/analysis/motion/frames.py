@@ -4,7 +4,7 @@ Unknowns of a rigid body are the velocity of its centroid and reach times its sp
 (:mod:`concio.kinematics.spins`), of a meshed one the velocities of its nodes in its own frame. The
 frame turns with the rotation that fits the nodes best in mass; in it the strain d grows by what is left of their
 velocities. An implicit stiffness acts on all of the velocity; the part of it that only turns the strained body along,
-K J d omega, is taken out with the angular velocity at the beginning. Forces K d have no moment about the strained body:
+K J d omega, is taken out. Forces K d have no moment about the strained body:
 what they have is taken out in proportion to mass and arm.
 """
 
@@ -60,13 +60,18 @@ class Frames:
 
     # -- velocities ----------------------------------------------------------------------------------------------------
 
-    def unknowns(self, velocity: Array, spin: Array, nodal: Array, turn: Turns) -> Array:
-        """Return velocities of centroids (B, d), spins and velocities of nodes (nodes, d) as unknowns (N,)."""
+    def unknowns(
+        self, velocity: Array, spin: Array, nodal: Array, turn: Turns, frames: Turns | None = None
+    ) -> Array:
+        """Return velocities of centroids (B, d), spins and velocities of nodes (nodes, d) as unknowns (N,).
+
+        Nodes have theirs in ``frames``, if these stand elsewhere than rigid bodies.
+        """
         x = np.empty(self.n)
         x[self.centres] = velocity[self.rigid]
         x[self.turns] = self.reach * self.axes.own(spin[self.rigid], self.rigid, turn)
         if self.elastic:
-            x[self.nodes] = turn[self.body].undo(nodal)
+            x[self.nodes] = (frames or turn)[self.body].undo(nodal)
         return x
 
     def rigid_part(self, x: Array, velocity: Array, spin: Array, turn: Turns) -> tuple[Array, Array]:
@@ -95,7 +100,9 @@ class Frames:
         return np.stack([np.bincount(self.body, self._share * v, self.count) for v in nodal.T], axis=1)
 
     def fit(self, nodal: Array, place: Array) -> tuple[Array, Array]:
-        """Return velocity of the frames' origins (B, d) and spin (B,) that fit nodal velocities best in mass.
+        """Return velocity of the frames' origins (B, d) and spin that fit nodal velocities best in mass.
+
+        The spin is (B,) in the plane and (B, 3) in space.
 
         Parameters
         ----------
@@ -104,7 +111,7 @@ class Frames:
         """
         middle, velocity = self.mean(place), self.mean(nodal)
         r, w = place - middle[self.body], nodal - velocity[self.body]
-        spin = self._moment(r, self._weight[:, None] * w) / self._inertia(r)
+        spin = self._spun(r, self._weight[:, None] * w)
         return velocity - swept(spin, middle), spin
 
     def rate(self, nodal: Array, place: Array, turn: Turns) -> tuple[Array, Array, Array]:
@@ -113,14 +120,26 @@ class Frames:
         b = self.body
         return turn[b].undo(nodal - velocity[b] - swept(spin[b], place)), velocity, spin
 
-    def _moment(self, arm: Array, force: Array) -> Array:
-        """Return the moments (B,) of forces at arms, (nodes, d) each."""
-        return np.bincount(self.body, cross(arm, force), self.count)
+    def _spun(self, arm: Array, momentum: Array) -> Array:
+        """Return the spins, (B,) or (B, 3), with which nodes at arms have momenta, (nodes, d) each, about their mean.
 
-    def _inertia(self, arm: Array) -> Array:
-        """Return the moments of inertia (B,) of nodes at arms (nodes, d); 1 where there are none."""
-        found = np.bincount(self.body, self._weight * dot(arm, arm), self.count)
-        return np.where(found > 0, found, 1.0)
+        Bodies without nodes have none.
+        """
+        moment, square = self._sums(cross(arm, momentum)), self._sums(self._weight * dot(arm, arm))
+        own = square > 0
+        if arm.shape[1] == 2:
+            return moment / np.where(own, square, 1.0)
+        spin = np.zeros((self.count, 3))
+        product = self._sums(self._weight[:, None, None] * arm[:, :, None] * arm[:, None])
+        inertia = square[own, None, None] * np.eye(3) - product[own]
+        spin[own] = np.linalg.solve(inertia, moment[own][:, :, None])[:, :, 0]
+        return spin
+
+    def _sums(self, nodal: Array) -> Array:
+        """Return the sums (B, ...) over the nodes of each body of what nodes have (nodes, ...)."""
+        flat = nodal.reshape(len(nodal), -1).T
+        found = [np.bincount(self.body, one, self.count) for one in flat]
+        return np.stack(found, axis=-1).reshape(self.count, *nodal.shape[1:])
 
     # -- forces --------------------------------------------------------------------------------------------------------
 
@@ -155,24 +174,33 @@ class Frames:
                 f[self.nodes] = -self.node_mass[:, None] * local
         return f
 
-    def internal(self, state: MotionState, h: float, rate: Array, strain: Array, spin: Array, x0: Array) -> Array:
+    def internal(self, state: MotionState, h: float, strain: Array, x0: Array, x1: Array, turn: Turns) -> Array:
         """Return what elasticity and damping add to the right-hand side (N,) [kN].
+
+        With the velocities of the end the elastic energy grows by the work of these forces exactly.
 
         Parameters
         ----------
         state : MotionState
+            At the beginning.
         h : float
-        rate, strain : (nodes, d) arrays
-            Rate of strain at the beginning, strain in the middle of the step.
-        spin : (B,) array
-        x0 : (N,) array
-            Velocities at the beginning.
+            [s].
+        strain : (nodes, d) array
+            In the middle of the step [m].
+        x0, x1 : (N,) arrays
+            Velocities at the beginning and at the end.
+        turn : Turns
+            Of all bodies in the middle.
         """
         s = self.scheme
-        theta, beta, d = s.theta, s.stiffness_damping, state.strain
-        turned = (h * theta**2 + beta * theta) * swept(spin[self.body], strain)
-        b = -self.stiffness(d + (h * theta + beta) * (1 - theta) * rate - turned)
-        b -= self.turned(self.stiffness(d + (h * theta + beta) * rate), strain)
+        theta, d, grows = s.theta, state.strain, h * s.theta + s.stiffness_damping
+        place = turn[self.body].apply(self.arm + strain)
+        rate, _, _ = self.rate(self.nodal(x0, turn), place, turn)
+        ends, _, spin = self.rate(self.nodal(x1, turn), place, turn)
+        own = spin[self.body]
+        turned = grows * theta * swept(own if own.ndim == 1 else turn[self.body].undo(own), strain)
+        b = -self.stiffness(d + grows * (1 - theta) * rate - turned)
+        b -= self.turned(self.stiffness(d + grows * ((1 - theta) * rate + theta * ends)), strain)
         if s.mass_damping:
             b[self.nodes] -= s.mass_damping * (1 - theta) * self.node_mass[:, None] * x0[self.nodes]
         return b
@@ -181,7 +209,7 @@ class Frames:
         """Return the forces (N,), in proportion to mass and arm, that undo the moment of ``force`` (N,)."""
         b, r = self.body, self.arm + strain
         r = r - self.mean(r)[b]
-        share = self._moment(r, force[self.nodes]) / self._inertia(r)
+        share = self._spun(r, force[self.nodes])
         undone = np.zeros(self.n)
         undone[self.nodes] = -self._weight[:, None] * swept(share[b], r)
         return undone

@@ -140,6 +140,9 @@ class Observer:
         own, number = self._joints_of_slots()
         if self.reference.disc.dim == 2:
             gap = self.rows(state).gap
+        elif self.frames.elastic:
+            rows = self.rows(state)
+            gap = np.where(rows.valid, rows.gap, 0.0)
         else:
             search, slots = self.maker.search, self.maker.slots
             touch = search.touch(search.edges.placed(state.placement))  # type: ignore[arg-type]  # its own surfaces

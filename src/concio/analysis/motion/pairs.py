@@ -148,7 +148,8 @@ def yielding(reference: Reference) -> Array:
     disc = reference.disc
     found = np.zeros(len(disc.shape_of))
     for b in reference.meshed.tolist():
-        found[b] = YIELDING / float(np.median(disc.shapes[disc.shape_of[b]].K.diagonal()))
+        own = disc.shapes[disc.shape_of[b]].K.diagonal().reshape(-1, disc.dim).mean(axis=1)  # whatever the axes
+        found[b] = YIELDING / float(np.median(own))
     return found
 
 

@@ -65,8 +65,8 @@ def push(
     Parameters
     ----------
     model : Model
-        With every support, tie and load. In the plane elastic, rigid and fixed bodies with every joint law; in space
-        rigid and fixed ones on joints that do not dilate.
+        With every support, tie and load. In the plane with every joint law; in space on joints that
+        do not dilate, those of elastic bodies with friction alone.
     control : ControlPoint or "load", optional
         What grows: the displacement of a point, the load, or by default the mean displacement on which the load works
         (for a share of the weights, the mean displacement of the masses).

@@ -43,10 +43,12 @@ from concio.solvers.stepping.solver import StepSolver
 Array = np.ndarray
 
 SWINGS = 25
-"""Times at most that gyroscopic moments are worked out again in a step; each takes off what the body turns in it."""
+"""Times at most that gyroscopic moments, and forces of elastic bodies that turn, are worked out again in a step.
+
+Each takes off what the body turns in it."""
 
 SWUNG = 1e-14
-"""Change of these moments over the loads that is rounding."""
+"""Change of these forces over the loads that is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,18 +146,17 @@ class Stepper:
             velocity[self.fixed] = drive.speeds(state.centre[self.fixed], h)
             spin[self.fixed] = drive.spin
         middle = state.placement.moved(0.5 * h * velocity, 0.5 * h * spin)
-        turn, rate = middle.turns, np.zeros_like(strain)
+        turn = middle.turns
         if f.elastic:
             rate, _, _ = f.rate(nodal, turn[f.body].apply(f.arm + strain), turn)
             strain = strain + 0.5 * h * rate
         x0 = f.unknowns(velocity, spin, nodal, turn)
         loads, ground = f.loads(drive, turn), f.ground(drive, turn)
         b = f.mass * x0 / h + loads + ground
-        if f.elastic:
-            b += f.internal(state, h, rate, strain, spin, x0)
-        swing = self._swing(b, x0, h) if self.turns else np.zeros(0)
+        inner = self._inner(state, h, strain, x0, x0, turn)
         if self.turns:
-            b += swing
+            inner = inner + self._swing(b + inner, x0, h)
+        b = b + inner
         force, speed = measures(self.reference, loads + ground, x0, h)
         maker = self.maker
         memory, rows, layout_is_new = maker.contacts(state.memory, middle, velocity, spin, strain)
@@ -176,16 +177,19 @@ class Stepper:
         t0 = np.zeros((count, problem.dim))
         t0[:m] = memory.force
         found = self.solver.solve(problem, states, x0, t0)
-        returned = Returned()
+        returned, change = Returned(), np.inf
         for _ in range(SWINGS):
             if joint.impact:
                 found, returned = Impact(self.solver, problem, joint, self.scheme, x0, rows.imposed).answer(found)
-            if not self.turns:
+            if not self.turns and not f.elastic:
                 break
-            again = f.gyroscopic(self.scheme.theta * found.x + (1 - self.scheme.theta) * x0)
-            if np.abs(again - swing).max(initial=0.0) <= SWUNG * force:
+            again = self._inner(state, h, strain, x0, found.x, turn)
+            if self.turns:
+                again = again + f.gyroscopic(self.scheme.theta * found.x + (1 - self.scheme.theta) * x0)
+            before, change = change, float(np.abs(again - inner).max(initial=0.0))
+            if change <= SWUNG * force or change >= before:
                 break
-            problem, swing = replace(problem, b=problem.b + again - swing), again
+            problem, inner = replace(problem, b=problem.b + again - inner), again
             found = self.solver.solve_again(problem, found)
         theta = self.scheme.theta
         x = theta * found.x + (1 - theta) * x0
@@ -226,6 +230,13 @@ class Stepper:
         nearing = free & ~joint.struck & (parting[:, 0] < -speed)
         left = time_until(end, parting[:, 0], nearing)
         return new, StepReport(found, m, works, depth, struck, rows.frame, meets, part, left)
+
+    def _inner(
+        self, state: MotionState, h: float, strain: Array, x0: Array, x1: Array, turn: Turns
+    ) -> Array:
+        """Return what elasticity adds to the right-hand side (N,), with velocities x1 at the end."""
+        f = self.frames
+        return f.internal(state, h, strain, x0, x1, turn) if f.elastic else np.zeros(f.n)
 
     def _swing(self, b: Array, x0: Array, h: float) -> Array:
         """Return the gyroscopic forces (N,) of bodies that nothing touches, under right-hand sides b (N,)."""
