@@ -221,7 +221,7 @@ def _finish(ax: Axes, x: str, y: str) -> Axes:
     ax.grid(visible=True, lw=0.3, color="#DDDDDD")
     for side in ("top", "right"):
         ax.spines[side].set_visible(False)
-    if len(ax.get_legend_handles_labels()[1]) > 5:  # no room inside
+    if len(ax.get_legend_handles_labels()[1]) > 3:  # inside it would cover the curves
         ax.legend(frameon=False, fontsize=7.5, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2)
     else:
         ax.legend(frameon=False, fontsize=7.5)

@@ -78,8 +78,8 @@ EN = {
     "ground_all": "the same was done for all {n} mechanisms that are reported; largest difference {difference}",
     "ground_differs": "for {n} of the mechanisms that are reported the check by hand and the program differ by up to "
     "{difference}: the results are not to be accepted before that is understood",
-    "ground_bound": "forces in equilibrium and a motion prove the least multiplier of push {way} over all motions, "
-    "{alpha}, with a duality gap of {gap}",
+    "ground_bound": "forces in equilibrium and a motion prove the least multiplier of push {way} over all motions "
+    "with associated friction, {alpha}, with a duality gap of {gap}; with Coulomb friction the least is not above it",
     "ground_open": "things that were asked for or are to be expected and were not checked: {n}; they are listed below",
     "assumed": "not given, and assumed: {what}",
     "assumed_soil": "soil {value}",
@@ -173,7 +173,8 @@ IT = {
     "ground_differs": "per {n} dei meccanismi riportati il calcolo a mano e il programma differiscono fino a "
     "{difference}: i risultati non vanno accettati prima di averne capito il motivo",
     "ground_bound": "forze in equilibrio e un moto dimostrano il moltiplicatore minimo della spinta {way} fra tutti i "
-    "moti, {alpha}, con uno scarto di dualità di {gap}",
+    "moti con attrito associato, {alpha}, con uno scarto di dualità di {gap}; con l'attrito di Coulomb il minimo non è "
+    "maggiore",
     "ground_open": "cose richieste o da attendersi e non esaminate: {n}; sono elencate sotto",
     "assumed": "non dati, e assunti: {what}",
     "assumed_soil": "sottosuolo {value}",
