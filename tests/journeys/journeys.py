@@ -174,7 +174,7 @@ def test_from_a_drawing_to_a_limit_load(page: Browser, tmp_path: Path) -> None:
         page.until(
             f"{SETTLED} && window.concio.view.shown && window.concio.view.shown.loads.length === 3", "the facade"
         )
-        begun = "document.querySelector('#begun')?.textContent || ''"
+        begun = "(document.querySelector('#begun')?.textContent || '')"
         assert all(one in page.js(begun) for one in ("thickness 1.0", "unit_weight 20 kN/m3", "friction 0.6"))
         page.click("#tab-data")
         value(page, "[id='value-analysis-thickness']", "0.5")
