@@ -12,6 +12,7 @@ import argparse
 import tempfile
 import time
 from collections.abc import Callable
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from corpus import FAMILIES, draw
 from wall_family import panel, wall, wall_model
 
 import concio
+from concio.analysis.bridges.sweep import Sweep
 from concio.analysis.lent_compliance import lend
 from concio.contact.detection import detect
 from concio.io.result_file import load_result, save_result
@@ -123,12 +125,56 @@ def exhaustive_search_learns_clauses() -> None:
         )
 
 
+def bridge_of(ring: float | list[float], voussoirs: int, cover: float, passive: float, **data: Any) -> concio.Model:
+    """Return an arch with fill under an axle of 10 kN, for the two topics below."""
+    footprint = data.pop("footprint", 0.3)
+    fill = concio.Fill(cover=cover, unit_weight=data.pop("soil"), passive=passive)
+    bare = concio.bridge(ring=ring, voussoirs=voussoirs, block="rigid", **data)
+    axle = concio.Vehicle("axle", (concio.Axle(0.0, 10.0),), footprint=footprint, position=0.225 * data["span"])
+    return concio.with_vehicle(concio.with_fill(bare, fill), axle)
+
+
+def pushes_of_several_rings() -> None:
+    """Push arches of two rings past their peak, beside the associated bound and Coulomb load steps."""
+    drawn = (12, None, 0.0), (8, 0.6, 0.0), (8, 0.6, 1.0), (12, 0.6, 0.0), (12, 0.6, 1.0), (20, 0.5, 0.0)
+    for voussoirs, mu, passive in drawn:
+        data = {"span": 3.0, "rise": 0.75, "friction": 0.6, "unit_weight": 22.0, "soil": 20.0, "width": 2.0}
+        model = bridge_of(0.215 if mu is None else [0.1075, 0.1075], voussoirs, 0.3, passive, ring_friction=mu, **data)
+        steps = concio.limit(model, "live", path=False, steps=True, search=False)
+        found, seconds = timed(lambda m=model: concio.push(m, until=0.003))
+        print(
+            f"{voussoirs} voussoirs, mu {mu}, k {passive:g}: peak {found.peak:.3f} at "
+            f"{1e3 * found.displacement[found.peak_step]:.2f} mm, steps {steps.design:.3f}, bound "
+            f"{steps.associated.multiplier:.3f}; {len(found)} points, {found.ending.value}, certificate "
+            f"{found.certificate:.0e}, {seconds:.0f} s\n"
+            f"    {found.verdict.limits[0]}",
+            flush=True,
+        )
+
+
+def an_arch_without_its_data() -> None:
+    """Compare 254.25 kN/m of a published arch whose data are incomplete with sets of data that it may have had."""
+    found = {}
+    for voussoirs, stone, cover, footprint in product(
+        (12, 20, 40), (20.0, 22.0, 24.0, 25.0), (0.2, 0.25, 0.3, 0.35, 0.4), (0.1, 0.2, 0.3)
+    ):
+        data = {"span": 6.0, "rise": 1.5, "friction": 1e3, "unit_weight": stone, "soil": 18.0, "width": 1.0}
+        sweep = Sweep(bridge_of(0.5, voussoirs, cover, 0.0, footprint=footprint, **data))
+        loads = [10.0 * sweep.at(6.0 * x).multiplier for x in (0.2, 0.225, 0.25)]
+        found[voussoirs, stone, cover, footprint] = loads
+    near = {k: v for k, v in found.items() if abs(v[1] / 254.25 - 1) < 1e-2}
+    every = [v[1] for v in found.values()]
+    print(f"{len(found)} sets: {min(every):.1f} to {max(every):.1f} kN/m at 0.225 L; within 1 %: {len(near)}")
+    for key, loads in near.items():
+        print(f"    {key}: " + ", ".join(f"{v:.2f}" for v in loads) + " kN/m at 0.2, 0.225, 0.25 L")
+
+
 TOPICS: dict[str, Callable[[], None]] = {
     work.__name__.replace("_", "-"): work
     for work in (
         rounding_of_displacements, pushes_through_sliding_courses, margins_twice,
         rubble_by_contracting_a_voronoi_diagram, large_files_and_figures, start_far_outside,
-        exhaustive_search_learns_clauses,
+        exhaustive_search_learns_clauses, pushes_of_several_rings, an_arch_without_its_data,
     )
 }  # fmt: skip
 """What is measured, by name."""

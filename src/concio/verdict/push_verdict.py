@@ -29,6 +29,12 @@ WEIGHTS = "weights"
 
 SEVERAL = "Coulomb friction can have several equilibria: the curve is the one that follows from rest as the load grows"
 LENT = "hard joints of rigid blocks give way by a millionth of a width: the peak falls short by some ten thousandths"
+ADDS_UP = (
+    "hard joints of rigid blocks give way by a millionth of a width, which adds up where they are many: extended back "
+    "to zero displacement, the falling part of the curve begins {share} % above the peak"
+)
+SMALL = 0.005
+"""Share of the peak by which the falling part of a curve begins above it, below which the sentence is the usual one."""
 HEADLINES = {
     Outcome.HOLDS: "The curve was followed to where it was to end.",
     Outcome.INCOMPLETE: "The curve ends before the strength is lost.",
@@ -59,7 +65,7 @@ def push_verdict(found: PushResult) -> Verdict:
         meaning=_meaning(found),
         limits=(
             *joints_not_made(seen),
-            *((LENT,) if found.lent_compliance else ()),
+            *((_lent(found),) if found.lent_compliance else ()),
             SEVERAL,
             *found.notes,
         ),
@@ -185,6 +191,21 @@ def _meaning(found: PushResult) -> str:
         "the multiplied one. Between two states nothing was looked at, but for ties: where they yield and break is "
         "located. Beyond the last state nothing is said."
     )
+
+
+def _lent(found: PushResult) -> str:
+    """Return how far the peak falls short because hard joints of rigid blocks give way, as far as the curve tells it.
+
+    Joints that give way delay the peak, and a structure that has moved carries less. The chord of the falling part is
+    taken to a point at least twice as far as the peak, or to the end.
+    """
+    top = found.peak_step
+    d, m = np.abs(found.displacement), found.multiplier
+    if found.by_load or not found.peak_passed or d[top] <= 0 or m[top] <= 0:
+        return LENT
+    k = top + 1 + min(int(np.searchsorted(d[top + 1 :], 2 * d[top])), len(d) - top - 2)
+    share = float((m[top] - m[k]) / (d[k] - d[top]) * d[top] / m[top]) if d[k] > d[top] else 0.0
+    return ADDS_UP.format(share=number(100 * share, 2)) if share > SMALL else LENT
 
 
 def _unchecked(found: PushResult) -> tuple[str, ...]:

@@ -134,3 +134,24 @@ def test_layers_with_other_numbers_of_lines_are_refused(tmp_path: Path) -> None:
     document.saveas(tmp_path / "survey.dxf")
     with pytest.raises(InputError, match="they make 2 lines, one is wanted"):
         concio.load(path)
+
+
+def test_a_drawing_that_stands_for_a_model_file_is_refused_with_the_tables_that_name_it(tmp_path: Path) -> None:
+    drawn(tmp_path)
+    with pytest.raises(InputError) as caught:
+        concio.load(tmp_path / "survey.dxf")
+    assert "[bridge_drawing] file = 'survey.dxf'" in (caught.value.hint or "")
+
+
+def test_a_drawing_whose_file_says_another_unit_than_it_was_drawn_in_is_refused_with_the_key_of_the_unit(
+    tmp_path: Path,
+) -> None:
+    path = drawn(tmp_path)
+    document = ezdxf.readfile(tmp_path / "survey.dxf")
+    document.units = ezdxf.units.M
+    document.saveas(tmp_path / "survey.dxf")
+    with pytest.raises(InputError) as caught:
+        concio.load(path)
+    assert "unit in [bridge_drawing]" in (caught.value.hint or "")
+    path.write_text(FILE.format(more='unit = "mm"'))
+    assert concio.load(path).body("v01").area > 0

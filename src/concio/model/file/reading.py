@@ -84,7 +84,10 @@ def read_tables(path: Path) -> dict[str, Any]:
     key = named.get(path.suffix.lower())
     if key is not None:
         msg = f"this is a drawing of blocks ({path.suffix}), not a model file"
-        raise InputError(msg, where=str(path), hint=f"name it in a model file: {key} = '{path.name}'")
+        hint = f"name it in a model file: {key} = '{path.name}'"
+        if key == "blocks_file":
+            hint += f"; the lines of a bridge: [bridge_drawing] file = '{path.name}'"
+        raise InputError(msg, where=str(path), hint=hint)
     if path == STDIN:
         return parse(_standard_input(), "standard input")
     too_large = "put the blocks into a table of their own: blocks_file = 'blocks.csv'"

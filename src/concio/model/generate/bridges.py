@@ -218,7 +218,7 @@ def _in_metres(where: str, spans: Sequence[float], ring: float) -> None:
     ------
     InputError
     """
-    hint = "a bare number is in m: write '6000 mm' where it is in millimetres"
+    hint = "a bare number is in m: write '6000 mm' where it is in millimetres; of a drawing, unit in [bridge_drawing]"
     if not max(spans) <= LONGEST:
         msg = f"a span of {max(spans):g} m is longer than any of masonry"
         raise InputError(msg, where=where, hint=hint)
