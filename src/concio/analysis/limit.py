@@ -54,7 +54,7 @@ from concio.solvers.statics.existence import find_mechanism
 from concio.solvers.statics.friction import smallest_friction
 from concio.solvers.statics.limit import LimitLoad, associated_limit
 from concio.verdict.limit_verdict import DEAD_NOT_CARRIED
-from concio.verdict.not_standing import not_standing
+from concio.verdict.not_standing import not_standing, of_the_joints
 
 __all__ = [
     "LimitResult", "coulomb_path", "dead_and_live", "friction_margin", "limit", "limit_stages", "search_collapse"
@@ -162,7 +162,7 @@ def limit_stages(
         hint = "solve the model with the live load factor 0 and look at it"
         asked = "the largest multiplier"
         told = not_standing(assembly, asked, DEAD_NOT_CARRIED, multiplied=groups)
-        raise NoEquilibriumError(DEAD_NOT_CARRIED, hint=hint, verdict=told)
+        raise NoEquilibriumError(of_the_joints(DEAD_NOT_CARRIED, assembly.detection), hint=hint, verdict=told)
     found = LimitResult(assembly, associated_limit(dead, load), groups, lent_compliance=assembly.lent_compliance)
     if (bare := without_breakable(assembly, dead)) is not None:
         found = replace(found, untied=associated_limit(bare, load))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from concio.contact.assembly import Assembly
+from concio.model.interfaces.detect import Detection
 from concio.verdict.attention import attention, joints_not_made
 from concio.verdict.question import question_of
 from concio.verdict.unseen import listed, unseen_bodies, unseen_words
@@ -18,6 +19,22 @@ FOLLOWED_AWAY = (
     "half the width of a body and reached no equilibrium. That there is none elsewhere was not shown."
 )
 """What shows that a structure moves away where the search for its first equilibrium ends far from where it began."""
+
+
+def of_the_joints(sentence: str, detection: Detection) -> str:
+    """Return what does not stand as a mechanism proves it: with the joints that were made, where others were not.
+
+    Parameters
+    ----------
+    sentence : str
+        Ends with :data:`BY_A_MECHANISM`; anything else is returned as it is.
+    detection : Detection
+    """
+    missing = joints_not_made(detection)
+    if not missing or not sentence.endswith(f": {BY_A_MECHANISM}"):
+        return sentence
+    what = sentence.removesuffix(f": {BY_A_MECHANISM}")
+    return f"{what} with the joints that were made: {BY_A_MECHANISM}. {missing[0]}"
 
 
 def not_standing(
@@ -68,6 +85,7 @@ def not_standing(
             limits=joints_not_made(assembly.detection),
             attention=attention(assembly),
         )
+    answer = of_the_joints(answer, assembly.detection)
     sentence = f"{answer[0].upper()}{answer[1:].rstrip('.')}."
     return Verdict(
         outcome=Outcome.FAILS,

@@ -26,7 +26,7 @@ from concio.problem.solution import Progress, ProgressCallback, Status
 from concio.solvers.methods import find
 from concio.solvers.statics.existence import find_mechanism
 from concio.verdict.bridge_verdict import ASKED, DEAD_NOT_STANDING
-from concio.verdict.not_standing import not_standing
+from concio.verdict.not_standing import not_standing, of_the_joints
 
 Array = np.ndarray
 
@@ -181,7 +181,8 @@ def _refuse_what_does_not_stand(sweep: Sweep) -> None:
     if find_mechanism(sweep.dead) is None:
         return
     told = not_standing(sweep.assembly, ASKED, DEAD_NOT_STANDING)
-    raise NoEquilibriumError(DEAD_NOT_STANDING, hint="look at it with 'concio run' and no vehicle", verdict=told)
+    what = of_the_joints(DEAD_NOT_STANDING, sweep.assembly.detection)
+    raise NoEquilibriumError(what, hint="look at it with 'concio run' and no vehicle", verdict=told)
 
 
 def _placed(model: Model, standing: Standing) -> Model:

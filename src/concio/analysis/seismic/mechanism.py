@@ -26,7 +26,7 @@ from concio.solvers.statics.collapse_search import find_collapse_state
 from concio.solvers.statics.collapse_state import CollapseState
 from concio.solvers.statics.existence import find_mechanism, statically_admissible
 from concio.solvers.statics.limit import LimitLoad, associated_limit
-from concio.verdict.not_standing import BY_A_MECHANISM
+from concio.verdict.not_standing import BY_A_MECHANISM, of_the_joints
 
 Array = np.ndarray
 
@@ -197,9 +197,8 @@ class Mechanisms:
             return
         if find_mechanism(problem) is not None:
             msg = f"it does not stand under its own weight and the other constant loads: {BY_A_MECHANISM}"
-            raise NoEquilibriumError(
-                msg, hint="look at 'concio run': supports, thrusts and ties without the earthquake"
-            )
+            hint = "look at 'concio run': supports, thrusts and ties without the earthquake"
+            raise NoEquilibriumError(of_the_joints(msg, self.assembly.detection), hint=hint)
         self.stands.add(moving)
 
     def _found(self, columns: Array, rows: Array, problem: ContactProblem, *, quick: bool) -> Found:
