@@ -72,7 +72,8 @@ class LinearisedState:
         """Return that of a certified step, with the states that its forces and gaps show."""
         problem, solution = yielding_problem(result)
         law, u = problem.laws, np.asarray(solution.displacement)
-        t_n, t_t = np.asarray(solution.normal_force), np.asarray(solution.friction_force).reshape(problem.pairs, -1)
+        t_n = np.asarray(solution.normal_force)
+        t_t = np.asarray(solution.friction_force).reshape(problem.pairs, problem.dim - 1)
         slip = _slip(problem, u, t_t)
         moved = np.linalg.norm(slip, axis=1)
         gap = problem.gap + problem.C_n @ u + law.normal_compliance * t_n - law.dilatancy * moved
@@ -198,7 +199,7 @@ def yielding_problem(result: Result) -> tuple[ContactProblem, Solution]:
 
 def _slip(problem: ContactProblem, u: Array, t_t: Array) -> Array:
     """Return y_t (m, d-1) of displacements and friction forces [m]."""
-    slip = (problem.C_t @ u).reshape(problem.pairs, -1) + problem.laws.tangential_compliance[:, None] * t_t
+    slip = (problem.C_t @ u).reshape(problem.pairs, problem.dim - 1) + problem.laws.tangential_compliance[:, None] * t_t
     origin = problem.slip_origin
     found: Array = slip if origin is None else slip - np.asarray(origin).reshape(slip.shape)
     return found
