@@ -192,12 +192,12 @@ def test_load_steps_halve_towards_a_multiplier_that_failed(monkeypatch) -> None:
     """Far steps fail from half of the bound on, near ones from 0.8 on: found to 1/64 of the bound, little in vain."""
     size = {"length": 0.5, "height": 1.0, "block_size": (0.5, 1.0), "mesh_size": 0.5}
     dead, live = dead_and_live(concio.assemble(concio.wall(friction=0.9, horizontal=1.0, **size)), "live")
-    bound, step, tried = 0.5, stepping._step, []
+    bound, step, tried, again = 0.5, stepping._step, [], []
     lost = replace(step(dead, at_rest(dead), None), status=Status.GAVE_UP)
 
-    def fails(problem, state, progress):
+    def fails(problem, state, progress, starts=None):
         at = float((problem.f - dead.f) @ live / (live @ live)) / bound
-        tried.append((round(64 * state.parameter / bound), round(64 * at)))
+        (tried if starts is None else again).append((round(64 * state.parameter / bound), round(64 * at)))
         far = at - state.parameter / bound > 0.2 and at > 0.45
         return lost if far or at > 0.8 else step(problem, state, progress)
 
@@ -206,6 +206,7 @@ def test_load_steps_halve_towards_a_multiplier_that_failed(monkeypatch) -> None:
     assert round(64 * steps.carried / bound) == 51
     assert round(64 * steps.failed / bound) == 52
     assert len(set(tried)) == len(tried) <= 11
+    assert again == [(51, 52)], "more starts are for the step that is halved no more"
 
 
 def test_settling_stops_where_every_round_contradicts_more_pairs(monkeypatch) -> None:
