@@ -14,6 +14,7 @@ from concio.analysis.motion.dynamics_result import Ending
 from concio.analysis.motion.state import MotionState
 from concio.contact.reference import Reference
 from motion_models import G, standing
+from samples import sample
 
 ALPHA = np.arctan(1 / 3)
 
@@ -203,7 +204,7 @@ def test_a_tie_breaks_for_good():
     assert found.energy.error < 1e-10
 
 
-@pytest.mark.parametrize("damping", [{"mass_damping": 20.0}, {"stiffness_damping": 2e-4}])
+@pytest.mark.parametrize("damping", [{"stiffness_damping": 2e-4}, {"mass_damping": 20.0}][: sample(1, 2)])
 def test_rayleigh_damping_against_the_closed_form_of_a_damped_mode(damping):
     """A block in flight rings in its softest mode: q = v / w_d exp(-z w t) sin w_d t, z w = (alpha + beta w^2) / 2."""
     body = concio.Body("b", [(0, 0), (0.5, 0), (0.5, 2), (0, 2)], kind="elastic", material="block")

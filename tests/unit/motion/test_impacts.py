@@ -88,7 +88,7 @@ def moment(found, state_velocity, spin, centre):
     return total
 
 
-@pytest.mark.parametrize("seed", range(sample(2, 4)))
+@pytest.mark.parametrize("seed", range(sample(1, 4)))
 def test_free_collisions_that_return_everything_keep_energy_and_angular_momentum(seed):
     found = collision(np.random.default_rng(seed), friction=0.0, restitution=1.0)
     kinetic = found.energy["kinetic"]
@@ -101,7 +101,7 @@ def test_free_collisions_that_return_everything_keep_energy_and_angular_momentum
     assert after == pytest.approx(before, abs=2e-4 * turns)
 
 
-@pytest.mark.parametrize("seed", range(sample(3, 6)))
+@pytest.mark.parametrize("seed", range(sample(1, 6)))
 def test_impacts_never_give_energy(seed):
     rng = np.random.default_rng(100 + seed)
     found = collision(rng, friction=float(rng.choice([0.3, 1.0, 2.0])), restitution=float(rng.uniform(0, 1)))
