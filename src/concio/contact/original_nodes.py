@@ -46,7 +46,7 @@ def node_rows(slots: Slots, frame: Array, rotation: Array, strain: Array) -> tup
 
 
 def nodes_belong(
-    reference: Reference, slots: Slots, point: Array, normal: Array, gap: Array, centre: Array, rotation: Array
+    reference: Reference, slots: Slots, point: Array, gap: Array, centre: Array, rotation: Array
 ) -> Array:
     """Return the pairs (m,) whose nodes and weights are those of their points.
 
@@ -54,8 +54,8 @@ def nodes_belong(
     ----------
     reference : Reference
     slots : Slots
-    point, normal : (m, 3) arrays
-        Where the bodies stand, without their strains.
+    point : (m, 3) array
+        Where the bodies stand, without their strains [m].
     gap : (m,) array
         The same [m].
     centre, rotation : (B, 3) and (B, 3, 3) arrays
@@ -69,10 +69,8 @@ def nodes_belong(
         right = ((owner[node] == b[:, None]) | (weight == 0)).all(axis=1) & (np.abs(weight.sum(axis=1) - 1.0) < 1e-9)
         mean = (weight[:, :, None] * arm[node]).sum(axis=1)
         off = point[own] - centre[b] - np.matmul(rotation[b], mean[:, :, None])[:, :, 0]
-        above = (off * normal[own]).sum(axis=1)
-        along = np.linalg.norm(off - above[:, None] * normal[own], axis=1)
-        near = along <= 2.0 * (SHIFT + BESIDE) * solids.spacing[b] + rounding
-        good[own] &= right & near & (np.abs(above) <= np.abs(gap[own]) + rounding)
+        near = np.abs(gap[own]) + 2.0 * (SHIFT + BESIDE) * solids.spacing[b] + rounding
+        good[own] &= right & (np.linalg.norm(off, axis=1) <= near)
     return good
 
 

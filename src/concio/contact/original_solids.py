@@ -207,7 +207,7 @@ class OriginalSolids:
         of_nodes, strained = node_rows(n.slots, frame, rotation, strain)
         values = np.concatenate([values, *of_nodes], axis=2)
         if of_nodes:
-            valid = valid & nodes_belong(self.reference, n.slots, point, frame[:, 0], gap, centre, rotation)
+            valid = valid & nodes_belong(self.reference, n.slots, point, gap, centre, rotation)
         turning = self._turning(n, place, point, frame, centre, velocity, spin, sign)
         return n.slots, Rows(
             n.columns, values, gap + strained + n.slots.opening, imposed, turning, valid, area, point, frame

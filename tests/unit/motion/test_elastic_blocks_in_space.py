@@ -201,6 +201,18 @@ def test_an_elastic_block_slides_until_friction_has_taken_its_speed():
     assert found.end.centre[2, 0] - 0.15 == pytest.approx(1.0 / (2 * 0.5 * 9.81), rel=0.03)
 
 
+@pytest.mark.long
+def test_an_elastic_block_that_slides_into_another_one_takes_it_along():
+    """Edges meet where neither end has a node, and both structures become one."""
+    model = model_of(FLOOR, box("a", (0, 0, 0), (0.4, 0.4, 0.3)), box("b", (1.0, 0.05, 0), (1.4, 0.35, 0.3)))
+    found = concio.dynamics(model, duration=0.45, step=2e-3, velocities={"b": (-2.5, 0.0, 0.0)})
+    assert found.ending.name == "COMPLETE"
+    assert found.certified
+    assert found.energy.error < 1e-10
+    assert found.end.centre[1, 0] < 0.2 - 1e-4
+    assert found.end.centre[2, 0] - found.end.centre[1, 0] > 0.4 - 1e-3
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_wrong_nodes_of_a_contact_are_found_by_the_certificate(seed):
     model = model_of(FLOOR, box("a", (0, 0, 0), (0.5, 0.25, 0.25)), box("b", (0.1, 0.05, 0.25), (0.4, 0.2, 0.5)))

@@ -50,6 +50,9 @@ Each takes off what the body turns in it."""
 SWUNG = 1e-14
 """Change of these forces over the loads that is rounding."""
 
+SETTLED = 1e-11
+"""The same where it no longer shrinks: forces of elastic bodies are differences of larger ones."""
+
 
 @dataclass(frozen=True, eq=False)
 class StepReport:
@@ -187,7 +190,7 @@ class Stepper:
             if self.turns:
                 again = again + f.gyroscopic(self.scheme.theta * found.x + (1 - self.scheme.theta) * x0)
             before, change = change, float(np.abs(again - inner).max(initial=0.0))
-            if change <= SWUNG * force or change >= before:
+            if change <= SWUNG * force or before <= change <= SETTLED * force:
                 break
             problem, inner = replace(problem, b=problem.b + again - inner), again
             found = self.solver.solve_again(problem, found)
