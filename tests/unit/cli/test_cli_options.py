@@ -141,12 +141,12 @@ def test_a_process_that_prints_json_prints_nothing_else(asked: tuple[str, ...], 
 
 
 def test_numbers_of_a_limit_are_printed_as_they_are_found_where_there_is_no_terminal(wall: Path) -> None:
-    code, out, err = run("limit", wall, "--no-friction")
+    code, out, err = run("limit", wall, "--quick")
     assert code == 0
     first = err.splitlines()[0]
     assert first.startswith("so far:  associated bound")
     number = first.split()[4]
     assert float(number) > 0
     assert first.removeprefix("so far:") in out.splitlines(), "the answer repeats it"
-    assert run("limit", wall, "--no-friction", "--quiet")[1:] == ("", "")
-    assert run("limit", wall, "--no-friction", "--json")[2] == ""
+    assert run("limit", wall, "--quick", "--quiet")[1:] == ("", "")
+    assert run("limit", wall, "--quick", "--json")[2] == ""
