@@ -148,7 +148,7 @@ class LinearisedState:
         """
         n, m = self.problem.unknowns, self.problem.pairs
         z = self._equations.solve(-slope)
-        return Rates(z[:n], z[n : n + m], z[n + m :].reshape(m, -1))
+        return Rates(z[:n], z[n : n + m], z[n + m :].reshape(m, self.problem.dim - 1))
 
     @cached_property
     def _equations(self) -> _Equations:

@@ -123,6 +123,7 @@ def test_lines_of_a_survey_make_a_ring() -> None:
         ({"rise": 4.0}, "rises at most"),
         ({"rise": None}, "rise is missing"),
         ({"backing": 2.5}, "above the crown"),
+        ({"span": [6.0, 6.0], "pier_width": 1.2, "backing": 0.02}, "does not reach above the arches on pier 1"),
         ({"ring": -0.2}, "must be positive"),
         ({"intrados": [[0, 0], [1, 1], [2, 0]], "span": None, "rise": None, "ring": None}, "belong together"),
         ({"intrados": [[0, 0], [1, 1], [2, 0]]}, "both given"),

@@ -170,7 +170,7 @@ def bridge(
         pieces += own
         obstacles.append(ground)
         if back:
-            pieces.append(Piece(f"backing{i}", _backing(left, right, back), layer="backing"))
+            pieces.append(Piece(f"backing{i}", _backing(where, i, left, right, back), layer="backing"))
     title = f"{shape} arch bridge, {len(spans)} span{'s' * (len(spans) > 1)} of " + ", ".join(f"{s:g}" for s in spans)
     record: dict[str, object] = {"kind": "bridge", "shape": shape, "spans": [float(s) for s in spans],
                                  "starts": record_starts, "rings": 1}  # fmt: skip
@@ -338,12 +338,17 @@ def _pier(word: str, left: Barrel, right: Barrel, high: float, courses: int) -> 
     return pieces, Piece(f"{word} ground", rectangle(x0, x1, deep, y0 - high), "ground")
 
 
-def _backing(left: Barrel, right: Barrel, height: float) -> Array:
+def _backing(where: str, number: int, left: Barrel, right: Barrel, height: float) -> Array:
     """Return the outline of the masonry between two arches, from the pier up to a height."""
     a, b = _up_to(right.extrados, height), _up_to(left.extrados[::-1], height)
     line = np.vstack([a, b[::-1]])
     apart = np.hypot(*(line - np.roll(line, 1, axis=0)).T)
-    return np.asarray(line[apart > 1e-9 * float(np.ptp(line[:, 0]))])
+    outline = np.asarray(line[apart > 1e-9 * float(np.ptp(line[:, 0]))])
+    if len(outline) < 3:
+        least = min(float(right.extrados[0, 1]), float(left.extrados[-1, 1]))
+        msg = f"backing = {height:g} m does not reach above the arches on pier {number}, which begin at {least:.4g} m"
+        raise InputError(msg, where=where, hint="make it higher, or leave it out")
+    return outline
 
 
 def _with_ring_joints(model: Model, given: float | str | JointLaw | None, law: JointLaw) -> Model:
