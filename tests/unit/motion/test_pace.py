@@ -72,6 +72,16 @@ def test_a_body_in_flight_may_be_as_fast_as_it_likes_and_turns_by_half_a_radian_
     assert turned == pytest.approx(wanted, abs=1e-9)
 
 
+def test_rounding_halves_no_step_of_a_body_that_hardly_turns():
+    model = blocks(((-0.1, -0.1, 5.0), (0.1, 0.1, 5.2)))
+    for step in np.random.default_rng(11).uniform(1e-3, 4e-3, 30).tolist():
+        found = concio.dynamics(
+            model, velocities={"b0": (0.0, 0.0, 0.1, 0.0, 0.1, 0.0)}, start="as described", duration=2.0 * step,
+            step=step, gravity=G, stop_overturned=False,
+        )  # fmt: skip
+        np.testing.assert_allclose(np.diff(found.steps.time, prepend=0.0), step, rtol=1e-9)
+
+
 @pytest.mark.parametrize("spin", [1e5, 1e9])
 def test_a_spin_that_outruns_the_step_is_told_in_a_sentence(spin):
     model = blocks(((-0.05, -0.1, 0.5), (0.05, 0.1, 0.9)))

@@ -48,7 +48,9 @@ class Pace:
     def longest(self, state: MotionState, h: float) -> float:
         """Return the length of the longest step up to h in which nothing is passed unseen [s]."""
         spin = np.abs(state.spin) if state.spin.ndim == 1 else norm(state.spin)
-        h = min(h, TURN / max(float(spin.max(initial=0.0)), TURN / h))
+        fastest = float(spin.max(initial=0.0))
+        if h * fastest > TURN:
+            h = TURN / fastest
         speed = norm(state.velocity) + spin * self.radius
         if 2.0 * h * float(speed.max(initial=0.0)) <= float(self.reach.min()):
             return h
