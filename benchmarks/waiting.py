@@ -1,13 +1,14 @@
 """Seconds that people wait: every template and every example, by the commands that their first lines name.
 
     python benchmarks/waiting.py [--only NAME ...] [--repeat 1] [--most 120]
-                                 [--save BEFORE.json] [--before BEFORE.json] [--write PAGE.md]
+                                 [--save BEFORE.json] [--before BEFORE.json] [--busy BUSY.json] [--write PAGE.md]
 
-Each command runs in a process of its own, as people run it, with one thread of linear algebra. Two numbers are
-taken: the seconds of the processor (user and system, workers included), which another process on the same machine
-changes little, and the seconds of the clock until the first line with a number. ``--save`` keeps the numbers as they
-come (a second call goes on where the first ended), ``--before`` puts earlier ones beside them, ``--write`` writes the
-table as a page. ``--only path`` measures one command, ``--only tower`` one file.
+Each command runs in a process of its own, as people run it, with one thread of linear algebra. Two numbers are taken:
+the seconds of the processor (user and system, workers included), which another process on the same machine changes
+little, and the seconds of the clock until the first line with a number. ``--save`` keeps the numbers as they come (a
+second call goes on where the first ended), ``--before`` puts earlier ones beside them, ``--busy`` those kept while
+other processes ran on every core, ``--write`` writes the table as a page. ``--only path`` measures one command,
+``--only tower`` one file.
 """
 
 from __future__ import annotations
@@ -46,6 +47,10 @@ class Wait:
     def words(self) -> str:
         """Return processor seconds as the table has them."""
         return f"{self.processor:.1f}" if self.code is not None else f"more than {self.processor:.0f}"
+
+    def first_words(self) -> str:
+        """Return the seconds to the first number as the table has them."""
+        return "" if self.first is None else f"{self.first:.1f}"
 
 
 def commands() -> list[tuple[str, str]]:
@@ -120,15 +125,17 @@ def measure(only: list[str], repeat: int, most: float, save: Path | None) -> dic
     return waits
 
 
-def table(waits: dict[str, Wait], before: dict[str, Wait]) -> str:
+def table(waits: dict[str, Wait], before: dict[str, Wait], busy: dict[str, Wait]) -> str:
     """Return the table as Markdown."""
     head = ["command", *(["before"] if before else []), "processor s", "first number after s", "exit code"]
+    head += ["busy: processor s", "busy: first number after s"] if busy else []
     lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
     for words, taken in waits.items():
         old = [before[words].words() if words in before else ""] if before else []
-        first = "" if taken.first is None else f"{taken.first:.1f}"
         code = "stopped" if taken.code is None else str(taken.code)
-        lines.append("| " + " | ".join([f"`concio {words}`", *old, taken.words(), first, code]) + " |")
+        beside = ([busy[words].words(), busy[words].first_words()] if words in busy else ["", ""]) if busy else []
+        cells = [f"`concio {words}`", *old, taken.words(), taken.first_words(), code, *beside]
+        lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
 
@@ -140,12 +147,13 @@ def main() -> None:
     parser.add_argument("--most", type=float, default=120.0, help="seconds after which a command is stopped")
     parser.add_argument("--save", type=Path)
     parser.add_argument("--before", type=Path)
+    parser.add_argument("--busy", type=Path)
     parser.add_argument("--write", type=Path)
     chosen = parser.parse_args()
     waits = measure(chosen.only, chosen.repeat, chosen.most, chosen.save)
-    before = kept(chosen.before)
     if chosen.write:
-        chosen.write.write_text(table(waits, before), encoding="utf-8")
+        written = table(waits, kept(chosen.before), kept(chosen.busy))
+        chosen.write.write_text(written, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, in_units
-from concio.cli.outcome import guarded, print_json, say
+from concio.cli.outcome import answer, guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar, verdict_so_far
 
@@ -85,6 +85,12 @@ def assess(
     if sensitivity is not None:
         told["sensitivity"] = {row.name: {"value": row.value, "below": finite_or_none(row.below),
                                           "above": finite_or_none(row.above)} for row in sensitivity.rows}  # fmt: skip
+    if not json:
+        answer(assess_lines(found, tie))
+        if stronger is not None:
+            answer([f"  strengthening        {stronger.sentence}"])
+        if sensitivity is not None:
+            answer([f"  depends on           {sensitivity.sentence}"])
     written: list[str] = []
     if out is not None:
         verdict_so_far(verdict)
@@ -96,15 +102,8 @@ def assess(
                                        stronger=stronger, docx=docx)  # fmt: skip
     if json:
         print_json(told)
-    else:
-        for line in assess_lines(found, tie):
-            say(line)
-        if stronger is not None:
-            say(f"  strengthening        {stronger.sentence}")
-        if sensitivity is not None:
-            say(f"  depends on           {sensitivity.sentence}")
-        if written:
-            say(f"  written              {out}: {', '.join(written)}")
+    elif written:
+        say(f"  written              {out}: {', '.join(written)}")
     return verdict.exit_code
 
 

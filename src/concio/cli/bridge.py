@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from concio.cli.options import EngineOf, File, Json, Language, Quiet, UnitsOf, loaded
-from concio.cli.outcome import guarded, print_json, say
+from concio.cli.outcome import answer, guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar, verdict_so_far
 
@@ -71,6 +71,8 @@ def bridge(
     with progress_bar(shown=not json) as progress:
         found = concio.assess_bridge(model, progress=progress, **options)
     told = {"status": found.verdict.status, **found.summary()}
+    if not json:
+        answer(bridge_lines(found))
     written: list[str] = []
     if out is not None:
         verdict_so_far(found.verdict)
@@ -80,11 +82,8 @@ def bridge(
             written = write_bridge(found, told, fresh, language)
     if json:
         print_json(told)
-    else:
-        for line in bridge_lines(found):
-            say(line)
-        if written:
-            say(f"  written      {out}: {', '.join(written)}")
+    elif written:
+        say(f"  written      {out}: {', '.join(written)}")
     return found.verdict.exit_code
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, loaded
-from concio.cli.outcome import guarded, print_json, say
+from concio.cli.outcome import answer, guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
 
@@ -82,17 +82,16 @@ def cell(
             )
         if asked:
             path = strain_path(own, asked, progress=progress)
+    if not json:
+        answer(cell_lines(own, moduli, domain, path, none=none))
     written: list[str] = []
     if out is not None:
         with replaced_directory(out) as fresh:
             written = write_cell(own, moduli, domain, path, fresh)
     if json:
         print_json(cell_facts(own, moduli, domain, path, none=none))
-    else:
-        for line in cell_lines(own, moduli, domain, path, none=none):
-            say(line)
-        if written:
-            say(f"  written      {out}: {', '.join(written)}")
+    elif written:
+        say(f"  written      {out}: {', '.join(written)}")
     return cell_verdict(own, moduli, domain, path, none=none).exit_code
 
 

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from concio.cli.options import EngineOf, Factors, File, Json, Quiet, UnitsOf, factors_of, loaded
-from concio.cli.outcome import guarded, print_json, say
+from concio.cli.outcome import answer, guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
 
@@ -78,15 +78,14 @@ def continuum(
                 loaded(file, units, engine), own, factors=factors_of(factor), live=live, mesh_size=size,
                 elastic=elastic, strength=strength, progress=progress,
             )  # fmt: skip
+    if not json:
+        answer(continuum_lines(found, halving))
     written: list[str] = []
     if out is not None:
         with replaced_directory(out) as fresh:
             written = write_continuum(found, halving, fresh)
     if json:
         print_json(continuum_facts(found, halving))
-    else:
-        for line in continuum_lines(found, halving):
-            say(line)
-        if written:
-            say(f"  written      {out}: {', '.join(written)}")
+    elif written:
+        say(f"  written      {out}: {', '.join(written)}")
     return continuum_verdict(found, halving).exit_code

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, in_units
-from concio.cli.outcome import guarded, print_json, say
+from concio.cli.outcome import answer, guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
 
@@ -57,6 +57,8 @@ def diagnose(
     with progress_bar(shown=not (json or quiet)) as progress:
         found = concio.diagnose(model, asked.measurements, asked.candidates, progress=progress, **options)
     told, spoken = found.summary(), language or asked.head.get("language", "en")
+    if not json:
+        answer(diagnose_lines(found, spoken))
     written: list[str] = []
     if out is not None:
         from concio.cli.diagnose_files import write_diagnosis
@@ -65,11 +67,8 @@ def diagnose(
             written = write_diagnosis(found, told, fresh, spoken, asked.head)
     if json:
         print_json(told)
-    elif not quiet:
-        for line in diagnose_lines(found, spoken):
-            say(line)
-        if written:
-            say(f"  written      {out}: {', '.join(written)}")
+    elif written:
+        say(f"  written      {out}: {', '.join(written)}")
     return found.verdict.exit_code
 
 

@@ -10,7 +10,7 @@ import os
 import re
 import sys
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from pathlib import Path
@@ -213,6 +213,13 @@ def say(text: str = "") -> None:
     """Print a line on standard output, unless the command is quiet."""
     if not QUIET.get():
         _print(text + "\n")
+
+
+def answer(lines: Iterable[str]) -> None:
+    """Print what was found before reports and figures are written, which may take longer than finding it."""
+    for line in lines:
+        say(line)
+    flush()
 
 
 def note(text: str) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from concio.cli.options import EngineOf, File, Json, Language, Quiet, UnitsOf, factors_of, loaded
-from concio.cli.outcome import guarded, print_json, say
+from concio.cli.outcome import answer, guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar, verdict_so_far
 
@@ -88,16 +88,15 @@ def path(
         found = run_path(assembly, stages, method=method, brittle=brittle, progress=progress)
     chosen = control or most_moving(found)
     verdict_so_far(found.verdict)
+    if not json:
+        answer(path_lines(found, chosen, every=every))
     if out is not None:
         with replaced_directory(out) as fresh:
             write_path(found, chosen, fresh, language)
     if json:
         print_json(path_facts(found, chosen))
-    else:
-        for line in path_lines(found, chosen, every=every):
-            say(line)
-        if out is not None:
-            say(f"  written      {out}: summary.json, path.csv, events.csv, path.png, path.svg, report.html, end/")
+    elif out is not None:
+        say(f"  written      {out}: summary.json, path.csv, events.csv, path.png, path.svg, report.html, end/")
     return found.verdict.exit_code
 
 

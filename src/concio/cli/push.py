@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 import typer
 
 from concio.cli.options import EngineOf, Factors, File, Json, Language, Quiet, UnitsOf, factors_of, loaded
-from concio.cli.outcome import guarded, print_json, say
+from concio.cli.outcome import answer, guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.path import control_of
 from concio.cli.progress import progress_bar, verdict_so_far
@@ -104,6 +104,8 @@ def push(
             live=() if weights else group or None, direction=towards, step=sizes[0], until=sizes[1], smallest=smallest,
             factors=factors_of(factor), progress=progress,
         )  # fmt: skip
+    if not json:
+        answer(push_lines(found, every=every))
     written: list[str] = []
     if out is not None:
         verdict_so_far(found.verdict)
@@ -111,11 +113,8 @@ def push(
             written = write_motion(found, fresh, tuple(film or ()), series, language)
     if json:
         print_json(found.summary())
-    else:
-        for line in push_lines(found, every=every):
-            say(line)
-        if out is not None:
-            say(f"  written      {out}: {', '.join(written)}")
+    elif out is not None:
+        say(f"  written      {out}: {', '.join(written)}")
     if found.ending is PushEnding.STOPPED:
         return 130
     return found.verdict.exit_code

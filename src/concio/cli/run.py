@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from concio.cli.options import EngineOf, Factors, File, Json, Language, Out, Quiet, UnitsOf, factors_of, in_units
-from concio.cli.outcome import guarded, print_json, say
+from concio.cli.outcome import answer, guarded, print_json
 from concio.cli.output import check_directory
 from concio.cli.progress import progress_bar, verdict_so_far
 
@@ -42,6 +42,8 @@ def run(
             model, method=method, factors=factors_of(factor), on_failure="return", progress=progress, **chosen
         )
     verdict_so_far(result.verdict)
+    if not json:
+        answer(result_lines(result))
     written: list[Path] = []
     if out is not None:
         from concio.io.result_dir import write_result
@@ -50,10 +52,7 @@ def run(
     if json:
         print_json(result.summary())
     else:
-        for line in result_lines(result):
-            say(line)
-        for line in where_written(written):
-            say(line)
+        answer(where_written(written))
     return result.verdict.exit_code
 
 

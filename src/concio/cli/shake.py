@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from concio.cli.options import EngineOf, Factors, File, Json, Language, Quiet, UnitsOf, factors_of, loaded
-from concio.cli.outcome import guarded, print_json, say
+from concio.cli.outcome import answer, guarded, print_json, say
 from concio.cli.output import replaced_directory
 from concio.cli.path import control_of
 from concio.cli.progress import progress_bar, verdict_so_far
@@ -112,6 +112,8 @@ def shake(
     if own and scale is None and table.scale != 1.0:
         left = f"the scale of {table.scale:g} in the file belongs to its own ground motion and was not applied: --scale"
         found = replace(found, notes=(*found.notes, left))
+    if not json:
+        answer(shake_lines(found))
     written: list[str] = []
     if out is not None:
         verdict_so_far(found.verdict)
@@ -119,11 +121,8 @@ def shake(
             written = write_motion(found, fresh, tuple(film or ()), series, language)
     if json:
         print_json(found.summary())
-    else:
-        for line in shake_lines(found):
-            say(line)
-        if out is not None:
-            say(f"  written      {out}: {', '.join(written)}")
+    elif out is not None:
+        say(f"  written      {out}: {', '.join(written)}")
     return 130 if found.ending is Ending.STOPPED else found.verdict.exit_code
 
 
