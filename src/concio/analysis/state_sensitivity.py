@@ -25,12 +25,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from concio.analysis.lent_compliance import lent_assembly
+from concio.analysis.lent_compliance import lend
 from concio.analysis.linearised_state import LinearisedState, Rates
 from concio.analysis.parameters import Parameter, own_parameters, parameters_of, row_named, stiffnesses_of
 from concio.analysis.sensitivity import BESIDE, STEP
 from concio.analysis.step import solve
 from concio.arguments import strict
+from concio.contact.assembly import assemble_beside
 from concio.errors import ConcioError, InputError
 from concio.problem.contact_problem import ContactProblem
 
@@ -160,7 +161,7 @@ def _row(p: Parameter, result: Result, here: LinearisedState) -> StateRow:
     size = abs(p.value) or 1.0
 
     def at(value: float) -> ContactProblem:
-        problem = lent_assembly(p.change(value)).problem(result.factors)
+        problem = lend(assemble_beside(result.assembly, p.change(value))).problem(result.factors)
         if problem.pairs != here.problem.pairs or problem.unknowns != here.problem.unknowns:
             msg = "models beside this one have other joints"
             raise InputError(msg)

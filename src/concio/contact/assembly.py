@@ -309,7 +309,35 @@ def assemble(model: Model) -> Assembly:
     if not model.free_bodies:
         msg = "every body is fixed: there is nothing to compute"
         raise InputError(msg, hint="make the blocks elastic or rigid")
-    reference = Reference.described(model)
+    return _arrays(model, Reference.described(model))
+
+
+def assemble_beside(known: Assembly, model: Model) -> Assembly:
+    """Return the arrays of a model that may differ from one that was assembled in loads, materials, ties and laws.
+
+    Interfaces are found once: most of the time of an assembly in space. Where the bodies, the distances within which
+    they touch or what is asked of points without area are others, this is :func:`assemble`.
+
+    Raises
+    ------
+    GeometryError, InputError
+        As :func:`assemble`.
+    """
+    old = known.model
+    if model.bodies is not old.bodies or _found_by(model) != _found_by(old) or model.periods is not None:
+        return assemble(model)
+    return _arrays(model, Reference.described(model, detection=known.detection))
+
+
+def _found_by(model: Model) -> tuple[object, ...]:
+    """Return what interfaces are found by beside the bodies."""
+    areal = {name: (law.compressive_strength is None, bool(law.changes)) for name, law in model.laws.items()}
+    return model.gap_tolerance, model.gap_reach, model.rules, areal
+
+
+def _arrays(model: Model, reference: Reference) -> Assembly:
+    """Return the arrays of a model whose interfaces and meshes are known."""
+    periodic = model.periods is not None
     detection, disc, geometry = reference.detection, reference.disc, GEOMETRIES[model.dim]
     held = bool(model.ties) or bool({s.body for s in model.supports} & {b.name for b in model.free_bodies})
     if not detection.interfaces and not held:

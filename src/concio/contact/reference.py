@@ -85,15 +85,17 @@ class Reference:
         return reference
 
     @classmethod
-    def described(cls, model: Model, gravity: float = GRAVITY) -> Reference:
+    def described(cls, model: Model, gravity: float = GRAVITY, detection: Detection | None = None) -> Reference:
         """Return the reference of any model whose bodies do not overlap: in the plane, in space, a periodic cell.
+
+        Its interfaces are found, unless they are given.
 
         Raises
         ------
         GeometryError
             Bodies overlap.
         """
-        detection = detect_without_overlap(model)
+        detection = detect_without_overlap(model) if detection is None else detection
         meshed = model if model.periods is None else held_at_a_point(model)
         return cls(model, detection, discretise(meshed, GEOMETRIES[model.dim].marks(model, detection)), gravity)
 

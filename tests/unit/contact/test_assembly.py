@@ -10,7 +10,8 @@ import pytest
 
 import concio
 from concio.analysis.lent_compliance import lent_assembly
-from concio.contact.assembly import assemble
+from concio.analysis.parameters import parameters_of, stiffnesses_of
+from concio.contact.assembly import assemble, assemble_beside
 from concio.contact.detection import default_tolerance
 from concio.contact.factors import load_factor
 from concio.errors import GeometryError, InputError
@@ -130,11 +131,40 @@ def test_other_loads_on_the_same_structure_are_those_of_a_fresh_assembly(name: s
     fresh = assemble(replace(model, loads=tuple(loads)))
     assert shared.model.loads == fresh.model.loads
     assert shared.groups == fresh.groups
-    one, other = shared.problem({"moved": 0.5}), fresh.problem({"moved": 0.5})
+    same_problems(shared.problem({"moved": 0.5}), fresh.problem({"moved": 0.5}))
+
+
+def same_problems(one, other) -> None:
     for key in ("f", "load", "gap", "slip_origin", "area"):
         assert np.array_equal(getattr(one, key), getattr(other, key)), key
     for key in ("K", "C_n", "C_t", "inertia"):
         assert abs(getattr(one, key) - getattr(other, key)).max() == 0.0, key
+    for key, value in vars(one.laws).items():
+        if isinstance(value, np.ndarray):
+            assert np.array_equal(value, getattr(other.laws, key)), key
+
+
+@pytest.mark.parametrize("name", ["arch", "blocks", "blocks_in_space", "tower"])
+def test_a_model_beside_another_one_has_the_arrays_of_a_fresh_assembly(name: str) -> None:
+    model = concio.load(Path(concio.__file__).parent / "model" / "templates" / f"{name}.toml")
+    known, kinds = assemble(model), set()
+    for p in (*parameters_of(model), *stiffnesses_of(model)):
+        if p.kind not in kinds:
+            kinds.add(p.kind)
+            changed = p.change(1.1 * p.value)
+            same_problems(assemble_beside(known, changed).problem(None), assemble(changed).problem(None))
+    assert {"friction", "unit weight", "length"} <= kinds
+
+
+def test_a_law_that_begins_to_crush_loses_its_points_without_area() -> None:
+    """A square on its corner: with a compressive strength there is no joint, whatever was assembled before."""
+    model = on_ground(concio.Body("a", [(0, 0), (1, 1), (0, 2), (-1, 1)], **STONE), box("b", 2, 3, 0, 1, **STONE))
+    known = assemble(model)
+    (name, law), *_ = model.laws.items()
+    crushes = replace(model, laws={name: replace(law, compressive_strength=1e4)})
+    assert 1 in known.pairs.body_b
+    for found in (assemble(crushes), assemble_beside(known, crushes)):
+        assert set(found.pairs.body_b.tolist()) == {2}
 
 
 def test_a_compliance_that_was_chosen_for_loads_does_not_serve_for_others() -> None:
