@@ -116,7 +116,7 @@ def test_what_falls_under_its_own_weight_is_not_tried_at_smaller_and_smaller_loa
         tried.append(problem)
         return find("auto")(problem)
 
-    leaning = assemble(wall(length=1.0, height=0.5, horizontal=1.0, friction=0.6, mesh_size=0.125))
+    leaning = assemble(wall(length=1.0, height=0.5, horizontal=1.0, friction=0.6, block="rigid"))
     path = LinearPath(leaning.problem({"dead": 0.0, "live": 0.0}), leaning.problem({"dead": 1.0, "live": 1.0}).f)
     found = follow_in_steps(path, at_rest(path.problem), until=1.0, steps=4, solver=solver)
     assert found.outcome is Outcome.LIMIT

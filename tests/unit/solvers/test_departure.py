@@ -57,7 +57,7 @@ def falling(material: Elastic | Rigid = BRICK) -> ContactProblem:
 def pushed_wall(share: float, mu: float = 0.4) -> ContactProblem:
     """A dry wall of elastic blocks pushed sideways by a share of its weight, on its base."""
     model = concio.running_bond_panel(
-        courses=4, blocks=3, block_size=(0.2, 0.1), block=BRICK, friction=mu, base="full", side_walls=False,
+        courses=3, blocks=3, block_size=(0.2, 0.1), block=BRICK, friction=mu, base="full", side_walls=False,
         elements_per_block=(2, 1),
     )  # fmt: skip
     model = replace(model, loads=(*model.loads, Load("weight", (share, 0.0))))

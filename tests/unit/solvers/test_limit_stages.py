@@ -101,8 +101,10 @@ def test_load_steps_come_close_to_what_a_block_carries_and_not_beyond(friction: 
     assert list(steps.multipliers) == sorted(steps.multipliers)
 
 
-def test_every_load_step_is_certified_by_the_original_problem(wall: concio.Model) -> None:
-    dead, live = dead_and_live(concio.assemble(wall), "live")
+@pytest.mark.parametrize("block", [(0.5, 0.25), pytest.param((0.25, 0.125), marks=pytest.mark.long)])
+def test_every_load_step_is_certified_by_the_original_problem(block: tuple[float, float]) -> None:
+    size = {"length": 1.0, "height": 0.5, "block_size": block, "mesh_size": block[1]}
+    dead, live = dead_and_live(concio.assemble(concio.wall(friction=0.5, horizontal=0.2, **size)), "live")
     told: list[float] = []
     steps = load_steps(dead, live, 3.0, found=told.append)
     assert steps.worst <= 1e-9
