@@ -25,6 +25,7 @@ from concio.analysis.cracks.unseen import unseen_of
 from concio.analysis.entry_point import entry_point
 from concio.arguments import strict
 from concio.contact.assembly import as_assembly
+from concio.contact.separate import surroundings
 from concio.errors import InputError
 from concio.model.model import Model, require_model
 from concio.problem.solution import ProgressCallback
@@ -162,13 +163,20 @@ def diagnose(
 
 def expected(model: Model, measurements: Sequence[Measurement], candidates: Sequence[Candidate]) -> Array:
     """Return motions (k,) of the size that the measurements let expect [m, rad, or change of a load factor]."""
-    half = model.size / HALF
+    half = _size(model, measurements, candidates) / HALF
     sizes = [max(abs(m.value), LEAST * m.error) * (half if m.quantity == "rotation" else 1.0) for m in measurements]
     size = sorted(sizes)[-2]  # the largest may be a mistake
     kinds = {"motion": size, "rotation": size / half, "number": 1.0}
     warmest = {t.group: WARMER / max(abs(t.change), 1.0) for t in model.temperatures}
     sizes = [warmest.get(c.group, kinds[c.quantity]) for c in candidates]
     return np.array([min(own, max(c.high, -c.low)) for own, c in zip(sizes, candidates, strict=True)])
+
+
+def _size(model: Model, measurements: Sequence[Measurement], candidates: Sequence[Candidate]) -> float:
+    """Return the size of the largest structure that anything measured, or anything that may move, belongs to [m]."""
+    named = {name for m in measurements for name in (m.body, m.other, *(m.joint or ()))} | {c.body for c in candidates}
+    own = [k for k, body in enumerate(model.bodies) if body.name in named]
+    return surroundings(model).of(own) if own else model.size
 
 
 @dataclass(frozen=True, eq=False)

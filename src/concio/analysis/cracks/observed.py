@@ -148,7 +148,7 @@ def _tilt(assembly: Assembly, m: Measurement, b: int, where: str) -> Reading:
     arm = to - at
     across = turned_left(arm) if d == 2 else cross(_direction(m.direction, d, where), arm)
     size2 = float(across @ across)
-    if not size2 > (1e-9 * assembly.model.size) ** 2:
+    if not size2 > (1e-9 * float(np.ptp(nodes, axis=0).max())) ** 2:
         msg = "the two points between which the tilt is measured do not determine it"
         raise InputError(msg, where=where, hint="take points apart from each other, across the axis")
     found = _between(assembly, b, to, b, at, across / size2, where)
