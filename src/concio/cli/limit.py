@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from concio.cli.options import EngineOf, File, Json, Language, Quiet, UnitsOf, loaded
-from concio.cli.outcome import guarded, print_json, say
+from concio.cli.outcome import flush, guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import found_so_far, progress_bar, verdict_so_far
 from concio.problem.limits_of_work import LARGEST_MARGIN
@@ -80,7 +79,7 @@ def limit(
     def tell(lines: list[str]) -> None:
         for line in [] if json else lines:
             say(line)
-        sys.stdout.flush()
+        flush()
 
     try:
         with progress_bar(shown=not json) as progress:

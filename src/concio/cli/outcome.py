@@ -56,9 +56,6 @@ def guarded(command: Callable[P, int]) -> Callable[P, None]:
             flush()
         except KeyboardInterrupt:
             fail({"kind": "Interrupted", "what": "stopped on request; nothing was written"}, INTERRUPTED, as_json)
-        except BrokenPipeError:  # the reader of our output has gone
-            silence()
-            code = 0
         except (typer.Exit, typer.Abort):
             raise
         except Exception as error:
@@ -167,13 +164,16 @@ def flush() -> None:
 
 @contextmanager
 def _writable() -> Iterator[None]:
-    """Turn a failure to write to standard output into an InputError; a reader that has gone stays what it is."""
+    """Turn a failure to write to standard output into an InputError.
+
+    Where the reader has gone, the rest goes to nowhere: files and exit code are those of the whole command.
+    """
     from concio.errors import InputError
 
     try:
         yield
     except BrokenPipeError:
-        raise
+        silence()
     except OSError as error:
         silence()
         msg = f"cannot be written to: {error.strerror or error}"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from concio.cli.outcome import guarded, note, say
+from concio.cli.outcome import flush, guarded, note, say
 
 if TYPE_CHECKING:
     from concio.window.server import Server
@@ -61,7 +61,7 @@ def window(
             note(f"Note: {session.document.read_only}")
         say(f"The window is at {server.address}")
         say("Ctrl-C ends it. Changes that are not saved are kept in a journal beside the file.")
-        sys.stdout.flush()
+        flush()
         if show:
             import webbrowser
 

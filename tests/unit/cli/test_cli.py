@@ -446,6 +446,19 @@ main()
 """
 
 
+def test_a_reader_that_has_gone_changes_no_exit_code(panel: Path) -> None:
+    """A command whose output nobody reads on ends as it would, with its verdict and its files."""
+    panel.write_text(SLIDES)
+    command = [sys.executable, "-m", "concio", "run", str(panel), "--out", "result"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        process.stdout.close()
+        assert process.stderr is not None
+        err = process.stderr.read()
+    assert (process.returncode, err) == (3, "")
+    assert (panel.parent / "result" / "summary.json").exists()
+
+
 def test_interrupting_a_running_command(panel: Path) -> None:
     command = [sys.executable, "-c", WAITING, "run", str(panel), "--out", "result"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
