@@ -25,7 +25,7 @@ from concio.problem.solution import Solution, Status
 from concio.solvers.auto.chain import STRATEGIES
 from concio.solvers.methods import find
 from concio.solvers.relaxation.unbounded_motion import verify_motion
-from concio.solvers.statics.limit import associated_limit
+from concio.solvers.statics.associated_limit import associated_limit
 from concio.solvers.statics.mechanism import verify_mechanism
 
 FAMILIES = ("dry wall", "dry panel", "mortar panel", "no base", "gaps", "loose blocks", "rigid wall", "mixed materials")

@@ -27,7 +27,7 @@ from corpus import DECIDED, proven  # noqa: E402
 from concio.problem.contact_problem import ContactProblem  # noqa: E402
 from concio.problem.solution import Solution  # noqa: E402
 from concio.solvers.methods import find  # noqa: E402
-from concio.solvers.statics.limit import associated_limit  # noqa: E402
+from concio.solvers.statics.associated_limit import associated_limit  # noqa: E402
 from space_problems import Built, barrel, corner_wall, dome, wall  # noqa: E402
 
 FAMILIES = ("running bond", "header bond", "corners", "barrel", "dome", "tilted", "settled", "loose", "squeezed")

@@ -15,8 +15,8 @@ from wall_family import wall
 
 from concio.analysis.limit import search_collapse
 from concio.solvers.statics import programme as statics
+from concio.solvers.statics.associated_limit import associated_limit
 from concio.solvers.statics.existence import find_mechanism
-from concio.solvers.statics.limit import associated_limit
 
 WALLS = ((30, 14), (50, 40))
 LARGE = ((100, 100),)

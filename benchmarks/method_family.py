@@ -35,7 +35,7 @@ def large_wall() -> ContactProblem:
 
 def near_collapse() -> ContactProblem:
     """Return the same bond, ten units by six courses, with 96 % of the associated limit sideways."""
-    from concio.solvers.statics.limit import associated_limit
+    from concio.solvers.statics.associated_limit import associated_limit
 
     still, leaning = _leaning(6, 10, 0.0), _leaning(6, 10, 1.0)
     limit = associated_limit(still, leaning.f - still.f).multiplier

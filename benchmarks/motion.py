@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 import concio
-from concio.contact.search import ContactSearch
+from concio.contact.contact_search import ContactSearch
 from concio.solvers.stepping.solver import StepSolver
 
 WALL = {"courses": 14, "blocks": 30, "block_size": (1.0, 0.5), "thickness": 1.0, "friction": 0.6, "side_walls": False}

@@ -15,8 +15,8 @@ from dataclasses import replace
 import concio
 from concio.analysis.seismic.directions import pushes
 from concio.analysis.seismic.examine import Prepared, prepared
-from concio.analysis.seismic.mechanism import Mechanisms
 from concio.analysis.seismic.sequence import follow_in_steps
+from concio.analysis.seismic.weakest_mechanism import Mechanisms
 from concio.contact.assembly import assemble
 
 WALLS = {

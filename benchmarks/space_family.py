@@ -38,7 +38,7 @@ sys.path[:0] = [str(Path(__file__).resolve().parents[1] / "tests")]
 from concio.problem.contact_problem import ContactProblem  # noqa: E402
 from concio.solvers.algebra.scaled import scale  # noqa: E402
 from concio.solvers.methods import find  # noqa: E402
-from concio.solvers.statics.limit import LimitLoad, associated_limit, kinematic_bound, static_residual  # noqa: E402
+from concio.solvers.statics.associated_limit import LimitLoad, associated_limit, kinematic_bound, static_residual  # noqa: E402
 from space_problems import Built, barrel, dome, wall  # noqa: E402
 
 OUT = (0.0, 1.0, 0.0)

@@ -43,7 +43,7 @@ from concio.kinematics.rigid import rotation_matrix  # noqa: E402
 from concio.problem.certificate import certify  # noqa: E402
 from concio.problem.contact_problem import Array, ContactProblem, Laws  # noqa: E402
 from concio.solvers.methods import find  # noqa: E402
-from concio.solvers.statics.limit import associated_limit  # noqa: E402
+from concio.solvers.statics.associated_limit import associated_limit  # noqa: E402
 from space_problems import Built, barrel, dome, stretchers, wall  # noqa: E402
 
 SYSTEM_PYTHON = "/usr/bin/python3"

@@ -10,7 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import concio
-from concio.analysis.seismic.asked import read_asked
+from concio.analysis.seismic.assessment_asked import read_asked
 
 
 def main(figure: Path | None = None) -> dict[str, float]:

@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import concio
-from concio.analysis.cracks.asked import read_survey
+from concio.analysis.cracks.diagnosis_asked import read_survey
 
 
 def main(figure: Path | None = None) -> dict[str, float]:

@@ -9,8 +9,8 @@ import numpy as np
 
 from concio.problem.pair_state import PairStates
 from concio.solvers.path.event_path import follow
+from concio.solvers.path.path_state import CLOSED, LinearPath, PathState, certify_step, elastic_energy
 from concio.solvers.path.record import EventPath
-from concio.solvers.path.state import CLOSED, LinearPath, PathState, certify_step, elastic_energy
 from rigid_walls import Assembly
 
 

@@ -15,7 +15,7 @@ from typing import Any
 from concio.window.server import Server
 from concio.window.session import Session
 
-WORKER = (sys.executable, "-m", "concio.cli.answers")
+WORKER = (sys.executable, "-m", "concio.cli.answering_process")
 LATE = 240.0
 """What is not there after so long is missing [s]: a machine may be busy."""
 

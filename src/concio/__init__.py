@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from concio import trace as trace
     from concio.analysis.bridges.assess_bridge import assess_bridge
     from concio.analysis.bridges.bridge_result import BridgeResult
+    from concio.analysis.cells.cell_path import strain_path
     from concio.analysis.cells.moduli import homogenise
-    from concio.analysis.cells.path import strain_path
     from concio.analysis.cells.strength import strength
     from concio.analysis.continuum.comparison import compare_with_continuum
     from concio.analysis.continuum.halving import halve_blocks
@@ -58,11 +58,10 @@ if TYPE_CHECKING:
     from concio.model.file.reading import load, loads
     from concio.model.file.writing import dumps, save
     from concio.model.fill import Fill, Layer
+    from concio.model.generate.arch_bridges import bridge
     from concio.model.generate.arch_on_piers import arch_on_piers
     from concio.model.generate.arches import arch
     from concio.model.generate.barrel import barrel
-    from concio.model.generate.bridges import bridge
-    from concio.model.generate.cells import cell
     from concio.model.generate.columns import buttress, column
     from concio.model.generate.dome import dome
     from concio.model.generate.drums import drums
@@ -70,6 +69,7 @@ if TYPE_CHECKING:
     from concio.model.generate.groins import cloister_vault, cross_vault
     from concio.model.generate.merging import merge
     from concio.model.generate.panel import running_bond_panel
+    from concio.model.generate.periodic_cells import cell
     from concio.model.generate.plan_walls import tower, walls
     from concio.model.generate.rubble import rubble
     from concio.model.generate.walls import wall, wall_of_courses
@@ -95,7 +95,7 @@ _HOMES = {
     "concio.analysis.bridges.assess_bridge": ("assess_bridge",),
     "concio.analysis.bridges.bridge_result": ("BridgeResult",),
     "concio.analysis.cells.moduli": ("homogenise",),
-    "concio.analysis.cells.path": ("strain_path",),
+    "concio.analysis.cells.cell_path": ("strain_path",),
     "concio.analysis.cells.strength": ("strength",),
     "concio.analysis.continuum.comparison": ("compare_with_continuum",),
     "concio.analysis.continuum.halving": ("halve_blocks",),
@@ -141,7 +141,7 @@ _HOMES = {
     "concio.model.generate.arch_on_piers": ("arch_on_piers",),
     "concio.model.generate.arches": ("arch",),
     "concio.model.generate.barrel": ("barrel",),
-    "concio.model.generate.bridges": ("bridge",),
+    "concio.model.generate.arch_bridges": ("bridge",),
     "concio.model.crossing": ("Axle", "Vehicle"),
     "concio.model.fill": ("Fill", "Layer"),
     "concio.model.road.earth": ("with_fill", "with_vehicle"),
@@ -150,7 +150,7 @@ _HOMES = {
     "concio.model.generate.drums": ("drums",),
     "concio.model.generate.groins": ("cloister_vault", "cross_vault"),
     "concio.model.generate.plan_walls": ("tower", "walls"),
-    "concio.model.generate.cells": ("cell",),
+    "concio.model.generate.periodic_cells": ("cell",),
     "concio.model.generate.columns": ("buttress", "column"),
     "concio.model.generate.extrusion": ("extrude",),
     "concio.model.compose": ("place",),

@@ -11,9 +11,9 @@ The functions are those of ``concio`` itself. Beside them are the classes of the
 
 from __future__ import annotations
 
+from concio.analysis.cells.cell_path import strain_path
+from concio.analysis.cells.cell_path_result import CellPath
 from concio.analysis.cells.moduli import Moduli, homogenise
-from concio.analysis.cells.path import strain_path
-from concio.analysis.cells.path_result import CellPath
 from concio.analysis.cells.periodic_cell import PeriodicCell
 from concio.analysis.cells.strength import StrengthDomain, strength
 from concio.analysis.continuum.comparison import ContinuumComparison, compare_with_continuum

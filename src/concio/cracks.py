@@ -16,7 +16,7 @@ from concio.analysis.cracks.diagnosis import Diagnosis
 from concio.analysis.cracks.future import Future
 from concio.analysis.cracks.measurement import Candidate, Measurement
 from concio.analysis.cracks.places import Place
-from concio.analysis.cracks.unseen import Unseen
+from concio.analysis.cracks.undetermined import Unseen
 
 __all__ = [
     "Candidate",

@@ -11,18 +11,18 @@ the arguments that generators share.
 
 from __future__ import annotations
 
+from concio.model.generate.arch_bridges import bridge
 from concio.model.generate.arch_on_piers import arch_on_piers
 from concio.model.generate.arches import arch
-from concio.model.generate.arguments import Common
 from concio.model.generate.barrel import barrel
-from concio.model.generate.bridges import bridge
-from concio.model.generate.cells import cell
 from concio.model.generate.columns import buttress, column
 from concio.model.generate.dome import dome
 from concio.model.generate.drums import drums
+from concio.model.generate.generator_arguments import Common
 from concio.model.generate.groins import cloister_vault, cross_vault
 from concio.model.generate.openings import Opening
 from concio.model.generate.panel import running_bond_panel
+from concio.model.generate.periodic_cells import cell
 from concio.model.generate.plan import WallLine
 from concio.model.generate.plan_walls import tower, walls
 from concio.model.generate.rubble import rubble

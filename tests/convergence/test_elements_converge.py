@@ -10,10 +10,10 @@ import pytest
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
-from concio.fem.body import Shape
 from concio.fem.constitutive import constitutive_matrix
 from concio.fem.elements import build
 from concio.fem.mesh import tensor
+from concio.fem.shape import Shape
 from concio.model.materials import Elastic
 
 D = constitutive_matrix(Elastic(E=1.0, nu=0.3), "strain")

@@ -9,7 +9,7 @@ import pytest
 
 import concio
 from concio import Load, Tie
-from concio.analysis.seismic.parts import parts_of
+from concio.analysis.seismic.default_parts import parts_of
 from models import turned
 from seismic_walls import courses, ground, overturning, site
 

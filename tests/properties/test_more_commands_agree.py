@@ -16,7 +16,7 @@ import concio
 from concio.analysis.exact_proofs import collapse_proof
 from concio.analysis.limit_result import LimitResult
 from concio.problem.solution import Status
-from concio.proof.certificate import prove_collapse
+from concio.proof.exact_certificate import prove_collapse
 from concio.proof.verify import check
 from concio.verdict.verdict import Outcome
 from pillars import ARCH, pillar, sideways, turned

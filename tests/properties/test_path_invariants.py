@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from concio.solvers.path.record import Outcome
-from concio.solvers.statics.limit import associated_limit
+from concio.solvers.statics.associated_limit import associated_limit
 from path_helpers import energy_error, least_dissipation, weight_then, worst_certificate
 from rigid_walls import running_bond
 from samples import sample

@@ -18,7 +18,7 @@ import concio
 from concio.model.model import Load, Tie
 from concio.model.stages import ControlPoint, Stage
 from concio.problem.parts import connected_parts, parts_of
-from concio.solvers.path.apart import put_together, state_of_part
+from concio.solvers.path.paths_apart import put_together, state_of_part
 from concio.solvers.path.record import Outcome
 from samples import sample
 
@@ -173,7 +173,7 @@ def test_states_come_apart_and_together_again(dim, seed):
     assembly = concio.assemble(pushed(dim, [*stack(dim, "rigid"), *another(dim, 1.0, 7.0, "rigid")], "rigid", "stiff"))
     problem = assembly.problem()
     rng = np.random.default_rng(seed)
-    rest = concio.solvers.path.state.at_rest(problem)
+    rest = concio.solvers.path.path_state.at_rest(problem)
     m, s = problem.pairs, dim - 1
     state = replace(
         rest, displacement=rng.normal(size=problem.unknowns), normal_force=rng.normal(size=m),

@@ -21,7 +21,7 @@ from concio.model.crossing import Axle, Vehicle
 from concio.model.fill import Fill
 from concio.model.road.earth import with_fill, with_vehicle
 from concio.model.road.surface import Surface
-from concio.solvers.statics.limit import associated_limit
+from concio.solvers.statics.associated_limit import associated_limit
 
 NO_SLIDING = 1e3
 

@@ -14,7 +14,7 @@ from validation_cases.ferris_tin_loi import model
 
 import concio
 from concio.proof import verify
-from concio.proof.certificate import prove_limit
+from concio.proof.exact_certificate import prove_limit
 from rigid_walls import BLOCK, MU, TALLER
 
 WALL_1 = Fraction(666061409848, 1036092527933)

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 import concio
 from concio.analysis.limit import coulomb_path, dead_and_live
+from concio.solvers.statics.associated_limit import associated_limit
 from concio.solvers.statics.existence import find_mechanism, statically_admissible
-from concio.solvers.statics.limit import associated_limit
 from path_helpers import energy_error, weight_then, worst_certificate
 from rigid_walls import block_on_incline
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from concio.solvers.statics.associated_limit import associated_limit
 from concio.solvers.statics.existence import find_mechanism
-from concio.solvers.statics.limit import associated_limit
 from concio.solvers.statics.mechanism import verify_mechanism
 from rigid_walls import FERRIS_TIN_LOI, MU, running_bond, wall
 

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from concio.solvers.path.record import Outcome
+from concio.solvers.statics.associated_limit import associated_limit
 from concio.solvers.statics.collapse_search import find_collapse_state
-from concio.solvers.statics.limit import associated_limit
 from path_helpers import energy_error, least_dissipation, weight_then, worst_certificate
 from rigid_walls import FERRIS_TIN_LOI, MU, TALLER, wall
 

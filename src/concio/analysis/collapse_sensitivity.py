@@ -32,7 +32,7 @@ from concio.analysis.parameters import Parameter, parameters_of
 from concio.analysis.sensitivity import STEP, Sensitivity, SensitivityRow
 from concio.errors import ConcioError, InputError
 from concio.problem.contact_problem import ContactProblem
-from concio.solvers.path.state import CRUSHED, OPEN, weakened
+from concio.solvers.path.path_state import CRUSHED, OPEN, weakened
 
 if TYPE_CHECKING:
     from concio.analysis.path_result import PathResult

@@ -13,10 +13,10 @@ from concio.errors import SolverError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.parts import parts_of
 from concio.problem.solution import ProgressCallback
-from concio.solvers.path.apart import follow_parts, part_that_moves, path_of, put_together
+from concio.solvers.path.path_state import LinearPath, PathState, at_rest
+from concio.solvers.path.paths_apart import follow_parts, part_that_moves, path_of, put_together
 from concio.solvers.path.ray import homogeneous, ray, restarted
 from concio.solvers.path.record import EventPath, Outcome
-from concio.solvers.path.state import LinearPath, PathState, at_rest
 
 FAR = 50.0
 """The path is followed to this multiple of the displacement at its first limit point."""

@@ -12,9 +12,9 @@ from concio.contact.assembly import Assembly, assemble
 from concio.errors import InputError, SolverError
 from concio.fem.discretisation import RIGID
 from concio.problem.solution import Solution, Status, pair_states
-from concio.proof.certificate import prove_balance, prove_collapse
 from concio.proof.deformable import refuse
 from concio.proof.equilibrium import prove_equilibrium
+from concio.proof.exact_certificate import prove_balance, prove_collapse
 from concio.proof.programs import recompute
 from concio.solvers.methods import find
 from concio.solvers.statics.existence import find_mechanism, statically_admissible
@@ -48,8 +48,8 @@ def collapse_proof(
     Raises
     ------
     InputError, SolverError
-        As :func:`concio.proof.certificate.prove_collapse`; or a joint was almost made, and with it the loads may be
-        balanced.
+        As :func:`concio.proof.exact_certificate.prove_collapse`; or a joint was almost made, and with it the loads
+        may be balanced.
     """
     almost = joints_not_made(assembly.detection)
     if almost:
@@ -77,7 +77,7 @@ def balance_proof(
     Raises
     ------
     InputError, SolverError
-        As :func:`concio.proof.certificate.prove_balance`.
+        As :func:`concio.proof.exact_certificate.prove_balance`.
     """
     directions = None
     if assembly.model.dim == 3:

@@ -25,7 +25,7 @@ from concio.arguments import closest
 from concio.contact.assembly import Assembly
 from concio.errors import InputError, SolverError
 from concio.problem.contact_problem import ContactProblem
-from concio.solvers.statics.limit import LimitLoad, associated_limit
+from concio.solvers.statics.associated_limit import LimitLoad, associated_limit
 
 Array = np.ndarray
 Kind = Literal["tie", "cohesion", "load"]

@@ -1,12 +1,12 @@
 """Limit loads of a model: how much of a load it carries, by numbers each of which says what it is.
 
-The *associated multiplier* (:mod:`concio.solvers.statics.limit`) bounds every collapse from above and needs no
-stiffness. The *load steps* (:mod:`concio.analysis.load_steps`) show what Coulomb friction carries when the load grows:
-a certified lower bound, found quickly. The *path multiplier* (:mod:`concio.analysis.coulomb_path`) is the largest load
-met on the exact quasi-static path, controlled by the displacement it works on, so that local slips and falling branches
-are passed; it depends on stiffness and history, as friction does. One number needs neither: the multiplier of a
-certified Coulomb *collapse state* (:mod:`concio.solvers.statics.collapse_state`), at which the wall can begin to move;
-there may be several. None is passed off as another. How far the given load is from all this:
+The *associated multiplier* (:mod:`concio.solvers.statics.associated_limit`) bounds every collapse from above and needs
+no stiffness. The *load steps* (:mod:`concio.analysis.load_steps`) show what Coulomb friction carries when the load
+grows: a certified lower bound, found quickly. The *path multiplier* (:mod:`concio.analysis.coulomb_path`) is the
+largest load met on the exact quasi-static path, controlled by the displacement it works on, so that local slips and
+falling branches are passed; it depends on stiffness and history, as friction does. One number needs neither: the
+multiplier of a certified Coulomb *collapse state* (:mod:`concio.solvers.statics.collapse_state`), at which the wall can
+begin to move; there may be several. None is passed off as another. How far the given load is from all this:
 :mod:`concio.analysis.margins`.
 
 Rigid blocks on hard joints have no unique path; their joints are given a compliance
@@ -48,11 +48,11 @@ from concio.problem.limits_of_work import (
 )  # fmt: skip
 from concio.problem.solution import PROVEN_FAILURES, Progress, ProgressCallback, Status
 from concio.solvers.methods import find
+from concio.solvers.statics.associated_limit import LimitLoad, associated_limit
 from concio.solvers.statics.collapse_search import find_collapse_state
 from concio.solvers.statics.collapse_state import CollapseState
 from concio.solvers.statics.existence import find_mechanism
 from concio.solvers.statics.friction import smallest_friction
-from concio.solvers.statics.limit import LimitLoad, associated_limit
 from concio.verdict.limit_verdict import DEAD_NOT_CARRIED
 from concio.verdict.not_standing import not_standing, of_the_joints
 

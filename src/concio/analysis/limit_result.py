@@ -22,9 +22,9 @@ from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import PROVEN_FAILURES, Status
 from concio.solvers.path.record import EventPath
+from concio.solvers.statics.associated_limit import LimitLoad
 from concio.solvers.statics.collapse_state import CollapseState
 from concio.solvers.statics.friction import FrictionBounds
-from concio.solvers.statics.limit import LimitLoad
 from concio.verdict.limit_verdict import limit_verdict
 from concio.verdict.limit_words import NOT_ASKED, limit_lines
 from concio.verdict.verdict import Verdict
@@ -304,7 +304,7 @@ class LimitResult(Shown):
         >>> check(found.proof()).split(": ")[1:]
         ['1/4 = 0.25 is balanced; nothing above 1/4 = 0.25 is', 'proved exactly']
         """
-        from concio.proof.certificate import prove_limit
+        from concio.proof.exact_certificate import prove_limit
 
         return prove_limit(self.assembly, self.groups, numbers=numbers, directions=self._ways())
 

@@ -28,8 +28,8 @@ from concio.representation import short_repr
 from concio.solvers.interior import engine
 from concio.solvers.methods import find
 from concio.solvers.path.near_forces import needed, solve_near
+from concio.solvers.path.path_state import LinearPath, PathState, state_of, step_problem
 from concio.solvers.path.ray import homogeneous, solve_from_rest
-from concio.solvers.path.state import LinearPath, PathState, state_of, step_problem
 
 FIRST = 1 / 4
 """First step, as a share of the associated bound; steps of an eighth carry no more, and cost a quarter more."""

@@ -2,9 +2,8 @@
 
 Two questions, each answered twice. *How much more load?* *How much less friction?* Linear programming answers for
 associated friction: beyond that load, or below that friction, no equilibrium exists, and a mechanism proves it
-(:mod:`concio.solvers.statics.limit`). What Coulomb friction carries may be less. So the same question is put to the
-solver of a
-load step, bisecting between what was found to hold and the proven limit:
+(:mod:`concio.solvers.statics.associated_limit`). What Coulomb friction carries may be less. So the same question is put
+to the solver of a load step, bisecting between what was found to hold and the proven limit:
 at one end a certified equilibrium, at the other a load step for which none was found. The set of loads that Coulomb
 friction carries need not be an interval, and a solver that finds nothing proves nothing: the pair of numbers is what
 was found, no more.
@@ -28,8 +27,8 @@ from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Status
 from concio.representation import short_repr
 from concio.solvers.methods import find
+from concio.solvers.statics.associated_limit import associated_limit
 from concio.solvers.statics.friction import smallest_friction
-from concio.solvers.statics.limit import associated_limit
 from concio.verdict.limit_words import margin_words
 from concio.verdict.margin_verdict import margin_verdict
 from concio.verdict.verdict import Verdict

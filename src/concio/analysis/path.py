@@ -31,10 +31,10 @@ from concio.model.model import Model
 from concio.model.stages import ControlPoint, Stage
 from concio.problem.solution import ProgressCallback
 from concio.solvers.methods import find
-from concio.solvers.path.apart import follow_parts
+from concio.solvers.path.path_state import LinearPath, PathState, at_rest, elastic_energy
+from concio.solvers.path.paths_apart import follow_parts
 from concio.solvers.path.proof import certify_between, obstacles_moved
 from concio.solvers.path.record import EventPath, Outcome
-from concio.solvers.path.state import LinearPath, PathState, at_rest, elastic_energy
 from concio.solvers.path.step_path import StepPath, follow_in_steps
 
 __all__ = ["ControlPoint", "NamedEvent", "PathResult", "PathStep", "Stage", "control_functional", "run_path"]

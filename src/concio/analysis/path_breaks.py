@@ -17,7 +17,7 @@ from concio.problem.contact_problem import ContactProblem
 from concio.problem.limits_of_work import BREAK_HALVINGS
 from concio.problem.solution import Solver
 from concio.solvers.path.near_forces import needed, solve_near
-from concio.solvers.path.state import (
+from concio.solvers.path.path_state import (
     LinearPath,
     PathState,
     elastic_energy,

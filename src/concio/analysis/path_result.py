@@ -15,14 +15,14 @@ from concio.analysis.result import Result
 from concio.arguments import closest
 from concio.contact.assembly import Assembly
 from concio.errors import InputError
+from concio.model.self_weight import weight_groups, weightless
 from concio.model.stages import ControlPoint, Stage
-from concio.model.weights import weight_groups, weightless
 from concio.problem.certificate import Certificate
 from concio.problem.solution import Status, judge
 from concio.problem.tolerances import CERTIFIED
 from concio.representation import short_repr
+from concio.solvers.path.path_state import LinearPath, PathState, path_kinematics, weakened
 from concio.solvers.path.record import Event, Outcome
-from concio.solvers.path.state import LinearPath, PathState, path_kinematics, weakened
 from concio.verdict.path_verdict import path_lines, path_verdict
 from concio.verdict.verdict import Verdict
 from concio.views import Shown, view

@@ -12,9 +12,9 @@ from concio.problem.limits_of_work import BREAK_STEPS
 from concio.problem.solution import Solver
 from concio.problem.tolerances import BREAK_LOCATED, BROKEN_TIE
 from concio.solvers.methods import find
-from concio.solvers.path.apart import between
+from concio.solvers.path.path_state import LinearPath, PathState
+from concio.solvers.path.paths_apart import between
 from concio.solvers.path.record import Event, Outcome
-from concio.solvers.path.state import LinearPath, PathState
 from concio.solvers.path.step_path import StepPath, follow_in_steps
 
 Array = np.ndarray

@@ -34,7 +34,7 @@ from concio.views import Shown, view
 
 if TYPE_CHECKING:
     from concio.plot.accessor import Plots
-    from concio.post.tables import Tables
+    from concio.post.result_tables import Tables
 
 Array = np.ndarray
 

@@ -31,7 +31,7 @@ import scipy.sparse as sp
 from concio.analysis.parameters import Parameter, row_named
 from concio.errors import ConcioError, InputError
 from concio.problem.contact_problem import ContactProblem
-from concio.solvers.statics.limit import LimitLoad, associated_limit
+from concio.solvers.statics.associated_limit import LimitLoad, associated_limit
 
 if TYPE_CHECKING:
     from concio.model.model import Model

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from concio.analysis.cells.cell_path_result import CellPath
 from concio.analysis.cells.moduli import Moduli
-from concio.analysis.cells.path_result import CellPath
 from concio.analysis.cells.periodic_cell import PeriodicCell
 from concio.analysis.cells.strength import StrengthDomain
 from concio.cli.cell_lines import cell_facts
 from concio.cli.outcome import plain
-from concio.contact.periodic import COMPONENTS
+from concio.contact.macroscopic_strain import COMPONENTS
 from concio.io.csv_table import write_csv
 
 if TYPE_CHECKING:

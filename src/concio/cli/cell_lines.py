@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from concio.analysis.cells.cell_path_result import CellPath
 from concio.analysis.cells.half_spaces import HalfSpaces
 from concio.analysis.cells.moduli import Moduli
-from concio.analysis.cells.path_result import CellPath
 from concio.analysis.cells.periodic_cell import PeriodicCell
 from concio.analysis.cells.strength import StrengthDomain, StrengthRay
-from concio.contact.periodic import COMPONENTS
+from concio.contact.macroscopic_strain import COMPONENTS
 from concio.verdict.cell_verdict import cell_verdict, direction_words, domain_words, ray_words
 
 Array = np.ndarray

@@ -8,30 +8,27 @@ from collections.abc import Callable, Iterable, Sequence
 
 import typer
 
-from concio.cli import (
-    assess,
-    bridge,
-    cell,
-    check,
-    compare,
-    continuum,
-    diagnose,
-    export,
-    limit,
-    memory,
-    new,
-    outcome,
-    path,
-    prove,
-    push,
-    run,
-    schema,
-    shake,
-    study,
-    verify,
-    view,
-    window,
-)
+from concio.cli import memory, outcome
+from concio.cli.assess_command import assess
+from concio.cli.bridge_command import bridge
+from concio.cli.cell_command import cell
+from concio.cli.check_command import check
+from concio.cli.compare_command import compare
+from concio.cli.continuum_command import continuum
+from concio.cli.diagnose_command import diagnose
+from concio.cli.export_command import export
+from concio.cli.limit_command import limit
+from concio.cli.new_command import new
+from concio.cli.path_command import path
+from concio.cli.prove_command import prove
+from concio.cli.push_command import push
+from concio.cli.run_command import run
+from concio.cli.schema_command import schema
+from concio.cli.shake_command import shake
+from concio.cli.study_command import study
+from concio.cli.verify_command import verify
+from concio.cli.view_command import view
+from concio.cli.window_command import window
 
 EXIT_CODES = (
     "Exit codes: 0 what was asked for is shown, 2 bad input, 3 it is shown not to hold, 4 it is left open (not "
@@ -44,9 +41,8 @@ HELP = (
 )
 
 COMMANDS = (
-    new.new, check.check, run.run, path.path, limit.limit, push.push, shake.shake, cell.cell, continuum.continuum,
-    assess.assess, diagnose.diagnose, bridge.bridge, prove.prove, verify.verify, compare.compare, study.study,
-    view.view, window.window, export.export, schema.schema,
+    new, check, run, path, limit, push, shake, cell, continuum, assess, diagnose, bridge, prove, verify, compare, study,
+    view, window, export, schema,
 )  # fmt: skip
 
 

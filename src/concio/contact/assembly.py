@@ -15,8 +15,8 @@ from concio.contact.factors import load_factor
 from concio.contact.geometry import GEOMETRIES
 from concio.contact.inertia import masses
 from concio.contact.loads import load_vectors
+from concio.contact.macroscopic_strain import strain_groups
 from concio.contact.pairs import CONTACT_MODELS, Pairs, pair_laws
-from concio.contact.periodic import strain_groups
 from concio.contact.point_pairs import add_point_pairs
 from concio.contact.reference import Reference
 from concio.contact.separate import surroundings

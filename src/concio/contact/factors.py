@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from concio.contact.periodic import STRAINS
+from concio.contact.macroscopic_strain import STRAINS
 
 
 def load_factor(factors: Mapping[str, float] | None, group: str) -> float:

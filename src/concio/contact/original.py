@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from concio.contact.contact_search import Layout
 from concio.contact.joint_points import joint_rule
 from concio.contact.reference import Configuration, Reference
 from concio.contact.rows import Rows
-from concio.contact.search import Layout
 from concio.contact.slots import KINDS, LONE, Slots
 from concio.fem.discretisation import FIXED, RIGID
 from concio.kinematics.frames import turned, turned_left

@@ -20,10 +20,10 @@ from concio.contact.expansion import refuse_temperatures
 from concio.contact.face_joints import face_joints, needs_area
 from concio.contact.geometry import GEOMETRIES
 from concio.contact.laws import LawTable, RuleBook
+from concio.contact.macroscopic_strain import held_at_a_point
 from concio.contact.matrices import BodyMatrices
 from concio.contact.moving_loads import MovingLoads
 from concio.contact.moving_solids import MovingSolids
-from concio.contact.periodic import held_at_a_point
 from concio.contact.solid_sides import surface_nodes
 from concio.contact.supports import apply_supports
 from concio.errors import InputError

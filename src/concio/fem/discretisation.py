@@ -10,9 +10,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.errors import InputError
-from concio.fem.body import Shape
 from concio.fem.elements import TETRAHEDRA
 from concio.fem.plane_shape import Plan, plane_shape
+from concio.fem.shape import Shape
 from concio.fem.solid import SolidShape
 from concio.fem.solid_shape import solid_shape
 from concio.kinematics.rigid import motions, rigid_operator

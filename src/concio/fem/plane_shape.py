@@ -10,10 +10,10 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from concio.errors import InputError
-from concio.fem.body import Shape
 from concio.fem.constitutive import constitutive_matrix
 from concio.fem.elements import build
 from concio.fem.mesh import mesh_body
+from concio.fem.shape import Shape
 from concio.model.materials import Elastic
 from concio.model.model import Body, Model
 from concio.model.polyhedron import Polyhedron

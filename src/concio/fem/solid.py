@@ -9,9 +9,9 @@ import numpy as np
 import shapely
 
 from concio.errors import GeometryError
-from concio.fem.body import Meshed
 from concio.fem.elements import Elements
 from concio.fem.facets import FacetMesh, functions, local_coordinates, quadrature
+from concio.fem.shape import Meshed
 from concio.kinematics.frames import cross, tangents
 from concio.model.overlay import common
 from concio.model.topology import Loop

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from concio.files import guarded
-from concio.post.tables import UNITS
+from concio.post.result_tables import UNITS
 
 Array = np.ndarray
 
@@ -23,7 +23,7 @@ def write_csv(table: Mapping[str, Array], path: Path) -> Path:
     Parameters
     ----------
     table : mapping of str to (n,) array
-        Columns; those named in :data:`concio.post.tables.UNITS` get their unit in the heading.
+        Columns; those named in :data:`concio.post.result_tables.UNITS` get their unit in the heading.
     path : Path
 
     Returns

@@ -35,7 +35,7 @@ from concio.kinematics.frames import turned_left
 from concio.plot.model_figure import load_arrows
 from concio.post.force_lines import joint_forces
 from concio.post.joint_lines import JointLines, joint_lines
-from concio.post.mechanism import mechanism_states
+from concio.post.mechanism_states import mechanism_states
 from concio.post.outlines import Outlines, display_scale, outlines
 from concio.problem.pair_state import PairState
 

@@ -11,7 +11,7 @@ from concio.analysis.motion.push_result import PushResult
 from concio.arguments import strict
 from concio.io.paraview import outline_cells
 from concio.io.vtu import POLYGON, QUAD, TRIANGLE, Grid, write_pvd, write_vtu
-from concio.post.frames import positions
+from concio.post.motion_frames import positions
 
 Array = np.ndarray
 

@@ -28,9 +28,9 @@ from concio.contact.pairs import Pairs
 from concio.contact.supports import Condition, Supported
 from concio.display import Units
 from concio.errors import InputError
-from concio.fem.body import Shape
 from concio.fem.discretisation import Discretisation
 from concio.fem.elements import Elements
+from concio.fem.shape import Shape
 from concio.fem.solid import SolidShape
 from concio.io.codec import Decoder, Encoder
 from concio.io.owned_dir import settle

@@ -12,9 +12,9 @@ from concio.display import number
 from concio.plot import style
 from concio.plot.road_figure import draw_fill, draw_vehicle, road_box
 from concio.post.joint_lines import joint_lines
-from concio.post.mechanism import mechanism_states
+from concio.post.mechanism_states import mechanism_states
 from concio.post.outlines import outlines
-from concio.post.thrust import thrust_lines
+from concio.post.thrust_line import thrust_lines
 from concio.problem.pair_state import PairState
 from concio.problem.solution import Mechanism, Status, failed
 

@@ -10,8 +10,8 @@ from concio.representation import short_repr
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from concio.analysis.cells.cell_path_result import CellPath
     from concio.analysis.cells.moduli import Moduli
-    from concio.analysis.cells.path_result import CellPath
     from concio.analysis.cells.strength import StrengthDomain
 
 

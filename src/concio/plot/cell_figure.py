@@ -19,7 +19,7 @@ from concio.problem.solution import Status, failed
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from concio.analysis.cells.path_result import CellPath
+    from concio.analysis.cells.cell_path_result import CellPath
     from concio.analysis.cells.periodic_cell import PeriodicCell
     from concio.analysis.cells.strength import StrengthDomain, StrengthRay
 

@@ -8,14 +8,14 @@ import numpy as np
 
 from concio.analysis.cells.periodic_cell import component
 from concio.arguments import strict
-from concio.contact.periodic import COMPONENTS
+from concio.contact.macroscopic_strain import COMPONENTS
 from concio.plot.path_figure import plot_path
 from concio.post.path_curve import Curve, CurveEvent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from concio.analysis.cells.path_result import CellPath
+    from concio.analysis.cells.cell_path_result import CellPath
 
 
 @strict

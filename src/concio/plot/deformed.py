@@ -9,9 +9,9 @@ import numpy as np
 from concio.arguments import strict
 from concio.errors import InputError
 from concio.plot import style
+from concio.post.body_motion import body_motions
 from concio.post.joint_lines import JointLines, joint_lines
-from concio.post.mechanism import mechanism_states
-from concio.post.motion import body_motions
+from concio.post.mechanism_states import mechanism_states
 from concio.post.outlines import display_scale, outlines
 from concio.problem.pair_state import PairState
 from concio.problem.solution import Status

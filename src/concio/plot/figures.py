@@ -53,7 +53,7 @@ def suitable_figures(result: Result) -> dict[str, Callable[[], Axes]]:
     found["forces"] = plots.forces
     found["pressure"] = plots.pressure
     found["slip"] = plots.slip
-    from concio.post.thrust import thrust_lines
+    from concio.post.thrust_line import thrust_lines
 
     if 2 * sum(len(line.points) for line in thrust_lines(result)) > len(result.model.free_bodies):
         found["thrust"] = plots.thrust

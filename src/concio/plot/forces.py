@@ -12,7 +12,7 @@ from concio.plot import style
 from concio.post.force_lines import force_chains
 from concio.post.joint_lines import joint_lines
 from concio.post.pressure import pressure_diagrams
-from concio.post.thrust import thrust_lines
+from concio.post.thrust_line import thrust_lines
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -17,7 +17,7 @@ from concio.errors import InputError
 from concio.plot import style
 from concio.plot.diagram import diagram_axes, dress_diagram, figure_of
 from concio.plot.motion_in_space import painter
-from concio.post.frames import Frame, box_of, frames, positions
+from concio.post.motion_frames import Frame, box_of, frames, positions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -11,7 +11,7 @@ from concio.analysis.cells.half_spaces import HalfSpaces
 from concio.analysis.cells.periodic_cell import component
 from concio.analysis.cells.tensors import stress_at
 from concio.arguments import strict
-from concio.contact.periodic import COMPONENTS
+from concio.contact.macroscopic_strain import COMPONENTS
 from concio.plot import style
 from concio.plot.diagram import diagram_axes, plain_frame
 from concio.plot.moduli_figure import dress_polar, polar_axes

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.kinematics.rigid import swept
-from concio.post.motion import body_motions
+from concio.post.body_motion import body_motions
 from concio.representation import short_repr
 
 if TYPE_CHECKING:

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.contact.factors import load_factor
-from concio.contact.periodic import STRAINS
-from concio.fem.body import Shape
+from concio.contact.macroscopic_strain import STRAINS
 from concio.fem.discretisation import FIXED
+from concio.fem.shape import Shape
 from concio.kinematics.rigid import swept
-from concio.post.motion import body_motions
+from concio.post.body_motion import body_motions
 from concio.representation import short_repr
 
 if TYPE_CHECKING:

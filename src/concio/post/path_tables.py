@@ -9,7 +9,7 @@ import numpy as np
 
 from concio.model.stages import ControlPoint
 from concio.post.path_curve import most_moving
-from concio.post.tables import Table
+from concio.post.result_tables import Table
 from concio.representation import short_repr
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import numpy as np
 from concio.analysis.motion.dynamics_result import DynamicsResult
 from concio.analysis.motion.push_result import PushResult
 from concio.kinematics.spins import turned_by
-from concio.post.frames import MOST, positions
+from concio.post.motion_frames import MOST, positions
 from concio.post.solids import Solids, model_solids
 
 Array = np.ndarray

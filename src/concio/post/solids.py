@@ -10,7 +10,7 @@ import numpy as np
 
 from concio.fem.solid import SolidShape
 from concio.kinematics.rigid import swept
-from concio.post.motion import body_motions
+from concio.post.body_motion import body_motions
 from concio.representation import short_repr
 
 if TYPE_CHECKING:

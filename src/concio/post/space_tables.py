@@ -6,8 +6,8 @@ import warnings
 
 import numpy as np
 
-from concio.post.motion import body_motions
-from concio.post.tables import Array, Table, Tables, vectors
+from concio.post.body_motion import body_motions
+from concio.post.result_tables import Array, Table, Tables, vectors
 
 
 class SpaceTables(Tables):

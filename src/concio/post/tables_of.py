@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from concio.post.result_tables import Tables
 from concio.post.space_tables import SpaceTables
-from concio.post.tables import Tables
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result

@@ -1,9 +1,9 @@
 r"""The certificate: residuals of an answer computed from the original data, never from what a solver kept.
 
-Errors are measured in units of what they belong to (:mod:`concio.problem.units`): forces by the total load ``F`` of
-their connected part, gaps and slips by its largest displacement ``U``, or by what the compliance of the pair makes of
-F where that is less. No length stands for a displacement where nothing moves. An answer is *certified* when the worst
-entry, over all parts, is at most 1e-9.
+Errors are measured in units of what they belong to (:mod:`concio.problem.error_units`): forces by the total load ``F``
+of their connected part, gaps and slips by its largest displacement ``U``, or by what the compliance of the pair makes
+of F where that is less. No length stands for a displacement where nothing moves. An answer is *certified* when the
+worst entry, over all parts, is at most 1e-9.
 
 Equilibrium is checked in two parts. The resultants on every floating body are sums of loads and contact forces alone:
 displacements have no part in them and rounding hardly any. What is left is the balance at each node, where K u is the
@@ -25,8 +25,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.error_units import in_units, measure, rounding
 from concio.problem.tolerances import BALANCE_ROUNDING, CERTIFIED, GRANTED
-from concio.problem.units import in_units, measure, rounding
 from concio.representation import short_repr
 
 

@@ -2,8 +2,8 @@ r"""Connected parts: bodies that touch each other, directly or through others, e
 
 Bodies that touch only through what is fixed are independent of each other: no entry of K and no row of C holds unknowns
 of both, so that the equations fall apart. Each part has its own loads, its own displacements and its own answer, and
-the units in which errors are measured are those of the part (:mod:`concio.problem.units`). A tie connects its bodies,
-and so does an unknown that several bodies share.
+the units in which errors are measured are those of the part (:mod:`concio.problem.error_units`). A tie connects its
+bodies, and so does an unknown that several bodies share.
 """
 
 from __future__ import annotations

@@ -12,9 +12,9 @@ import scipy.sparse as sp
 
 from concio.problem.certificate import Certificate, Kinematics, certify, kinematics
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.error_units import measure
 from concio.problem.pair_state import Normal, PairStates
 from concio.problem.tolerances import AT_BOUND, CERTIFIED
-from concio.problem.units import measure
 from concio.representation import short_repr
 
 

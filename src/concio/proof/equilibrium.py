@@ -23,8 +23,8 @@ from concio.contact.assembly import Assembly
 from concio.errors import InputError, SolverError
 from concio.problem.pair_state import Normal, PairStates
 from concio.proof import verify_equilibrium as checker
-from concio.proof.certificate import FORMAT, factors_of, sealed
 from concio.proof.deformable import deformable_statement
+from concio.proof.exact_certificate import FORMAT, factors_of, sealed
 from concio.proof.exact_solve import Row, scaled, solve_exactly
 from concio.proof.statement import Numbers, fraction_text, statement, text_of
 

@@ -21,8 +21,8 @@ from concio.report.assessment_texts import Texts
 from concio.verdict.assessment_verdict import grounds
 
 if TYPE_CHECKING:
-    from concio.analysis.seismic.asked import Head
     from concio.analysis.seismic.assessment import Assessment
+    from concio.analysis.seismic.assessment_asked import Head
     from concio.analysis.seismic.local_mechanism import LocalMechanism
     from concio.verdict.verdict import Verdict
 

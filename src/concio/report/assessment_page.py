@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import concio
-from concio.analysis.seismic.asked import Head
+from concio.analysis.seismic.assessment_asked import Head
 from concio.analysis.seismic.floor import Storeys
 from concio.contact.applied import applied_forces
 from concio.plot.assessment_figures import model_figure

@@ -28,7 +28,7 @@ PART = {
     "short_of": r"short of (\S+) m across the push(?: of (.*))?",
     "alone": r"('.*') and what it touches",
 }
-"""Names of parts of a structure, as :class:`concio.analysis.seismic.parts.Part` gives them."""
+"""Names of parts of a structure, as :class:`concio.analysis.seismic.default_parts.Part` gives them."""
 
 
 STRIP = r"(facade|pier with openings|pier|over opening)(?: of ('.*'))?(?:, x = (\S+) to (\S+) m)?"

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.display import DEFAULT, Units
-from concio.post.tables import KINDS
+from concio.post.result_tables import KINDS
 from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from concio.arguments import strict
 from concio.display import number
 from concio.model.polyhedron import Polyhedron
 from concio.plot.motion_figure import plot_capacity, plot_energy, plot_ground, plot_history
-from concio.post.frames import box_of, frames, positions
+from concio.post.motion_frames import box_of, frames, positions
 from concio.post.solid_frames import solid_frames
 from concio.report.html_parts import figure_html, page_html, resource, verdict_html
 from concio.report.italian_page import Language, figure_in, page_in, script_words, text_in

@@ -22,7 +22,7 @@ from concio.verdict.study_verdict import output_words, verdict_counts
 from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
-    from concio.analysis.cells.path_result import CellPath
+    from concio.analysis.cells.cell_path_result import CellPath
     from concio.analysis.cells.strength import StrengthDomain
     from concio.analysis.limit_result import LimitResult
     from concio.analysis.motion.dynamics_result import DynamicsResult

@@ -18,8 +18,8 @@ from concio.model.described import law_words, material_words
 from concio.plot.figures import TITLES, suitable_figures
 from concio.report.html_parts import figure_html, resource, table_html, verdict_html
 from concio.report.italian_page import Language, figure_in, page_in, script_words, text_in
+from concio.report.report_tables_in_space import space_tables_html, ties_html
 from concio.report.space_data import space_view_data
-from concio.report.space_tables import space_tables_html, ties_html
 from concio.report.state_part import state_depends_html
 from concio.report.view_data import view_data
 from concio.verdict.proof_verdict import proved_line

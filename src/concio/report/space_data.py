@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from concio.post.body_motion import body_motions
 from concio.post.joint_faces import JointFaces, joint_faces
-from concio.post.motion import body_motions
 from concio.post.outlines import display_scale
 from concio.post.solids import Solids, solids, tie_bodies, tie_ends
 from concio.post.space_states import mechanism_states_in_space

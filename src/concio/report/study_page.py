@@ -16,8 +16,8 @@ from concio.report.italian_page import Language, figure_in, page_in
 from concio.verdict.study_verdict import output_words, verdict_counts
 
 if TYPE_CHECKING:
-    from concio.studies.rows import Row
     from concio.studies.study_result import StudyResult
+    from concio.studies.study_rows import Row
 
 SHOWN = 200
 """Failed runs listed one by one; of more, the first."""

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from concio.plot import style
+from concio.post.body_motion import body_motions
 from concio.post.joint_lines import joint_lines
-from concio.post.mechanism import mechanism_states
-from concio.post.motion import body_motions
+from concio.post.mechanism_states import mechanism_states
 from concio.post.outlines import Outlines, display_scale, outlines
 
 if TYPE_CHECKING:

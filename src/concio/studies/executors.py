@@ -30,8 +30,8 @@ from typing import Any
 
 from concio.arguments import closest
 from concio.errors import ConcioError, InputError
-from concio.studies.rows import GRACE, Row, Task
 from concio.studies.sampling import Sample
+from concio.studies.study_rows import GRACE, Row, Task
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 """Variables of the environment that hold libraries of linear algebra to one thread in every worker."""

@@ -22,8 +22,8 @@ from typing import Any
 
 import concio
 from concio.errors import ConcioError, InputError
-from concio.studies.rows import Row, Tables, Task
 from concio.studies.sampling import Sample
+from concio.studies.study_rows import Row, Tables, Task
 
 DESCRIPTION, SAMPLE, ROWS = "study.json", "sample.csv", "rows.jsonl"
 SYNC = 0.5

@@ -29,11 +29,11 @@ from concio.studies.analyses import Settings
 from concio.studies.bridges import variables_of_salib
 from concio.studies.executors import check_executor, run_rows
 from concio.studies.outputs import outputs_of
-from concio.studies.rows import Row, Tables, Task
 from concio.studies.sampling import Correlation, Sample, draw, given_sample
 from concio.studies.statistics import probability
 from concio.studies.store import Store, describe, missing
 from concio.studies.study_result import StudyResult, event_of
+from concio.studies.study_rows import Row, Tables, Task
 from concio.studies.variables import Variable, variable
 
 Array = np.ndarray

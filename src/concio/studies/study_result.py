@@ -20,7 +20,6 @@ from concio.model.file.keys import KeyPath, find_key
 from concio.model.file.writing import toml_of
 from concio.studies.analyses import Analyses, Settings
 from concio.studies.outputs import KNOWN, NAN, Output
-from concio.studies.rows import Row, Tables
 from concio.studies.sampling import Sample
 from concio.studies.statistics import (
     Fragility,
@@ -33,6 +32,7 @@ from concio.studies.statistics import (
     sobol_indices,
 )
 from concio.studies.store import DESCRIPTION, ROWS, SAMPLE
+from concio.studies.study_rows import Row, Tables
 from concio.studies.variables import Variable
 from concio.verdict.study_verdict import output_words, study_verdict
 from concio.verdict.verdict import Verdict

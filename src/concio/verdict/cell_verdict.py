@@ -11,8 +11,8 @@ from concio.verdict.question import Question
 from concio.verdict.verdict import Outcome, Verdict
 
 if TYPE_CHECKING:
+    from concio.analysis.cells.cell_path_result import CellPath
     from concio.analysis.cells.moduli import Moduli
-    from concio.analysis.cells.path_result import CellPath
     from concio.analysis.cells.periodic_cell import PeriodicCell
     from concio.analysis.cells.strength import StrengthDomain, StrengthRay
 

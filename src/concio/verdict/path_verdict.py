@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from concio.display import Units, counted, number
-from concio.model.weights import weight_groups, weightless
+from concio.model.self_weight import weight_groups, weightless
 from concio.problem.tolerances import CERTIFIED
 from concio.solvers.path.record import Outcome as Ended
 from concio.verdict.attention import attention, joints_not_made

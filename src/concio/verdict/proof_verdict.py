@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from concio.contact.assembly import Assembly
-from concio.proof.certificate import sealed
+from concio.proof.exact_certificate import sealed
 from concio.verdict.attention import attention, joints_not_made
 from concio.verdict.question import question_of
 from concio.verdict.verdict import Outcome, Verdict
@@ -30,7 +30,7 @@ def with_attention(made: Mapping[str, Any], assembly: Assembly) -> dict[str, Any
     Parameters
     ----------
     made : mapping
-        What :func:`concio.proof.certificate.prove_limit` and its like returned.
+        What :func:`concio.proof.exact_certificate.prove_limit` and its like returned.
     assembly : Assembly
     """
     return sealed({**made, "attention": list(attention(assembly))})

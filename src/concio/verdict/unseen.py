@@ -1,8 +1,8 @@
 """Bodies whose loads are too small beside those of their part for a certificate to see: whether they are held is open.
 
-Errors are measured by the loads of a connected part (:mod:`concio.problem.units`). Where the loads of a body are less
-than what passes as an error of its part, leaving them out of the balance would not be noticed. Every command that says
-that something holds asks here.
+Errors are measured by the loads of a connected part (:mod:`concio.problem.error_units`). Where the loads of a body are
+less than what passes as an error of its part, leaving them out of the balance would not be noticed. Every command that
+says that something holds asks here.
 """
 
 from __future__ import annotations

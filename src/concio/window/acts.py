@@ -16,7 +16,7 @@ from concio.model.model import Model
 from concio.verdict.italian import in_italian
 from concio.verdict.path_verdict import stage_words
 from concio.verdict.question import Acting, acting_groups, thickness_words
-from concio.window.reading import read
+from concio.window.read_models import read
 from concio.window.worker import Tell
 
 WEIGHTS = "weights"
@@ -28,7 +28,8 @@ def acts(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     Parameters
     ----------
     request : mapping
-        As for :func:`concio.window.reading.read`; ``question``, the name of the command, and ``options`` of the page.
+        As for :func:`concio.window.read_models.read`; ``question``, the name of the command, and ``options`` of the
+        page.
     tell : callable
         Not used.
 

@@ -16,7 +16,7 @@ from concio.model.body import Body
 from concio.model.model import Model
 from concio.verdict.italian import in_italian
 from concio.verdict.limit_words import bound_lines
-from concio.window.reading import own_loads, read
+from concio.window.read_models import own_loads, read
 from concio.window.worker import Tell
 
 _LAST: list[tuple[Model, Assembly]] = []
@@ -30,7 +30,7 @@ def dragged(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     Parameters
     ----------
     request : mapping
-        As for :func:`concio.window.reading.read`; ``table``, the number of the load in ``[[loads]]`` from 0, and
+        As for :func:`concio.window.read_models.read`; ``table``, the number of the load in ``[[loads]]`` from 0, and
         ``at``, where it stands [m], and ``body``, the block it acts on.
     tell : callable
         Not used: a bound is one number.

@@ -13,7 +13,7 @@ import concio
 from concio import InputError, Tie
 from concio.contact.assembly import assemble
 from concio.model.model import Model
-from concio.solvers.statics.limit import associated_limit
+from concio.solvers.statics.associated_limit import associated_limit
 from samples import sample
 
 

@@ -11,7 +11,7 @@ import concio
 from concio.analysis import limit as limits
 from concio.analysis.margins import friction_by_solving, load_margin
 from concio.problem.solution import Mechanism
-from concio.solvers.statics.limit import LimitLoad
+from concio.solvers.statics.associated_limit import LimitLoad
 from concio.verdict.limit_words import limit_lines
 
 

@@ -17,8 +17,8 @@ from concio.model.generate.walls import wall
 from concio.model.materials import Elastic
 from concio.model.model import Body, Support
 from concio.solvers.methods import find
+from concio.solvers.path.path_state import LinearPath, at_rest
 from concio.solvers.path.record import Outcome
-from concio.solvers.path.state import LinearPath, at_rest
 from concio.solvers.path.step_path import follow_in_steps
 
 WEIGHT = Stage("weight", {"dead": 1.0}, steps=1)

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 
 import concio
 from concio.analysis.parameters import Parameter, parameters_of
-from concio.analysis.seismic.asked import Head
+from concio.analysis.seismic.assessment_asked import Head
 from concio.contact.assembly import assemble
 from concio.model.model import Model
 from concio.report.assessment_page import AssessmentReport
-from concio.solvers.statics.limit import associated_limit
+from concio.solvers.statics.associated_limit import associated_limit
 from samples import sample
 from seismic_walls import overturning, site
 

@@ -25,7 +25,7 @@ from concio.model.crossing import Axle, Vehicle
 from concio.model.fill import Fill
 from concio.model.road.earth import ground_of, with_fill, with_vehicle, without_pressure
 from concio.model.road.vehicles import axles_of
-from concio.solvers.statics.limit import associated_limit
+from concio.solvers.statics.associated_limit import associated_limit
 from concio.verdict.bridge_verdict import bridge_verdict
 from concio.verdict.bridge_words import TEXTS
 

@@ -13,7 +13,7 @@ import concio
 from concio.analysis.limit import dead_and_live
 from concio.analysis.motion.push_result import PushEnding, PushResult
 from concio.model.fill import Fill
-from concio.solvers.statics.limit import associated_limit
+from concio.solvers.statics.associated_limit import associated_limit
 from concio.verdict.push_verdict import LENT
 
 TOLD = re.compile(r"extended back to zero displacement, the falling part of the curve begins ([\d.]+) % above the peak")

@@ -10,7 +10,7 @@ import pytest
 import concio
 from cells import moved, other_origin, periodic_elements, stress_matrix
 from concio.analysis.cells.periodic_cell import PeriodicCell
-from concio.contact.periodic import STRAINS
+from concio.contact.macroscopic_strain import STRAINS
 from concio.errors import InputError
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import concio
-from concio.analysis.cells import path as paths
+from concio.analysis.cells import cell_path as paths
 
 LAW = concio.JointLaw(0.6, normal_stiffness=3e5, tangential_stiffness=1e5)
 CELL = concio.cell(block="rigid", block_size=(0.25, 0.06), friction=LAW, thickness=0.4)

@@ -13,7 +13,7 @@ from cells import moved, other_origin, stress_matrix
 from concio.analysis.cells.half_spaces import HalfSpaces
 from concio.analysis.cells.periodic_cell import PeriodicCell
 from concio.errors import InputError, NoEquilibriumError
-from concio.solvers.statics.limit import associated_limit
+from concio.solvers.statics.associated_limit import associated_limit
 from samples import sample
 
 

@@ -10,7 +10,7 @@ import pytest
 
 import concio
 from concio.contact.detection import detect
-from concio.contact.periodic import STRAINS
+from concio.contact.macroscopic_strain import STRAINS
 from concio.errors import GeometryError, InputError
 from concio.model.interfaces.detect import detect_interfaces
 from concio.model.model import Body, Model

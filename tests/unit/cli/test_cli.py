@@ -16,7 +16,7 @@ import concio
 from commands import run
 from concio.cli.options import factors_of
 from concio.cli.outcome import fail
-from concio.cli.run import where_written
+from concio.cli.run_command import where_written
 from concio.problem.solution import Progress
 
 SMALL = "[panel]\ncourses = 1\nblocks = 2\ntop_pressure = 10\nelements_per_block = [2, 1]\n"

@@ -14,7 +14,7 @@ import pytest
 
 import concio
 from commands import run
-from concio.analysis.cracks.asked import read_measurements, read_survey
+from concio.analysis.cracks.diagnosis_asked import read_measurements, read_survey
 
 EXAMPLE = Path(__file__).resolve().parents[3] / "examples" / "cracked_arch.toml"
 TABLE = """name,kind,value [mm],error [mm],body_a,body_b,x,y

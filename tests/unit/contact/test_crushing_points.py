@@ -14,7 +14,7 @@ from concio.analysis.limit import dead_and_live
 from concio.contact.joint_points import edge, graded_error, graded_half, graded_rule, joint_rule, points_along
 from concio.contact.patch_points import CRUSHING, spread_points
 from concio.model.interfaces.patches import Patch
-from concio.solvers.statics.limit import associated_limit
+from concio.solvers.statics.associated_limit import associated_limit
 from samples import sample
 
 OUTLINES = (

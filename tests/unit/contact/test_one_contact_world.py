@@ -9,10 +9,10 @@ import pytest
 
 import concio
 from concio.contact.assembly import assemble
+from concio.contact.contact_search import ContactSearch
 from concio.contact.face_points import Standing
 from concio.contact.operators import nodal_entries, operators, rigid_entries
 from concio.contact.reference import Reference
-from concio.contact.search import ContactSearch
 from concio.kinematics.frames import components, frames
 from concio.kinematics.placement import Placement
 from concio.kinematics.rigid import motions, rigid_row, rotation_matrix, swept

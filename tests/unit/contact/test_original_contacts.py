@@ -9,13 +9,13 @@ import pytest
 
 import concio
 from concio.analysis.motion.dynamics_result import Ending
-from concio.analysis.motion.pairs import PairMaker
 from concio.analysis.motion.push_result import PushEnding
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import Statics
+from concio.analysis.motion.step_pairs import PairMaker
 from concio.analysis.motion.stepper import Stepper
-from concio.contact import search as search_module
+from concio.contact import contact_search as search_module
 from concio.contact.attachments import Held, Ties
 from concio.contact.laws import LawTable
 from concio.contact.original import OriginalContacts

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from concio.errors import GeometryError, InputError
-from concio.fem.body import Shape
 from concio.fem.constitutive import constitutive_matrix, principal
 from concio.fem.edge_integral import edge_weights
 from concio.fem.elements import FAMILIES, build, family
 from concio.fem.mesh import tensor
+from concio.fem.shape import Shape
 from concio.kinematics.rigid import rigid_modes
 from concio.model.materials import Elastic
 

@@ -161,3 +161,9 @@ def test_every_public_name_has_a_home() -> None:
     assert set(dir(concio)) >= homes | set(concio._NAMESPACES)
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         _ = concio.nothing
+
+
+def test_files_have_names_of_their_own() -> None:
+    """A file that is looked for is found by its name: only modules whose names are public may share theirs."""
+    names = [path.name for path in MODULES if path.name != "__init__.py"]
+    assert {name for name in names if names.count(name) > 1} <= {"bridges.py"}

@@ -20,7 +20,7 @@ KEPT = {
     ("problem/solution.py", "No equilibrium is possible with the joints"): "the same",
     ("problem/solution.py", "Collapses with the joints that were made"): "the same",
     ("model/solids/ifc_geometry.py", "carried out"): "an operation of a drawing program",
-    ("cli/limit.py", "Also bisect load and friction with solved load steps"): "help of an option",
+    ("cli/limit_command.py", "Also bisect load and friction with solved load steps"): "help of an option",
     ("report/page.py", "solved by"): "heads the name of the method",
     ("plot/convergence.py", "o solved, x not"): "the legend of a figure of methods",
 }

@@ -20,7 +20,7 @@ from concio.io.csv_table import write_csv
 from concio.io.paraview import VECTORS, bodies_grid, contacts_grid
 from concio.io.vtu import Grid
 from concio.kinematics.rigid import rotation_matrix
-from concio.post.tables import KINDS, UNITS
+from concio.post.result_tables import KINDS, UNITS
 from samples import sample
 
 Array = np.ndarray

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from concio.errors import InputError
-from concio.fem.body import Shape
 from concio.fem.constitutive import constitutive_matrix
 from concio.fem.edge_integral import edge_weights, lagrange, pieces
 from concio.fem.elements import FAMILIES, build
 from concio.fem.mesh import is_rectangle, merged, mesh_body, tensor
+from concio.fem.shape import Shape
 from concio.model.generate.spacing import subdivided
 from concio.model.materials import Elastic
 from concio.model.model import Body

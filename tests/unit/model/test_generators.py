@@ -304,7 +304,7 @@ def test_an_opening_that_misses_a_bed_joint_by_rounding_makes_no_slivers(off):
 
 def test_no_wall_of_more_blocks_than_the_limit_is_begun(monkeypatch):
     """Of 154 blocks most are short: a count by the long ones would let them pass."""
-    monkeypatch.setattr("concio.model.generate.arguments.LARGEST_BLOCKS", 120)
+    monkeypatch.setattr("concio.model.generate.generator_arguments.LARGEST_BLOCKS", 120)
     sizes = {"length": 4.0, "height": 1.0, "block_size": (0.4, 0.2), "bond": [(1.0, 0.1, 0.1, 0.1)]}
     monkeypatch.setattr("concio.model.generate.walls.panel_pieces", lambda *_: pytest.fail("blocks were made"))
     with pytest.raises(InputError, match="blocks are more than 120"):

@@ -13,7 +13,7 @@ from commands import run
 from concio import GeometryError, InputError, Polyhedron
 from concio.contact.detection import detect
 from concio.model.polyhedron import BOX
-from concio.model.solids.step import decoded
+from concio.model.solids.step_file import decoded
 from ifc_files import MILLIMETRE, IfcText, row
 
 CUBE = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)

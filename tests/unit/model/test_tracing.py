@@ -13,8 +13,8 @@ from PIL import Image
 
 import concio
 from concio.errors import InputError
-from concio.model.picture.arcs import shared_outlines
 from concio.model.picture.photo import homography
+from concio.model.picture.shared_boundaries import shared_outlines
 from concio.trace import Photo, read_photo, trace_courses, trace_labels, trace_outlines, trace_regions, wire
 from rendered import found_share, rendered, sideways
 from samples import sample

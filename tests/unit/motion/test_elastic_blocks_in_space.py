@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 import concio
-from concio.analysis.motion import pairs
+from concio.analysis.motion import step_pairs as pairs
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.stepper import Stepper

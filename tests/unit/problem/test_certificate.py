@@ -15,7 +15,7 @@ from concio.model.model import Body, Load, Model, Support
 from concio.problem.certificate import CERTIFIED, Certificate, certify, kinematics
 from concio.problem.contact_problem import ContactProblem, Laws
 from concio.problem.solution import Status, failed, judge
-from concio.solvers.path.state import LinearPath
+from concio.solvers.path.path_state import LinearPath
 
 
 def one_pair(f=(3.0, -10.0), gap=0.0, origin=0.0, **laws):

@@ -13,7 +13,7 @@ import pytest
 import concio
 from concio import Body, Elastic, JointLaw, Load, Model, Polyhedron, Rigid
 from concio.proof import equilibrium
-from concio.proof.certificate import prove_balance, prove_collapse, sealed
+from concio.proof.exact_certificate import prove_balance, prove_collapse, sealed
 from concio.proof.programs import recompute
 
 REFUSED = (ValueError, KeyError, IndexError, TypeError, ArithmeticError)

@@ -22,8 +22,8 @@ from concio.errors import InputError, SolverError
 from concio.problem.pair_state import PairStates
 from concio.problem.solution import Status
 from concio.proof import verify_equilibrium as checker
-from concio.proof.certificate import prove_balance, sealed
 from concio.proof.equilibrium import prove_equilibrium
+from concio.proof.exact_certificate import prove_balance, sealed
 from concio.proof.programs import recompute
 from pillars import pillar, sideways
 from samples import sample

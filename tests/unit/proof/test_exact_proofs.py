@@ -19,7 +19,7 @@ from commands import run
 from concio import Body, JointLaw, JointRule, Load, Model, Polyhedron, Rigid, Support, Tie
 from concio.errors import InputError, SolverError
 from concio.proof import verify, verify_equilibrium
-from concio.proof.certificate import prove_balance, prove_collapse, prove_limit, sealed
+from concio.proof.exact_certificate import prove_balance, prove_collapse, prove_limit, sealed
 from concio.proof.exact_solve import solve_exactly
 from concio.proof.statement import fraction_text
 from pillars import ARCH, THIN, pillar, sideways, slot

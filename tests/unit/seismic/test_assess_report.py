@@ -14,7 +14,7 @@ import pytest
 import concio
 from commands import run
 from concio.analysis.seismic.anchors import Anchor
-from concio.analysis.seismic.asked import Head, read_asked
+from concio.analysis.seismic.assessment_asked import Head, read_asked
 from concio.analysis.seismic.variations import tie_force, variations
 from concio.errors import InputError
 from concio.report.assessment_page import AssessmentReport

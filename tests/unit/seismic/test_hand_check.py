@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import concio
 from concio import Body, JointLaw, Load, Model, Polyhedron, Rigid, Tie
-from concio.analysis.seismic.asked import Head
+from concio.analysis.seismic.assessment_asked import Head
 from concio.analysis.seismic.hand_check import hand_check
 from concio.analysis.seismic.hand_forces import hand_forces, measured
 from concio.contact.applied import applied_forces

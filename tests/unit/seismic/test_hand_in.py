@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import concio
-from concio.analysis.seismic.asked import Head, read_asked
+from concio.analysis.seismic.assessment_asked import Head, read_asked
 from concio.analysis.seismic.hazard_grid import hazard_at
 from concio.errors import InputError
 from concio.plot.assessment_figures import curve_figure, model_figure

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 import concio
 from concio import Body, JointLaw, Load, Model, Polyhedron, Rigid
+from concio.analysis.seismic.default_parts import parts_of
 from concio.analysis.seismic.layout import leaves_of, openings_of, returns_of
-from concio.analysis.seismic.parts import parts_of
 from concio.contact.assembly import assemble
 from concio.verdict.assessment_words import EN, IT
 from samples import sample

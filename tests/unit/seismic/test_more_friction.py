@@ -13,8 +13,8 @@ from concio import JointLaw, Load, Model, Polyhedron, Rigid
 from concio.analysis.seismic.assessment import Assessment
 from concio.analysis.seismic.directions import pushes
 from concio.analysis.seismic.examine import prepared
-from concio.analysis.seismic.mechanism import Mechanisms
 from concio.analysis.seismic.sequence import Sequence
+from concio.analysis.seismic.weakest_mechanism import Mechanisms
 from concio.contact.assembly import assemble
 from concio.contact.face_points import stated
 from concio.solvers.statics.cone_statics import ConeStatics

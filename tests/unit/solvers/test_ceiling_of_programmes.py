@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog
 
 import concio
+from concio.solvers.statics.associated_limit import associated_limit
 from concio.solvers.statics.collapse_search import find_collapse_state
 from concio.solvers.statics.collapse_state import certify_collapse
-from concio.solvers.statics.limit import associated_limit
 from concio.solvers.statics.linear_interior import solve_interior
 
 SEEDS = st.integers(0, 10_000)

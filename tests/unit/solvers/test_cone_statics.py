@@ -13,13 +13,13 @@ from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array, ContactProblem, Laws
 from concio.problem.tolerances import BALANCED
 from concio.solvers.algebra.second_order_cone import product, reach, times
+from concio.solvers.statics.associated_limit import associated_limit
 from concio.solvers.statics.cone_interior import ConeAnswer, maximise
 from concio.solvers.statics.cone_programme import ConeProgramme, Pairs, Point
 from concio.solvers.statics.cone_statics import ConeStatics, _motions_of_bodies, _room
 from concio.solvers.statics.cone_step import Pivoted, Step
 from concio.solvers.statics.existence import statically_admissible
 from concio.solvers.statics.friction import smallest_friction
-from concio.solvers.statics.limit import associated_limit
 from concio.solvers.statics.mechanism import absorbed_power, pair_velocities
 from contact_problems import rigid
 from contact_problems import wall as plane_wall

@@ -22,10 +22,10 @@ from concio.problem.solution import Departure
 from concio.solvers.algebra.scaled import Scaled, scale
 from concio.solvers.interior.run import Run
 from concio.solvers.methods import find
-from concio.solvers.relaxation import step as one_step
+from concio.solvers.relaxation import slow_step as one_step
 from concio.solvers.relaxation.slow_motion import MOST, relax
 from concio.solvers.relaxation.unbounded_motion import unbounded_motion, verify_motion
-from concio.solvers.states.reading import Finished, natural_residual, read_states
+from concio.solvers.states.state_reading import Finished, natural_residual, read_states
 from concio.verdict.step_verdict import proof as certificate_sentence
 from concio.verdict.step_verdict import step_verdict as verdict
 

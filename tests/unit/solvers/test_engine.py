@@ -14,7 +14,7 @@ from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Status
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.auto.friction_neighbours import from_neighbours
-from concio.solvers.interior.iteration import InteriorPoint
+from concio.solvers.interior.interior_point import InteriorPoint
 from concio.solvers.interior.newton import NewtonStep
 from concio.solvers.interior.point import Residuals
 from concio.solvers.interior.run import Cancelled, Run, Start

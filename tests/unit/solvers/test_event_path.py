@@ -13,9 +13,9 @@ from concio.problem.contact_problem import ContactProblem, Laws
 from concio.problem.pair_state import PairStates
 from concio.solvers.path import direction
 from concio.solvers.path.event_path import follow
+from concio.solvers.path.path_state import CRUSHED, OPEN, LinearPath, PathState
+from concio.solvers.path.path_state import at_rest as unloaded
 from concio.solvers.path.record import Outcome
-from concio.solvers.path.state import CRUSHED, OPEN, LinearPath, PathState
-from concio.solvers.path.state import at_rest as unloaded
 from path_helpers import at_rest, energy_error, least_dissipation, weight_then, worst_certificate
 from rigid_walls import block_on_incline
 

@@ -14,8 +14,8 @@ from concio.problem.contact_problem import ContactProblem, Laws
 from concio.problem.solution import Status
 from concio.solvers.methods.exhaustive.clauses import ClauseSearch
 from concio.solvers.methods.exhaustive.relaxation import Relaxation
-from concio.solvers.methods.exhaustive.search import solve
-from concio.solvers.methods.exhaustive.states import Empty, StateQuestions
+from concio.solvers.methods.exhaustive.state_questions import Empty, StateQuestions
+from concio.solvers.methods.exhaustive.state_search import solve
 from concio.solvers.statics.existence import statically_admissible
 from contact_problems import wall
 from lcp_problems import small_wall

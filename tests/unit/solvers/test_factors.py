@@ -11,7 +11,7 @@ from concio.solvers.algebra.block_factor import BlockFactor
 from concio.solvers.algebra.scaled import LOOSE, scale
 from concio.solvers.algebra.sparse_factor import OrderedFactor, Pattern, SingularMatrixError
 from concio.solvers.methods import find
-from concio.solvers.stepping.factor import StepFactor
+from concio.solvers.stepping.step_factor import StepFactor
 
 FACTORS = ("band", "superlu", "pardiso")
 

@@ -13,11 +13,11 @@ from concio.problem.solution import Mechanism
 from concio.solvers.statics import collapse_search, collapse_state
 from concio.solvers.statics import friction as least_friction
 from concio.solvers.statics import programme as statics
+from concio.solvers.statics.associated_limit import associated_limit, kinematic_bound
 from concio.solvers.statics.collapse_search import find_collapse_state
 from concio.solvers.statics.collapse_state import certify_collapse
 from concio.solvers.statics.existence import StaticState, statically_admissible
 from concio.solvers.statics.friction import smallest_friction
-from concio.solvers.statics.limit import associated_limit, kinematic_bound
 from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, semicircular_arch, wall
 
 

@@ -21,9 +21,9 @@ from concio.problem.certificate import certify
 from concio.problem.solution import Status
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.path.event_path import follow
+from concio.solvers.path.path_state import LinearPath, at_rest, step_problem
 from concio.solvers.path.ray import homogeneous, ray
 from concio.solvers.path.record import Outcome
-from concio.solvers.path.state import LinearPath, at_rest, step_problem
 from concio.solvers.states import settle
 from concio.solvers.states.settle import Settler
 from concio.verdict.limit_words import as_given, limit_lines

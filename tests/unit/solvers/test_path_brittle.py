@@ -11,8 +11,8 @@ import scipy.sparse as sp
 from concio.errors import InputError
 from concio.problem.contact_problem import ContactProblem, Laws
 from concio.solvers.methods import find
+from concio.solvers.path.path_state import LinearPath, certify_step, elastic_energy
 from concio.solvers.path.record import Outcome
-from concio.solvers.path.state import LinearPath, certify_step, elastic_energy
 from concio.solvers.path.step_path import StepPath, follow_in_steps
 from path_helpers import at_rest
 

@@ -14,7 +14,7 @@ from concio.problem.certificate import kinematics
 from concio.problem.contact_problem import ContactProblem, Laws
 from concio.solvers.methods import find
 from concio.solvers.path.event_path import follow
-from concio.solvers.path.state import LinearPath
+from concio.solvers.path.path_state import LinearPath
 from concio.solvers.path.step_path import follow_in_steps
 from path_helpers import at_rest
 

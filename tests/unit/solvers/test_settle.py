@@ -20,10 +20,10 @@ from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled, scale
 from concio.solvers.algebra.updated_blocks import UpdatedBlocks
 from concio.solvers.methods import find
-from concio.solvers.states.equations import laws_of
 from concio.solvers.states.given import GivenStates
-from concio.solvers.states.reading import Finished
 from concio.solvers.states.settle import Settler
+from concio.solvers.states.state_reading import Finished
+from concio.solvers.states.static_laws import laws_of
 from contact_problems import wall
 from lcp_problems import with_laws
 

@@ -13,17 +13,17 @@ from concio.kinematics.rigid import rotation_matrix
 from concio.problem.solution import Departure, Status
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.auto.strategies import best_point_met
-from concio.solvers.interior.iteration import InteriorPoint
+from concio.solvers.interior.interior_point import InteriorPoint
 from concio.solvers.interior.newton import NewtonStep, Products
 from concio.solvers.interior.point import Residuals
 from concio.solvers.interior.redundant_forces import least_forces
 from concio.solvers.interior.run import STARTS, Run, starts_for
 from concio.solvers.methods import find
-from concio.solvers.relaxation import step as one_step
+from concio.solvers.relaxation import slow_step as one_step
 from concio.solvers.relaxation.single_steps import at_once
 from concio.solvers.relaxation.slow_motion import relax
-from concio.solvers.states.reading import Finished, natural_residual, read_states
-from concio.solvers.statics.limit import associated_limit
+from concio.solvers.states.state_reading import Finished, natural_residual, read_states
+from concio.solvers.statics.associated_limit import associated_limit
 from space_problems import barrel, dome, wall
 
 TURN = rotation_matrix(np.array([0.4, -1.1, 0.7]))

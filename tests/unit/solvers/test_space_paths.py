@@ -13,7 +13,7 @@ from concio.cli.path_lines import path_facts, path_lines
 from concio.post.path_curve import most_moving
 from concio.problem.solution import Solution, Status
 from concio.solvers.path.near_forces import Nearby
-from concio.solvers.path.state import LinearPath, at_rest, energy_of_step, state_of
+from concio.solvers.path.path_state import LinearPath, at_rest, energy_of_step, state_of
 from concio.solvers.path.step_path import extrapolated
 from concio.verdict.limit_words import limit_lines
 from space_problems import wall as blocks

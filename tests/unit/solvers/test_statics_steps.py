@@ -11,10 +11,10 @@ import scipy.sparse as sp
 
 import concio
 import concio.solvers.stepping.solver as step_solver
-from concio.analysis.motion.pairs import relative
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import Statics
+from concio.analysis.motion.step_pairs import relative
 from concio.contact.reference import Reference
 from concio.kinematics.rigid import rigid_row
 from concio.problem.cone import Cone

@@ -18,7 +18,7 @@ import pytest
 import concio
 from commands import run
 from concio.studies import executors
-from concio.studies.rows import Row
+from concio.studies.study_rows import Row
 from study_functions import VARIABLES, deaf, dying, dying_once, formula, hanging, raising
 
 HERE = Path(__file__).parents[2]

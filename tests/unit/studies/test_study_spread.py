@@ -13,10 +13,10 @@ import pytest
 import concio
 from commands import run
 from concio.studies.outputs import KNOWN, Output
-from concio.studies.rows import Row
 from concio.studies.sampling import draw
 from concio.studies.statistics import Spread
 from concio.studies.study_result import StudyResult
+from concio.studies.study_rows import Row
 from concio.verdict.study_verdict import output_words
 from concio.verdict.verdict import Outcome
 from samples import sample

@@ -309,7 +309,7 @@ def test_a_load_on_the_edge_of_what_can_grow_is_locked_in_space_as_in_the_plane(
 def test_a_bound_that_was_not_found_is_no_proof(monkeypatch: pytest.MonkeyPatch) -> None:
     """Neither the words nor the outcome say that nothing is in balance where the programme gave no answer."""
     from concio.analysis import limit as module
-    from concio.solvers.statics.limit import LimitLoad
+    from concio.solvers.statics.associated_limit import LimitLoad
 
     nothing = LimitLoad(np.nan, np.nan, np.zeros(0), np.zeros((0, 1)), np.inf, None)
     monkeypatch.setattr(module, "associated_limit", lambda *_: nothing)

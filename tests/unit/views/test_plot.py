@@ -19,16 +19,16 @@ from concio.model.generate.arches import arch
 from concio.plot import style
 from concio.plot.figures import TITLES, suitable_figures, write_figures
 from concio.plot.path_figure import plot_path
+from concio.post.body_motion import body_motions
 from concio.post.crosses import crosses
 from concio.post.force_lines import force_chains, joint_forces
-from concio.post.frames import Frame, box_of
 from concio.post.joint_lines import joint_lines
-from concio.post.mechanism import mechanism_states
-from concio.post.motion import body_motions
+from concio.post.mechanism_states import mechanism_states
+from concio.post.motion_frames import Frame, box_of
 from concio.post.outlines import display_scale, outlines
 from concio.post.pressure import pressure_diagrams
 from concio.post.struts import Pushed, balanced, struts
-from concio.post.thrust import thrust_lines
+from concio.post.thrust_line import thrust_lines
 from concio.problem.solution import Status
 from models import bearing_panel, box, on_ground, sliding_panel, weight
 

@@ -13,8 +13,8 @@ import concio
 from concio.analysis.result import Result
 from concio.plot.picture import Picture
 from concio.plot.space_figures import VIEWS, directions, plot_space_model
+from concio.post.body_motion import body_motions
 from concio.post.joint_faces import joint_faces, pieces_of
-from concio.post.motion import body_motions
 from concio.post.solids import model_solids, moved_ties, solids
 from concio.post.space_states import mechanism_states_in_space
 from concio.problem.solution import Mechanism, Status, failed

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import concio
-from concio.cli.answers import numbers
+from concio.cli.answering_process import numbers
 from concio.cli.limit_files import write_limit
 from concio.report.page import write_report
 from concio.report.view_data import unpack

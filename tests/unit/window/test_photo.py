@@ -15,7 +15,7 @@ import concio
 from concio.errors import InputError
 from concio.window.commands import patch_of
 from concio.window.starting import model_text
-from concio.window.tracing import traced, underlay
+from concio.window.traced_picture import traced, underlay
 from rendered import rendered
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import concio
-from concio.window.picture import picture
+from concio.window.page_picture import picture
 
 TEMPLATES = Path(concio.__file__).parent / "model" / "templates"
 
@@ -74,6 +74,7 @@ def test_the_geometry_is_shown_before_joints_are_sought(tmp_path: Path) -> None:
 
 
 def test_what_draws_the_geometry_loads_no_solver_and_no_scipy() -> None:
-    code = "import sys, concio.window.picture; print([m for m in sys.modules if m.split('.')[0] in ('scipy', 'skfem')])"
+    slow = "('scipy', 'skfem')"
+    code = f"import sys, concio.window.page_picture; print([m for m in sys.modules if m.split('.')[0] in {slow}])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

@@ -20,7 +20,7 @@ from typing import Any
 import pytest
 
 import concio
-from concio.cli.answers import ask
+from concio.cli.answering_process import ask
 from concio.cli.main import COMMANDS
 from concio.window.document import Document
 from concio.window.lane import Lane

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 import concio
-from concio.solvers.statics.limit import associated_limit
+from concio.solvers.statics.associated_limit import associated_limit
 from validation_cases.row import Row
 
 SOURCE = "Statics of a rigid block, by hand."

@@ -30,7 +30,7 @@ import numpy as np
 import concio
 from concio.model.surfaces import prism
 from concio.problem.contact_problem import ContactProblem
-from concio.solvers.statics.limit import associated_limit
+from concio.solvers.statics.associated_limit import associated_limit
 from validation_cases import ferris_tin_loi
 from validation_cases.row import Row
 

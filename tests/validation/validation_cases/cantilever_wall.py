@@ -20,7 +20,7 @@ from functools import cache
 import numpy as np
 
 import concio
-from concio.solvers.statics.limit import associated_limit
+from concio.solvers.statics.associated_limit import associated_limit
 from validation_cases.row import Row
 
 SOURCE = "S. Timoshenko, Phil. Mag. 41 (1921), for the shear of beams; statics by hand."

@@ -14,7 +14,7 @@ from functools import cache
 import numpy as np
 
 import concio
-from concio.solvers.statics.limit import associated_limit
+from concio.solvers.statics.associated_limit import associated_limit
 from space_problems import corner_bricks
 from validation_cases.row import Row
 

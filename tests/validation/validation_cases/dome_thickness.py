@@ -23,8 +23,8 @@ import scipy.sparse as sp
 from concio.kinematics.frames import tangents
 from concio.kinematics.rigid import rigid_operator
 from concio.problem.contact_problem import ContactProblem, Laws
+from concio.solvers.statics.associated_limit import associated_limit
 from concio.solvers.statics.existence import statically_admissible
-from concio.solvers.statics.limit import associated_limit
 from validation_cases.row import Row
 
 SOURCE = "computed independently beforehand by two programmes; J. Heyman, The Stone Skeleton (1995): about 0.042."

@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 
 import concio
-from concio.solvers.statics.limit import LimitLoad, associated_limit
+from concio.solvers.statics.associated_limit import LimitLoad, associated_limit
 from validation_cases.row import Row
 
 SOURCE = "M. C. Ferris and F. Tin-Loi, Int. J. Mech. Sci. 43 (2001) 209-224."

@@ -25,8 +25,8 @@ from typing import Any
 import numpy as np
 
 import concio
+from concio.solvers.statics.associated_limit import associated_limit
 from concio.solvers.statics.collapse_search import find_collapse_state
-from concio.solvers.statics.limit import associated_limit
 from validation_cases.row import Row
 
 SOURCE = (

@@ -29,7 +29,7 @@ from concio.problem.contact_problem import ContactProblem, Laws
 from concio.problem.solution import Solution, Status
 from concio.solvers.methods import find
 from concio.solvers.path.event_path import EventPath, follow
-from concio.solvers.path.state import LinearPath, state_of
+from concio.solvers.path.path_state import LinearPath, state_of
 from concio.solvers.statics.existence import statically_admissible
 from validation_cases.row import Row
 

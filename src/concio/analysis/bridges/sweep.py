@@ -1,7 +1,7 @@
 """A vehicle on a bridge, position by position: the limit load of each, and a search for the worst.
 
 The dead load is assembled once; each position gives a vector of loads, and one linear programme
-(:mod:`concio.solvers.statics.limit`) the associated multiplier with forces and a mechanism that prove it.
+(:mod:`concio.solvers.statics.associated_limit`) the associated multiplier with forces and a mechanism that prove it.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from concio.model.road.surface import Road, Surface
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Progress, ProgressCallback
 from concio.representation import short_repr
-from concio.solvers.statics.limit import LimitLoad, associated_limit
+from concio.solvers.statics.associated_limit import LimitLoad, associated_limit
 
 Array = np.ndarray
 

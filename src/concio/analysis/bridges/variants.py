@@ -11,7 +11,7 @@ import numpy as np
 from concio.analysis.bridges.sweep import Sweep
 from concio.errors import ConcioError
 from concio.model.fill import Fill
-from concio.model.generate.bridges import rebuilt
+from concio.model.generate.arch_bridges import rebuilt
 from concio.model.model import Model
 from concio.model.road.earth import with_fill, with_vehicle, without_fill, without_pressure, without_vehicle
 from concio.representation import short_repr

@@ -29,7 +29,7 @@ from concio.analysis.entry_point import entry_point
 from concio.analysis.stress import Stress
 from concio.arguments import strict
 from concio.contact.assembly import Assembly
-from concio.contact.periodic import COMPONENTS, STRAINS
+from concio.contact.macroscopic_strain import COMPONENTS, STRAINS
 from concio.errors import InputError, SolverError
 from concio.model.model import Model
 from concio.problem.certificate import imbalance
@@ -37,7 +37,7 @@ from concio.problem.contact_problem import ContactProblem
 from concio.problem.pair_state import PairStates
 from concio.problem.tolerances import CHECKED, CONTRADICTION
 from concio.representation import short_repr
-from concio.solvers.path.state import CLOSED, OPEN, STICK, LinearPath
+from concio.solvers.path.path_state import CLOSED, OPEN, STICK, LinearPath
 from concio.solvers.path.state_rates import state_rates
 from concio.verdict.cell_verdict import cell_verdict
 from concio.verdict.verdict import Verdict
@@ -102,7 +102,7 @@ class Moduli(Shown):
     matrix : (3, 3) array
         A: stresses xx, yy, xy by strains xx, yy and engineering shear xy [kN/m2].
     contact, sliding : (m,) integer arrays
-        States of the contact pairs, as in :class:`concio.solvers.path.state.PathState`.
+        States of the contact pairs, as in :class:`concio.solvers.path.path_state.PathState`.
     normal_force, friction_force : (m, 3) arrays
         Forces of the pairs under unit strains [kN].
     displacement : (N, 3) array

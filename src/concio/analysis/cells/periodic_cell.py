@@ -21,7 +21,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.contact.assembly import Assembly, assemble
-from concio.contact.periodic import COMPONENTS, STRAINS, strain_columns
+from concio.contact.macroscopic_strain import COMPONENTS, STRAINS, strain_columns
 from concio.errors import InputError
 from concio.kinematics.frames import cross
 from concio.model.model import Model

@@ -25,15 +25,15 @@ from concio.analysis.lent_compliance import with_compliance
 from concio.analysis.limit import coulomb_path, search_collapse
 from concio.arguments import strict
 from concio.contact.assembly import Assembly
-from concio.contact.periodic import COMPONENTS
+from concio.contact.macroscopic_strain import COMPONENTS
 from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Progress, ProgressCallback
 from concio.representation import short_repr
+from concio.solvers.statics.associated_limit import LimitLoad, associated_limit
 from concio.solvers.statics.collapse_state import CollapseState
 from concio.solvers.statics.existence import find_mechanism
-from concio.solvers.statics.limit import LimitLoad, associated_limit
 from concio.verdict.cell_verdict import cell_verdict
 from concio.verdict.not_standing import BY_A_MECHANISM
 from concio.verdict.verdict import Verdict

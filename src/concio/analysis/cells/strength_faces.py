@@ -29,7 +29,7 @@ from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Mechanism, Progress, ProgressCallback
 from concio.problem.tolerances import ADMISSIBLE, CHECKED
 from concio.representation import short_repr
-from concio.solvers.statics.limit import LimitLoad, associated_limit
+from concio.solvers.statics.associated_limit import LimitLoad, associated_limit
 from concio.solvers.statics.mechanism import absorbed_power
 
 Array = np.ndarray

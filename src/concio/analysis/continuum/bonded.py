@@ -9,7 +9,7 @@ import numpy as np
 from concio.contact.assembly import Assembly
 from concio.problem.pair_state import Normal, PairStates
 from concio.problem.tolerances import BONDED_LEFT
-from concio.solvers.path.state import LinearPath
+from concio.solvers.path.path_state import LinearPath
 from concio.solvers.path.state_rates import state_rates
 
 Array = np.ndarray

@@ -7,7 +7,7 @@ from typing import cast
 
 from concio.contact.assembly import Assembly
 from concio.errors import InputError
-from concio.model.generate.cells import cell
+from concio.model.generate.periodic_cells import cell
 from concio.model.generate.wall_panels import Bond
 from concio.model.materials import Elastic
 from concio.model.model import Model

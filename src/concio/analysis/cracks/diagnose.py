@@ -21,7 +21,7 @@ from concio.analysis.cracks.moved import moved_model
 from concio.analysis.cracks.observed import readings
 from concio.analysis.cracks.places import next_places
 from concio.analysis.cracks.search import Found, Trial, allowed, search
-from concio.analysis.cracks.unseen import unseen_of
+from concio.analysis.cracks.undetermined import unseen_of
 from concio.analysis.entry_point import entry_point
 from concio.arguments import strict
 from concio.contact.assembly import as_assembly

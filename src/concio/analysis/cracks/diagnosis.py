@@ -17,7 +17,7 @@ from concio.analysis.cracks.mistakes import Doubt
 from concio.analysis.cracks.observed import Reading
 from concio.analysis.cracks.places import Place
 from concio.analysis.cracks.search import Trial
-from concio.analysis.cracks.unseen import Unseen
+from concio.analysis.cracks.undetermined import Unseen
 from concio.contact.assembly import Assembly
 from concio.model.model import Model
 from concio.verdict.diagnosis_verdict import diagnosis_verdict

@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 
 from concio.analysis.motion.certified_turns import angle, back, driven, forth, on
-from concio.analysis.motion.frames import Frames
 from concio.analysis.motion.joint_step import JointStep, PairData
 from concio.analysis.motion.joints import Joints
-from concio.analysis.motion.pairs import PairMaker, assembled, no_pairs, relative
 from concio.analysis.motion.scheme import RETURN, Drive, Scheme
 from concio.analysis.motion.state import Memory, MotionState
+from concio.analysis.motion.step_pairs import PairMaker, assembled, no_pairs, relative
 from concio.analysis.motion.tie_bars import TieStep
+from concio.analysis.motion.velocities import Frames
 from concio.contact.laws import LawTable
 from concio.contact.original import OriginalContacts
 from concio.contact.original_solids import OriginalSolids

@@ -12,7 +12,6 @@ import numpy as np
 from concio.analysis.entry_point import entry_point
 from concio.analysis.motion.dynamics_asked import check_base, check_masses, positive, step_asked, thrown
 from concio.analysis.motion.dynamics_result import DynamicsResult, Ending
-from concio.analysis.motion.frames import Frames
 from concio.analysis.motion.ground import Ground, Motion
 from concio.analysis.motion.history import Recorder
 from concio.analysis.motion.interruption import Interruption
@@ -21,10 +20,11 @@ from concio.analysis.motion.mover import Mover, Row, shifted
 from concio.analysis.motion.near_origin import Near
 from concio.analysis.motion.observer import Observer
 from concio.analysis.motion.pace import Pace
-from concio.analysis.motion.pairs import PairMaker
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import MotionState
+from concio.analysis.motion.step_pairs import PairMaker
 from concio.analysis.motion.structures import Structure, near_now, structures_of, together
+from concio.analysis.motion.velocities import Frames
 from concio.arguments import strict
 from concio.contact.reference import Reference
 from concio.errors import InputError

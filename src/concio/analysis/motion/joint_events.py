@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from concio.analysis.motion.pairs import PairMaker
 from concio.analysis.motion.state import Memory, TieMemory
+from concio.analysis.motion.step_pairs import PairMaker
 from concio.contact.rows import Rows
 from concio.model.model import Model
 from concio.problem.pair_state import Normal

@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from concio.analysis.motion.frames import Frames
-from concio.analysis.motion.pairs import PairMaker
 from concio.analysis.motion.state import MotionState
+from concio.analysis.motion.step_pairs import PairMaker
 from concio.analysis.motion.structures import Structure
+from concio.analysis.motion.velocities import Frames
 from concio.contact.points import MaterialPoints
 from concio.contact.reference import Reference
 from concio.contact.rows import Rows

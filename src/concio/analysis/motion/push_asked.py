@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from concio.analysis.motion.frames import Frames
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.statics import Balanced
+from concio.analysis.motion.velocities import Frames
 from concio.arguments import closest
 from concio.contact.factors import load_factor
 from concio.contact.reference import Reference

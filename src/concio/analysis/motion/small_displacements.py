@@ -16,12 +16,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
-from concio.analysis.motion.frames import Frames
 from concio.analysis.motion.joint_step import JointStep, PairData
-from concio.analysis.motion.pairs import PairMaker, assembled
 from concio.analysis.motion.resistance import RESISTANCE
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import Memory, MotionState
+from concio.analysis.motion.step_pairs import PairMaker, assembled
+from concio.analysis.motion.velocities import Frames
 from concio.contact.factors import load_factor
 from concio.contact.points import Followed
 from concio.contact.reference import Reference

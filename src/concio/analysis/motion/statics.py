@@ -16,11 +16,11 @@ import numpy as np
 from concio.analysis.motion.certified import Certificate
 from concio.analysis.motion.joint_memory import after_equilibrium
 from concio.analysis.motion.joint_step import JointAnswer
-from concio.analysis.motion.pairs import relative
 from concio.analysis.motion.resistance import Resistance
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.small_displacements import Look, SmallDisplacements
 from concio.analysis.motion.state import Memory, MotionState
+from concio.analysis.motion.step_pairs import relative
 from concio.analysis.motion.tie_bars import settled_ties
 from concio.contact.reference import Reference
 from concio.kinematics.spins import turned_from

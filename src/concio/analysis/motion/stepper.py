@@ -20,16 +20,16 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.analysis.motion.certified import Certificate, Returned, measures
-from concio.analysis.motion.frames import Frames
 from concio.analysis.motion.impacts import Impact
 from concio.analysis.motion.joint_memory import after_step
 from concio.analysis.motion.joint_step import JointAnswer, PairData
 from concio.analysis.motion.meetings import Parts, first_meetings, time_until
-from concio.analysis.motion.pairs import PairMaker, assembled, relative
 from concio.analysis.motion.scheme import RETURN, Drive, Scheme
 from concio.analysis.motion.state import Memory, MotionState, TieMemory
+from concio.analysis.motion.step_pairs import PairMaker, assembled, relative
 from concio.analysis.motion.sunk import moved_apart
 from concio.analysis.motion.tie_bars import TieStep
+from concio.analysis.motion.velocities import Frames
 from concio.contact.reference import Reference
 from concio.contact.rows import Rows
 from concio.kinematics.placement import Placement

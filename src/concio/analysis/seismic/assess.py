@@ -15,13 +15,13 @@ from concio.analysis.seismic.assessment import Assessment
 from concio.analysis.seismic.directions import Direction, pushes
 from concio.analysis.seismic.examine import Control, Terms
 from concio.analysis.seismic.free_standing import FreeStanding, elements_of
-from concio.analysis.seismic.mechanism import chosen_bodies
 from concio.analysis.seismic.open_items import ELSEWHERE, facades_of
 from concio.analysis.seismic.out_of_plane import covered_by, of_strips, strips_assessed
 from concio.analysis.seismic.searching import EVERY, Search, search_all
 from concio.analysis.seismic.sections import OutOfPlane, strips_of
 from concio.analysis.seismic.site import STRONG, Site
 from concio.analysis.seismic.tie_history import with_strength
+from concio.analysis.seismic.weakest_mechanism import chosen_bodies
 from concio.arguments import closest, strict
 from concio.contact.assembly import assemble
 from concio.errors import InputError, NoEquilibriumError

@@ -21,7 +21,7 @@ from concio.analysis.seismic.what_if import sensitivity_of_mechanism
 from concio.analysis.sensitivity import Sensitivity
 from concio.contact.assembly import Assembly
 from concio.model.model import Model
-from concio.solvers.statics.limit import LimitLoad
+from concio.solvers.statics.associated_limit import LimitLoad
 from concio.verdict.assessment_verdict import assessment_verdict
 from concio.verdict.question import Acting
 from concio.verdict.verdict import Verdict

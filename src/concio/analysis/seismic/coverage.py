@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.analysis.seismic.macro_blocks import Mechanics
-from concio.analysis.seismic.mechanism import Found
+from concio.analysis.seismic.weakest_mechanism import Found
 from concio.kinematics.frames import turned_left
 
 KINDS = ("whole", "named", "levels", "openings", "returns", "changes", "alone", "strips")

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from concio.analysis.seismic.chain import Chain, Participant, gathered
 from concio.analysis.seismic.checks import Check, Displacement, checks_of, limit_of, onset_zeta
 from concio.analysis.seismic.curve import CapacityCurve, follow, not_followed, straight
 from concio.analysis.seismic.directions import Push
@@ -18,10 +17,11 @@ from concio.analysis.seismic.linkage import Force, Linkage, merged
 from concio.analysis.seismic.local_mechanism import LocalMechanism
 from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, carried
 from concio.analysis.seismic.macro_contacts import contacts_of
-from concio.analysis.seismic.mechanism import Found
+from concio.analysis.seismic.participation import Chain, Participant, gathered
 from concio.analysis.seismic.sequence import Sequence, follow_in_steps
 from concio.analysis.seismic.site import Site
 from concio.analysis.seismic.tie_history import together
+from concio.analysis.seismic.weakest_mechanism import Found
 from concio.contact.assembly import Assembly
 from concio.contact.separate import surroundings
 from concio.model.model import Tie

@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from concio.analysis.seismic.chain import Chain
 from concio.analysis.seismic.checks import Check, Displacement, return_period
 from concio.analysis.seismic.curve import CapacityCurve
 from concio.analysis.seismic.free_standing import ElasticBranch
 from concio.analysis.seismic.linkage import Force, Linkage
 from concio.analysis.seismic.macro_blocks import Mechanics, carried
-from concio.analysis.seismic.mechanism import Found
+from concio.analysis.seismic.participation import Chain
 from concio.analysis.seismic.sequence import Sequence
 from concio.analysis.seismic.site import Hazard, Site
+from concio.analysis.seismic.weakest_mechanism import Found
 from concio.contact.assembly import Assembly
 from concio.kinematics.rigid import motions
 from concio.model.model import Model

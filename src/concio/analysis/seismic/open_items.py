@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from concio.analysis.seismic.parts import structures_of
+from concio.analysis.seismic.default_parts import structures_of
 from concio.contact.assembly import Assembly
 from concio.verdict.unseen import SEEN, listed, unseen_bodies
 

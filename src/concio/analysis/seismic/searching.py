@@ -13,16 +13,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.analysis.seismic.coverage import Covered, Sought, covered, motion_of
+from concio.analysis.seismic.default_parts import Part, parts_of
 from concio.analysis.seismic.directions import Push
 from concio.analysis.seismic.examine import Prepared, Terms, examined, prepared
 from concio.analysis.seismic.free_standing import FreeStanding
 from concio.analysis.seismic.local_mechanism import LocalMechanism, NoMechanism
-from concio.analysis.seismic.mechanism import LARGEST, Found, Mechanisms
-from concio.analysis.seismic.parts import Part, parts_of
+from concio.analysis.seismic.weakest_mechanism import LARGEST, Found, Mechanisms
 from concio.contact.assembly import Assembly
 from concio.errors import NoEquilibriumError, SolverError
 from concio.problem.solution import Progress, ProgressCallback
-from concio.solvers.statics.limit import LimitLoad
+from concio.solvers.statics.associated_limit import LimitLoad
 
 EVERY = "weakest of all"
 """Name of the mechanism of least multiplier, sought among all motions and in all parts."""

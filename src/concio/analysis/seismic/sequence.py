@@ -27,9 +27,9 @@ from concio.kinematics.rigid import motions
 from concio.model.model import Tie
 from concio.problem.contact_problem import Engine
 from concio.problem.tolerances import AT_BOUND, CHECKED
+from concio.solvers.statics.associated_limit import associated_limit
 from concio.solvers.statics.collapse_search import find_collapse_state
 from concio.solvers.statics.collapse_state import certify_collapse
-from concio.solvers.statics.limit import associated_limit
 
 Array = np.ndarray
 

@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 from concio.analysis.entry_point import entry_point
 from concio.analysis.seismic.assess import assess
 from concio.analysis.seismic.assessment import Assessment
-from concio.analysis.seismic.mechanism import chosen_bodies
+from concio.analysis.seismic.weakest_mechanism import chosen_bodies
 from concio.arguments import closest, strict
 from concio.contact.separate import surroundings
 from concio.display import number

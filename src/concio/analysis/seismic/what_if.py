@@ -9,14 +9,14 @@ import numpy as np
 from concio.analysis.parameters import parameters_of
 from concio.analysis.seismic.directions import Direction, pushes
 from concio.analysis.seismic.local_mechanism import LocalMechanism
-from concio.analysis.seismic.mechanism import Mechanisms
 from concio.analysis.seismic.out_of_plane import EITHER, SENSES
 from concio.analysis.seismic.tie_history import with_strength
+from concio.analysis.seismic.weakest_mechanism import Mechanisms
 from concio.analysis.sensitivity import Sensitivity, sensitivity_of
 from concio.contact.assembly import assemble
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
-from concio.solvers.statics.limit import associated_limit
+from concio.solvers.statics.associated_limit import associated_limit
 
 Array = np.ndarray
 

@@ -12,12 +12,12 @@ import shapely
 
 from concio.arguments import strict_with
 from concio.errors import GeometryError, InputError
+from concio.model.drawing.drawn_places import drawn_ties, supports_and_loads
 from concio.model.drawing.dxf import CHORD_TOLERANCE, Drawing, DxfFault, Outline, read_drawing
 from concio.model.drawing.holes import with_holes
 from concio.model.drawing.layers import Layers
 from concio.model.drawing.mend import mended
-from concio.model.drawing.places import drawn_ties, supports_and_loads
-from concio.model.generate.arguments import Checked, Common, checked, not_negative
+from concio.model.generate.generator_arguments import Checked, Common, checked, not_negative
 from concio.model.generate.masonry import Piece, assemble
 from concio.model.interfaces.near import find_overlaps
 from concio.model.interfaces.polygon_check import polygon_faults
@@ -61,7 +61,7 @@ def model_from_dxf(
     chord_tolerance : float or str
         Largest distance of a chord from its arc [m].
     **common
-        See :class:`concio.model.generate.arguments.Common`.
+        See :class:`concio.model.generate.generator_arguments.Common`.
 
     Raises
     ------

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal, TypeVar
 from pydantic import Field, StrictInt, StrictStr, ValidationError
 
 from concio.model.file.acting_tables import ControlTable
-from concio.model.file.errors import first_fault
+from concio.model.file.file_errors import first_fault
 from concio.model.file.tables import Name, Table
 from concio.model.file.values import FileUnits, Force, Length, Number, Stress, UnitWeight
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from concio.errors import GeometryError, InputError
 from concio.model.body import Body
-from concio.model.file.errors import placed
+from concio.model.file.file_errors import placed
 from concio.model.file.tables import BlockTable, HoleTable
 from concio.model.interfaces.polygon_check import check_polygon
 from concio.model.materials import Elastic, Rigid

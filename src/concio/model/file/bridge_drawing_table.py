@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import Field, StrictStr
 
 from concio.errors import InputError
-from concio.model.file.errors import placed
+from concio.model.file.file_errors import placed
 from concio.model.file.road_tables import FillTable
 from concio.model.file.tables import Name, Table
 from concio.model.file.values import Length

@@ -19,9 +19,9 @@ from concio.model.file.acting_tables import LoadTable, StageTable, SupportTable,
 from concio.model.file.block_table import read_blocks
 from concio.model.file.bodies import Materials, body_of, rigid_where_its_material_is
 from concio.model.file.bridge_drawing_table import drawn_barrel, with_drawn_road
-from concio.model.file.errors import placed
+from concio.model.file.file_errors import placed
 from concio.model.file.file_table import FileTable
-from concio.model.file.parts import assembled_parts
+from concio.model.file.parts_table import assembled_parts
 from concio.model.file.road_tables import crossed
 from concio.model.file.tables import CourseTable, JointTable, MaterialTable, Table
 from concio.model.generate.bonds import Course

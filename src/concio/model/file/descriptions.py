@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from importlib import import_module
 from typing import Any, Unpack, get_args, get_origin, get_type_hints
 
-from concio.model.generate.arguments import Common
+from concio.model.generate.generator_arguments import Common
 from concio.model.generate.generators import GENERATORS
 
 REFERENCE = re.compile(r":(?:class|func):`[~!]?(concio[\w.]+)`")

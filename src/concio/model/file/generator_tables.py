@@ -17,7 +17,7 @@ from pydantic import Discriminator, Field, StrictBool, StrictInt, StrictStr, Tag
 
 from concio.model.file.tables import Bond, Element, Friction, Material, Table
 from concio.model.file.values import TYPES, Length, Number, Size
-from concio.model.generate.arguments import Common
+from concio.model.generate.generator_arguments import Common
 from concio.model.generate.generators import GENERATORS
 from concio.model.generate.openings import Opening
 from concio.model.generate.plan import WallLine

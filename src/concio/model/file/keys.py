@@ -15,7 +15,7 @@ from typing import Any
 
 from concio.arguments import closest
 from concio.errors import InputError
-from concio.model.file.errors import known_keys
+from concio.model.file.file_errors import known_keys
 from concio.model.file.file_table import file_table
 
 _PART = re.compile(r'\.?(?:"([^"]*)"|\[([^\]]*)\]|([^.\[\]"]+))')

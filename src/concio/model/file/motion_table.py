@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal, TypeVar
 from pydantic import BeforeValidator, Field, StrictBool, StrictStr, ValidationError, WithJsonSchema
 
 from concio.errors import InputError
-from concio.model.file.errors import first_fault
+from concio.model.file.file_errors import first_fault
 from concio.model.file.tables import Name, Table
 from concio.model.motion.records import STANDARD_GRAVITY, read_record
 from concio.model.motion.signals import Pulse, Signal

@@ -37,7 +37,7 @@ from concio.arguments import strict
 from concio.errors import InputError
 from concio.files import read_text
 from concio.model.file.build import build
-from concio.model.file.errors import check_depth, check_finite, first_fault
+from concio.model.file.file_errors import check_depth, check_finite, first_fault
 from concio.model.file.file_table import FileTable, file_table, table_for
 from concio.model.file.tables import UnitsTable
 from concio.model.file.values import FileUnits

@@ -9,7 +9,7 @@ from pydantic import Discriminator, Field, StrictBool, StrictStr, Tag
 
 from concio.errors import InputError
 from concio.model.crossing import Axle, Vehicle
-from concio.model.file.errors import placed
+from concio.model.file.file_errors import placed
 from concio.model.file.tables import Name, Point, Table, word_or_table
 from concio.model.file.values import Degrees, JointStiffness, Length, Number, Stress, UnitWeight
 from concio.model.fill import Fill, Layer

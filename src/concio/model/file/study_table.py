@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, StrictInt, StrictStr, ValidationError, model_validator
 
-from concio.model.file.errors import first_fault
+from concio.model.file.file_errors import first_fault
 from concio.model.file.tables import Name, Table
 
 Plain = StrictInt | float

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, StrictBool, StrictInt, StrictStr, ValidationError, ValidationInfo, field_validator
 
 from concio.model.file.assessment_table import ReportTextTable
-from concio.model.file.errors import first_fault
+from concio.model.file.file_errors import first_fault
 from concio.model.file.tables import Name, Point, Table, Vector
 from concio.model.file.values import FileUnits, Number, converted, units_of
 

@@ -16,7 +16,16 @@ import shapely.ops
 from concio.arguments import strict_with
 from concio.errors import InputError
 from concio.model.generate.arches import ring_outlines
-from concio.model.generate.arguments import Common, check_blocks, checked, choice, count, finite, not_negative, positive
+from concio.model.generate.generator_arguments import (
+    Common,
+    check_blocks,
+    checked,
+    choice,
+    count,
+    finite,
+    not_negative,
+    positive,
+)
 from concio.model.generate.masonry import Piece, assemble, numbered, rectangle
 from concio.model.model import Load, Model
 
@@ -72,7 +81,7 @@ def arch_on_piers(
     top_pressure : float or str
         On the upper edge [kN/m2], load group "top".
     **common
-        See :class:`concio.model.generate.arguments.Common`.
+        See :class:`concio.model.generate.generator_arguments.Common`.
 
     Notes
     -----

@@ -25,7 +25,7 @@ from concio.errors import InputError
 from concio.kinematics.frames import turned_left, turned_right
 from concio.model.arcs import arc as _arc
 from concio.model.arcs import chords_of
-from concio.model.generate.arguments import Common, checked, choice, count, finite, positive
+from concio.model.generate.generator_arguments import Common, checked, choice, count, finite, positive
 from concio.model.generate.masonry import Piece, assemble, numbered
 from concio.model.model import Array, Load, Model
 
@@ -72,7 +72,7 @@ def arch(
     load_at : float
         Its place as a share of the span from the left springing.
     **common
-        See :class:`concio.model.generate.arguments.Common`.
+        See :class:`concio.model.generate.generator_arguments.Common`.
 
     Raises
     ------

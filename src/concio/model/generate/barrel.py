@@ -14,7 +14,7 @@ import numpy as np
 from concio.arguments import strict_with
 from concio.errors import InputError
 from concio.model.generate.arches import Shape, abutment_outline, ring_outlines
-from concio.model.generate.arguments import choice, count, positive
+from concio.model.generate.generator_arguments import choice, count, positive
 from concio.model.generate.masonry import numbered
 from concio.model.generate.solid_masonry import CommonSpace, SolidPiece, assemble_space, checked_space, prism_piece
 from concio.model.model import Model

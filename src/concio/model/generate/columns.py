@@ -9,8 +9,16 @@ import numpy as np
 
 from concio.arguments import strict_with
 from concio.errors import InputError
-from concio.model.generate.arguments import Common, check_blocks, checked, count, finite, not_negative, positive
 from concio.model.generate.bonds import without_short_pieces
+from concio.model.generate.generator_arguments import (
+    Common,
+    check_blocks,
+    checked,
+    count,
+    finite,
+    not_negative,
+    positive,
+)
 from concio.model.generate.masonry import Piece, assemble, numbered, rectangle
 from concio.model.model import Load, Model
 
@@ -39,7 +47,7 @@ def column(
     top_force, eccentricity : float or str
         Vertical force, downwards positive [kN], load group "top", and its distance from the axis [m].
     **common
-        See :class:`concio.model.generate.arguments.Common`.
+        See :class:`concio.model.generate.generator_arguments.Common`.
 
     Examples
     --------
@@ -103,7 +111,7 @@ def buttress(
     thrust_at : float or str, optional
         Its height [m]; by default the middle of the highest course.
     **common
-        See :class:`concio.model.generate.arguments.Common`.
+        See :class:`concio.model.generate.generator_arguments.Common`.
 
     Examples
     --------

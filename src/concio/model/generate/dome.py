@@ -15,7 +15,7 @@ import numpy as np
 from concio.arguments import strict_with
 from concio.errors import InputError
 from concio.kinematics.frames import cross
-from concio.model.generate.arguments import choice, count, finite, not_negative, positive
+from concio.model.generate.generator_arguments import choice, count, finite, not_negative, positive
 from concio.model.generate.masonry import numbered
 from concio.model.generate.solid_masonry import (
     CommonSpace,

@@ -9,7 +9,7 @@ import numpy as np
 
 from concio.arguments import strict_with
 from concio.errors import InputError
-from concio.model.generate.arguments import count, finite, positive, two
+from concio.model.generate.generator_arguments import count, finite, positive, two
 from concio.model.generate.masonry import numbered
 from concio.model.generate.solid_masonry import CommonSpace, SolidPiece, assemble_space, box_piece, checked_space
 from concio.model.model import Load, Model

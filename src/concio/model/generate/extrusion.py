@@ -19,7 +19,7 @@ import numpy as np
 
 from concio.arguments import strict
 from concio.errors import InputError
-from concio.model.generate.arguments import positive
+from concio.model.generate.generator_arguments import positive
 from concio.model.model import Body, Load, Model, Point, Support, Temperature, Tie, called, require_model
 from concio.model.polyhedron import Polyhedron
 from concio.model.stages import Stage

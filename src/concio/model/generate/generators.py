@@ -9,16 +9,16 @@ from typing import Any, get_args, get_type_hints
 
 from concio.arguments import closest
 from concio.errors import InputError
+from concio.model.generate.arch_bridges import bridge
 from concio.model.generate.arch_on_piers import arch_on_piers
 from concio.model.generate.arches import arch
 from concio.model.generate.barrel import barrel
-from concio.model.generate.bridges import bridge
-from concio.model.generate.cells import cell
 from concio.model.generate.columns import buttress, column
 from concio.model.generate.dome import dome
 from concio.model.generate.drums import drums
 from concio.model.generate.groins import cloister_vault, cross_vault
 from concio.model.generate.panel import running_bond_panel
+from concio.model.generate.periodic_cells import cell
 from concio.model.generate.plan_walls import tower, walls
 from concio.model.generate.rubble import rubble
 from concio.model.generate.walls import wall, wall_of_courses

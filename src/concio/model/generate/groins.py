@@ -16,7 +16,7 @@ import numpy as np
 from concio.arguments import strict_with
 from concio.errors import InputError
 from concio.kinematics.rigid import rotation_matrix
-from concio.model.generate.arguments import choice, count, not_negative, positive
+from concio.model.generate.generator_arguments import choice, count, not_negative, positive
 from concio.model.generate.masonry import numbered
 from concio.model.generate.solid_masonry import (
     CommonSpace,

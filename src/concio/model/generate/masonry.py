@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from concio.model.generate.arguments import Checked
+from concio.model.generate.generator_arguments import Checked
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Array, Body, JointRule, Load, Model
 

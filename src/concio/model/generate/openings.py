@@ -8,7 +8,7 @@ from typing import Any
 
 from concio.arguments import strict_class
 from concio.errors import InputError
-from concio.model.generate.arguments import check_keys, finite, not_negative, positive
+from concio.model.generate.generator_arguments import check_keys, finite, not_negative, positive
 
 
 @strict_class

@@ -16,7 +16,7 @@ import numpy as np
 
 from concio.arguments import strict
 from concio.errors import InputError
-from concio.model.generate.arguments import check_blocks, count
+from concio.model.generate.generator_arguments import check_blocks, count
 from concio.model.generate.spacing import subdivided
 from concio.model.limits import LARGEST_UNKNOWNS
 from concio.model.materials import Elastic, JointLaw, Rigid

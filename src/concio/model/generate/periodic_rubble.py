@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 
 from concio.errors import InputError
-from concio.model.generate.arguments import count, positive
+from concio.model.generate.generator_arguments import count, positive
 from concio.model.limits import LARGEST_SEED, LARGEST_SWEEPS
 from concio.model.linked import linked, pairs_within
 from concio.model.model import Array, Periods

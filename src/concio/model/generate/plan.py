@@ -16,7 +16,7 @@ import numpy as np
 
 from concio.arguments import strict_class
 from concio.errors import InputError
-from concio.model.generate.arguments import check_keys, finite, positive, two
+from concio.model.generate.generator_arguments import check_keys, finite, positive, two
 from concio.model.generate.openings import Opening, checked_openings
 
 Array = np.ndarray

@@ -19,8 +19,8 @@ import numpy as np
 
 from concio.arguments import strict_with
 from concio.errors import InputError
-from concio.model.generate.arguments import check_blocks, choice, count, finite, positive
 from concio.model.generate.bonds import without_short_pieces
+from concio.model.generate.generator_arguments import check_blocks, choice, count, finite, positive
 from concio.model.generate.masonry import numbered
 from concio.model.generate.openings import Opening
 from concio.model.generate.plan import (

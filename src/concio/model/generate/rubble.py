@@ -15,7 +15,7 @@ import shapely
 
 from concio.arguments import strict_with
 from concio.errors import InputError
-from concio.model.generate.arguments import Common, checked, count, finite, positive
+from concio.model.generate.generator_arguments import Common, checked, count, finite, positive
 from concio.model.generate.masonry import Piece, assemble, numbered, rectangle
 from concio.model.limits import LARGEST_SEED, LARGEST_SWEEPS
 from concio.model.model import Array, Load, Model

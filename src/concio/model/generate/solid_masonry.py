@@ -10,7 +10,7 @@ import numpy as np
 
 from concio.arguments import closest
 from concio.errors import InputError
-from concio.model.generate.arguments import Checked, checked, two
+from concio.model.generate.generator_arguments import Checked, checked, two
 from concio.model.generate.masonry import joints_on, own_weight
 from concio.model.materials import Elastic, JointLaw, Rigid
 from concio.model.model import Load, Model

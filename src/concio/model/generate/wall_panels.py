@@ -8,8 +8,8 @@ from typing import Any
 
 from concio.arguments import strict_class
 from concio.errors import InputError
-from concio.model.generate.arguments import check_keys, finite, positive, two
 from concio.model.generate.bonds import Course
+from concio.model.generate.generator_arguments import check_keys, finite, positive, two
 from concio.model.generate.openings import Opening
 
 Bond = str | Sequence[Course | Sequence[float]]

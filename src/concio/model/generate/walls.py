@@ -11,8 +11,8 @@ import shapely
 
 from concio.arguments import strict_with
 from concio.errors import GeometryError, InputError
-from concio.model.generate.arguments import Common, check_blocks, checked, finite, positive, two
 from concio.model.generate.bonds import SHORTEST, Course, bond_courses, head_joints, sort_of_piece, without_short_pieces
+from concio.model.generate.generator_arguments import Common, check_blocks, checked, finite, positive, two
 from concio.model.generate.masonry import Piece, assemble, numbered, rectangle
 from concio.model.generate.openings import Opening, checked_openings
 from concio.model.generate.wall_panels import Bond, Panel, checked_panels
@@ -65,7 +65,7 @@ def wall(
     top_pressure : float or str
         On the upper edge of the highest panels [kN/m2], load group "top".
     **common
-        See :class:`concio.model.generate.arguments.Common`.
+        See :class:`concio.model.generate.generator_arguments.Common`.
 
     Raises
     ------

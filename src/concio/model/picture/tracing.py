@@ -16,8 +16,8 @@ from concio.model.actions import Load
 from concio.model.body import Body
 from concio.model.materials import JointLaw, Rigid
 from concio.model.model import Model
-from concio.model.picture.arcs import shared_outlines
 from concio.model.picture.photo import Photo
+from concio.model.picture.shared_boundaries import shared_outlines
 from concio.representation import short_repr
 
 Array = np.ndarray

@@ -16,7 +16,7 @@ from concio.errors import InputError
 from concio.model.solids.ifc_geometry import TESSELLATE, Bodies, Surface, moved
 from concio.model.solids.ifc_placement import Placements, metres_of
 from concio.model.solids.shapes import FIXED, Scene, Shape, check_size
-from concio.model.solids.step import Instance, Reference, StepFile
+from concio.model.solids.step_file import Instance, Reference, StepFile
 
 NO_BLOCKS = {
     "IFCOPENINGELEMENT", "IFCOPENINGSTANDARDCASE", "IFCSPACE", "IFCSPATIALZONE", "IFCEXTERNALSPATIALELEMENT", "IFCGRID",

@@ -12,7 +12,7 @@ from concio.kinematics.frames import cross, tangents
 from concio.kinematics.mass import signed_area
 from concio.model.solids.ifc_placement import axes, direction, operator, point
 from concio.model.solids.ifc_profiles import indices, rings
-from concio.model.solids.step import Instance
+from concio.model.solids.step_file import Instance
 from concio.model.surfaces import prism_surface
 from concio.model.topology import Loop, face_triangles
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from concio.kinematics.frames import cross
-from concio.model.solids.step import Instance, StepFile, Typed
+from concio.model.solids.step_file import Instance, StepFile, Typed
 
 Array = np.ndarray
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from concio.model.solids.ifc_placement import axes, point
-from concio.model.solids.step import Instance, Reference, Typed
+from concio.model.solids.step_file import Instance, Reference, Typed
 
 Array = np.ndarray
 

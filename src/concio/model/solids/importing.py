@@ -15,7 +15,7 @@ from scipy.sparse.csgraph import connected_components
 
 from concio.arguments import closest, strict_with
 from concio.errors import GeometryError, InputError
-from concio.model.generate.arguments import not_negative
+from concio.model.generate.generator_arguments import not_negative
 from concio.model.generate.solid_masonry import CommonSpace, SolidPiece, assemble_space, box_piece, checked_space
 from concio.model.limits import LARGEST_COORDINATE
 from concio.model.materials import Elastic, Rigid

@@ -24,10 +24,10 @@ import numpy as np
 
 from concio.problem.apart import merged, restricted
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.error_units import measure
 from concio.problem.parts import parts_of
 from concio.problem.solution import Solution, judge, pair_states
 from concio.problem.tolerances import AT_BOUND
-from concio.problem.units import measure
 from concio.solvers.algebra.block_factor import BlockFactor
 from concio.solvers.algebra.scales import compliances, interleaved
 from concio.solvers.algebra.sparse_factor import SingularMatrixError

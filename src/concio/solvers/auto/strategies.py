@@ -11,12 +11,12 @@ import numpy as np
 from concio.problem.contact_problem import Array
 from concio.problem.solution import Departure, Mechanism, Solution, Status, failed, judge
 from concio.solvers.auto.friction_neighbours import from_neighbours
-from concio.solvers.interior.bonded import applies, from_sticking
+from concio.solvers.interior.bonded_start import applies, from_sticking
 from concio.solvers.interior.run import Cancelled, Run, starts_for
 from concio.solvers.relaxation.free_motion import free_motion
 from concio.solvers.relaxation.single_steps import at_once
 from concio.solvers.relaxation.slow_motion import relax
-from concio.solvers.states.reading import Finished
+from concio.solvers.states.state_reading import Finished
 from concio.solvers.statics.existence import statically_admissible
 
 

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from concio.problem.limits_of_work import HOMOTOPY_ITERATIONS
-from concio.solvers.interior.iteration import InteriorPoint
+from concio.solvers.interior.interior_point import InteriorPoint
 from concio.solvers.interior.point import Point
 
 LEVEL = 1e-2

@@ -32,7 +32,7 @@ from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array
 from concio.problem.tolerances import AT_BOUND, EXACT
 from concio.solvers.algebra.scaled import Scaled
-from concio.solvers.states.reading import Finished, natural_residual, sizes
+from concio.solvers.states.state_reading import Finished, natural_residual, sizes
 
 DETERMINED = 1e-8
 """Share of a pair's own stiffness that unknowns of its own must give it in every direction to determine its force."""

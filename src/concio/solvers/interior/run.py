@@ -16,11 +16,11 @@ from concio.problem.solution import Progress, ProgressCallback, Solution, Status
 from concio.problem.tolerances import EXACT, RESTING
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.interior.homotopy import walk
-from concio.solvers.interior.iteration import EARLY, SHARE, InteriorPoint
+from concio.solvers.interior.interior_point import EARLY, SHARE, InteriorPoint
 from concio.solvers.interior.newton_finish import STALE, finish
 from concio.solvers.interior.point import Point
-from concio.solvers.states.reading import Finished, read_states
 from concio.solvers.states.settle import ROUNDS, TOGETHER, Settler
+from concio.solvers.states.state_reading import Finished, read_states
 
 NAME = "interior-point"
 

@@ -17,9 +17,9 @@ import numpy as np
 from concio.problem.contact_problem import Array
 from concio.problem.limits_of_work import LARGEST_VERTEX
 from concio.solvers.path.equations import PathEquations
+from concio.solvers.path.path_state import CLOSED, CRUSHED, OPEN, STICK
 from concio.solvers.path.rate_lcp import lemke
 from concio.solvers.path.rates import Rates, Values, critical, holds, rates, restore, wrong
-from concio.solvers.path.state import CLOSED, CRUSHED, OPEN, STICK
 
 ROUNDS_ALL, ROUNDS_ONE = 6, 60
 """Rounds in which all wrong pairs are flipped together, then rounds that flip the worst alone."""

@@ -30,8 +30,8 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from concio.problem.contact_problem import Array
+from concio.solvers.path.path_state import CLOSED, CRUSHED, OPEN, STICK
 from concio.solvers.path.scaling import ScaledPath
-from concio.solvers.path.state import CLOSED, CRUSHED, OPEN, STICK
 
 REGULAR = 1e-8
 """Compliance and stiffness added to the factors, in scaled units."""

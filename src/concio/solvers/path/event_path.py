@@ -26,7 +26,19 @@ from concio.problem.solution import Progress, ProgressCallback
 from concio.solvers.path.direction import find_direction
 from concio.solvers.path.events import Moment, changes
 from concio.solvers.path.near_forces import solve_near
-from concio.solvers.path.point import PathPoint
+from concio.solvers.path.path_point import PathPoint
+from concio.solvers.path.path_state import (
+    CLOSED,
+    OPEN,
+    STICK,
+    LinearPath,
+    PathState,
+    certify_step,
+    plastic_position,
+    sizes,
+    state_of,
+    step_problem,
+)
 from concio.solvers.path.rates import (
     Rates,
     Values,
@@ -41,18 +53,6 @@ from concio.solvers.path.rates import (
 from concio.solvers.path.ray import homogeneous, ray
 from concio.solvers.path.record import Event, EventPath, Outcome
 from concio.solvers.path.restart import SHARES, Beyond, load_unit, look_beyond, moves_freely
-from concio.solvers.path.state import (
-    CLOSED,
-    OPEN,
-    STICK,
-    LinearPath,
-    PathState,
-    certify_step,
-    plastic_position,
-    sizes,
-    state_of,
-    step_problem,
-)
 
 AT_REST = 1e-9
 """A structure displaced by less than this share of a typical, or of its last, displacement rests."""

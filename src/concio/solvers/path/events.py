@@ -9,9 +9,9 @@ import numpy as np
 from concio.problem.contact_problem import Array
 from concio.problem.pair_state import PairStates
 from concio.solvers.path.equations import PathEquations
+from concio.solvers.path.path_state import CLOSED, CRUSHED, OPEN, STICK
 from concio.solvers.path.rates import grips
 from concio.solvers.path.record import Event
-from concio.solvers.path.state import CLOSED, CRUSHED, OPEN, STICK
 
 NORMAL = {
     (CLOSED, OPEN): "opens",

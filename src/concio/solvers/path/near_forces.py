@@ -32,8 +32,8 @@ from concio.solvers.algebra.scaled import Scaled, scale
 from concio.solvers.algebra.scales import typical_stiffness
 from concio.solvers.interior import engine, newton_finish
 from concio.solvers.interior.run import WEIGHTS, Run
-from concio.solvers.states.reading import read_states
 from concio.solvers.states.settle import Settler
+from concio.solvers.states.state_reading import read_states
 
 SOFT = 1e-5
 """The compliance added to hard pairs of mean area, over the typical compliance of the bodies."""

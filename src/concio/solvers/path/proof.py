@@ -18,8 +18,8 @@ import numpy as np
 
 from concio.problem.certificate import Certificate, certify
 from concio.problem.contact_problem import Array, ContactProblem
-from concio.problem.units import in_units, measure
-from concio.solvers.path.state import OPEN, LinearPath, PathState, plastic_position, sizes, weakened
+from concio.problem.error_units import in_units, measure
+from concio.solvers.path.path_state import OPEN, LinearPath, PathState, plastic_position, sizes, weakened
 
 
 def certify_between(

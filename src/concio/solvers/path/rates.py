@@ -24,7 +24,7 @@ import numpy as np
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array
 from concio.solvers.path.equations import PathEquations
-from concio.solvers.path.state import CLOSED, CRUSHED, OPEN, STICK
+from concio.solvers.path.path_state import CLOSED, CRUSHED, OPEN, STICK
 
 ZERO = 1e-9
 """Gaps and forces below this share of the largest displacement or force count as zero."""

@@ -18,7 +18,7 @@ from concio.problem.limits_of_work import SMALL_PATH
 from concio.problem.solution import ProgressCallback, Solution, Status
 from concio.solvers.auto import chain as auto
 from concio.solvers.interior import engine
-from concio.solvers.path.state import LinearPath, PathState, state_of
+from concio.solvers.path.path_state import LinearPath, PathState, state_of
 
 
 def homogeneous(path: LinearPath) -> bool:

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from concio.problem.contact_problem import Array
 from concio.representation import short_repr
-from concio.solvers.path.state import PathState
+from concio.solvers.path.path_state import PathState
 
 
 class Outcome(Enum):

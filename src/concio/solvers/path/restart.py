@@ -23,13 +23,13 @@ from typing import Literal
 import numpy as np
 
 from concio.problem.contact_problem import Array
+from concio.problem.error_units import measure
 from concio.problem.solution import ProgressCallback, Solution, Status, failed
 from concio.problem.tolerances import ACCURATE, AT_BOUND
-from concio.problem.units import measure
 from concio.solvers.auto import chain as auto
 from concio.solvers.interior import engine
 from concio.solvers.path.near_forces import Nearby, needed, solve_near
-from concio.solvers.path.state import LinearPath, PathState, plastic_position, state_of, step_problem
+from concio.solvers.path.path_state import LinearPath, PathState, plastic_position, state_of, step_problem
 from concio.solvers.statics.existence import find_mechanism
 
 SHARES = (1e-6, 3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 2e-3, 4e-3, 7e-3, 1e-2, 2e-2)

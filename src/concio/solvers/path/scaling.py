@@ -9,7 +9,7 @@ import numpy as np
 
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array
-from concio.solvers.path.state import LinearPath
+from concio.solvers.path.path_state import LinearPath
 
 APART = 1e4
 """Ratio of compliances above which the unit of length lies between them."""

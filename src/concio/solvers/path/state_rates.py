@@ -9,8 +9,8 @@ import numpy as np
 from concio.problem.contact_problem import Array
 from concio.problem.pair_state import PairStates
 from concio.solvers.path.equations import PathEquations
+from concio.solvers.path.path_state import LinearPath
 from concio.solvers.path.scaling import ScaledPath
-from concio.solvers.path.state import LinearPath
 
 
 @dataclass(frozen=True, eq=False)

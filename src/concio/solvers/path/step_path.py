@@ -23,8 +23,7 @@ from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.parts import Part, connected_parts
 from concio.problem.solution import Progress, ProgressCallback, Solution, Solver, Status, judge
 from concio.solvers.path import near_forces
-from concio.solvers.path.record import Event, Outcome
-from concio.solvers.path.state import (
+from concio.solvers.path.path_state import (
     CLOSED,
     CRUSHED,
     OPEN,
@@ -35,6 +34,7 @@ from concio.solvers.path.state import (
     state_of,
     step_problem,
 )
+from concio.solvers.path.record import Event, Outcome
 
 CHANGES = 0.1
 """Share of the pairs that may change state in one step before it is halved."""

@@ -16,9 +16,9 @@ from concio.problem.solution import Departure
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.interior.run import Run, Start
 from concio.solvers.relaxation.slow_motion import ENDS, GROWTH, hardly_changed
-from concio.solvers.relaxation.step import allowed_factorisations, rest_near, solve_afresh, solve_near
+from concio.solvers.relaxation.slow_step import allowed_factorisations, rest_near, solve_afresh, solve_near
 from concio.solvers.relaxation.unbounded_motion import unbounded_motion
-from concio.solvers.states.reading import Finished
+from concio.solvers.states.state_reading import Finished
 
 LEAST_GROWTH = 1.1
 """Least factor between the resistances of single steps: where not even that succeeds, they end."""

@@ -5,9 +5,9 @@ in proportion to the masses M, by implicit steps
 
 .. math:: (K + e M)\, u_{k+1} = f + e M u_k + C^T t_{k+1}, \qquad \text{joint laws at } u_{k+1},
 
-each of them a contact problem of its own (:mod:`concio.solvers.relaxation.step`). K + e M holds every body, so that a
-step has a solution whatever the friction, and small steps (large e) have it close by. Steps grow while they succeed.
-What stands still is an equilibrium, made exact with the states it has; what becomes a steady motion is a
+each of them a contact problem of its own (:mod:`concio.solvers.relaxation.slow_step`). K + e M holds every body, so
+that a step has a solution whatever the friction, and small steps (large e) have it close by. Steps grow while they
+succeed. What stands still is an equilibrium, made exact with the states it has; what becomes a steady motion is a
 :class:`concio.problem.solution.Departure`.
 """
 
@@ -21,9 +21,9 @@ from concio.problem.contact_problem import Array
 from concio.problem.solution import Departure
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.interior.run import Run
-from concio.solvers.relaxation.step import allowed_factorisations, pivot_to_rest, rest_near, solve_step
+from concio.solvers.relaxation.slow_step import allowed_factorisations, pivot_to_rest, rest_near, solve_step
 from concio.solvers.relaxation.unbounded_motion import unbounded_motion
-from concio.solvers.states.reading import Finished, natural_residual, read_states
+from concio.solvers.states.state_reading import Finished, natural_residual, read_states
 
 FIRST = {2: 3e-2, 3: 1e-2}
 """Resistance e of the first step by dimension, scaled units."""

@@ -41,15 +41,15 @@ import numpy as np
 
 from concio.problem.certificate import certify
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.error_units import measure
 from concio.problem.solution import Departure
 from concio.problem.tolerances import MOVING_ON, RIGID_BODY, SLIDES, STILL_PAIR
-from concio.problem.units import measure
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.interior.newton_finish import finish
-from concio.solvers.states.equations import laws_of
 from concio.solvers.states.given import GivenStates
-from concio.solvers.states.reading import Finished
+from concio.solvers.states.state_reading import Finished
+from concio.solvers.states.static_laws import laws_of
 
 FINEST = (1e-5, 1e-7, 1e-9)
 """Values of e, scaled units, at which the acceleration is worked out."""

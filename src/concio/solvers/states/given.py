@@ -16,7 +16,7 @@ from concio.solvers.algebra.factor import Springs
 from concio.solvers.algebra.scaled import LOOSE, Scaled
 from concio.solvers.algebra.updated_blocks import UpdatedBlocks
 from concio.solvers.states.pair_laws import PairLaws, side_by_side
-from concio.solvers.states.reading import sizes
+from concio.solvers.states.state_reading import sizes
 
 REFINED = 1e-14
 """Relative residual at which refinement of an answer stops; before where it no longer halves the residual."""

@@ -15,7 +15,7 @@ direction e and the size that the point before suggests, which leaves a complian
 
 .. math:: t_t = d\, t_n + q - s\,(1 - e e^T)\, y_t, \qquad s = \sigma / |y_t| .
 
-Statics and steps in time read their states into these laws (:func:`concio.solvers.states.equations.laws_of`,
+Statics and steps in time read their states into these laws (:func:`concio.solvers.states.static_laws.laws_of`,
 :func:`concio.solvers.stepping.states.laws_of_step`); they differ in the compliance that is added to hard pairs and in
 how forces are shifted.
 """

@@ -23,10 +23,10 @@ from concio.problem.pair_state import PairStates
 from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import LOOSE, Scaled
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
-from concio.solvers.states.equations import laws_of
 from concio.solvers.states.given import REFINED, TRIED, GivenStates
-from concio.solvers.states.reading import Finished, natural_residual, read_states
 from concio.solvers.states.small_problem import decide
+from concio.solvers.states.state_reading import Finished, natural_residual, read_states
+from concio.solvers.states.static_laws import laws_of
 
 ROUNDS = 12
 """Largest number of times pairs are decided."""

@@ -28,8 +28,8 @@ from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.updated_blocks import block_diagonal
 from concio.solvers.lcp.lemke_method import Outcome, lemke
 from concio.solvers.lcp.linear_problem import LinearComplementarity
-from concio.solvers.states.equations import laws_of
 from concio.solvers.states.given import GivenStates
+from concio.solvers.states.static_laws import laws_of
 
 SOFT = 1e-4
 """Compliance that holds undecided pairs of mean area, scaled units."""

@@ -27,9 +27,9 @@ from concio.problem.parts import Part, parts_of
 from concio.problem.solution import Progress, ProgressCallback
 from concio.problem.tolerances import CHECKED
 from concio.representation import short_repr
+from concio.solvers.statics.associated_limit import LimitLoad, associated_limit
 from concio.solvers.statics.collapse_state import CollapseState, Motion, certify_collapse
 from concio.solvers.statics.existence import statically_admissible
-from concio.solvers.statics.limit import LimitLoad, associated_limit
 from concio.solvers.statics.programme import StaticProgramme, optimise
 
 STARTS = {2: 12, 3: 2}

@@ -24,8 +24,8 @@ import scipy.sparse as sp
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.tolerances import CHECKED, MOVES
 from concio.representation import short_repr
+from concio.solvers.statics.associated_limit import static_residual
 from concio.solvers.statics.collapse_cones import forces_in_space
-from concio.solvers.statics.limit import static_residual
 from concio.solvers.statics.mechanism import pair_velocities
 from concio.solvers.statics.programme import LARGE, Method, StaticProgramme, optimise
 

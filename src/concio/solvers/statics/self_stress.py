@@ -23,8 +23,8 @@ from concio.problem.contact_problem import Array, ContactProblem, Laws
 from concio.problem.parts import parts_of
 from concio.problem.tolerances import ADMISSIBLE
 from concio.representation import short_repr
+from concio.solvers.statics.associated_limit import static_residual
 from concio.solvers.statics.cone_statics import ConeStatics
-from concio.solvers.statics.limit import static_residual
 from concio.solvers.statics.mechanism import total_load
 from concio.solvers.statics.programme import StaticProgramme, optimise
 

@@ -14,10 +14,10 @@ from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.interior import engine as interior
 from concio.solvers.pivoting import sparse_lemke
 from concio.solvers.states.pair_laws import PairLaws
-from concio.solvers.stepping.factor import StepFactor
 from concio.solvers.stepping.problem import StepProblem, StepSolution
-from concio.solvers.stepping.settle import settle
+from concio.solvers.stepping.settle_step import settle
 from concio.solvers.stepping.states import across_slip, halting, laws_of_step, read_states, solve_states
+from concio.solvers.stepping.step_factor import StepFactor
 
 FEW = 25
 """Changed pairs up to which one small problem is cheaper than another factorisation."""

@@ -30,7 +30,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
-from concio.solvers.methods.exhaustive.states import Empty, Point
+from concio.solvers.methods.exhaustive.state_questions import Empty, Point
 from concio.solvers.methods.forms.reduction import Reduction, reduce
 
 REACH = 1e7

@@ -47,7 +47,7 @@ def assess(
     Example: concio assess facade.toml --out assessment --language it
     """
     import concio
-    from concio.analysis.seismic.asked import read_asked
+    from concio.analysis.seismic.assessment_asked import read_asked
     from concio.analysis.seismic.strengthening import strengthen
     from concio.analysis.seismic.variations import tie_force, variations
     from concio.report.language import words_of

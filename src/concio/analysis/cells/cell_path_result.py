@@ -13,13 +13,13 @@ from concio.analysis.cells.moduli import Moduli, homogenise
 from concio.analysis.cells.periodic_cell import PeriodicCell
 from concio.analysis.path_result import NamedEvent
 from concio.analysis.result import Result
-from concio.contact.periodic import COMPONENTS, STRAINS
+from concio.contact.macroscopic_strain import COMPONENTS, STRAINS
 from concio.model.stages import Stage
 from concio.problem.certificate import Certificate
 from concio.problem.solution import Status, judge
 from concio.representation import short_repr
+from concio.solvers.path.path_state import LinearPath, PathState, path_kinematics
 from concio.solvers.path.record import Outcome
-from concio.solvers.path.state import LinearPath, PathState, path_kinematics
 from concio.verdict.cell_verdict import cell_verdict
 from concio.verdict.verdict import Verdict
 from concio.views import Shown, view

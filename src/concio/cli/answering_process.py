@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
 MOST_NUMBERS = 60
 LATER = {
-    "picture": ("picture", "picture"), "drag": ("drag", "dragged"), "layers": ("drawing", "layers"),
-    "acts": ("acts", "acts"), "underlay": ("tracing", "underlay"), "trace": ("tracing", "traced"),
+    "picture": ("page_picture", "picture"), "drag": ("drag", "dragged"), "layers": ("opened_drawing", "layers"),
+    "acts": ("acts", "acts"), "underlay": ("traced_picture", "underlay"), "trace": ("traced_picture", "traced"),
 }  # fmt: skip
 """Handlers by kind of request: module of the window and function. Each is loaded when first asked: a picture first."""
 

@@ -10,7 +10,7 @@ import typer
 from concio.cli.options import EngineOf, Factors, File, Json, Language, Quiet, UnitsOf, factors_of, loaded
 from concio.cli.outcome import answer, guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
-from concio.cli.path import control_of
+from concio.cli.path_command import control_of
 from concio.cli.progress import progress_bar, verdict_so_far
 
 Film = Annotated[

@@ -32,7 +32,7 @@ def layers(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     Parameters
     ----------
     request : mapping
-        As for :func:`concio.window.reading.read`.
+        As for :func:`concio.window.read_models.read`.
     tell : callable
         Not used.
 

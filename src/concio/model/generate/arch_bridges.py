@@ -15,8 +15,8 @@ import numpy as np
 
 from concio.arguments import strict_with
 from concio.errors import InputError
-from concio.model.generate.arguments import Common, checked, count, not_negative, positive
 from concio.model.generate.bridge_barrel import Barrel, RingPlan, barrel_between, barrel_of
+from concio.model.generate.generator_arguments import Common, checked, count, not_negative, positive
 from concio.model.generate.masonry import Piece, assemble, numbered, rectangle
 from concio.model.generate.profiles import profile_of
 from concio.model.materials import JointLaw
@@ -96,7 +96,7 @@ def bridge(
         Chords of each curved side of a voussoir, which keep its area; by default 2, of several rings 1: joints between
         rings are then straight from joint to joint.
     **common
-        See :class:`concio.model.generate.arguments.Common`.
+        See :class:`concio.model.generate.generator_arguments.Common`.
 
     Raises
     ------

@@ -13,8 +13,8 @@ from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
 
 if TYPE_CHECKING:
+    from concio.analysis.cells.cell_path_result import CellPath
     from concio.analysis.cells.moduli import Moduli
-    from concio.analysis.cells.path_result import CellPath
     from concio.analysis.cells.periodic_cell import PeriodicCell
     from concio.analysis.cells.strength import StrengthDomain
     from concio.model.stages import Stage
@@ -53,7 +53,7 @@ def cell(
 
     Example: concio cell cell.toml --stress yy=-100 --direction xy=1 --out result
     """
-    from concio.analysis.cells.path import strain_path
+    from concio.analysis.cells.cell_path import strain_path
     from concio.analysis.cells.periodic_cell import PeriodicCell
     from concio.analysis.cells.strength import strength as strength_of
     from concio.cli.cell_files import write_cell
@@ -114,7 +114,7 @@ def components(text: str, where: str) -> tuple[float, float, float]:
     InputError
         The text is not of that form.
     """
-    from concio.contact.periodic import COMPONENTS
+    from concio.contact.macroscopic_strain import COMPONENTS
     from concio.errors import InputError
     from concio.units import quantity
 

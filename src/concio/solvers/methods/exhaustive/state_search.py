@@ -40,7 +40,7 @@ from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Progress, ProgressCallback, Solution, Status, failed, judge
 from concio.solvers.algebra.scaled import Scaled, scale
 from concio.solvers.methods.exhaustive.clauses import Clause, ClauseSearch
-from concio.solvers.methods.exhaustive.states import Empty, Point, StateQuestions
+from concio.solvers.methods.exhaustive.state_questions import Empty, Point, StateQuestions
 from concio.solvers.states.settle import Settler
 
 ZERO = 1e-9

@@ -15,14 +15,14 @@ from typing import Literal
 
 import numpy as np
 
-from concio.analysis.cells.path_result import CellPath, CellStep
+from concio.analysis.cells.cell_path_result import CellPath, CellStep
 from concio.analysis.cells.periodic_cell import PeriodicCell
 from concio.analysis.entry_point import entry_point
 from concio.analysis.lent_compliance import SHEAR_TO_NORMAL, with_compliance
 from concio.analysis.path_result import NamedEvent, named_event
 from concio.arguments import strict
 from concio.contact.assembly import Assembly
-from concio.contact.periodic import COMPONENTS
+from concio.contact.macroscopic_strain import COMPONENTS
 from concio.errors import InputError
 from concio.model.model import Model
 from concio.model.stages import Stage
@@ -31,9 +31,9 @@ from concio.problem.contact_problem import ContactProblem, Laws
 from concio.problem.solution import ProgressCallback
 from concio.solvers.methods import find
 from concio.solvers.path.event_path import follow
+from concio.solvers.path.path_state import LinearPath, PathState, at_rest, elastic_energy
 from concio.solvers.path.proof import certify_between
 from concio.solvers.path.record import Outcome
-from concio.solvers.path.state import LinearPath, PathState, at_rest, elastic_energy
 from concio.solvers.path.step_path import StepPath, follow_in_steps
 
 Array = np.ndarray

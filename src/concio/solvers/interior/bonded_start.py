@@ -29,7 +29,7 @@ from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.interior.newton_finish import finish, stuck
 from concio.solvers.interior.redundant_forces import least_forces
-from concio.solvers.states.reading import Finished, natural_residual, read_states, sizes
+from concio.solvers.states.state_reading import Finished, natural_residual, read_states, sizes
 
 DELTAS = (1e-8, 1e-10, 1e-12)
 """Compliances added to pairs of mean area, scaled units, tried in turn."""

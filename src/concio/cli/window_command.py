@@ -44,7 +44,7 @@ def window(
     model = None if file is None else model_file(file, place)
     from concio.window.lane import PATIENCE, Lane
 
-    worker = [sys.executable, "-m", "concio.cli.answers"]
+    worker = [sys.executable, "-m", "concio.cli.answering_process"]
     look = Lane(worker, PATIENCE)
     look.start()  # it loads what pictures need while this process loads the server
     from concio.window.server import Server

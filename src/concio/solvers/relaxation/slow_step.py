@@ -15,8 +15,8 @@ from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.interior.newton_finish import finish
 from concio.solvers.interior.run import Cancelled, Run
 from concio.solvers.pivoting import sparse_lemke
-from concio.solvers.states.reading import Finished, natural_residual, read_states
 from concio.solvers.states.settle import Settler
+from concio.solvers.states.state_reading import Finished, natural_residual, read_states
 
 COVERS = 3
 """Covering vectors that pivoting tries for a first step."""

@@ -22,8 +22,8 @@ from concio.problem.pair_state import PairStates
 from concio.problem.parts import Part, parts_of
 from concio.problem.solution import ProgressCallback
 from concio.solvers.path.event_path import follow
+from concio.solvers.path.path_state import LinearPath, PathState, energy_of_step
 from concio.solvers.path.record import Event, EventPath, Outcome
-from concio.solvers.path.state import LinearPath, PathState, energy_of_step
 
 FINITE = ("jumps", "restarts")
 """Events between whose states a part is not linear."""

@@ -17,7 +17,7 @@ from concio.model.model import Load, Model
 from concio.model.polyhedron import Polyhedron
 from concio.plot.model_figure import load_arrows
 from concio.plot.space_loads import load_direction
-from concio.window.reading import DIGITS, own_loads, read
+from concio.window.read_models import DIGITS, own_loads, read
 from concio.window.worker import Tell
 
 UNKNOWN: dict[str, Any] = {
@@ -44,7 +44,7 @@ def picture(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
         "fixed": sum(b.kind == "fixed" for b in model.bodies),
     }  # fmt: skip
     tell("early", {**shown, **UNKNOWN})
-    from concio.window.joints import contacts
+    from concio.window.drawn_joints import contacts
 
     return {**shown, "early": False, **contacts(model)}
 

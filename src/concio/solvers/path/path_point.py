@@ -9,9 +9,18 @@ import numpy as np
 from concio.problem.contact_problem import Array
 from concio.problem.pair_state import PairStates
 from concio.solvers.path.equations import PathEquations
+from concio.solvers.path.path_state import (
+    CLOSED,
+    CRUSHED,
+    OPEN,
+    STICK,
+    LinearPath,
+    PathState,
+    certify_step,
+    energy_of_step,
+)
 from concio.solvers.path.rates import Rates, Values, grips, holds
 from concio.solvers.path.scaling import ScaledPath
-from concio.solvers.path.state import CLOSED, CRUSHED, OPEN, STICK, LinearPath, PathState, certify_step, energy_of_step
 
 ON_EQUATIONS = 1e-14
 """Residual of the equations of the present states, relative to their largest term, that needs no correction."""

@@ -22,10 +22,10 @@ from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.limits_of_work import COLLAPSE_WORK, LARGEST_SEARCH, UNASKED_WORK
+from concio.solvers.statics.associated_limit import LimitLoad, associated_limit
 from concio.solvers.statics.collapse_search import find_collapse_state
 from concio.solvers.statics.collapse_state import CollapseState
 from concio.solvers.statics.existence import find_mechanism, statically_admissible
-from concio.solvers.statics.limit import LimitLoad, associated_limit
 from concio.verdict.not_standing import BY_A_MECHANISM, of_the_joints
 
 Array = np.ndarray

@@ -63,7 +63,7 @@ def path(
     from concio.analysis.path import Stage, run_path
     from concio.cli.path_lines import path_facts, path_lines, write_path
     from concio.errors import InputError
-    from concio.model.weights import usual_order
+    from concio.model.self_weight import usual_order
     from concio.post.path_curve import most_moving
     from concio.units import quantity
 

@@ -15,7 +15,7 @@ from concio.model.interfaces.point_contact import PointContact
 from concio.model.model import Model
 from concio.verdict.attention import attention_of
 from concio.verdict.italian import in_italian
-from concio.window.reading import DIGITS
+from concio.window.read_models import DIGITS
 
 MOST_FINDINGS = 200
 

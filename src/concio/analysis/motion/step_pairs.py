@@ -11,9 +11,9 @@ from concio.analysis.motion.joints import SAG, Joints
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.state import Memory, TieMemory
 from concio.contact.attachments import Held, Ties
+from concio.contact.contact_search import ContactSearch
 from concio.contact.reference import Reference
 from concio.contact.rows import Rows
-from concio.contact.search import ContactSearch
 from concio.contact.slots import Slots
 from concio.contact.solid_search import SolidSearch
 from concio.kinematics.frames import dot

@@ -85,7 +85,7 @@ class Tables:
 
     def bodies(self) -> Table:
         """Return one row a body: name, kind, centroid, mean displacement and rotation, mean and principal stresses."""
-        from concio.post.motion import body_motions
+        from concio.post.body_motion import body_motions
 
         model, stress = self.result.model, self.result.stress
         s1, s2, angle = stress.principal

@@ -10,7 +10,7 @@ import numpy as np
 
 from concio.errors import InputError
 from concio.model.compose import place
-from concio.model.file.errors import placed
+from concio.model.file.file_errors import placed
 from concio.model.generate.generators import GENERATORS
 from concio.model.generate.merging import merge, merged
 from concio.model.model import Model

@@ -42,7 +42,7 @@ def diagnose(
     Example: concio diagnose facade.toml --out diagnosis --language it
     """
     import concio
-    from concio.analysis.cracks.asked import read_survey
+    from concio.analysis.cracks.diagnosis_asked import read_survey
     from concio.report.language import words_of
 
     if language is not None:

@@ -21,9 +21,9 @@ import scipy.sparse as sp
 from concio.errors import InputError
 from concio.problem.certificate import Certificate, Kinematics, certify
 from concio.problem.contact_problem import Array, ContactProblem
+from concio.problem.error_units import measure
 from concio.problem.pair_state import Normal, PairStates
 from concio.problem.tolerances import AT_BOUND
-from concio.problem.units import measure
 from concio.representation import short_repr
 
 OPEN, CLOSED, CRUSHED = int(Normal.OPEN), int(Normal.CLOSED), int(Normal.CRUSHED)

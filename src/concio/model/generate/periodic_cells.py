@@ -21,8 +21,8 @@ import numpy as np
 
 from concio.arguments import strict_with
 from concio.errors import InputError
-from concio.model.generate.arguments import Checked, Common, checked, count, positive, two
 from concio.model.generate.bonds import Course, bond_courses
+from concio.model.generate.generator_arguments import Checked, Common, checked, count, positive, two
 from concio.model.generate.masonry import numbered, rectangle
 from concio.model.generate.periodic_rubble import rubble_cell
 from concio.model.generate.spacing import subdivided
@@ -83,8 +83,8 @@ def cell(
     seed, aspect, evenness, shortest_edge
         Of rubble, as in :func:`concio.rubble`.
     **common
-        See :class:`concio.model.generate.arguments.Common`; a cell has no base and no horizontal load, and the weight
-        of its materials does not act.
+        See :class:`concio.model.generate.generator_arguments.Common`; a cell has no base and no horizontal load, and
+        the weight of its materials does not act.
 
     Raises
     ------
