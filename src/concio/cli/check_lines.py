@@ -94,7 +94,7 @@ def check_lines(
         most = units.text("force", sum(tie.strength for tie in soil), 4)
         lines.append(f"soil         presses {len(soil)} faces, {most} in all at most")
     for tie in (t for t in model.ties if t.kind == "bar"):
-        ends = f"{tie.body_a} to {tie.body_b or 'a fixed point'}"
+        ends = f"{tie.body_a or 'a fixed point'} to {tie.body_b or 'a fixed point'}"
         lines.append(f"tie          {tie.name}: {ends}; {tie_words(tie, units)}")
     geometry = [f"overlap      {o.sentence}" for o in detection.overlaps if o.sentence not in fault]
     geometry += [f"near miss    {m.sentence}" for m in detection.near_misses]

@@ -187,7 +187,7 @@ class Tie:
     ----------
     name : str
     body_a, body_b : str
-        Body names; ``body_b`` may be "" for a fixed point in space.
+        Body names; one of them may be "" for a fixed point in space.
     at_a, at_b : points
         Ends [m].
     stiffness : float

@@ -101,7 +101,8 @@ def tie_ends(model: Model) -> Array:
 def tie_bodies(model: Model) -> Array:
     """Return the numbers of the bodies that the ends of each tie are fixed to (t, 2), -1 for a point that stands."""
     number = {body.name: k for k, body in enumerate(model.bodies)}
-    return np.array([[number[t.body_a], number.get(t.body_b, -1)] for t in model.ties], dtype=int).reshape(-1, 2)
+    ends = [[number.get(name, -1) for name in (t.body_a, t.body_b)] for t in model.ties]
+    return np.array(ends, dtype=int).reshape(-1, 2)
 
 
 def moved_ties(result: Result, u: Array | None, scale: float) -> Array:

@@ -138,7 +138,8 @@ class _Words:
         self, found: Assessment, language: str, write: Write, name: Callable[[str], str], reason: Callable[[str], str],
         way: Callable[[str], str],
     ) -> None:  # fmt: skip
-        self.found, self.words, self.write, self.name, self.reason = found, WORDS[language], write, name, reason
+        self.found, self.language, self.words, self.write = found, language, WORDS[language], write
+        self.name, self.reason = name, reason
         self.way = way
 
     def say(self, key: str, **values: Any) -> str:
@@ -162,6 +163,7 @@ class _Words:
             limits=self.limits(),
             unchecked=tuple(self.item(item) for item in found.open),
             attention=(*attention_of(found.model, found.assembly.detection), *found.notes, *self.assumed()),
+            language=self.language,
         )
 
     def assumed(self) -> tuple[str, ...]:

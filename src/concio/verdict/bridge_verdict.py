@@ -48,6 +48,7 @@ def bridge_verdict(found: BridgeResult, language: Language = "en") -> Verdict:
         limits=_limits(found, w),
         unchecked=_unchecked(found, w),
         attention=(*_rests(found, outcome, w), *attention(found.assembly)),
+        language=language,
     )
 
 

@@ -20,7 +20,7 @@ def apart(model: Model, detection: Detection) -> list[str]:
     number = {body.name: k for k, body in enumerate(model.bodies)}
     ground = len(model.bodies)
     links = [(i.a, i.b) for i in detection.interfaces]
-    links += [(number[tie.body_a], number.get(tie.body_b, ground)) for tie in model.ties]
+    links += [(number.get(tie.body_a, ground), number.get(tie.body_b, ground)) for tie in model.ties]
     links += [(number[support.body], ground) for support in model.supports]
     links += [(k, ground) for k, body in enumerate(model.bodies) if body.kind == "fixed"]
     if model.periods is not None or not detection.interfaces:

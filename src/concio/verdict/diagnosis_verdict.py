@@ -60,7 +60,7 @@ class _Words:
     """Puts one diagnosis into words."""
 
     def __init__(self, found: Diagnosis, language: str, write: Write) -> None:
-        self.found, self.words, self.write = found, WORDS[language], write
+        self.found, self.language, self.words, self.write = found, language, WORDS[language], write
         self.comma = write(0.5, 1) == "0,5"
         self.units = found.model.report
 
@@ -85,6 +85,7 @@ class _Words:
             unchecked=self.unchecked(),
             attention=(*attention_of(found.model, found.assembly.detection), *self.noticed()),
             next_steps=self.next_steps(status),
+            language=self.language,
         )
 
     def outcome(self) -> tuple[Outcome, str]:

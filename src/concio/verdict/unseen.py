@@ -97,5 +97,5 @@ def _parts(model: Model, detection: Detection) -> np.ndarray:
     free = [body.kind != "fixed" for body in model.bodies]
     number = {body.name: k for k, body in enumerate(model.bodies)}
     links = [(i.a, i.b) for i in detection.interfaces]
-    links += [(number[t.body_a], number[t.body_b]) for t in model.ties if t.body_b in number]
+    links += [(number[t.body_a], number[t.body_b]) for t in model.ties if {t.body_a, t.body_b} <= {*number}]
     return connected_bodies([(a, b) for a, b in links if free[a] and free[b]], len(free))

@@ -18,6 +18,8 @@ Tone = Literal["good", "bad", "unsure"]
 
 WIDTH = 13
 """Width of the first column of lines of text."""
+NOT_CHECKED = {"en": "Not checked", "it": "Non controllato"}
+"""Begins what was not checked, in the language of a verdict."""
 
 
 class Outcome(Enum):
@@ -74,6 +76,8 @@ class Verdict:
         result adds.
     next_steps : tuple of str
         What to do next, for a report.
+    language : {"en", "it"}
+        In which the sentences are written.
     """
 
     outcome: Outcome
@@ -87,6 +91,7 @@ class Verdict:
     unchecked: tuple[str, ...] = ()
     attention: tuple[str, ...] = ()
     next_steps: tuple[str, ...] = ()
+    language: str = "en"
 
     @property
     def holds(self) -> bool:
@@ -108,7 +113,7 @@ class Verdict:
         """The answer, followed by what was asked for and not checked."""
         if not self.unchecked:
             return self.answer
-        return f"{self.answer} Not checked: {'; '.join(line.rstrip('.') for line in self.unchecked)}."
+        return f"{self.answer} {NOT_CHECKED[self.language]}: {'; '.join(line.rstrip('.') for line in self.unchecked)}."
 
     def __str__(self) -> str:
         return self.sentence

@@ -10,9 +10,11 @@ import pytest
 
 import concio
 from concio.analysis.motion.state import TieMemory
+from concio.cli.check_lines import check_lines
 from concio.contact.assembly import assemble
 from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Load, Support, Tie
+from concio.post.solids import moved_ties
 from models import box, on_ground, weight
 
 STONE = {"kind": "rigid", "material": "stone"}
@@ -113,3 +115,22 @@ def test_a_slack_or_broken_tie_stores_no_energy() -> None:
     ties = SimpleNamespace(stiffness=np.array([1000.0, 2000.0, 500.0]))
     memory = TieMemory(np.array([-2e-3, 3e-3, -4e-3]), np.zeros(3), np.array([False, False, True]))
     assert memory.stored(ties) == pytest.approx(0.5 * 1000.0 * 4e-6, rel=1e-12)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_which_end_is_named_first_changes_nothing(dim: int) -> None:
+    """The fixed end may come first, too: words and drawings once stopped there."""
+    bare, ways = hung(), [Tie("rod", "b", (0.2, 0.5), "", (0.9, -2.0), 1000.0)]
+    ways.append(replace(ways[0], body_a="", at_a=ways[0].at_b, body_b="b", at_b=ways[0].at_a))
+    models = [replace(bare, ties=(tie,)) for tie in ways]
+    one, other = (concio.solve(m if dim == 2 else concio.extrude(m, 1.0)) for m in models)
+    assert one.ties.tension > 5.0
+    assert other.ties.tension == pytest.approx(one.ties.tension, rel=1e-9)
+    assert other.verdict.answer == one.verdict.answer
+    assert other.attention == one.attention
+    ends = [moved_ties(r, None, 100.0) for r in (one, other)] if dim == 3 else [np.zeros((1, 2, 3))] * 2
+    assert ends[1][:, ::-1] == pytest.approx(ends[0], rel=1e-9)
+    told = [check_lines(r.model, r.assembly.detection, {}, every=True) for r in (one, other)]
+    (line,) = (line for line in told[1] if line.startswith("tie "))
+    assert line.startswith("tie          rod: a fixed point to b;")
+    assert len(told[0]) == len(told[1])

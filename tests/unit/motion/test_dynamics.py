@@ -163,7 +163,8 @@ def test_energy_balance_of_a_rocking_or_sliding_block_whatever_its_joint(law, op
     assert found.certified
     assert found.energy.error < 1e-12
     assert np.abs(found.energy["drift"]).max() < 1e-2 * found.energy.turned_over
-    assert 0.05 < found.largest_rotation[1] < 0.35 or height < 1
+    rocks = found.largest_rotation[1]
+    assert 0.1 < rocks < 0.16 if height > 1 else rocks < 0.01
 
 
 def test_a_crushing_joint_settles_and_carries_the_block_on():

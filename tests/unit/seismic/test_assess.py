@@ -166,7 +166,7 @@ def test_a_tie_that_does_not_yield_leaves_another_mechanism() -> None:
     assert worst is not None
     # the head is held, the foot slides out: 0.8 (84.4 kN) at the foot against the push about the head
     assert worst.multiplier > 1.0
-    assert worst.mechanics.joints[-1].kind == "bar" or any(j.kind == "bar" for j in worst.mechanics.joints)
+    assert any(j.kind == "bar" for j in worst.mechanics.joints)
 
 
 def test_named_blocks_move_while_the_others_stand() -> None:

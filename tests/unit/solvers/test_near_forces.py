@@ -131,6 +131,7 @@ def test_a_state_far_away_is_no_excuse_for_a_wrong_answer(panel):
     for live in (-PUSH, 0.0, 2 * PUSH):
         other = panel.problem({"dead": 1.0, "live": live})
         found = nearby.solve(other, last)
+        assert (found is None) == (live != 0.0)
         assert found is None or certify(other, *state_of(found)).worst <= 1e-9
 
 

@@ -167,7 +167,7 @@ def test_forces_far_above_the_loads_ask_for_attention():
     result = concio.solve(model)
     grows, heavy = result.attention
     assert "without bound" in grows
-    assert "|block carries" in heavy or "block|right carries" in heavy
+    assert "|block carries" in heavy
     assert "times all loads" in heavy
     assert result.summary()["attention"] == list(result.attention)
     quiet = concio.solve(on_ground(box("b", 0, 1, 0, 1, **STONE), loads=(weight(),)))

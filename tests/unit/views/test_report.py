@@ -330,7 +330,7 @@ def test_collapse_opens_without_errors(sliding: Result, tmp_path: Path) -> None:
     file = write_report(sliding, tmp_path / "report.html", figures=False)
     dom = browse(file, tmp_path / "profile")
     assert re.search(r'<pre id="errors" hidden(="")?></pre>', dom)
-    assert "slides" in dom or "slips" in dom
+    assert "slides" in dom
 
 
 def test_joints_that_were_nearly_made_come_first_of_what_to_do_next() -> None:
