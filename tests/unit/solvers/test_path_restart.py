@@ -11,7 +11,7 @@ import pytest
 import concio
 from concio.analysis.limit import limit
 from concio.solvers.path.record import Outcome
-from concio.solvers.path.restart import look_beyond, moves_freely
+from concio.solvers.path.restart import TENTH, is_jump, look_beyond, moves_freely, shrinks, step_between
 from concio.verdict.limit_words import limit_lines
 from path_helpers import energy_error, least_dissipation, weight_then, worst_certificate
 from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, wall
@@ -37,6 +37,22 @@ def test_jumps_under_growing_load_lead_to_the_peak_that_controlled_displacement_
     assert moved > 1e-3 * float(np.abs(before.displacement).max())
     least = look_beyond(path, before, 1.0).state  # the next load, however near, has its answer as far away
     assert np.abs(least.displacement - before.displacement).max() == pytest.approx(moved, rel=1e-2)
+    assert is_jump(path, before, least, None)
+
+
+def test_between_two_events_a_tenth_of_the_load_moves_a_tenth_of_the_way():
+    """Paths are straight between events, so that the answer near the line is known without a solver."""
+    a = wall(FERRIS_TIN_LOI["wall 3"])
+    path, grown = weight_then(a, MU, a.load(1, 0), compliance=1e-4, until=0.1)
+    ways = [(b.parameter - a.parameter, a, b) for a, b in zip(grown.states[:-1], grown.states[1:], strict=True)]
+    length, start, end = max(ways, key=lambda way: way[0])
+    between = step_between(path, start, end, start.parameter + TENTH * length)
+    assert between is not None
+    assert between.solved
+    way = end.displacement - start.displacement
+    assert np.abs(between.displacement - start.displacement - TENTH * way).max() <= 1e-9 * np.abs(way).max()
+    assert shrinks(start, end, between)
+    assert not is_jump(path, start, end, None)
 
 
 def test_motions_that_need_no_change_of_forces():

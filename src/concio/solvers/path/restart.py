@@ -49,6 +49,9 @@ Forces out of balance by a millionth of the load are lost among the errors of th
 reached was let go in vain.
 """
 
+TENTH = 0.1
+"""Share of an increment at which it is seen whether its answer is a jump."""
+
 SHRINKS = 0.3
 """An answer whose distance shrinks by this factor under a tenth of the increment is not a jump."""
 
@@ -185,11 +188,26 @@ def is_jump(
     path: LinearPath, point: PathState, state: PathState, progress: ProgressCallback | None, how: How = "near"
 ) -> bool:
     """Tell whether a state stays away from the point when the increment becomes ten times smaller."""
-    nearer = point.parameter + 0.1 * (state.parameter - point.parameter)
-    closer = solve_step(path, point, nearer, progress, how)
+    nearer = point.parameter + TENTH * (state.parameter - point.parameter)
+    between = step_between(path, point, state, nearer)
+    if between is not None and shrinks(point, state, between):
+        return False
+    return not shrinks(point, state, solve_step(path, point, nearer, progress, how))
+
+
+def step_between(path: LinearPath, point: PathState, state: PathState, parameter: float) -> Solution | None:
+    """Solve a load step to between a point and a state: near the line that joins them, in the states of its end."""
+    here = (point.displacement, point.normal_force, point.friction_force)
+    there = (state.displacement, state.normal_force, state.friction_force)
+    begin = tuple(a + TENTH * (b - a) for a, b in zip(here, there, strict=True))
+    return Nearby().solve(step_problem(path, point, parameter), begin)
+
+
+def shrinks(point: PathState, state: PathState, closer: Solution) -> bool:
+    """Tell whether a certified answer to a tenth of the increment lies closer to the point than the state."""
     far = float(np.abs(state.displacement - point.displacement).max(initial=0.0))
     near = float(np.abs(closer.displacement - point.displacement).max(initial=0.0))
-    return not (closer.solved and near <= SHRINKS * far)
+    return closer.solved and near <= SHRINKS * far
 
 
 def moves_freely(path: LinearPath, point: PathState, velocity: Array) -> bool:

@@ -60,9 +60,9 @@ STEPS = 25
 DIGITS = 1e-13
 """Violation of a proof below which no further step is made; above it steps go on while they halve it."""
 
-STATES_AT, STATE_STEPS = (1e-6, 1e-8), 6
+STATES_AT, STATE_STEPS = (1e-6, 1e-8, 1e-10, 1e-12, 1e-14), 6
 """Values of e at which the motion of given states is worked out, and steps for it; each cuts what still deforms by e
-over the least stiffness of the structure."""
+over the least stiffness of the structure: what moves off slowly, under little load too many, needs the least."""
 
 BEYOND = 100.0
 """Least length of the motion, in displacements besides it, at the point on it that is certified: directions of slips
