@@ -127,8 +127,11 @@ class _Search:
         while self.high - self.low > width and self.programmes < FRICTION_PROGRAMMES:
             beyond = False
             inside = np.isfinite(self.guess) and self.low < self.guess + step < self.high - step
-            if inside and not undecided:
+            apart = step > 0.25 * width  # a trial next to Newton's step was undecided: one on either side is as close
+            if inside and undecided <= apart:
                 trial = max(self.guess + step, self.low + step)
+            elif apart and not undecided and self.low < self.guess - step < self.high <= self.guess + 2.0 * step:
+                trial = self.guess - step
             elif np.isfinite(self.guess) and self.guess + step >= self.high - step and not undecided:
                 beyond = True
                 trial = self.high - min(max(short, step / (self.high - self.low)), 0.5) * (self.high - self.low)
