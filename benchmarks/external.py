@@ -119,10 +119,11 @@ def engine(problem: ContactProblem) -> Answer:
     seconds = np.inf
     for _ in range(2):
         begin = time.perf_counter()
-        solution = find("interior-point")(problem)
+        solution = find("auto")(problem)
         seconds = min(seconds, time.perf_counter() - begin)
     u = solution.displacement if solution.solved else None
-    note = f"certificate {solution.certificate.worst:.0e}, {solution.iterations} iterations"
+    by = solution.info["strategy"]
+    note = f"certificate {solution.certificate.worst:.0e}, {by}, {solution.factorisations} factorisations"
     return Answer(u, seconds, "converged" if solution.solved else "FAILED", note)
 
 

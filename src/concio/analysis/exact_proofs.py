@@ -112,9 +112,11 @@ def step_proof(
         return balance_proof(assembly, factors, numbers=numbers)
     refuse(assembly)
     lent = lend(assemble(assembly.model) if assembly.lent_compliance else assembly)
-    if lent.lent_compliance:  # what the result holds is the limit of stiff joints
-        solution = find("auto")(lent.problem(factors))
-    states = pair_states(lent.problem(factors), solution)
+    problem = lent.problem(factors)
+    inside = find("interior-point")(problem, least=False)  # the least forces lie on the edge of what is allowed
+    if inside.solved or lent.lent_compliance:  # what the result holds is the limit of stiff joints
+        solution = inside if inside.solved else find("auto")(problem)
+    states = pair_states(problem, solution)
     forces = np.column_stack([solution.normal_force, solution.friction_force])
     return prove_equilibrium(lent, factors, states, forces, numbers=numbers)
 

@@ -56,10 +56,14 @@ def thrust_lines(result: Result) -> list[ThrustLine]:
     for a, b in merged:
         touching.setdefault(a, []).append(b)
         touching.setdefault(b, []).append(a)
+    neighbours: dict[int, set[int]] = {}
+    for a, b in zip(joints.body_a.tolist(), joints.body_b.tolist(), strict=True):
+        neighbours.setdefault(a, set()).add(b)
+        neighbours.setdefault(b, set()).add(a)
     fixed = {i for i, b in enumerate(result.model.bodies) if b.kind == "fixed"}
 
     def inner(b: int) -> bool:
-        return b not in fixed and len(touching[b]) == 2
+        return b not in fixed and len(touching[b]) == len(neighbours[b]) == 2
 
     found: list[ThrustLine] = []
     used: set[tuple[int, int]] = set()

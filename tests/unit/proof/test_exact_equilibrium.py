@@ -179,8 +179,12 @@ def test_elastic_walls_are_proved_though_joint_points_repeat_each_other(number: 
     total = sum(high - low for low, high in x)
     assert total < Fraction(1, 10**15)
     assert made["left_out"], "corners of three blocks have points that repeat each other"
-    found = np.array([float(low) for low, _ in x[n::2]])[: len(result.contacts.normal_force)]
-    assert np.allclose(found, result.contacts.normal_force, atol=1e-7 * np.abs(found).max())
+    wanted = result.contacts.normal_force
+    found = np.array([float(low) for low, _ in x[n::2]])[: len(wanted)]
+    _, place, count = np.unique(result.contacts.point.round(9), axis=0, return_inverse=True, return_counts=True)
+    alone = count[place.ravel()] == 1  # elsewhere blocks share their forces in several ways
+    assert 5 < alone.sum() < len(wanted)
+    assert np.allclose(found[alone], wanted[alone], atol=1e-7 * np.abs(found).max())
 
 
 def test_states_that_are_not_those_of_the_answer_are_refused() -> None:

@@ -211,7 +211,7 @@ def test_the_way_from_a_neighbour_can_be_cancelled():
         return report.method == "sparse-lemke"
 
     with pytest.raises(Cancelled):
-        from_neighbours(Run(scale(_arch(1.0, 5, 10))), stop)
+        from_neighbours(Run(scale(_arch(1.0, 8, 12))), stop)
     assert seen[-1] == "sparse-lemke"
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from concio.solvers.interior.redundant_forces import least_forces
 from scipy.linalg import null_space
 
 import concio
@@ -16,7 +17,6 @@ from concio.solvers.auto.strategies import best_point_met
 from concio.solvers.interior.interior_point import InteriorPoint
 from concio.solvers.interior.newton import NewtonStep, Products
 from concio.solvers.interior.point import Residuals
-from concio.solvers.interior.redundant_forces import least_forces
 from concio.solvers.interior.run import STARTS, Run, starts_for
 from concio.solvers.methods import find
 from concio.solvers.relaxation import slow_step as one_step

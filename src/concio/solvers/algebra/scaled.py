@@ -258,13 +258,22 @@ class Scaled:
         return replace(self, **_in_units(self.problem, self.C, self.force, self.length, np.zeros(self.pairs)))
 
     @cached_property
-    def start(self) -> Array:
-        """Forces of the glued structure brought into the cones (m, d): where iterations start."""
+    def bonded(self) -> Array:
+        """Forces of the glued structure (m, d)."""
         springs = 1.0 / (softness(self.problem) + self.compliance)
         held = self.x if not self.problem.f.any() else np.minimum(self.x, 0.0)
-        t = -springs * (held + self.along(self.glued))
-        t += self.unstressed
-        return self.cone.project(t)
+        return np.asarray(self.unstressed - springs * (held + self.along(self.glued)))
+
+    @cached_property
+    def start(self) -> Array:
+        """Forces of the glued structure brought into the cones (m, d): where iterations start."""
+        return self.cone.project(self.bonded)
+
+    @property
+    def outside(self) -> float:
+        """Largest distance of a force of the glued structure from its cone, over the largest of them."""
+        largest = float(np.abs(self.bonded).max(initial=0.0))
+        return float(np.abs(self.bonded - self.start).max(initial=0.0)) / largest if largest else 0.0
 
 
 def scale(problem: ContactProblem, *, loads: Array | None = None) -> Scaled:

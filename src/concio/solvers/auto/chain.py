@@ -37,7 +37,7 @@ from concio.solvers.pivoting import sparse_lemke
 PLANE, SPACE = (2,), (3,)
 
 STRATEGIES: tuple[Strategy, ...] = (
-    Strategy("all pairs stick", sticking, SPACE),
+    Strategy("all pairs stick", sticking),
     Strategy("interior-point", usual_starts),
     Strategy("statics", statics),
     Strategy("neighbours in friction", neighbours, PLANE),

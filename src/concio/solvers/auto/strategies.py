@@ -60,7 +60,10 @@ def first_answer(run: Run, table: Sequence[Strategy]) -> Solution:
 
 
 def sticking(run: Run) -> Solution | None:
-    """Begin where all pairs of bonded joints stick; let go of those whose strength that exceeds."""
+    """Begin where all pairs stick: in the plane where few are likely to do anything else, in space in bonded joints."""
+    if run.scaled.dim == 2:
+        held = run.sticking()
+        return None if held is None else run.solution(held, method="active-set")
     if not applies(run.scaled):
         return None
     near = from_sticking(run.scaled)

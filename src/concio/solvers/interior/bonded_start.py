@@ -28,7 +28,7 @@ from concio.problem.contact_problem import Array
 from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.interior.newton_finish import finish, stuck
-from concio.solvers.interior.redundant_forces import least_forces
+from concio.solvers.states.redundant_forces import least_forces
 from concio.solvers.states.state_reading import Finished, natural_residual, read_states, sizes
 
 DELTAS = (1e-8, 1e-10, 1e-12)

@@ -16,6 +16,7 @@ def solve(
     starts: int | None = None,
     homotopy: bool = True,
     near: tuple[Array, Array, Array] | None = None,
+    least: bool = True,
 ) -> Solution:
     """Solve one load step of a problem of any dimension.
 
@@ -32,6 +33,9 @@ def solve(
     near : arrays, optional
         Displacements [m], t_n and t_t [kN] of a state from which Newton's method is tried first, then the interior
         point, in space.
+    least : bool
+        Whether forces that equilibrium leaves open are the least, as they are reported; otherwise those in the middle
+        of what the joint laws allow.
 
     Returns
     -------
@@ -42,7 +46,7 @@ def solve(
     if rest is not None:
         return rest
     scaled = scale(problem.by(engine))
-    run = Run(scaled, progress)
+    run = Run(scaled, progress, least=least)
     try:
         found = None
         if near is not None and scaled.dim == 3:

@@ -24,7 +24,7 @@ from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import Scaled
 from concio.solvers.algebra.second_order_cone import times
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
-from concio.solvers.interior.redundant_forces import least_forces
+from concio.solvers.states.redundant_forces import least_forces
 from concio.solvers.states.state_reading import Finished, natural_residual, read_states, sizes
 
 DELTA = 1e-3

@@ -138,10 +138,13 @@ class Run:
     ----------
     scaled : Scaled
     progress : callable or None
+    least : bool
+        Whether forces that equilibrium leaves open are the least; otherwise those at which the iteration ended, in the
+        middle of what the joint laws allow.
     """
 
-    def __init__(self, scaled: Scaled, progress: ProgressCallback | None = None) -> None:
-        self.scaled, self.progress = scaled, progress
+    def __init__(self, scaled: Scaled, progress: ProgressCallback | None = None, *, least: bool = True) -> None:
+        self.scaled, self.progress, self.least = scaled, progress, least
         self.iterations = 0
         self.trace: list[str] = []
         self.history: list[float] = []
@@ -209,6 +212,17 @@ class Run:
                 break
         return found
 
+    def sticking(self) -> Finished | None:
+        """Return the exact answer of a plane problem near the state in which every pair sticks; None where none is."""
+        if not self.scaled.deforms:
+            return None
+        found = self.settler.from_sticking(self.scaled)
+        if found is None:
+            return None
+        self.watch("all pairs stick at first")(0, found.error)
+        self.trace.append("all pairs stick at first: those that are contradicted change together")
+        return self._judged(found, settled=True)
+
     def homotopy(self) -> Finished | None:
         """Walk from associated flow; return the exact answer or None."""
         z, path = walk(self.engine, watch=self.watch("dilatancy homotopy"))
@@ -239,7 +253,7 @@ class Run:
         """Exact finish of a plane point by the active set; return it if its certificate holds, None if not."""
         if self.history:
             self.tell("exact finish")
-        found = self.settler.settle(self.scaled, u, t, rounds=rounds, flips=flips)
+        found = self.settler.settle(self.scaled, u, t, rounds=rounds, flips=flips, least=self.least)
         return self._judged(found, settled=found.settled)
 
     def newton(
@@ -247,7 +261,7 @@ class Run:
     ) -> Finished | None:
         """Exact finish of a point by Newton's method; return it if its certificate holds, None if not."""
         for weight in weights:
-            found = finish(self.scaled, u, t, rho=weight, rounds=rounds, patience=patience)
+            found = finish(self.scaled, u, t, rho=weight, rounds=rounds, patience=patience, least=self.least)
             if self._judged(found, settled=found.error <= EXACT) is not None:
                 return found
         return None

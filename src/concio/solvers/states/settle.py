@@ -6,9 +6,14 @@ others keep their states (:mod:`concio.solvers.states.small_problem`); pairs con
 of this happens on one factor, updated by a few columns for each pair in question. Where there are too many of them they
 all take the states the point shows, which costs a factorisation.
 
-Forces of redundant pairs (corners) are not unique. Those reported are of least norm among those of the states, each
-pair's square over its area, so that it is the norm of the tractions: it depends on nothing but the structure, and a
-uniform pressure is reported as one.
+Where a plane structure is likely to be near the state in which every pair sticks (walls far from their limit, of whose
+pairs two in ten open or slip), the interior point is not needed: all pairs that the answer of given states contradicts
+take the states it shows, and the right states come after three to six solves. Whether that is likely is seen without
+cost: the glued structure, from which a problem has its units, has forces, and where these are far outside the cones
+(arches, panels that hang) most states are others.
+
+Forces of redundant pairs (corners) are not unique. Those reported are the least of all that the joint laws allow
+(:mod:`concio.solvers.states.redundant_forces`): they depend on nothing but the structure and its displacements.
 """
 
 from __future__ import annotations
@@ -24,6 +29,7 @@ from concio.problem.tolerances import EXACT
 from concio.solvers.algebra.scaled import LOOSE, Scaled
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.states.given import REFINED, TRIED, GivenStates
+from concio.solvers.states.redundant_forces import least_forces
 from concio.solvers.states.small_problem import decide
 from concio.solvers.states.state_reading import Finished, natural_residual, read_states
 from concio.solvers.states.static_laws import laws_of
@@ -36,6 +42,19 @@ TOGETHER = 40
 
 PATIENCE = 2
 """Rounds in a row that leave no fewer pairs in question, more than can be decided together, before settling stops."""
+
+NEAR = 0.06
+"""Largest distance of the forces of the glued structure from their cones, over the largest of them, at which states
+that begin with every pair sticking are worth trying."""
+
+LARGEST = 3000
+"""Largest number of pairs at which they are; in larger walls each round contradicts other pairs, for long."""
+
+FALL = 0.7
+"""Largest number of pairs contradicted in a round, over that of the round before, where they are not few."""
+
+FEW = 0.03
+"""Share of the pairs up to which they are."""
 
 ANCHORS = 8
 """Largest number of times the springs of loose unknowns are anchored again."""
@@ -83,7 +102,7 @@ class Settler:
         flips : int
             How many of them too many pairs are in question for a small problem, and a factorisation is due.
         least : bool
-            Whether forces that are not unique are those of least norm; otherwise those near to the point.
+            Whether forces that are not unique are the least of all; otherwise those near to the point.
         """
         states = read_states(s, u, t) if states is None else states
         run = _Run(self.given, s, u, springs)
@@ -97,8 +116,33 @@ class Settler:
             error, laws = natural_residual(s, u, t)
             found = Finished(u, t, states, error, 0, np.flatnonzero(laws > EXACT))
         elif found.settled:
-            found = run.least_norm(found) if least else run.near(found)
+            found = run.near(found)
+            found = least_forces(s, found) if least else found
         return replace(found, solves=run.solves)
+
+    def from_sticking(self, s: Scaled) -> Finished | None:
+        """Return the answer to which states lead that begin with every closed pair sticking; None where it is not near.
+
+        All pairs that are contradicted change together: the states of a symmetric structure stay symmetric.
+        """
+        if s.pairs > LARGEST or s.outside > NEAR:
+            return None
+        run, allowed = _Run(self.given, s, np.zeros_like(s.f), LOOSE), s.pairs
+        states = PairStates.plane(s.x[:, 0] <= 0.0, np.zeros(s.pairs))
+        u, t = np.zeros_like(s.f), s.unstressed
+        with suppress(SingularMatrixError):
+            for _ in range(ROUNDS):
+                u, t, wrong, shown = run.solved(states, u, t)
+                count = int(wrong.sum())
+                if not count:
+                    break
+                if count > max(FALL * allowed, FEW * s.pairs):
+                    return None
+                allowed, states = count, _mixed(states, shown, wrong)
+        found = run.best
+        if found is None or not found.settled:
+            return None
+        return replace(least_forces(s, run.near(found)), solves=run.solves)
 
     def _settle(
         self, run: _Run, states: PairStates, u: Array, t: Array, chosen: Array, rounds: int, flips: int
@@ -176,25 +220,14 @@ class _Run:
         found = decide(self.given, self.s, states, pick, u, t, self.anchor, springs=self.springs)
         return None if found is None else (found.states, found.u, found.t)
 
-    def least_norm(self, found: Finished) -> Finished:
-        """Return the answer with the least-norm forces among those of its states, if these obey the joint laws.
-
-        Refinement from pairs that carry nothing, on the factor of these very states, ends at the least norm; the
-        displacements are the same. The springs of loose unknowns are anchored again at the answer, which takes their
-        last influence out.
-        """
-        return self._from(found, self.s.unstressed, own=True) or self.near(found)
-
     def near(self, found: Finished) -> Finished:
         """Return the answer refined once more from its own forces, springs anchored at it, where that can help."""
-        return found if found.error <= REFINED else self._from(found, found.t, own=False) or found
-
-    def _from(self, found: Finished, start: Array, *, own: bool) -> Finished | None:
-        """Return the answer refined from other forces, None where these do not obey the joint laws."""
+        if found.error <= REFINED:
+            return found
         laws = laws_of(self.s, found.states)
-        u, t, _ = self.given.solve(self.s, laws, found.u, start, found.u, springs=self.springs, own=own)
+        u, t, _ = self.given.solve(self.s, laws, found.u, found.t, found.u, springs=self.springs)
         error, _ = natural_residual(self.s, u, t)
-        return replace(found, u=u, t=t, error=error) if error <= max(found.error, EXACT) else None
+        return replace(found, u=u, t=t, error=error) if error <= max(found.error, EXACT) else found
 
 
 def _mixed(states: PairStates, shown: PairStates, wrong: Array) -> PairStates:

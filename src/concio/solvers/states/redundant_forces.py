@@ -43,6 +43,9 @@ ROUNDS = 60
 LEAST_BALANCED = 1e-15
 """Imbalance over the largest force at which Newton's method stops."""
 
+DENSE = 200
+"""Largest number of unknowns whose equations are put together and solved as a full matrix."""
+
 SOFT = 1e-12
 """Added to the diagonal of the matrix, over its largest entry: entangled pairs leave it singular."""
 
@@ -74,8 +77,8 @@ def least_forces(s: Scaled, found: Finished) -> Finished:
     sets = _Sets(s.cone[core], slips[core], direction[core], s.rough[core])
     rows = (core[:, None] * s.dim + np.arange(s.dim)).ravel()
     C = sp.csr_array(s.C[rows])
-    touched = np.unique(C.indices)
-    t = _least(sp.csr_array(C[:, touched]), sets, s.share[core], found.t[core], s.unstressed[core], force)
+    C = sp.csr_array(C[:, np.unique(C.indices)])
+    t = _least(C.toarray() if C.shape[1] <= DENSE else C, sets, s.share[core], found.t[core], s.unstressed[core], force)
     if t is None:
         return found
     every = found.t.copy()
@@ -128,27 +131,29 @@ class _Sets:
 
 def _entangled(s: Scaled, chosen: Array, slips: Array, direction: Array) -> Array:
     """Return the numbers of the chosen pairs whose forces no unknown of their own determines."""
-    d = s.dim
-    parts = [sp.csr_array(s.C[np.arange(k, s.pairs * d, d)]) for k in range(d)]
+    d, pairs = s.dim, s.pairs
     # a pair that slips, or has no friction, has one unknown force, along its ray
-    ray = np.column_stack([np.ones(s.pairs), -s.cone.friction[:, None] * direction])
+    ray = np.column_stack([np.ones(pairs), -s.cone.friction[:, None] * direction])
     single = slips | ~s.rough
-    squares = {(a, b): sp.csr_array(parts[a].multiply(parts[b])) for a in range(d) for b in range(a, d)}
-    met = sp.csr_array(sum((abs(p) for p in parts), start=sp.csr_array(parts[0].shape)))
-    met.data[:] = 1.0
+    rows = np.repeat(np.arange(pairs * d), np.diff(s.C.indptr))
+    met, entry = np.unique(rows // d * s.f.size + s.C.indices, return_inverse=True)
+    row = np.zeros((len(met), d))
+    row[entry, rows % d] = s.C.data
+    pair, unknown = np.divmod(met, s.f.size)
+    squares = (row[:, :, None] * row[:, None, :]).reshape(-1, d * d)
+    size = np.bincount(pair, weights=np.square(row).sum(axis=1), minlength=pairs)
     left = chosen.copy()
     while left.any():
-        alone = (met.T @ left.astype(float) == 1.0).astype(float)
+        counted = left[pair]
+        shared = np.bincount(unknown[counted], minlength=s.f.size)
+        mine = np.flatnonzero(counted & (shared[unknown] == 1))
+        own = np.zeros((pairs, d * d))
+        np.add.at(own, pair[mine], squares[mine])
+        own = own.reshape(-1, d, d)
         pick = np.flatnonzero(left)
-        own, whole = np.zeros((2, len(pick), d, d))
-        for (a, b), square in squares.items():
-            rows = square[pick]
-            own[:, a, b] = own[:, b, a] = rows @ alone
-            whole[:, a, b] = whole[:, b, a] = rows.sum(axis=1)
-        size = np.trace(whole, axis1=1, axis2=2)
-        along = np.einsum("ka,kab,kb->k", ray[pick], own, ray[pick])
-        least = np.where(single[pick], along, np.linalg.eigvalsh(own)[:, 0])
-        known = least > DETERMINED * size
+        along = np.einsum("ka,kab,kb->k", ray[pick], own[pick], ray[pick])
+        least = np.where(single[pick], along, np.linalg.eigvalsh(own[pick])[:, 0])
+        known = least > DETERMINED * size[pick]
         if not known.any():
             break
         left[pick[known]] = False
@@ -156,7 +161,7 @@ def _entangled(s: Scaled, chosen: Array, slips: Array, direction: Array) -> Arra
 
 
 def _least(
-    C: sp.csr_array, sets: _Sets, share: Array, given: Array, middle: Array, force: float
+    C: Array | sp.csr_array, sets: _Sets, share: Array, given: Array, middle: Array, force: float
 ) -> Array | None:
     """Return the forces (c, d) nearest to ``middle`` with the resultants C't of those given; None where it fails."""
     c, d = given.shape
@@ -173,10 +178,7 @@ def _least(
     J = sets.spanned
     best, stale = (np.inf, t), 0
     for _ in range(ROUNDS):
-        D = sp.block_diag(share[:, None, None] * J, format="csr")
-        H = sp.csc_array(C.T @ D @ C)
-        soft = SOFT * float(H.diagonal().max(initial=1e-300))
-        x = sla.splu(H + soft * sp.eye_array(H.shape[0], format="csc"), diag_pivot_thresh=0.0).solve(left)
+        x = _newton_step(C, share[:, None, None] * J, left)
         step = 1.0
         while step > 1e-6:
             t, J, new, other = at(v + step * x)
@@ -191,3 +193,16 @@ def _least(
         if size <= LEAST_BALANCED * force or (stale >= 3 and best[0] <= EXACT * force):
             break
     return best[1] if best[0] <= EXACT * force else None
+
+
+def _newton_step(C: Array | sp.csr_array, D: Array, left: Array) -> Array:
+    """Return the solution of C' D C x = left for blocks D (c, d, d), with a soft diagonal."""
+    c, d = D.shape[:2]
+    if isinstance(C, np.ndarray):
+        H = C.T @ np.matmul(D, C.reshape(c, d, -1)).reshape(c * d, -1)
+        H[np.diag_indices_from(H)] += SOFT * float(H.diagonal().max(initial=1e-300))
+        return np.asarray(np.linalg.solve(H, left))
+    blocks = sp.bsr_array((D, np.arange(c), np.arange(c + 1)), shape=(c * d, c * d))
+    H = sp.csc_array(C.T @ (blocks @ C))
+    soft = SOFT * float(H.diagonal().max(initial=1e-300))
+    return np.asarray(sla.splu(H + soft * sp.eye_array(H.shape[0], format="csc"), diag_pivot_thresh=0.0).solve(left))
