@@ -13,6 +13,7 @@ from concio.contact.reference import Reference
 from concio.display import number
 from concio.fem.discretisation import Discretisation
 from concio.model.interfaces.detect import Detection
+from concio.model.materials import Elastic
 from concio.model.model import Model
 from concio.problem.tolerances import CERTIFIED
 from concio.verdict.attention import attention_of, joints_not_made
@@ -124,7 +125,7 @@ def _outcome(found: PushResult) -> Outcome:
 
 def _question(found: PushResult) -> Question:
     until = "" if found.until is None else f", to {_control(found, found.until)}"
-    to_side = f"the side ({', '.join(f'{v:.4g}' for v in found.direction)})"
+    to_side = f"the side ({', '.join(f'{v + 0.0:.4g}' for v in found.direction)})"
     grows = ", ".join(found.live) if found.live else f"a share of the weights to {to_side}"
     asked = f"the multiplier of {grows} over a growing displacement, from equilibrium{until}, where the bodies stand"
     if found.by_load:
@@ -197,15 +198,23 @@ def _lent(found: PushResult) -> str:
     """Return how far the peak falls short because hard joints of rigid blocks give way, as far as the curve tells it.
 
     Joints that give way delay the peak, and a structure that has moved carries less. The chord of the falling part is
-    taken to a point at least twice as far as the peak, or to the end.
+    taken to a point at least twice as far as the peak, or to the end. Where ties, blocks or other joints give way too,
+    or a tie breaks, the curve does not show what the hard joints take.
     """
     top = found.peak_step
     d, m = np.abs(found.displacement), found.multiplier
-    if found.by_load or not found.peak_passed or d[top] <= 0 or m[top] <= 0:
+    if _gives_way(found.model) or found.by_load or not found.peak_passed or d[top] <= 0 or m[top] <= 0:
         return LENT
     k = top + 1 + min(int(np.searchsorted(d[top + 1 :], 2 * d[top])), len(d) - top - 2)
     share = float((m[top] - m[k]) / (d[k] - d[top]) * d[top] / m[top]) if d[k] > d[top] else 0.0
     return ADDS_UP.format(share=number(100 * share, 2)) if share > SMALL else LENT
+
+
+def _gives_way(model: Model) -> bool:
+    """Return whether anything but hard joints and soil gives way: bars, elastic blocks, joints with a stiffness."""
+    soft = any(law.normal_stiffness is not None for law in model.laws.values())
+    pulls = any(tie.kind == "bar" for tie in model.ties)
+    return pulls or soft or any(isinstance(material, Elastic) for material in model.materials.values())
 
 
 def _unchecked(found: PushResult) -> tuple[str, ...]:

@@ -104,6 +104,7 @@ def test_a_tie_pulls_to_its_elongation_at_break_whatever_the_step(seed):
         assert event.bodies == ("tie rod", "low")
         assert event.step == found.peak_step
         assert found.multiplier[-1] == pytest.approx(mu * 20.0 * 0.4, rel=1e-5)  # and not a step longer
+        assert not any("above the peak" in line for line in found.verdict.limits)  # the fall is that of the tie
 
 
 def test_a_tie_that_yields_says_so_where_it_does():
