@@ -147,9 +147,9 @@ def _entangled(s: Scaled, chosen: Array, slips: Array, direction: Array) -> Arra
         counted = left[pair]
         shared = np.bincount(unknown[counted], minlength=s.f.size)
         mine = np.flatnonzero(counted & (shared[unknown] == 1))
-        own = np.zeros((pairs, d * d))
-        np.add.at(own, pair[mine], squares[mine])
-        own = own.reshape(-1, d, d)
+        sums = np.zeros((pairs, d * d))
+        np.add.at(sums, pair[mine], squares[mine])
+        own = sums.reshape(-1, d, d)
         pick = np.flatnonzero(left)
         along = np.einsum("ka,kab,kb->k", ray[pick], own[pick], ray[pick])
         least = np.where(single[pick], along, np.linalg.eigvalsh(own[pick])[:, 0])
