@@ -302,7 +302,7 @@ class LimitResult(Shown):
         >>> from concio.proof.verify import check
         >>> found = concio.limit(concio.column(width=0.5, height=2.0, blocks=1, block="rigid", horizontal=1.0))
         >>> check(found.proof()).split(": ")[1:]
-        ['1/4 = 0.25 is balanced; nothing above 1/4 = 0.25 is', 'proved exactly']
+        ['the multiplier 1/4 = 0.25 is balanced; no multiplier above 1/4 = 0.25 is', 'proved exactly']
         """
         from concio.proof.exact_certificate import prove_limit
 

@@ -127,7 +127,7 @@ def assess_lines(found: Assessment, tie: TieForce | None = None) -> list[str]:
     lines += [f"  {n.name}, push {n.direction}: {n.sentence}" for n in found.locked]
     if found.others:
         least = number(min(m.zeta for m in found.others), 4)
-        lines.append(f"  followed beside      {len(found.others)} more in parts of the structure, zeta_E from {least}")
+        lines.append(f"  also followed        {len(found.others)} more in parts of the structure, zeta_E from {least}")
     lines.append(f"  in short             {verdict.headline}")
     if tie is not None:
         if tie.force == 0:

@@ -44,7 +44,8 @@ def exact(text: str) -> Fraction:
 
 def said(text: str) -> str:
     """Return a bound in words: its fraction, unless that is long, and its value."""
-    return f"{text if len(text) <= 200 else f'a fraction of {len(text)} characters'} = {float(exact(text)):.12g}"
+    value = f"{float(exact(text)):.12g}"
+    return f"{text} = {value}" if len(text) <= 200 else f"{value} (a fraction of {len(text)} characters)"
 
 
 def vector(texts: Texts) -> Vector:
@@ -207,13 +208,13 @@ def check(data: Data) -> str:
     if "forces" in data:
         lower = exact(data["lower"])
         check_forces(data, data["forces"], {**constant, **{g: lower * x for g, x in growing.items()}})
-        found.append(f"{said(data['lower'])} is balanced")
+        found.append(f"the multiplier {said(data['lower'])} is balanced")
     if "motion" in data:
         upper = exact(data["upper"])
         rate = work(data, data["motion"], growing)
         if not rate > 0 or work(data, data["motion"], constant) + upper * rate < taken(data, data["motion"]):
             raise ValueError("the loads need not do more work on the motion above the upper bound than joints take")
-        found.append(f"nothing above {said(data['upper'])} is")
+        found.append(f"no multiplier above {said(data['upper'])} is")
     if not found:
         raise ValueError("neither forces nor a motion are given")
     return f"{acting}, {points}: {'; '.join(found)}: proved exactly"

@@ -122,7 +122,7 @@ IT = {
     "proof_Coulomb": "alpha_0 di «{name}» è quello di uno stato di collasso con attrito di Coulomb, con equilibrio, "
     "attrito e flusso ricalcolati dal modello assemblato. Dimostrato accanto è un limite superiore: nessun collasso "
     "con spinta {way} sta sopra {upper} (limite associato fra tutti i moti, scarto di dualità {gap}). Che nulla si "
-    "muova sotto alpha_0 non è dimostrato: nessun carico è stato portato a passi fino a esso.",
+    "muova sotto alpha_0 non è dimostrato: nessun carico è stato fatto crescere a passi fino a esso.",
     "proof_associated": "alpha_0 di «{name}» è solo un limite superiore: quello associato, con uno scarto di "
     "dualità di {gap}; non è stato trovato alcuno stato di collasso con attrito di Coulomb.",
     "sought": "ricerche fatte: {sought}, di cui {named} di meccanismi con nome e {parts} in altre parti della "

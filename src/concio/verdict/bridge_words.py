@@ -74,23 +74,23 @@ ITALIAN: Mapping[str, str] = {
     "loads_uniform": "un carico uniforme fino a {uniform} lungo la strada, senza assi",
     "an_axle": "un asse più pesante di {axle}",
     "a_load": "un carico uniforme di {uniform}",
-    "head_holds": "Il veicolo è portato in ogni posizione esaminata.",
-    "head_fails": "Il veicolo non è portato.",
-    "head_open": "Non è stabilito se il veicolo sia portato.",
-    "fails": "{required} volte il veicolo non è portato in x = {x}, con marcia verso {way}: oltre {upper} volte non "
+    "head_holds": "Il veicolo è sostenuto in ogni posizione esaminata.",
+    "head_fails": "Il veicolo non è sostenuto.",
+    "head_open": "Non è stabilito se il veicolo sia sostenuto.",
+    "fails": "{required} volte il veicolo non è sostenuto in x = {x}, con marcia verso {way}: oltre {upper} volte non "
     "esiste equilibrio.",
-    "fails_coulomb": "{required} volte il veicolo non è portato in x = {x}, con marcia verso {way}: applicato "
+    "fails_coulomb": "{required} volte il veicolo non è sostenuto in x = {x}, con marcia verso {way}: applicato "
     "in un solo "
     "passo con attrito di Coulomb, la struttura si muove.",
-    "holds": "{required} volte il veicolo è portato in ciascuna di {count} posizioni: in ciascuna è stato trovato uno "
-    "stato di Coulomb certificato.",
-    "open": "Che {required} volte il veicolo sia portato non è stato mostrato in {count} posizioni su {all}.",
+    "holds": "{required} volte il veicolo è sostenuto in ciascuna di {count} posizioni: in ciascuna è stato trovato "
+    "uno stato di Coulomb certificato.",
+    "open": "Che {required} volte il veicolo sia sostenuto non è stato mostrato in {count} posizioni su {all}.",
     "unasked": "Nessun meccanismo esclude {required} volte il veicolo in alcuna di {all} posizioni; quanto porta "
     "l'attrito di Coulomb non è stato chiesto.",
     "worst": "La posizione peggiore è x = {x}, con marcia verso {way}: l'attrito di Coulomb vi porta {design} volte il "
     "veicolo, {axle}, e oltre {bound} volte ({bound_axle}) non esiste equilibrio.",
     "worst_unknown": "La posizione peggiore è x = {x}, con marcia verso {way}: oltre {bound} volte il veicolo "
-    "({bound_axle}) non esiste equilibrio; la parte portata con attrito di Coulomb non è stata trovata.",
+    "({bound_axle}) non esiste equilibrio; la parte sostenuta con attrito di Coulomb non è stata trovata.",
     "no_soil": "Senza la spinta del terreno il limite è {multiplier} volte, in x = {x}.",
     "no_soil_none": "Senza la spinta del terreno il ponte non sta in piedi neppure senza veicolo.",
     "rests": "la risposta dipende dalla spinta del terreno: senza di essa non esiste equilibrio oltre {multiplier} "
@@ -98,7 +98,7 @@ ITALIAN: Mapping[str, str] = {
     "rests_none": "la risposta dipende dalla spinta del terreno: senza di essa il ponte non sta in piedi",
     "shares": "del limite nella posizione peggiore il {soil} % è dovuto alla spinta del terreno e il {spread} % alla "
     "diffusione del carico nel riempimento",
-    "width": "il veicolo è portato da una striscia di {width}: {by}",
+    "width": "il veicolo è sostenuto da una striscia di {width}: {by}",
     "grid": "le posizioni distano {step}, nella zona peggiore {fine}; tra l'una e l'altra nulla è stato esaminato",
     "several": "l'attrito di Coulomb non dà una risposta unica: possono esistere altri stati, ai quali portano "
     "cedimenti "

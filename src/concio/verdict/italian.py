@@ -140,7 +140,7 @@ def italian(text: str) -> tuple[Piece, ...]:
     --------
     >>> from concio.verdict.italian import italian
     >>> [piece.text for piece in italian("The loads are carried. Nobody knows this sentence.")]
-    ['I carichi sono portati.', 'Nobody knows this sentence.']
+    ['La struttura sostiene i carichi.', 'Nobody knows this sentence.']
     """
     return catalogue("concio.verdict").pieces(text)
 

@@ -215,7 +215,7 @@ def thickness_words(model: Model) -> tuple[str, ...]:
     if not depths:
         return ()
     if depths == [DEFAULT_THICKNESS]:
-        return (f"thickness {DEFAULT_THICKNESS:g} m, which is also what is taken where none is given",)
+        return (f"thickness {DEFAULT_THICKNESS:g} m, the default where none is given",)
     shown = ", ".join(f"{v:g}" for v in depths[:MOST_THICKNESSES]) + (" ..." if len(depths) > MOST_THICKNESSES else "")
     return (f"thickness {shown} m",)
 

@@ -186,7 +186,7 @@ def test_commands_prove_and_verify(tmp_path: Path) -> None:
     model.write_text(pillar(sideways(1.0)))
     code, out, _ = run("prove", model, "--numbers", "decimal")
     assert code == 0
-    assert "1/4 = 0.25 is balanced; nothing above 1/4 = 0.25 is: proved exactly" in out
+    assert "the multiplier 1/4 = 0.25 is balanced; no multiplier above 1/4 = 0.25 is: proved exactly" in out
     place = tmp_path / "pillar.proof.json"
     code, out, _ = run("verify", place)
     assert (code, "proved exactly" in out) == (0, True)

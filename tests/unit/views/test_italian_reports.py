@@ -173,7 +173,7 @@ def test_numbers_have_commas_and_names_do_not(english: str, said: str) -> None:
 
 def test_what_is_not_known_is_marked() -> None:
     assert in_italian("<p>The loads are carried. Nobody knows this.</p>") == (
-        '<p>I carichi sono portati. <span lang="en">Nobody knows this.</span></p>'
+        '<p>La struttura sostiene i carichi. <span lang="en">Nobody knows this.</span></p>'
     )
     assert report_catalogue().whole("Nobody knows this.") is None
     assert plain_italian("0.5 kN") == "0,5 kN"
