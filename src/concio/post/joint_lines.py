@@ -83,7 +83,7 @@ def _displacement(shown: Outlines, body: int, point: Array) -> Array:
     square = np.maximum((way**2).sum(axis=1), 1e-300)
     share = np.clip(((point - start[:-1]) * way).sum(axis=1) / square, 0.0, 1.0)
     away = np.linalg.norm(start[:-1] + share[:, None] * way - point, axis=1)
-    away[np.abs(np.sqrt(square) - long) > 0.5] = np.inf  # from one ring to the next
+    away[np.isin(np.arange(own.start + 1, own.stop), shown.rings)] = np.inf  # from one ring to the next
     k = int(away.argmin())
     return np.asarray(shown.at(np.array([arc[k] + share[k] * long[k]]))[0])
 

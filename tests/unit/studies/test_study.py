@@ -356,6 +356,11 @@ def test_problems_of_salib_go_both_ways() -> None:
     for one, other in zip(variables, back, strict=True):
         assert one.name == other.name
         assert one.quantile(u) == pytest.approx(other.quantile(u), rel=1e-12)
+    for cut in ({"low": 0.5}, {"high": 1.5}):
+        with pytest.raises(concio.InputError, match="no distribution like"):
+            salib_problem([variable("f", "normal", mean=1.0, sd=0.2, **cut)])
+        with pytest.raises(concio.InputError, match="no distribution like"):
+            salib_problem([variable("f", "lognormal", mean=1.0, sd=0.2, **cut)])
     from SALib.sample import latin
 
     problem = {"num_vars": 2, "names": ["mu", "s"], "bounds": [[0.3, 0.7], [0.2, 0.6]]}

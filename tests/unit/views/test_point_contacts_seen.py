@@ -9,7 +9,7 @@ import concio
 from concio.plot.forces import plot_pressure
 from concio.plot.space_figures import plot_space
 from concio.post.joint_faces import joint_faces
-from concio.post.joint_lines import joint_lines
+from concio.post.joint_lines import _displacement, joint_lines
 from concio.post.outlines import outlines
 from concio.report.space_data import space_view_data
 from concio.report.view_data import view_data
@@ -75,3 +75,25 @@ def test_pages_and_figures_take_them():
     assert len(space_view_data([solid], [""])["steps"]) == 1
     assert np.isfinite(plot_pressure(flat).get_ylim()).all()
     assert plot_space(solid).images
+
+
+@pytest.mark.parametrize("scale", [0.25, 1.0, 16.0])
+def test_the_place_nearest_to_a_point_lies_on_a_ring_and_not_between_two(scale):
+    """A frame turned by a small angle: places of its outline and of its hole move by the angle times their arms."""
+    ring = scale * np.array([(0, 0), (4, 0), (4, 3), (0, 3)])
+    hole = scale * np.array([(0.5, 0.5), (2.5, 0.5), (2.5, 2), (0.5, 2)])
+    frame = concio.Body("frame", ring, kind="rigid", material="stone", holes=(hole,))
+    base = concio.Body("base", scale * np.array([(-1, -1), (5, -1), (5, 0), (-1, 0)]), kind="fixed")
+    result = concio.solve(model_of(base, frame, loads=(weight(),)))
+    turn = 1e-3
+    motion = np.zeros(result.assembly.disc.unknowns)
+    motion[-1] = turn * result.assembly.disc.reach[1]
+    shown = outlines(result, motion)
+    centre = frame.centroid
+    for near, on in (
+        ((1.0, -0.1), (1.0, 0.0)), ((4.2, 1.0), (4.0, 1.0)), ((3.0, 3.3), (3.0, 3.0)), ((-0.2, 2.9), (0.0, 2.9)),
+        ((0.3, 0.35), (0.5, 0.5)), ((1.5, 0.7), (1.5, 0.5)), ((2.4, 1.2), (2.5, 1.2)), ((2.0, 2.1), (2.0, 2.0)),
+    ):  # fmt: skip
+        arm = scale * np.array(on) - centre
+        found = _displacement(shown, 1, scale * np.array(near))
+        assert found == pytest.approx(turn * np.array([-arm[1], arm[0]]), rel=1e-9, abs=1e-12 * scale)
