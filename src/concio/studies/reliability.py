@@ -37,6 +37,8 @@ CLOSE = 1e-10
 """Distance of the last two points, relative to one plus their distance from the origin, at which the iteration ends."""
 STEP = 1e-4
 """Step in standard deviations of differences, where a limit state gives no gradient."""
+SEEN = 1e-4
+"""Length of steps, relative to one plus the distance from the origin, of which the merit function sees the decrease."""
 LEAST = 2.0**-12
 """Shortest step of the line search, as a share of the whole."""
 
@@ -138,15 +140,19 @@ def reliability(limit_state: LimitState, variables: Sequence[Variable], *, most:
         if not size > 0 or not math.isfinite(size):
             msg = "the limit state does not depend on any of the variables there"
             raise InputError(msg, where=", ".join(f"{k} = {v:.4g}" for k, v in search.values(u).items()))
-        step = (slope @ u - g) / size**2 * slope - u
+        step = _step(u, g, slope)
         if np.linalg.norm(step) <= CLOSE * (1.0 + np.linalg.norm(u)) and abs(g) <= 1e-8 * first:
             return search.found(u, g / first, slope / size)
         weight = max(weight, 2.0 * float(np.linalg.norm(u)) / size, float(u @ u + step @ step) / (abs(g) or first))
         merit, share = 0.5 * float(u @ u) + weight * abs(g), 1.0
+        near = np.linalg.norm(step) <= SEEN * (1.0 + np.linalg.norm(u))
         while True:
             new = u + share * step
             g_new, slope_new = search.at(new)
-            lower = math.isfinite(g_new) and 0.5 * float(new @ new) + weight * abs(g_new) <= merit * (1 + 1e-12)
+            if near:  # by the merit, a square, any short step would do
+                lower = bool(np.linalg.norm(_step(new, g_new, slope_new)) < np.linalg.norm(step))
+            else:
+                lower = math.isfinite(g_new) and 0.5 * float(new @ new) + weight * abs(g_new) <= merit * (1 + 1e-12)
             if lower or share <= LEAST:
                 break
             share /= 2
@@ -155,6 +161,11 @@ def reliability(limit_state: LimitState, variables: Sequence[Variable], *, most:
         u, g, slope = new, g_new, slope_new
     msg = f"no design point was found in {search.evaluations} evaluations of the limit state"
     raise SolverError(msg, hint="is it smooth, and does it become zero? Sample it with concio.study")
+
+
+def _step(u: Array, g: float, slope: Array) -> Array:
+    """Return the way from u to the point of the tangent plane of the surface g = 0 that is nearest to the origin."""
+    return (slope @ u - g) / float(slope @ slope) * slope - u
 
 
 @strict

@@ -42,6 +42,16 @@ def test_resistance_over_load_both_lognormal_is_exact(of_r: float, of_s: float, 
         assert concio.reliability(state, [r, s]).beta == pytest.approx(wanted, abs=1e-6)
 
 
+def test_a_curved_limit_state_on_which_whole_steps_go_to_and_fro() -> None:
+    """a^3 + b^3 = 18: the distance of the curve from the means in standard deviations, sampled, is the index."""
+    variables = [concio.variable("a", "normal", mean=10.0, sd=5.0), concio.variable("b", "normal", mean=9.9, sd=5.0)]
+    found = concio.reliability(lambda x: x["a"] ** 3 + x["b"] ** 3 - 18.0, variables)
+    a = np.linspace(-5.0, 5.0, 200_001)
+    away = np.hypot((a - 10.0) / 5.0, (np.cbrt(18.0 - a**3) - 9.9) / 5.0)
+    assert found.beta == pytest.approx(float(away.min()), abs=1e-8)
+    assert found.point["a"] == pytest.approx(float(a[away.argmin()]), abs=1e-3)
+
+
 def slender(x: dict[str, float]) -> concio.Model:
     return concio.column(width=x["b"], height=x["h"], blocks=1, block="rigid", unit_weight=20.0, horizontal=1.0)
 

@@ -343,6 +343,14 @@ def test_fragility_without_a_curve_is_told(failed: list[float], said: str) -> No
         fragility(np.array([0.1, 0.2, 0.3, 0.4]), np.array(failed, dtype=float))
 
 
+def test_one_at_a_time_takes_the_middle_and_each_end_alone() -> None:
+    """A twentieth and nineteen twentieths of each, the others at their medians."""
+    variables = (variable("a", low=2.0, high=4.0), variable("b", "lognormal", median=3.0, beta=0.5))
+    end = np.exp(0.5 * 1.6448536269514722)
+    wanted = [[3.0, 3.0], [2.1, 3.0], [3.9, 3.0], [3.0, 3.0 / end], [3.0, 3.0 * end]]
+    assert draw(variables, "one-at-a-time").numbers == pytest.approx(np.array(wanted), rel=1e-12)
+
+
 def test_problems_of_salib_go_both_ways() -> None:
     variables = (
         variable("a", low=0.3, high=0.7),
