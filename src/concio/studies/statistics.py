@@ -151,7 +151,7 @@ class Spread:
 def _quantile(ordered: Array, share: float, *, worse: str) -> float:
     at = share * (len(ordered) - 1)
     low, high = float(ordered[math.floor(at)]), float(ordered[math.ceil(at)])
-    if low == high or at == math.floor(at):
+    if low == high:
         return low
     if math.isfinite(low) and math.isfinite(high):
         return low + (at - math.floor(at)) * (high - low)

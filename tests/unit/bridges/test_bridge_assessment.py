@@ -16,7 +16,7 @@ from concio.analysis.bridges.mexe import mexe, mexe_of
 from concio.analysis.bridges.service import service_state
 from concio.analysis.bridges.sweep import Sweep, search
 from concio.analysis.bridges.two_vehicles import second_vehicle, worst_apart
-from concio.analysis.bridges.variants import parts
+from concio.analysis.bridges.variants import _data, parts
 from concio.analysis.limit import dead_and_live
 from concio.analysis.motion.push_result import PushEnding
 from concio.errors import InputError
@@ -380,3 +380,32 @@ def test_a_second_vehicle_unlike_the_first_goes_before_and_behind_it_with_its_ax
     for name, apart, words in (("SW/0", [4.0], "axles"), ("same", [], "needs"), ("same", [-1.0], "positive")):
         with pytest.raises(concio.InputError, match=words):
             second_vehicle(small(), name, apart)
+
+
+def test_every_datum_is_changed_by_what_the_report_says_and_alone() -> None:
+    """Ten millimetres of ring, five centimetres of cover, five degrees, a tenth of friction, a fifth of strengths."""
+    fill = Fill(cover=0.08, unit_weight=18.0, friction_angle=35.0, mobilised=0.5)
+    law = concio.JointLaw(0.6, compressive_strength=5000.0)
+    model = replace(small(fill), laws={"joint": law})
+    rows = {name: (unit, value, step, changed) for name, unit, value, step, changed in _data(model)}
+    told = {name: (unit, pytest.approx(value), pytest.approx(step)) for name, (unit, value, step, _) in rows.items()}
+    assert told == {
+        "ring": ("m", 0.215, 0.010), "cover": ("m", 0.08, 0.04), "fill unit weight": ("kN/m3", 18.0, 1.8),
+        "friction angle": ("deg", 35.0, 5.0), "mobilised": ("-", 0.5, 0.1), "friction 'joint'": ("-", 0.6, 0.1),
+        "strength 'joint'": ("kN/m2", 5000.0, 1000.0),
+    }  # fmt: skip
+    read = {
+        "cover": lambda m: m.fill.cover, "fill unit weight": lambda m: m.fill.unit_weight,
+        "friction angle": lambda m: m.fill.friction_angle, "mobilised": lambda m: m.fill.mobilised,
+        "friction 'joint'": lambda m: m.laws["joint"].friction,
+        "strength 'joint'": lambda m: m.laws["joint"].compressive_strength,
+    }  # fmt: skip
+    for name in read:
+        _, value, step, changed = rows[name]
+        made = changed(value + step)
+        for other, its in read.items():
+            assert its(made) == pytest.approx(value + step if other == name else its(model)), (name, other)
+    thicker = rows["ring"][3](0.225)
+    heights = [np.ptp(m.bodies[-1].vertices, axis=0) for m in (model, thicker)]
+    assert not np.allclose(*heights)
+    assert [step for name, _, _, step, _ in _data(small(replace(FILL, cover=0.3))) if name == "cover"] == [0.05]

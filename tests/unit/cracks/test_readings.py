@@ -1,4 +1,4 @@
-"""What measurements read of rigid motions, against the motions themselves; nothing here is symmetric or of length one."""
+"""What measurements read of rigid motions, against the motions themselves; nothing is symmetric or of length one."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def test_a_joint_is_read_in_its_middle_and_the_nearest_one_is_taken() -> None:
     assert PLANE.read("slip", joint=("right", "left")) == pytest.approx(middle[1], rel=1e-12)
     near = PLANE.at("right", (4.0, 3.6)) - PLANE.at("left", (4.0, 3.6))
     assert PLANE.read("opening", at=(4.0, 3.6)) == pytest.approx(near[0], rel=1e-12)
-    with pytest.raises(InputError, match="is 0.5 m away from the nearest joint"):
+    with pytest.raises(InputError, match=r"is 0\.5 m away from the nearest joint"):
         PLANE.read("opening", at=(4.0, 4.5))
     with pytest.raises(InputError, match="away from the nearest joint"):
         PLANE.read("opening", joint=("base", "right"), at=(5.0, 2.2))

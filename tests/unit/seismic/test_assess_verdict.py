@@ -21,6 +21,7 @@ from concio.analysis.seismic.variations import tie_force
 from concio.contact.applied import sideways
 from concio.errors import InputError, NoEquilibriumError
 from concio.report.assessment_page import AssessmentReport
+from concio.verdict.assessment_verdict import _gap
 from concio.verdict.assessment_words import EN, IT
 from concio.verdict.verdict import Outcome
 from samples import sample
@@ -377,3 +378,7 @@ def test_the_command_ends_with_the_exit_code_of_the_verdict(tmp_path: Path) -> N
         _, lines, _ = run("assess", path)
         assert lines.splitlines()[1] == told["verdict"]["sentence"]
         assert lines.splitlines()[3].strip().startswith("acts")
+
+
+def test_a_gap_is_never_told_smaller_than_rounding() -> None:
+    assert [_gap(gap) for gap in (3.2e-7, 1e-16, 9e-17, 0.0, -1e-18)] == ["3e-07", "1e-16", *["< 1e-16"] * 3]

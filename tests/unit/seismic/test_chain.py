@@ -35,7 +35,7 @@ def applied(body: int, load: int, force: tuple[float, ...], point: tuple[float, 
 
 
 def test_forces_of_a_load_on_a_block_are_gathered_and_what_pushes_sideways_is_kept_apart(monkeypatch) -> None:
-    """Weights of two bodies are one force in their common centroid; what pushes along y in space is not one with them."""
+    """Weights of two bodies are one force in their centroid; what pushes along y in space is not one with them."""
     parts = [
         applied(0, 0, (0, 0, -3), (0, 0, 1)), applied(1, 0, (0, 0, -1), (4, 0, 3)),
         applied(2, 0, (0, 0, -5), (9, 9, 9)), applied(7, 0, (0, 0, -50), (1, 1, 1)),

@@ -45,7 +45,11 @@ def test_resistance_over_load_both_lognormal_is_exact(of_r: float, of_s: float, 
 def test_a_curved_limit_state_on_which_whole_steps_go_to_and_fro() -> None:
     """a^3 + b^3 = 18: the distance of the curve from the means in standard deviations, sampled, is the index."""
     variables = [concio.variable("a", "normal", mean=10.0, sd=5.0), concio.variable("b", "normal", mean=9.9, sd=5.0)]
-    found = concio.reliability(lambda x: x["a"] ** 3 + x["b"] ** 3 - 18.0, variables)
+    found, *others = (
+        concio.reliability(lambda x, unit=unit: unit * (x["a"] ** 3 + x["b"] ** 3 - 18.0), variables)
+        for unit in (1.0, 2.0**-30, 2.0**30)
+    )
+    assert {(other.beta, other.evaluations) for other in others} == {(found.beta, found.evaluations)}
     a = np.linspace(-5.0, 5.0, 200_001)
     away = np.hypot((a - 10.0) / 5.0, (np.cbrt(18.0 - a**3) - 9.9) / 5.0)
     assert found.beta == pytest.approx(float(away.min()), abs=1e-8)

@@ -334,6 +334,42 @@ def test_fragility_curve_is_found_again() -> None:
     assert high[1] - low[1] < 0.08
 
 
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 981.0])
+def test_a_fragility_curve_and_its_band_do_not_depend_on_the_unit_of_the_intensity(unit: float) -> None:
+    """The covariance is the inverse of the information of the probit line, by differences of its log-likelihood."""
+    from scipy.stats import norm
+
+    x = np.array([0.1, 0.15, 0.2, 0.3, 0.35, 0.4, 0.5, 0.6, 0.8, 1.2])
+    failed = np.array([0, 0, 1, 0, 0, 1, 0, 1, 1, 1], dtype=float)
+    at = np.array([0.2, 0.4, 0.9])
+    one, other = fragility(x, failed), fragility(unit * x, failed)
+    assert other.median == pytest.approx(unit * one.median, rel=1e-5)
+    assert other.beta == pytest.approx(one.beta, rel=1e-5)
+    for mine, its in zip(one.band(at, 0.9), other.band(unit * at, 0.9), strict=True):
+        assert mine == pytest.approx(its, rel=1e-4)
+    line, logs = np.array([-math.log(other.median), 1.0]) / other.beta, np.log(unit * x)
+
+    def expected(p: np.ndarray) -> float:  # of the log-likelihood, by the probabilities of the fit
+        share = norm.cdf(line[0] + line[1] * logs)
+        return float(-(share * norm.logcdf(p[0] + p[1] * logs) + (1 - share) * norm.logsf(p[0] + p[1] * logs)).sum())
+
+    h, e = 1e-3, np.eye(2)
+    information = np.array([
+        [(expected(line + h * (e[i] + e[j])) - expected(line + h * (e[i] - e[j])) - expected(line - h * (e[i] - e[j]))
+          + expected(line - h * (e[i] + e[j]))) / (4 * h * h) for j in range(2)] for i in range(2)
+    ])  # fmt: skip
+    assert other.covariance @ information == pytest.approx(np.eye(2), abs=2e-3)
+    low, high = other.band(unit * at, 0.9)
+    g = np.column_stack([np.ones(3), np.log(unit * at)])
+    error = np.sqrt(np.einsum("ij,jk,ik->i", g, np.linalg.inv(information), g))
+    assert norm.ppf(high) - norm.ppf(low) == pytest.approx(2 * 1.6448536 * error, rel=5e-3)
+
+
+def test_levels_of_a_grid_without_bounds_have_equal_probability() -> None:
+    levels = variable("b", "normal", mean=1.0, sd=0.2, levels=4).grid()
+    assert levels == pytest.approx(1.0 + 0.2 * np.array([-1.1503494, -0.3186394, 0.3186394, 1.1503494]), rel=1e-6)
+
+
 @pytest.mark.parametrize(
     ("failed", "said"),
     [([0, 0, 0, 0], "none of 4"), ([1, 1, 1, 1], "all of 4"), ([0, 0, 1, 1], "none below"), ([1, 1, 0, 0], "below an")],

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -9,8 +11,11 @@ import concio
 from concio.plot.forces import plot_pressure
 from concio.plot.space_figures import plot_space
 from concio.post.joint_faces import joint_faces
-from concio.post.joint_lines import _displacement, joint_lines
+from concio.post.joint_lines import MARK, _displacement, joint_lines
 from concio.post.outlines import outlines
+from concio.post.space_states import mechanism_states_in_space
+from concio.problem.pair_state import PairState
+from concio.problem.solution import Status
 from concio.report.space_data import space_view_data
 from concio.report.view_data import view_data
 from models import model_of, weight
@@ -43,7 +48,27 @@ def test_knife_edges_have_a_mark_at_their_points():
     marks = joint_lines(result, outlines(result))
     assert sorted(marks.ends.mean(axis=1)[:, 0].tolist()) == pytest.approx([1.0, 4.0])
     assert marks.ends[..., 1] == pytest.approx(np.ones((2, 2)))
-    assert np.ptp(marks.ends[0, :, 0]) > 0.05
+    sizes = [MARK * contact.scale for contact in result.assembly.detection.point_contacts]
+    assert np.ptp(marks.ends[..., 0], axis=1) == pytest.approx(sizes, rel=1e-12)
+
+
+@pytest.mark.parametrize("speed", [1e-9, 1.0, 1e9])
+@pytest.mark.parametrize("lost", [Status.COLLAPSES, Status.NO_EQUILIBRIUM])
+def test_states_of_a_mechanism_do_not_depend_on_its_speed(speed, lost):
+    """A joint slides where it opens by no more than the friction (of a collapse: the dilatancy) times its slip."""
+    z, tiny = np.array([0.0, 0.0, 1.0]), 1e-8
+    moves = [(0, 0, 0), (0.3, 0.4, 0), (0.3, 0.4, 0.2), (0.3, 0.4, 0.26)]
+    moves += [(0, 0, tiny), (0, 0, 0.1), (tiny, 0, 0), (0, 0, -1)]
+    moved_b = speed * np.repeat(np.array(moves, dtype=float)[:, None], 3, axis=1)
+    faces = SimpleNamespace(moved_a=0.0 * moved_b, moved_b=moved_b, pair=np.arange(8)[::-1])
+    laws = SimpleNamespace(friction=np.full(8, 0.5), dilatancy=np.full(8, 0.3))
+    assembly = SimpleNamespace(pairs=SimpleNamespace(normal=np.tile(z, (8, 1))), laws=laws)
+    found = mechanism_states_in_space(SimpleNamespace(assembly=assembly, status=lost), faces)
+    between = PairState.OPEN if lost is Status.COLLAPSES else PairState.SLIP
+    assert found.tolist() == [
+        PairState.STICK, PairState.SLIP, between, PairState.OPEN, PairState.STICK, PairState.OPEN, PairState.STICK,
+        PairState.STICK,
+    ]  # fmt: skip
 
 
 def test_marks_move_with_the_bodies_that_touch():
