@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from concio.analysis.seismic.parts import Part, _lines, _pairs_of, _spread, _told_apart, structures_of
+from concio.analysis.seismic.default_parts import Part, _lines, _pairs_of, _spread, _told_apart, structures_of
 
 UP, ALONG = np.array([0.0, 1.0]), np.array([1.0, 0.0])
 

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from concio.analysis.seismic import chain
-from concio.analysis.seismic.chain import Chain, Participant, gathered
+from concio.analysis.seismic import participation
+from concio.analysis.seismic.participation import Chain, Participant, gathered
 
 
 def participant(size: tuple[float, ...], delta: float) -> Participant:
@@ -42,7 +42,7 @@ def test_forces_of_a_load_on_a_block_are_gathered_and_what_pushes_sideways_is_ke
         applied(0, 3, (0, 2, -1), (1, 0, 0)), applied(0, 3, (1, 0, -4), (2, 0, 0)), applied(0, 3, (0, 0, 0), (8, 8, 8)),
         applied(1, 3, (0, -6, 4), (3, 0, 0)),
     ]  # fmt: skip
-    monkeypatch.setattr(chain, "applied_forces", lambda model, numbers: [p for p in parts if p.load in numbers])
+    monkeypatch.setattr(participation, "applied_forces", lambda model, numbers: [p for p in parts if p.load in numbers])
     model = SimpleNamespace(loads={0: SimpleNamespace(kind="weight"), 3: SimpleNamespace(kind="pressure")})
     mechanics = SimpleNamespace(of_body={0: 0, 1: 0, 2: 1})
     found = gathered(model, mechanics, (0, 3), {3: 1})
