@@ -165,7 +165,8 @@ def reliability(limit_state: LimitState, variables: Sequence[Variable], *, most:
 
 def _step(u: Array, g: float, slope: Array) -> Array:
     """Return the way from u to the point of the tangent plane of the surface g = 0 that is nearest to the origin."""
-    return (slope @ u - g) / float(slope @ slope) * slope - u
+    step: Array = (slope @ u - g) / float(slope @ slope) * slope - u
+    return step
 
 
 @strict

@@ -12,6 +12,7 @@ import concio
 from concio import Body, Elastic, JointLaw, Load, Model, Polyhedron, Rigid, Stage
 from concio.analysis.thrust import hinges
 from concio.contact.detection import detect
+from concio.contact.touching import _contacts
 from concio.io.result_dir import write_result
 from concio.io.result_file import load_result
 from concio.verdict.attention import attention_of
@@ -279,3 +280,20 @@ def test_a_contact_at_a_corner_is_a_hinge_of_the_line_of_thrust() -> None:
     assert [h.bodies for h in found] == [("k1", "beam"), ("k2", "beam")]
     line = concio.thrust_line(result)
     assert line.point[:, 0] == pytest.approx([1.0, 4.0])
+
+
+@pytest.mark.parametrize("scale", [2.0**-6, 1.0, 2.0**8])
+def test_faces_that_lie_on_each_other_are_no_contact_without_area(scale: float) -> None:
+    """Of four pairs of boxes, one on another, edge on edge, corner on face and too far apart, two touch at a point."""
+    square = scale * np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
+    turned = scale * 0.5**0.5 * np.array([(0, 0), (1, 1), (0, 2), (-1, 1)])
+    places = [(0, 0), (0.25, 1), (5, 0), (6, 1), (12, 0), (11, 2)]
+    bodies = [Body(f"b{k}", square + scale * np.array(at)) for k, at in enumerate(places)]
+    bodies.append(Body("t", turned + scale * np.array((0.6, 2.0))))
+    asked = {(0, 1), (2, 3), (1, 6), (4, 5)}
+    reach = np.full(len(bodies), 1e-3 * scale)
+    found = _contacts(bodies, asked, reach, 1e-6 * scale)
+    assert sorted(zip(found.body_a.tolist(), found.body_b.tolist(), strict=True)) == [(1, 6), (2, 3)]
+    k = found.body_b.tolist().index(6)
+    assert found.on_a[found.first[k]] == pytest.approx(scale * np.array((0.6, 2.0)), abs=1e-9 * scale)
+    assert found.normal[k] == pytest.approx([0.0, 1.0], abs=1e-9)

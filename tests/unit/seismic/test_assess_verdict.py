@@ -6,6 +6,7 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ from concio.analysis.seismic.variations import tie_force
 from concio.contact.applied import sideways
 from concio.errors import InputError, NoEquilibriumError
 from concio.report.assessment_page import AssessmentReport
-from concio.verdict.assessment_verdict import _gap
+from concio.verdict.assessment_verdict import _gap, grounds
 from concio.verdict.assessment_words import EN, IT
 from concio.verdict.verdict import Outcome
 from samples import sample
@@ -382,3 +383,32 @@ def test_the_command_ends_with_the_exit_code_of_the_verdict(tmp_path: Path) -> N
 
 def test_a_gap_is_never_told_smaller_than_rounding() -> None:
     assert [_gap(gap) for gap in (3.2e-7, 1e-16, 9e-17, 0.0, -1e-18)] == ["3e-07", "1e-16", *["< 1e-16"] * 3]
+
+
+@pytest.mark.parametrize("language", ["en", "it"])
+def test_the_largest_difference_of_checks_by_hand_is_told_and_how_many_differ(language: str) -> None:
+    """Of three mechanisms: 2e-9, 5e-7 and 1e-12; where one does not agree, how many do not."""
+    for wrong in (0, 2):
+        checks = [
+            SimpleNamespace(alpha=0.25, program=0.25, difference=d, agrees=k >= wrong)
+            for k, d in enumerate((2e-9, 5e-7, 1e-12))
+        ]
+        bounds = {
+            "left": SimpleNamespace(checked=True, multiplier=0.123456789, gap=3e-11),
+            "right": SimpleNamespace(checked=False, multiplier=0.7, gap=3e-11),
+            "up": SimpleNamespace(checked=True, multiplier=math.inf, gap=3e-11),
+        }
+        mechanisms = [SimpleNamespace(name=f"m{k}") for k in range(3)]
+        found = SimpleNamespace(hand_checks=checks, mechanisms=mechanisms, bounds=bounds, open=["a", "b"])
+        told = grounds(found, language)
+        assert len(told) == 4
+        assert "m0" in told[0]
+        assert "2e-09" in told[0]
+        assert ("5e-07" in told[1], ("3" if not wrong else "2") in told[1].replace("5e-07", "")) == (True, True)
+        assert (("differ by" in told[1]) or ("differiscono" in told[1])) == bool(wrong)
+        assert "0.123457" in told[2]
+        assert "3e-11" in told[2]
+        assert "2" in told[3]
+        alone = SimpleNamespace(hand_checks=checks[2:], mechanisms=mechanisms[:1], bounds={}, open=[])
+        assert len(grounds(alone, language)) == 1
+        assert len(grounds(SimpleNamespace(hand_checks=[], mechanisms=[], bounds={}, open=[]), language)) == 0
