@@ -189,7 +189,8 @@ def _sizes(model: Model) -> list[str]:
     large = [name for name, size in sizes.items() if size > LONG]
     if large:
         most = max(large, key=lambda name: sizes[name])
-        several = f", as are {len(large) - 1} others" if len(large) > 1 else ""
+        others = len(large) - 1
+        several = f", as {'is' if others == 1 else 'are'} {others} other{'s' if others > 1 else ''}" if others else ""
         found.append(
             f"block '{most}' is {sizes[most]:,.4g} m long{several}, more than {LONG:g} m: check the unit of length"
         )

@@ -41,7 +41,9 @@ def check_masses(reference: Reference) -> None:
     """Refuse bodies without mass."""
     without = [reference.model.bodies[b].name for b in reference.free.tolist() if not reference.body_mass[b] > 0]
     if without:
-        msg = f"block '{without[0]}' has no mass" + (f", and {len(without) - 1} others" if without[1:] else "")
+        others = len(without) - 1
+        more = f", and {others} other{'s' if others > 1 else ''}" if others else ""
+        msg = f"block '{without[0]}' has no mass{more}"
         raise InputError(msg, hint="give its material a unit_weight: mass is weight over gravity")
 
 

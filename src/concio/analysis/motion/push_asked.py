@@ -35,7 +35,7 @@ def what_moves(reference: Reference, found: Balanced) -> tuple[str, tuple[str, .
     bodies = reference.model.bodies
     names = (bodies[first].name, *(bodies[b].name for b, v in away.items() if b != first and v > 0.1 * away[first]))
     others = len(names) - 1
-    return f": '{names[0]}' moves away" + (f", and {others} others" if others else ""), names
+    return f": '{names[0]}' moves away" + (f", and {others} other{'s' if others > 1 else ''}" if others else ""), names
 
 
 def control_asked(control: object) -> tuple[ControlPoint | None, bool]:
