@@ -64,9 +64,18 @@ class Impact:
     begun: Array
     imposed: Array
 
-    def answer(self, found: StepSolution) -> tuple[StepSolution, Returned]:
-        """Return the answer of the step, given that with the compliance of joints, and what its law was."""
-        found, taken = self._hard(self.problem, found)
+    def answer(self, found: StepSolution, before: Returned | None = None) -> tuple[StepSolution, Returned]:
+        """Return the answer of the step and what its law was.
+
+        Parameters
+        ----------
+        found : StepSolution
+            With the compliance of joints; or without it, the answer of nearly the same step.
+        before : Returned, optional
+            The law of that answer.
+        """
+        taken = None if before is None else before.force
+        found, taken = self._hard(self.problem, found) if taken is None else self._again(found, taken)
         if not self.scheme.restitution or found.residual > CERTIFIED or not self._gives(found):
             return found, Returned(1.0, taken)
         (best, taken), low, high = self._returning(0.0, found), 0.0, 1.0
@@ -95,14 +104,17 @@ class Impact:
         works = (found.t[:m] * moved)[self.joint.struck]
         return float(works.sum()) > NO_GAIN * float(np.abs(works).sum())
 
+    def _again(self, found: StepSolution, taken: Array) -> tuple[StepSolution, Array]:
+        """Return the answer near to that of nearly the same step, the compliance counted from the forces it has."""
+        p, (lent_n, lent_t) = self.problem, self._lent(self.problem)
+        again = self.solver.solve(_counted(p, lent_n, lent_t, found.t), found.states, found.x, found.t)
+        if again.residual <= CERTIFIED:
+            return again, found.t
+        return self._hard(p, self.solver.solve(p, found.states, found.x, found.t))
+
     def _hard(self, problem: StepProblem, found: StepSolution) -> tuple[StepSolution, Array]:
         """Return the answer of a problem without the compliance added to joints, and the forces it counts from."""
-        joint, m = self.joint, len(self.joint.gap)
-        lent_n, lent_t = problem.a_n.copy(), problem.a_t.copy()
-        lent_n[m:] = lent_t[m:] = 0.0
-        if joint.springs is not None:
-            lent_n[:m][joint.springs.normal] = 0.0
-            lent_t[:m][joint.springs.shear] = 0.0
+        joint, (lent_n, lent_t) = self.joint, self._lent(problem)
         enough = RETURNED * float(np.abs(joint.y0[joint.struck, 0]).max())
         before = counted = np.zeros_like(found.t)
         for _ in range(MOST_RETURNED):
@@ -111,10 +123,24 @@ class Impact:
             if left <= enough or found.residual > CERTIFIED:
                 break
             before = found.t
-            origin = problem.origin + lent_t[:, None] * before[:, 1:]
-            p = replace(problem, gap=problem.gap - lent_n * before[:, 0], origin=origin)
-            again = self.solver.solve(p, found.states, found.x, found.t)
+            again = self.solver.solve(_counted(problem, lent_n, lent_t, before), found.states, found.x, found.t)
             if again.residual > CERTIFIED:
                 break
             found, counted = again, before
         return found, counted
+
+    def _lent(self, problem: StepProblem) -> tuple[Array, Array]:
+        """Return the compliances along normal and tangent that were added to joints (pairs,)."""
+        springs, m = self.joint.springs, len(self.joint.gap)
+        lent_n, lent_t = problem.a_n.copy(), problem.a_t.copy()
+        lent_n[m:] = lent_t[m:] = 0.0
+        if springs is not None:
+            lent_n[:m][springs.normal] = 0.0
+            lent_t[:m][springs.shear] = 0.0
+        return lent_n, lent_t
+
+
+def _counted(problem: StepProblem, lent_n: Array, lent_t: Array, force: Array) -> StepProblem:
+    """Return a problem in which compliances (pairs,) count from forces (pairs, d)."""
+    origin = problem.origin + lent_t[:, None] * force[:, 1:]
+    return replace(problem, gap=problem.gap - lent_n * force[:, 0], origin=origin)

@@ -180,10 +180,12 @@ class Stepper:
         t0 = np.zeros((count, problem.dim))
         t0[:m] = memory.force
         found = self.solver.solve(problem, states, x0, t0)
-        returned, change = Returned(), np.inf
+        returned: Returned | None = None
+        change = np.inf
         for _ in range(SWINGS):
             if joint.impact:
-                found, returned = Impact(self.solver, problem, joint, self.scheme, x0, rows.imposed).answer(found)
+                hit = Impact(self.solver, problem, joint, self.scheme, x0, rows.imposed)
+                found, returned = hit.answer(found, returned)
             if not self.turns and not f.elastic:
                 break
             again = self._inner(state, h, strain, x0, found.x, turn)
@@ -193,7 +195,8 @@ class Stepper:
             if change <= SWUNG * force or before <= change <= SETTLED * force:
                 break
             problem, inner = replace(problem, b=problem.b + again - inner), again
-            found = self.solver.solve_again(problem, found)
+            if not joint.impact:
+                found = self.solver.solve_again(problem, found)
         theta = self.scheme.theta
         x = theta * found.x + (1 - theta) * x0
         y = relative(rows.columns, rows.values, x) + rows.imposed
@@ -222,7 +225,7 @@ class Stepper:
         if maker.joints.any_stiffness:
             works["overlap"] += float(memory_before.stored.sum()) - float(state.memory.stored.sum())
         new = self._moved(state, found.x, x, apart, turn, strain, h, velocity, spin, memory, tied)
-        found = self._certified(found, state, new, memory_before, h, drive, returned)
+        found = self._certified(found, state, new, memory_before, h, drive, returned or Returned())
         hard = rows.valid & ~joint.springy
         depth = float(np.maximum(-end[hard & data.active], 0.0).max(initial=0.0))
         hit = hard & (memory_before.force[:, 0] == 0) & (joint.gap > 0.5 * h * joint.y0[:, 0] - maker.joints.sag)

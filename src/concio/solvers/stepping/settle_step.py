@@ -10,6 +10,8 @@ on. The answer is then made exact in its states with the same factor, updated: F
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from concio.problem.contact_problem import Array
@@ -20,7 +22,7 @@ from concio.solvers.algebra.factor import Factor, Solves
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.algebra.updated_blocks import UpdatedBlocks
 from concio.solvers.states.pair_laws import PairLaws, dot
-from concio.solvers.stepping.problem import StepProblem
+from concio.solvers.stepping.problem import Errors, StepProblem
 from concio.solvers.stepping.small import solve_small
 from concio.solvers.stepping.states import across_slip, laws_of_step, read_states, solve_states
 
@@ -81,21 +83,54 @@ class PairsAsked:
         return self.blocks
 
 
-def settle(
-    p: StepProblem, factor: Factor, states: PairStates, x: Array, t: Array
-) -> tuple[Array, Array, PairStates, float]:
-    """Settle the states of a step whose states, factorised, gave (x, t).
+@dataclass(frozen=True, eq=False)
+class LinearStep:
+    """The linear equations of a step in given states.
 
-    Returns
-    -------
+    Parameters
+    ----------
+    laws : PairLaws
+    factor : Solves
+        Holds their matrix.
+    D : (m, d, d) array
+        Blocks of the pairs in it.
+    """
+
+    laws: PairLaws
+    factor: Solves
+    D: Array
+
+    def solve(self, p: StepProblem, x: Array, t: Array) -> tuple[Array, Array, Errors]:
+        """Return x, t and the errors of a step with these states, by refinement from a point."""
+        return solve_states(p, self.factor, self.laws, x, t, self.D)
+
+
+@dataclass(frozen=True, eq=False)
+class Settled:
+    """A step whose states were settled.
+
+    Parameters
+    ----------
     x : (N,) array
-    t : (m, 2) array
+    t : (m, d) array
     states : PairStates
     residual : float
+    linear : LinearStep or None
+        Of these states; None where nothing was settled.
     """
+
+    x: Array
+    t: Array
+    states: PairStates
+    residual: float
+    linear: LinearStep | None = None
+
+
+def settle(p: StepProblem, factor: Factor, states: PairStates, x: Array, t: Array) -> Settled:
+    """Settle the states of a step whose states, factorised, gave (x, t)."""
     x0, t0, linear = x, t, laws_of_step(p, states, across_slip(p, x, t))
     best, laws = p.residual(x, t)
-    found = (x, t, states, best)
+    found = Settled(x, t, states, best)
     asked = PairsAsked(p, factor)
     for _ in range(STEP_PROBLEMS):
         violated = (laws > STEP_SETTLED) & read_states(p, x, t).differ(states)
@@ -119,13 +154,13 @@ def settle(
         settled = laws_of_step(p, now, across_slip(p, x, t))
         D_now = settled.blocks()
         try:
-            updated = asked.updated(D_now)
+            own = LinearStep(settled, asked.updated(D_now), D_now)
         except SingularMatrixError:
             break
-        x1, t1, errors = solve_states(p, updated, settled, x, t, D_now)
+        x1, t1, errors = own.solve(p, x, t)
         residual, laws1 = p.violation(t1, errors)
-        if residual < found[3]:
-            found = (x1, t1, now, residual)
+        if residual < found.residual:
+            found = Settled(x1, t1, now, residual, own)
         if residual < STEP_SETTLED:
             break
         laws = np.minimum(laws, laws1)

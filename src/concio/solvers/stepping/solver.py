@@ -13,10 +13,9 @@ from concio.problem.tolerances import STEP_GOOD, STEP_SETTLED
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.interior import engine as interior
 from concio.solvers.pivoting import sparse_lemke
-from concio.solvers.states.pair_laws import PairLaws
 from concio.solvers.stepping.problem import StepProblem, StepSolution
-from concio.solvers.stepping.settle_step import settle
-from concio.solvers.stepping.states import across_slip, halting, laws_of_step, read_states, solve_states
+from concio.solvers.stepping.settle_step import LinearStep, settle
+from concio.solvers.stepping.states import across_slip, halting, laws_of_step, read_states
 from concio.solvers.stepping.step_factor import StepFactor
 
 FEW = 25
@@ -37,21 +36,20 @@ class StepSolver:
     def __init__(self, engine: Engine = "superlu") -> None:
         self.engine = engine
         self.factor: StepFactor | None = None
-        self._laws: PairLaws | None = None
+        self._linear: LinearStep | None = None
         self.counts: dict[str, int] = {}
 
     def new_layout(self) -> None:
         """Forget the pattern: the rows meet other unknowns from now on."""
-        self.factor = self._laws = None
+        self.factor = self._linear = None
 
     def solve_again(self, p: StepProblem, found: StepSolution) -> StepSolution:
         """Solve a step of which only the forces have changed a little since :meth:`solve`, with the factors of then.
 
         Where the states or the slips have become others, the step is solved again.
         """
-        linear, factor = self._laws, self.factor
-        if linear is not None and factor is not None and factor.D is not None:
-            x, t, errors = solve_states(p, factor, linear, found.x, found.t, factor.D)
+        if self._linear is not None:
+            x, t, errors = self._linear.solve(p, found.x, found.t)
             residual, _ = p.violation(t, errors)
             if residual < STEP_GOOD:
                 return StepSolution(x, t, found.states, residual, found.how, found.factorisations)
@@ -83,10 +81,10 @@ class StepSolver:
             D = linear.blocks()
             try:
                 factor.factorise(D)
-                x1, t1, errors = solve_states(p, factor, linear, x, t, D)
+                self._linear = LinearStep(linear, factor, D)
+                x1, t1, errors = self._linear.solve(p, x, t)
             except SingularMatrixError:
                 break
-            self._laws = linear
             residual, laws = p.violation(t1, errors)
             found = keep(x1, t1, states, residual, "same states" if not round_ else "active set")
             if residual < STEP_GOOD:
@@ -98,9 +96,10 @@ class StepSolver:
                 x, t, turn, states = x1, t1, across_slip(p, x1, t1, errors), new
                 continue
             if changed <= FEW or round_ >= FLIPS or any(not new.differ(s).any() for s in seen):
-                x2, t2, settled, residual = settle(p, factor, states, x1, t1)
-                found = keep(x2, t2, settled, residual, "small problem")
-                if residual < STEP_SETTLED:
+                settled = settle(p, factor, states, x1, t1)
+                found = keep(settled.x, settled.t, settled.states, settled.residual, "small problem")
+                if found.residual < STEP_SETTLED:
+                    self._linear = settled.linear
                     return self._count(found)
                 if any(not new.differ(s).any() for s in seen):
                     break
