@@ -1,20 +1,23 @@
-"""The contact search of a motion: looks for candidates again only when something has moved by half the skin."""
+"""The contact search of a motion: looks for candidates again only when something has moved by half the skin.
+
+What is the same for edges in the plane (:mod:`concio.contact.edge_search`) and surfaces of polyhedra
+(:mod:`concio.contact.solid_search`): when to look, and what the layout of slots says in between.
+"""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from concio.contact.candidates import CRUSHED, THROUGH, find_candidates
-from concio.contact.edges import PlacedEdges
 from concio.contact.rows import RowMaker, Rows
-from concio.contact.slots import SlotMaker, Slots
+from concio.contact.slots import Slots
+from concio.contact.solid_touch import SolidTouch, SolidToucher
 from concio.contact.touch import Touch, Toucher
 from concio.kinematics.frames import norm
 from concio.kinematics.placement import Placement
-from concio.model.interfaces.detect import SLIVER_SHARE
 
 if TYPE_CHECKING:
     from concio.contact.reference import Reference
@@ -24,8 +27,31 @@ Array = np.ndarray
 SKIN = 0.1
 """Skin over the median width of the bodies."""
 
-SHIFT = 2e-3
-"""Share of an edge by which a meshed side may slide along another before their coupling is worked out again."""
+
+class Placed(Protocol):
+    """Outlines or surfaces where the bodies stand."""
+
+    @property
+    def start(self) -> Array:
+        """Where edges begin, or vertices (k, d) [m]."""
+        ...
+
+
+P = TypeVar("P", bound=Placed)
+P_co = TypeVar("P_co", bound=Placed, covariant=True)
+
+
+class Surface(Protocol[P_co]):
+    """Outlines or surfaces of all bodies as described."""
+
+    @property
+    def width(self) -> Array:
+        """Widths of the bodies (B,) [m]."""
+        ...
+
+    def placed(self, placement: Placement) -> P_co:
+        """Return them where bodies stand."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,77 +61,84 @@ class Layout:
     Parameters
     ----------
     slots : Slots
-    toucher : Toucher
+    toucher : Toucher or SolidToucher
     maker : RowMaker
-    start : (e, 2) array
-        Where the edges began when the layout was made.
-    along : (f,) array
-        Position of the bodies along their joints then [m].
+    start : (k, d) array
+        Where edges began, or where vertices were, when the layout was made [m].
     """
 
     slots: Slots
-    toucher: Toucher
+    toucher: Toucher | SolidToucher
     maker: RowMaker
     start: Array
-    along: Array
 
 
-class ContactSearch:
+L = TypeVar("L", bound=Layout)
+
+
+class ContactSearch(ABC, Generic[P, L]):
     """Finds the contact pairs of moving bodies.
 
     Parameters
     ----------
     reference : Reference
-    skin : float, optional
-        Edges closer than this are candidates [m]; default :data:`SKIN` of the median width of the bodies.
+    surface : Surface
+        Of its bodies.
     """
 
-    def __init__(self, reference: Reference, skin: float | None = None) -> None:
-        self.reference = reference
-        disc = reference.disc
-        self.edges = reference.edges
-        width = float(np.median(self.edges.width[reference.free]))
-        self.skin = SKIN * width if skin is None else skin
-        self.slack = 1e-9 * disc.size
-        self.through = CRUSHED if np.isfinite(reference.laws.cap).any() else THROUGH
-        self.maker = SlotMaker(
-            disc, self.edges, reference.laws, reference.rules, dict(reference.drawn), reference.first_node,
-            len(reference.body_of_node),
-        )  # fmt: skip
-        self.layout: Layout | None = None
-        self._moved = ~self.edges.fixed
+    def __init__(self, reference: Reference, surface: Surface[P]) -> None:
+        self.reference, self.surface = reference, surface
+        self.skin = SKIN * float(np.median(surface.width[reference.free]))
+        self.slack = 1e-9 * reference.disc.size
+        self.layout: L | None = None
 
-    def update(self, placed: PlacedEdges) -> bool:
+    def update(self, placement: Placement) -> bool:
         """Look for candidates again where that is due; return whether the layout has changed."""
-        if self.layout is not None and not self._due(self.layout, placed):
+        placed, old = self.surface.placed(placement), self.layout
+        if old is not None and self._near(old, placed) and not self.shifted(old, placed):
             return False
-        found = find_candidates(self.edges, placed, self.skin, self.through)
-        toucher = Toucher.of(self.edges, found, SLIVER_SHARE, self.slack)
-        touch = toucher.touch(placed)
-        slots = self.maker.make(found, toucher, touch, placed)
-        reference = self.reference
-        maker = RowMaker(reference.disc, slots, toucher, reference.node_column, reference.spin_axes)
-        self.layout = Layout(slots, toucher, maker, placed.start, touch.length)
-        return True
+        self.layout, changed = self.found(placed, old)
+        return changed
 
-    def _due(self, layout: Layout, placed: PlacedEdges) -> bool:
-        moved = norm(placed.start - layout.start)
-        if moved.max(initial=0.0) > 0.5 * self.skin:
-            return True
-        if layout.slots.side_a is None:
-            return False
-        shifted = np.abs(layout.toucher.touch(placed).length - layout.along)
-        return bool((shifted > SHIFT * layout.toucher.length_a).any())
+    def _near(self, layout: L, placed: P) -> bool:
+        """Return whether everything is within half the skin of where it was."""
+        return bool(norm(placed.start - layout.start).max(initial=0.0) <= 0.5 * self.skin)
 
-    def touch(self, placed: PlacedEdges) -> Touch:
+    @abstractmethod
+    def found(self, placed: P, old: L | None) -> tuple[L, bool]:
+        """Return the layout where bodies stand, and whether it differs from an old one."""
+
+    @abstractmethod
+    def shifted(self, layout: L, placed: P) -> bool:
+        """Return whether nodes of elastic bodies have others opposite than in a layout."""
+
+    def touch(self, placement: Placement) -> Touch | SolidTouch:
         """Return the contact points of the present layout."""
         assert self.layout is not None
-        return self.layout.toucher.touch(placed)
+        placed = self.surface.placed(placement)
+        return self.layout.toucher.touch(placed)  # type: ignore[arg-type]  # made for this surface
 
     def rows(
         self, placement: Placement, velocity: Array, spin: Array, strain: Array, *, turning: bool = True
     ) -> Rows:
-        """Return the rows of bodies placed so, after :meth:`update`; see :meth:`RowMaker.rows`."""
+        """Return the rows of bodies placed so, after :meth:`update`; see :meth:`concio.contact.rows.RowMaker.rows`."""
         assert self.layout is not None
-        touch = self.layout.toucher.touch(self.edges.placed(placement))
-        return self.layout.maker.rows(touch, placement, velocity, spin, strain, turning=turning)
+        return self.layout.maker.rows(self.touch(placement), placement, velocity, spin, strain, turning=turning)
+
+    def handed_on(self, rows: Rows, carried: Array) -> tuple[Array, Array, Array]:
+        """Return which pairs stop to stand for a point, which ones go on in their place, and whether sides are swapped.
+
+        Parameters
+        ----------
+        rows : Rows
+            Where the bodies stand now.
+        carried : (m,) boolean array
+            Pairs that carried force before.
+        """
+        none = np.zeros(0, dtype=int)
+        return none, none, np.zeros(0, dtype=bool)
+
+    def row_maker(self, slots: Slots, toucher: Toucher | SolidToucher) -> RowMaker:
+        """Return what writes the rows of slots."""
+        reference = self.reference
+        return RowMaker(reference.disc, slots, toucher, reference.node_column, reference.spin_axes)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from concio.contact.contact_search import Layout
+from concio.contact.edge_search import EdgeLayout
 from concio.contact.joint_points import joint_rule
 from concio.contact.reference import Configuration, Reference
 from concio.contact.rows import Rows
@@ -84,12 +84,12 @@ class OriginalContacts:
         self.length = np.hypot(*(self.end - self.start).T)
         self.before = {(int(b), *p): e for e, (b, p) in enumerate(zip(self.body, self.end.tolist(), strict=True))}
         self.rigid = disc.shape_of == RIGID
-        self._named: tuple[Layout, _Named] | None = None
+        self._named: tuple[EdgeLayout, _Named] | None = None
         self._rule: dict[tuple[int, int], tuple[int, float]] = {}
 
     # -- what the names say --------------------------------------------------------------------------------------------
 
-    def named(self, layout: Layout) -> _Named:
+    def named(self, layout: EdgeLayout) -> _Named:
         """Return the pairs that a layout names."""
         if self._named is None or self._named[0] is not layout:
             self._named = layout, self._read(layout)
@@ -103,7 +103,7 @@ class OriginalContacts:
             self._rule[a, b] = list(model.laws).index(rule.law), rule.gap
         return self._rule[a, b]
 
-    def _read(self, layout: Layout) -> _Named:
+    def _read(self, layout: EdgeLayout) -> _Named:
         """Read the names of the pairs of a layout."""
         key, count = layout.slots.key, len(self.body)
         name, number = np.divmod(key, KINDS)
@@ -190,13 +190,13 @@ class OriginalContacts:
     # -- where the bodies stand ----------------------------------------------------------------------------------------
 
     def at(
-        self, layout: Layout, centre: Array, rotation: Array, velocity: Array, spin: Array, strain: Array
+        self, layout: EdgeLayout, centre: Array, rotation: Array, velocity: Array, spin: Array, strain: Array
     ) -> tuple[Slots, Rows]:
         """Return the pairs and the rows of bodies that stand and move so.
 
         Parameters
         ----------
-        layout : Layout
+        layout : EdgeLayout
             Whose pairs.
         centre : (B, 2) array
             [m].
@@ -239,7 +239,7 @@ class OriginalContacts:
         return found
 
     def _ends(
-        self, n: _Named, layout: Layout, p0: Array, p1: Array, tangent: Array
+        self, n: _Named, layout: EdgeLayout, p0: Array, p1: Array, tangent: Array
     ) -> tuple[Array, Array, Array, Array, Array, Array]:
         """Return points, normals, gaps of the ends of faces and of single corners, whose edge, lengths, validity."""
         a, b = n.edge_a, n.edge_b

@@ -13,25 +13,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.contact.candidates import THROUGH
+from concio.contact.contact_search import ContactSearch, Layout
 from concio.contact.face_joints import FaceJoints
 from concio.contact.moving_solids import MovingSolids, PlacedSolids
 from concio.contact.polygon_points import outside
-from concio.contact.rows import RowMaker, Rows
+from concio.contact.rows import Rows
 from concio.contact.slots import Slots
 from concio.contact.solid_sides import FacetSides
-from concio.contact.solid_touch import SAME, Crossing, SolidTouch, SolidToucher
+from concio.contact.solid_touch import SAME, Crossing, SolidToucher
 from concio.kinematics.boxes import meeting_boxes
 from concio.kinematics.frames import cross, dot, norm
-from concio.kinematics.placement import Placement
 from concio.model.linked import pairs_within
 
 if TYPE_CHECKING:
     from concio.contact.reference import Reference
 
 Array = np.ndarray
-
-SKIN = 0.1
-"""Skin over the median width of the bodies."""
 
 SHIFT = 2e-3
 """Share of the spacing of nodes by which a point may slide over an elastic face before its weights are looked up."""
@@ -47,32 +44,25 @@ ALIKE = 0.9
 
 
 @dataclass(frozen=True, eq=False)
-class SolidLayout:
-    """Slots with what they were made from.
+class SolidLayout(Layout):
+    """Slots of polyhedra.
 
     Parameters
     ----------
-    slots : Slots
     toucher : SolidToucher
-    maker : RowMaker
-    start : (v, 3) array
-        Where the vertices were when the layout was made.
     joint : (m,) integer array
         Number of the joint as described that a slot belongs to; -1 where there was none.
     faces, feet : (m, 2) integer array, (m, 2, 2) array
         Faces of elastic bodies on either side, and where on them slots stood when the layout was made [m].
     """
 
-    slots: Slots
     toucher: SolidToucher
-    maker: RowMaker
-    start: Array
     joint: Array
     faces: Array
     feet: Array
 
 
-class SolidSearch:
+class SolidSearch(ContactSearch[PlacedSolids, SolidLayout]):
     """Finds the contact pairs of polyhedra that move.
 
     Parameters
@@ -81,48 +71,40 @@ class SolidSearch:
     """
 
     def __init__(self, reference: Reference) -> None:
-        self.reference, self.edges = reference, reference.solids
-        size = reference.disc.size
-        self.skin = SKIN * float(np.median(self.edges.width[reference.free]))
-        self.slack, self.same = 1e-9 * size, SAME * size
+        super().__init__(reference, reference.solids)
+        self.solids, self.same = reference.solids, SAME * reference.disc.size
         self.fixed = np.array([b.kind == "fixed" for b in reference.model.bodies])
-        self.layout: SolidLayout | None = None
         self.facets = None
         if len(reference.meshed):
             nodes = len(reference.body_of_node)
-            self.facets = FacetSides(reference.disc, self.edges, reference.first_node, nodes)
+            self.facets = FacetSides(reference.disc, self.solids, reference.first_node, nodes)
 
-    def update(self, placed: PlacedSolids) -> bool:
-        """Look for candidates again where that is due; return whether the layout has changed."""
-        old = self.layout
-        if old is not None and not self._due(old, placed):
-            return False
-        toucher = find_solid_candidates(self.edges, placed, self.fixed, self.skin, self.slack, self.same)
+    def found(self, placed: PlacedSolids, old: SolidLayout | None) -> tuple[SolidLayout, bool]:
+        """Return the layout where bodies stand; with the pairs of the old one only what is elastic differs."""
+        toucher = find_solid_candidates(self.solids, placed, self.fixed, self.skin, self.slack, self.same)
         slots = self._slots(toucher)
         if old is not None:  # what stood for others goes on doing so
             toucher.chosen[:] = np.isin(slots.key, old.slots.key[old.toucher.chosen])
             if np.array_equal(slots.key, old.slots.key):  # what names the pairs has not changed, nor what solves them
-                self._laid(replace(slots, key=old.slots.key), toucher, placed, old.joint)
-                return self.facets is not None
+                laid = self._laid(replace(slots, key=old.slots.key), toucher, placed, old.joint)
+                return laid, self.facets is not None
         joints = self.reference.joint_numbers
         pairs = zip(slots.body_a.tolist(), slots.body_b.tolist(), strict=True)
         joint = np.array([joints.get((min(p), max(p)), -1) for p in pairs], dtype=int)
-        self._laid(slots, toucher, placed, joint)
-        return True
+        return self._laid(slots, toucher, placed, joint), True
 
-    def _due(self, layout: SolidLayout, placed: PlacedSolids) -> bool:
-        if norm(placed.start - layout.start).max(initial=0.0) > 0.5 * self.skin:
-            return True
+    def shifted(self, layout: SolidLayout, placed: PlacedSolids) -> bool:
+        """Return whether points have slid over faces of elastic bodies."""
         if self.facets is None:
             return False
         touch = layout.toucher.touch(placed)
         moved = norm(self.facets.feet(layout.faces, touch, placed) - layout.feet)
         bodies = np.column_stack([layout.slots.body_a, layout.slots.body_b])
-        far = moved > SHIFT * self.edges.spacing[bodies]
+        far = moved > SHIFT * self.solids.spacing[bodies]
         return bool((far & (layout.faces >= 0) & touch.valid[:, None]).any())
 
-    def _laid(self, slots: Slots, toucher: SolidToucher, placed: PlacedSolids, joint: Array) -> None:
-        """Keep slots as the layout, with the nodes of elastic bodies that enter them."""
+    def _laid(self, slots: Slots, toucher: SolidToucher, placed: PlacedSolids, joint: Array) -> SolidLayout:
+        """Return slots as a layout, with the nodes of elastic bodies that enter them."""
         m = len(slots)
         faces, feet = np.full((m, 2), -1), np.zeros((m, 2, 2))
         if self.facets is not None:
@@ -130,12 +112,7 @@ class SolidSearch:
             feet = self.facets.feet(faces, toucher.touch(placed), placed)
             side_a, side_b = self.facets.sides(toucher, faces, feet)
             slots = replace(slots, side_a=side_a, side_b=side_b)
-        self.layout = SolidLayout(slots, toucher, self._rows(slots, toucher), placed.start, joint, faces, feet)
-
-    def _rows(self, slots: Slots, toucher: SolidToucher) -> RowMaker:
-        """Return what writes the rows of slots."""
-        reference = self.reference
-        return RowMaker(reference.disc, slots, toucher, reference.node_column, reference.spin_axes)
+        return SolidLayout(slots, toucher, self.row_maker(slots, toucher), placed.start, joint, faces, feet)
 
     def _slots(self, toucher: SolidToucher) -> Slots:
         """Return the slots of contact points: one each. Corners and edges have no area, and friction alone."""
@@ -144,31 +121,18 @@ class SolidSearch:
         m, joints, lone = len(a), toucher.joints, len(toucher.joint)
         face, share, bonded = np.full(m, -1), np.ones(m), np.zeros(m, dtype=bool)
         law[:lone] += len(self.reference.laws.names)
-        key = self.edges.key(toucher.corner, toucher.face, toucher.edges)
+        key = self.solids.key(toucher.corner, toucher.face, toucher.edges)
         if joints is not None:
             face[lone:], share[lone:], bonded[lone:] = joints.of, joints.share, joints.bonded
             opening[lone:] -= joints.drawn
-            key = np.concatenate([key, self.edges.joint_key(joints.face[joints.of], joints.number)])
+            key = np.concatenate([key, self.solids.joint_key(joints.face[joints.of], joints.number)])
         number = np.arange(m)
         return Slots(
             number, number, np.zeros(m), share, face, key, a, b, law, opening, np.ones(m), bonded, None, None
         )
 
-    def touch(self, placed: PlacedSolids) -> SolidTouch:
-        """Return the contact points of the present layout."""
-        assert self.layout is not None
-        return self.layout.toucher.touch(placed)
-
     def handed_on(self, rows: Rows, carried: Array) -> tuple[Array, Array, Array]:
-        """Return which pairs stop to stand for a point, which ones go on in their place, and whether sides are swapped.
-
-        Parameters
-        ----------
-        rows : Rows
-            Where the bodies stand now.
-        carried : (m,) boolean array
-            Pairs that carried force before.
-        """
+        """Return which pairs stop to stand for a point, which ones go on, and whether sides are swapped."""
         assert self.layout is not None
         slots, near = self.layout.slots, self.layout.toucher.near
         source, target = np.concatenate([near, near[:, ::-1]]).T
@@ -183,14 +147,6 @@ class SolidSearch:
         _, first = np.unique(target, return_index=True)
         source, target = source[first], target[first]
         return source, target, slots.body_a[source] != slots.body_a[target]
-
-    def rows(
-        self, placement: Placement, velocity: Array, spin: Array, strain: Array, *, turning: bool = True
-    ) -> Rows:
-        """Return the rows of bodies placed so, after :meth:`update`; see :meth:`concio.contact.rows.RowMaker.rows`."""
-        assert self.layout is not None
-        touch = self.layout.toucher.touch(self.edges.placed(placement))
-        return self.layout.maker.rows(touch, placement, velocity, spin, strain, turning=turning)
 
 
 def find_solid_candidates(

@@ -9,7 +9,7 @@ import pytest
 
 import concio
 from concio.contact.assembly import assemble
-from concio.contact.contact_search import ContactSearch
+from concio.contact.edge_search import EdgeSearch
 from concio.contact.face_points import Standing
 from concio.contact.operators import nodal_entries, operators, rigid_entries
 from concio.contact.reference import Reference
@@ -56,8 +56,8 @@ def test_statics_is_the_configuration_at_rest(kinds, law, angle):
     """Every pair of statics is a slot of the search at rest, with the same point, normal, gap, area, law and rows."""
     model = wall(kinds, LAWS[law], angle)
     assembly, reference = assemble(model), Reference.of(model)
-    pairs, search, here = assembly.pairs, ContactSearch(reference), reference.at_rest()
-    search.update(search.edges.placed(here.placement))
+    pairs, search, here = assembly.pairs, EdgeSearch(reference), reference.at_rest()
+    search.update(here.placement)
     still = np.zeros_like(here.placement.centre), np.zeros(len(model.bodies))
     rows, slots = search.rows(here.placement, *still, here.strain), search.layout.slots
     own = np.flatnonzero(slots.bonded)

@@ -15,7 +15,7 @@ from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import Statics
 from concio.analysis.motion.step_pairs import PairMaker
 from concio.analysis.motion.stepper import Stepper
-from concio.contact import contact_search as search_module
+from concio.contact import edge_search as search_module
 from concio.contact.attachments import Held, Ties
 from concio.contact.laws import LawTable
 from concio.contact.original import OriginalContacts

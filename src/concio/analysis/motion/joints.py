@@ -63,8 +63,8 @@ Rounding of angular velocities would otherwise set redundant pairs against each 
 HIT = 1e-2
 """Share of what the loads do to a free body in a step from which on a velocity hits something.
 
-What is slower came to be within a hundredth of a step, and a step does not resolve when. Walls that are shaken rattle so
-in every second step, and an impact takes two to four solutions more."""
+What is slower came to be within a hundredth of a step, and a step does not resolve when. Walls that are shaken rattle
+so in every second step, and an impact takes two to four solutions more."""
 
 
 class Joints:

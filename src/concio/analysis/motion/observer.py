@@ -145,7 +145,7 @@ class Observer:
             gap = np.where(rows.valid, rows.gap, 0.0)
         else:
             search, slots = self.maker.search, self.maker.slots
-            touch = search.touch(search.edges.placed(state.placement))  # type: ignore[arg-type]  # its own surfaces
+            touch = search.touch(state.placement)
             gap = np.where(touch.valid, touch.gap + slots.opening, 0.0)
         np.maximum.at(opening, number, np.maximum(gap[own], 0.0))
         memory = state.memory

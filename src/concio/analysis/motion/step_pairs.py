@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.state import Memory, TieMemory
 from concio.contact.attachments import Held, Ties
 from concio.contact.contact_search import ContactSearch
+from concio.contact.edge_search import EdgeSearch
 from concio.contact.reference import Reference
 from concio.contact.rows import Rows
 from concio.contact.slots import Slots
@@ -37,9 +39,9 @@ LINE = {2: 1.0, 3: 2.0}
 """Compliance added to a hard pair by dimension: what is one corner in the plane are two ends of a line in space."""
 
 
-def search_of(reference: Reference) -> ContactSearch | SolidSearch:
+def search_of(reference: Reference) -> ContactSearch[Any, Any]:
     """Return what looks for the contacts of bodies that move."""
-    return ContactSearch(reference) if reference.disc.dim == 2 else SolidSearch(reference)
+    return EdgeSearch(reference) if reference.disc.dim == 2 else SolidSearch(reference)
 
 
 class PairMaker:
@@ -70,22 +72,22 @@ class PairMaker:
     def slots(self) -> Slots:
         """The present layout of contact pairs."""
         assert self.search.layout is not None
-        return self.search.layout.slots
+        slots: Slots = self.search.layout.slots
+        return slots
 
     def contacts(
         self, memory: Memory, placement: Placement, velocity: Array, spin: Array, strain: Array
     ) -> tuple[Memory, Rows, bool]:
         """Return what pairs remember, their rows, and whether their layout is new, where bodies stand and move so."""
         search = self.search
-        new = search.update(search.edges.placed(placement))  # type: ignore[arg-type]  # each search its own surfaces
+        new = search.update(placement)
         key = self.slots.key
         if memory.key is not key:
             memory = memory.carried_to(key)
         rows = search.rows(placement, velocity, spin, strain)
-        if isinstance(search, SolidSearch):
-            source, target, swapped = search.handed_on(rows, memory.force[:, 0] > 0)
-            if len(source):
-                memory = memory.handed(source, target, rows.frame, swapped)
+        source, target, swapped = search.handed_on(rows, memory.force[:, 0] > 0)
+        if len(source):
+            memory = memory.handed(source, target, rows.frame, swapped)
         return memory, rows, new
 
     def supports(self, turn: Turns, shift: Array) -> PairData:
