@@ -165,6 +165,9 @@ def test_bounds_that_are_too_good_are_refused_by_the_equations() -> None:
         with pytest.raises(ValueError, match=r"balance|work"):
             verify.check(sealed({**made, key: str(value)}))
     assert verify.check(sealed({**made, "upper": str(high + 1)})), "a larger upper bound is true as well"
+    rest = [[["0"] * len(v), ["0"] * len(turn)] for v, turn in made["motion"]]
+    with pytest.raises(ValueError, match="need not do more work"):
+        verify.check(sealed({**made, "motion": rest}))
 
 
 def test_the_program_runs_alone(tmp_path: Path) -> None:

@@ -122,3 +122,12 @@ def test_the_place_nearest_to_a_point_lies_on_a_ring_and_not_between_two(scale):
         arm = scale * np.array(on) - centre
         found = _displacement(shown, 1, scale * np.array(near))
         assert found == pytest.approx(turn * np.array([-arm[1], arm[0]]), rel=1e-9, abs=1e-12 * scale)
+
+
+@pytest.mark.parametrize("shift", [(0.0, 0.0, 0.0), (70.0, -30.0, 20.0)])
+def test_a_view_is_drawn_about_its_middle_wherever_the_model_stands(shift):
+    """The slab of 2 x 2 m lies between spikes that begin at the ground: the box is 2 x 2 x 1.2 m."""
+    data = space_view_data([concio.solve(concio.place(slab().model, shift))], [""])
+    assert data["origin"] == pytest.approx(np.array([1.0, 1.0, 0.6]) + shift)
+    assert data["low"] == pytest.approx([-1.0, -1.0, -0.6])
+    assert data["high"] == pytest.approx([1.0, 1.0, 0.6])
