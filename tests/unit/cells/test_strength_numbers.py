@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ import pytest
 from concio.analysis.cells.strength import StrengthDomain, StrengthRay
 
 
-def ray(multiplier: float, worst: float = 0.0, velocity: tuple[float, ...] | None = None, **more: object) -> StrengthRay:
+def ray(multiplier: float, worst: float = 0.0, velocity: tuple[float, ...] | None = None, **more: Any) -> StrengthRay:
     mechanism = None if velocity is None else SimpleNamespace(velocity=np.array(velocity))
     associated = SimpleNamespace(
         multiplier=multiplier, upper=multiplier * 1.5, worst=worst, checked=worst < 1e-6, mechanism=mechanism
