@@ -55,4 +55,4 @@ def test_two_motions_fit_no_worse_than_one_of_them() -> None:
 def test_a_choice_is_fitted_from_rest_where_its_part_does_not_lead_on() -> None:
     _, rest, both = fits(LATE, 4.0)
     assert rest.misfit < 0.1
-    assert both.misfit == pytest.approx(rest.misfit, abs=0.1)
+    assert both.misfit <= 1.05 * rest.misfit, (both.misfit, rest.misfit)
