@@ -327,3 +327,20 @@ def test_abutments_stand_behind_their_springing_joint_at_right_angles(shape):
         outside = np.sign(body.centroid[0])
         assert (outside * free[:, 0] <= outside * body.outline[:, 0].mean() + 1.0).all()
         assert abs(body.centroid[0]) > 1.0 - 1e-9
+
+
+@pytest.mark.parametrize("span", [1e-2, 3.0, 500.0])
+def test_the_rise_of_a_semicircle_is_half_its_span_to_rounding(span: float) -> None:
+    """Given or not, it is the same arch; a millionth more or less is another shape, in any size."""
+    options = {"span": span, "ring": 0.1 * span, "voussoirs": 5}
+    plain = concio.arch(**options)
+    for share in (1 - 1e-12, 1.0, 1 + 1e-12):
+        told = concio.arch(**options, rise=0.5 * span * share)
+        for one, other in zip(plain.bodies, told.bodies, strict=True):
+            assert other.outline == pytest.approx(one.outline, abs=1e-11 * span)
+    for share in (1 - 1e-6, 1 + 1e-6):
+        with pytest.raises(concio.InputError, match="a semicircular arch of span"):
+            concio.arch(**options, rise=0.5 * span * share)
+    with pytest.raises(concio.InputError, match="rises at most"):
+        concio.arch(**options, shape="segmental", rise=0.5 * span * (1 + 1e-6))
+    assert concio.arch(**options, shape="segmental", rise=0.5 * span * (1 - 1e-6)).bodies

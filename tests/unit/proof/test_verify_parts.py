@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from concio.proof import verify
+from concio.proof.exact_certificate import sealed
 
 MOTION2 = [[["0", "0"], ["0"]], [["3", "-2"], ["5"]]]
 MOTION3 = [[["0", "0", "0"], ["0", "0", "0"]], [["3", "-2", "7"], ["5", "-4", "2"]]]
@@ -64,8 +65,8 @@ def test_what_joints_take_is_the_largest_work_of_a_force_within_their_strength(
 ) -> None:
     """Of all p between -tension and cap and all s square to n with |s| <= (cohesion + friction p) |n|."""
     moved = [[[str(sense * int(x)) for x in part] for part in one] for one in motion]
-    # as if both bodies could move: the first one stands still anyway
-    data = {"bodies": [body(d, fixed=True), body(d)], "joints": [joint(d, **laws)]}
+    moved[0] = [["-1", "4", "2"][:d], ["-2"] if d == 2 else ["1", "-2", "3"]]
+    data = {"bodies": [body(d), body(d)], "joints": [joint(d, **laws)]}
     n, at = floats(data["joints"][0]["normal"]), floats(data["joints"][0]["at"])
     w = velocities(moved, at)
     mu, cohesion, tension, cap = (float(Fraction(laws.get(k, "0"))) for k in ("friction", "cohesion", "tension", "cap"))
@@ -253,3 +254,34 @@ def test_a_block_on_which_a_moment_or_a_force_is_left_is_not_in_balance(d: int) 
         else:
             with pytest.raises(ValueError, match="'B' is not in balance"):
                 verify.check_forces(data, forces, {})
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_joint_presses_both_of_its_bodies(d: int) -> None:
+    """Loads on each of two free blocks that a joint force balances: its moment is that about the origin, on both."""
+    one = joint(d, friction="9", tension="inf", cohesion="99")
+    force = ["3", "1", "-2"][:d]
+    F, at = floats(force), floats(one["at"])
+    moment = crossed(at, F)
+    still = [str(0)] * d
+
+    def load(b: int, sense: int, turned: int = 0) -> dict[str, Any]:
+        turning = [str(int(sense * m) + turned) for m in moment]
+        return {"group": "dead", "kind": "point", "body": b, "force": [str(int(sense * x)) for x in F], "at": still,
+                "moment": turning}  # fmt: skip
+
+    bodies = [body(d), body(d)]
+    data = {"bodies": bodies, "joints": [one], "loads": [load(0, 1), load(1, -1)]}
+    verify.check_forces(data, [force], {"dead": Fraction(1)})
+    for wrong in ([load(0, -1), load(1, -1)], [load(0, 1, 1), load(1, -1)], [load(0, 1), load(1, 1)], [load(0, 1)]):
+        with pytest.raises(ValueError, match="is not in balance"):
+            verify.check_forces({**data, "loads": wrong}, [force], {"dead": Fraction(1)})
+    with pytest.raises(ValueError, match="is not in balance"):
+        verify.check_forces(data, [force], {"dead": Fraction(2)})
+
+
+def test_groups_are_constant_or_multiplied_and_not_both() -> None:
+    data = {"claim": "limit", "bodies": [], "joints": [], "loads": [], "constant": {"g": "1"}, "multiplied": {"g": "1"}}
+    with pytest.raises(ValueError, match="both constant and multiplied"):
+        verify.check(sealed(data))
+
