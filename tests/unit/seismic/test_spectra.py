@@ -59,7 +59,8 @@ def test_damping_has_the_least_of_the_code() -> None:
     assert ONE.eta(1000.0) == 0.55
 
 
-CURVE = CapacityCurve("followed", np.array([0.0, 0.2, 0.2, 0.8]), np.array([0.30, 0.24, 0.12, 0.0]), 0.8, "falls", (0.2,))
+ALPHA, AT = np.array([0.30, 0.24, 0.12, 0.0]), np.array([0.0, 0.2, 0.2, 0.8])
+CURVE = CapacityCurve("followed", AT, ALPHA, 0.8, "falls", (0.2,))
 RULE = {"share": 0.4, "period": 1.68, "damping": 8.0}
 
 
